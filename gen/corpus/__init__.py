@@ -1,0 +1,66 @@
+"""The corpus format: records in, a folder that any netCDF-4 tool reads as one file, and the same records out.
+
+======== =====================================================
+module   responsibility
+======== =====================================================
+schema   dimensions, variables, units and roles
+part     one self-describing netCDF-4 file of records
+index    manifest, ``corpus.nc`` over the parts, opening, checks
+======== =====================================================
+"""
+
+from gen.corpus.index import (
+    open_corpus,
+    part_paths,
+    read_manifest,
+    validate_corpus,
+    write_index,
+    write_manifest,
+)
+from gen.corpus.part import (
+    Codec,
+    PartRow,
+    describe_part,
+    open_part,
+    part_name,
+    sha256,
+    write_part,
+    write_text_durably,
+)
+from gen.corpus.schema import (
+    FAULTS,
+    FORMAT,
+    MISSING_COUNT,
+    ROLES,
+    SCHEMA,
+    SIGNAL,
+    SPLITS,
+    Variable,
+    make_dataset,
+)
+
+__all__ = [
+    "FAULTS",
+    "FORMAT",
+    "MISSING_COUNT",
+    "ROLES",
+    "SCHEMA",
+    "SIGNAL",
+    "SPLITS",
+    "Codec",
+    "PartRow",
+    "Variable",
+    "describe_part",
+    "make_dataset",
+    "open_corpus",
+    "open_part",
+    "part_name",
+    "part_paths",
+    "read_manifest",
+    "sha256",
+    "validate_corpus",
+    "write_index",
+    "write_manifest",
+    "write_part",
+    "write_text_durably",
+]

@@ -1,0 +1,175 @@
+"""What a corpus holds: the dimensions, the variables, their units and the role each one plays.
+
+``acceleration (record, channel, elapsed_time)`` is the signal; every other variable has one value per record and a ``role``:
+what an analyst on site knows (``operating``), what a classifier is to find out (``label``), what only the simulator knows
+(``latent``) and where the record comes from (``provenance``). Features may use the signal and ``operating`` alone.
+"""
+
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike, NDArray
+
+from gen.errors import CorpusError
+
+FORMAT = 1
+FAULTS = ("healthy", "inner", "outer", "ball")
+SPLITS = ("train", "validation", "test")
+ROLES = ("operating", "label", "latent", "provenance")
+SIGNAL = "acceleration"
+SIGNAL_DIMS = ("record", "channel", "elapsed_time")
+MISSING_COUNT = -32768  # what a missing part reads as, and therefore not a count the converter gives
+
+
+class Variable(NamedTuple):
+    """One per-record variable of the format."""
+
+    name: str
+    dtype: str
+    units: str
+    role: str
+    long_name: str
+    flags: tuple[str, ...] = ()
+
+
+SCHEMA = (
+    Variable("shaft_rate", "f8", "Hz", "operating", "shaft rate as labelled on the machine"),
+    Variable("sample_rate", "f8", "Hz", "operating", "sample rate"),
+    Variable("load", "f8", "N", "operating", "radial load as labelled on the machine, NaN if unknown"),
+    Variable("ftf", "f8", "1", "operating", "nominal fundamental train frequency in shaft orders"),
+    Variable("bpfo", "f8", "1", "operating", "nominal ball pass frequency of the outer race in shaft orders"),
+    Variable("bpfi", "f8", "1", "operating", "nominal ball pass frequency of the inner race in shaft orders"),
+    Variable("bsf", "f8", "1", "operating", "nominal ball spin frequency in shaft orders"),
+    Variable("bearing", "str", "1", "operating", "designation of the bearing"),
+    Variable("fault", "i1", "1", "label", "fault class", FAULTS),
+    Variable("n_spalls", "i2", "1", "label", "number of spalls"),
+    Variable("width", "f8", "m", "label", "width of the widest spall along the rolling direction, 0 if healthy"),
+    Variable("depth", "f8", "m", "label", "depth of the widest spall, 0 if healthy"),
+    Variable("angle", "f8", "rad", "label", "angle of the widest spall on its race or ball, NaN if healthy"),
+    Variable("rig", "i4", "1", "provenance", "number of the machine"),
+    Variable("specimen", "i4", "1", "provenance", "number of the physical bearing"),
+    Variable("recording", "i4", "1", "provenance", "number of the recording the record was cut from"),
+    Variable("split", "i1", "1", "provenance", "part of the corpus the record is meant for", SPLITS),
+    Variable("source", "str", "1", "provenance", "where the record comes from"),
+)
+
+
+def signal_attributes(counts_per_unit: float | None) -> dict[str, Any]:
+    """Attributes of the signal; with ``counts_per_unit``, those by which readers undo the converter (CF-1.11, 8.1)."""
+    attributes: dict[str, Any] = {"units": "m s-2", "long_name": "acceleration of the sensor", "role": "signal"}
+    if counts_per_unit is not None:
+        attributes |= {
+            "scale_factor": 1.0 / counts_per_unit,
+            "add_offset": 0.0,
+            "_FillValue": np.int16(MISSING_COUNT),
+        }
+    return attributes
+
+
+def variable_attributes(variable: Variable) -> dict[str, Any]:
+    """Attributes of a per-record variable, with CF flags for a class."""
+    attributes: dict[str, Any] = {
+        "units": variable.units,
+        "long_name": variable.long_name,
+        "role": variable.role,
+    }
+    if variable.flags:
+        attributes["flag_values"] = np.arange(len(variable.flags), dtype=variable.dtype)
+        attributes["flag_meanings"] = " ".join(variable.flags)
+    return attributes
+
+
+def make_dataset(
+    signal: NDArray[np.int16] | NDArray[np.float32],
+    fs: float,
+    channels: tuple[str, ...],
+    columns: Mapping[str, ArrayLike],
+    *,
+    extra: tuple[Variable, ...] = (),
+    counts_per_unit: float | None = None,
+    attributes: Mapping[str, Any],
+) -> xr.Dataset:
+    """Records in the corpus layout, ready for :func:`gen.corpus.write_part`.
+
+    Parameters
+    ----------
+    signal : array, shape (record, channel, elapsed_time)
+        Converter counts (int16, with ``counts_per_unit`` [counts per m s-2]) or accelerations [m s-2] (float32).
+    fs : float
+        Sample rate [Hz].
+    channels : tuple of str
+        Name of each channel.
+    columns : mapping
+        One array of shape (record,) for each variable of ``SCHEMA`` and of ``extra``.
+    extra : tuple of Variable
+        Further per-record variables, such as what only the simulator knows.
+    counts_per_unit : float, optional
+        Converter counts per m s-2, for int16 signals.
+    attributes : mapping
+        Global attributes: ``title``, ``history`` and what else describes the corpus.
+
+    Raises
+    ------
+    CorpusError
+        If a column is missing or unknown.
+    """
+    variables = SCHEMA + extra
+    names = {variable.name for variable in variables}
+    if names != set(columns):
+        message = f"columns {sorted(names ^ set(columns))} are either missing or not described; give each exactly once."
+        raise CorpusError(message)
+    data: dict[str, Any] = {SIGNAL: (SIGNAL_DIMS, signal, signal_attributes(counts_per_unit))}
+    for variable in variables:
+        dtype = object if variable.dtype == "str" else np.dtype(variable.dtype)
+        values = np.asarray(columns[variable.name], dtype=dtype)
+        data[variable.name] = ("record", values, variable_attributes(variable))
+    axis = {"units": "s", "long_name": "time since the start of the record"}
+    coordinates = {
+        "channel": ("channel", np.asarray(channels, dtype=object), {"long_name": "name of the channel"}),
+        "elapsed_time": ("elapsed_time", np.arange(signal.shape[2]) / fs, axis),
+    }
+    labels = {variable.name: data.pop(variable.name) for variable in variables if variable.dtype == "str"}
+    return xr.Dataset(
+        data,
+        coordinates | labels,
+        {"Conventions": "CF-1.11", "raceway_format": FORMAT, **attributes},
+    )
+
+
+def schema_problems(dataset: xr.Dataset) -> list[str]:
+    """What keeps ``dataset`` from being in the format, one sentence each."""
+    problems = [f"variable {name} is missing." for name in _missing(dataset)]
+    if problems:
+        return problems
+    if dataset[SIGNAL].dims != SIGNAL_DIMS:
+        problems.append(f"{SIGNAL} has dimensions {dataset[SIGNAL].dims}, not {SIGNAL_DIMS}.")
+    known = {variable.name: variable for variable in SCHEMA}
+    for name, array in dataset.variables.items():
+        if name in (SIGNAL, "channel", "elapsed_time"):
+            continue
+        if array.dims != ("record",):
+            problems.append(f"{name} has dimensions {array.dims}, not ('record',).")
+        if array.attrs.get("role") not in ROLES or "long_name" not in array.attrs:
+            problems.append(f"{name} needs a long_name and a role, one of {', '.join(ROLES)}.")
+        if name in known:
+            problems += _values_problems(known[str(name)], array)
+    return problems
+
+
+def _missing(dataset: xr.Dataset) -> list[str]:
+    required = [SIGNAL, "channel", "elapsed_time", *(variable.name for variable in SCHEMA)]
+    return [name for name in required if name not in dataset.variables]
+
+
+def _values_problems(variable: Variable, array: xr.Variable) -> list[str]:
+    if variable.dtype == "str":
+        return []
+    if array.dtype.kind != np.dtype(variable.dtype).kind:
+        return [f"{variable.name} is of type {array.dtype}, not {np.dtype(variable.dtype)}."]
+    if array.attrs.get("units") != variable.units:
+        return [f"{variable.name} is in {array.attrs.get('units')!r}, not {variable.units!r}."]
+    if variable.flags and not np.isin(array.values, np.arange(len(variable.flags))).all():
+        return [f"{variable.name} has values outside 0..{len(variable.flags) - 1} ({', '.join(variable.flags)})."]
+    return []
