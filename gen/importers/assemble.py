@@ -1,0 +1,207 @@
+"""From the files of a set to a corpus, whole or not at all.
+
+Files are read one after the other, and their records are written part by part into a folder beside the wanted
+one, which takes its name when index, data card and manifest are written.
+"""
+
+import os
+import shutil
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from itertools import islice
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from gen.corpus import (
+    FAULTS,
+    PartRow,
+    Variable,
+    make_dataset,
+    part_name,
+    write_index,
+    write_manifest,
+    write_part,
+    write_text_durably,
+)
+from gen.errors import CorpusError
+from gen.importers.files import UnusableError
+from gen.importers.recordings import Candidate, Record, cut, read_recording
+
+Progress = Callable[[int, int], None]
+
+_PART_RECORDS = 256
+_PART_BYTES = 64_000_000
+
+
+class Collection(NamedTuple):
+    """What the recordings of a set have in common; ``origin`` says whose they are and under what licence."""
+
+    importer: str
+    title: str
+    origin: str
+    fs: float
+    channel: str
+    extra: tuple[Variable, ...] = ()
+
+
+class Import(NamedTuple):
+    """The new corpus, its counts, and a sentence for each file skipped and each thing done or assumed."""
+
+    directory: Path
+    recordings: int
+    records: int
+    skipped: tuple[str, ...]
+    warnings: tuple[str, ...]
+
+
+class _Log(NamedTuple):
+    """What is noted while files are read: recordings and records by fault, and sentences."""
+
+    recordings: Counter[str]
+    records: Counter[str]
+    skipped: list[str]
+    warnings: list[str]
+
+
+def import_recordings(
+    collection: Collection,
+    candidates: Sequence[Candidate],
+    output: Path,
+    *,
+    window: float,
+    skipped: Sequence[str] = (),
+    warnings: Sequence[str] = (),
+    progress: Progress | None = None,
+) -> Import:
+    """Make a corpus of every usable candidate.
+
+    Parameters
+    ----------
+    collection : Collection
+        What the recordings have in common.
+    candidates : sequence of Candidate
+        The files; one that cannot be used is skipped with a sentence.
+    output : Path
+        Folder of the new corpus, which must not exist or be empty.
+    window : float
+        Length of a record [s].
+    skipped, warnings : sequence of str
+        Sentences the lists begin with.
+    progress : callable, optional
+        Called with the number of files done and the number of all.
+
+    Raises
+    ------
+    CorpusError
+        If the folder is taken, the window holds no signal, no file can be used, or the disk refuses.
+    """
+    output = output.resolve()
+    if output.exists() and (not output.is_dir() or any(output.iterdir())):
+        message = f"{output}: exists and is not an empty folder; give a new one, or remove it first."
+        raise CorpusError(message)
+    length = round(window * collection.fs) if np.isfinite(window) else 0
+    if length < 2:
+        message = f"window: {window} s holds no signal; give the length of a record in seconds, such as 0.5."
+        raise CorpusError(message)
+    log = _Log(Counter(), Counter(), list(skipped), list(warnings))
+    temporary = output.with_name(f".{output.name}.{os.getpid()}.tmp")
+    try:
+        (temporary / "parts").mkdir(parents=True)
+        rows = _write_parts(
+            _records(candidates, collection, length, log, progress), collection, temporary / "parts"
+        )
+        if not rows:
+            raise CorpusError(_nothing_usable(collection.importer, log.skipped))
+        _finish(collection, rows, log, length, temporary)
+        temporary.replace(output)
+    except OSError as error:
+        message = f"{output}: could not be written ({error.strerror or error}); choose another folder."
+        raise CorpusError(message) from error
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+    return Import(
+        output, log.recordings.total(), log.records.total(), tuple(log.skipped), tuple(log.warnings)
+    )
+
+
+def _records(
+    candidates: Sequence[Candidate], collection: Collection, length: int, log: _Log, progress: Progress | None
+) -> Iterator[Record]:
+    for done, candidate in enumerate(candidates, start=1):
+        try:
+            recording = read_recording(candidate, length, collection.fs)
+        except UnusableError as reason:
+            log.skipped.append(f"{candidate.source}: {reason}; skipped.")
+        else:
+            records = cut(recording, candidate.source, length, collection.fs)
+            log.recordings[recording.fault] += 1
+            log.records[recording.fault] += len(records)
+            log.warnings.extend(f"{candidate.source}: {warning}." for warning in recording.warnings)
+            yield from records
+        if progress is not None:
+            progress(done, len(candidates))
+
+
+def _write_parts(records: Iterator[Record], collection: Collection, folder: Path) -> list[PartRow]:
+    rows: list[PartRow] = []
+    for first in records:
+        size = max(1, min(_PART_RECORDS, _PART_BYTES // first.signal.nbytes))
+        batch = [first, *islice(records, size - 1)]
+        dataset = make_dataset(
+            np.stack([record.signal for record in batch])[:, np.newaxis],
+            collection.fs,
+            (collection.channel,),
+            {name: [record.columns[name] for record in batch] for name in first.columns},
+            extra=collection.extra,
+            attributes={
+                "title": collection.title,
+                "source": collection.origin,
+                "history": f"cut from recordings by raceway import {collection.importer}",
+            },
+        )
+        rows.append(write_part(dataset, folder / part_name(len(rows))))
+    return rows
+
+
+def _finish(collection: Collection, rows: list[PartRow], log: _Log, length: int, directory: Path) -> None:
+    write_index(directory, rows)
+    write_text_durably(_data_card(collection, log, length), directory / "README.md")
+    write_manifest(
+        directory,
+        rows,
+        complete=True,
+        importer=collection.importer,
+        recordings=log.recordings.total(),
+        skipped=log.skipped,
+        warnings=log.warnings,
+    )
+
+
+def _nothing_usable(importer: str, skipped: list[str]) -> str:
+    if not skipped:
+        return f"import {importer}: no recording of the set was found; give the folder that holds it."
+    return f"import {importer}: no recording can be used; the first of {len(skipped)} skipped: {skipped[0]}"
+
+
+def _data_card(collection: Collection, log: _Log, length: int) -> str:
+    fs = collection.fs
+    lines = [
+        f"# {collection.title}",
+        "",
+        collection.origin,
+        "",
+        f"Records of {length / fs:g} s at {fs:g} Hz, channel {collection.channel}, in m/s^2.",
+        "",
+        "| fault | recordings | records |",
+        "|---|---|---|",
+        *(
+            f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |"
+            for fault in FAULTS
+            if log.recordings[fault]
+        ),
+    ]
+    for heading, sentences in (("What was done or assumed", log.warnings), ("What was skipped", log.skipped)):
+        lines += ["", f"## {heading}", "", *(f"- {sentence}" for sentence in sentences or ("Nothing.",))]
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,258 @@
+"""The Case Western Reserve University set: seeded faults in the drive-end bearing of a 2 hp motor, 12 kHz.
+
+Recordings are known by their published numbers, wherever the files lie. Each oddity of the published files [1]_
+that is met is handled and told in a warning; nothing is corrected in silence.
+
+.. [1] W. A. Smith, R. B. Randall, "Rolling element bearing diagnostics using the Case Western Reserve University
+   data: A benchmark study", Mech. Syst. Signal Process. 64-65 (2015) 100-131.
+"""
+
+import math
+import re
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import scipy.signal
+
+from gen.corpus import Variable
+from gen.errors import CorpusError
+from gen.importers.assemble import Collection, Import, Progress, import_recordings
+from gen.importers.files import FloatArray, UnusableError, one_column
+from gen.importers.matlab import read_matlab
+from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below
+from gen.physics.bearing import CATALOGUE
+
+Subset = Literal["all", "wang"]
+
+FS = 12_000.0
+_HORSEPOWER = 745.69987  # W
+_MIL = 25.4e-6  # m
+_NOMINAL_RPM = (1797, 1772, 1750, 1730)
+_SPEED_TOLERANCE = 0.05
+_DEPTH = {7: 11 * _MIL, 14: 11 * _MIL, 21: 11 * _MIL}
+_CLOCK_ANGLE = {3: 0.0, 6: -math.pi / 2, 12: math.pi / 2}
+
+
+class Specimen(NamedTuple):
+    """One bearing: its fault, diameter [mil] and clock position, and its recordings at 0, 1, 2 and 3 hp."""
+
+    fault: str
+    diameter: int
+    clock: int | None
+    numbers: tuple[int, int, int, int]
+
+
+SPECIMENS = (
+    Specimen("healthy", 0, None, (97, 98, 99, 100)),
+    Specimen("inner", 7, None, (105, 106, 107, 108)),
+    Specimen("inner", 14, None, (169, 170, 171, 172)),
+    Specimen("inner", 21, None, (209, 210, 211, 212)),
+    Specimen("inner", 28, None, (3001, 3002, 3003, 3004)),
+    Specimen("ball", 7, None, (118, 119, 120, 121)),
+    Specimen("ball", 14, None, (185, 186, 187, 188)),
+    Specimen("ball", 21, None, (222, 223, 224, 225)),
+    Specimen("ball", 28, None, (3005, 3006, 3007, 3008)),
+    Specimen("outer", 7, 6, (130, 131, 132, 133)),
+    Specimen("outer", 7, 3, (144, 145, 146, 147)),
+    Specimen("outer", 7, 12, (156, 158, 159, 160)),
+    Specimen("outer", 14, 6, (197, 198, 199, 200)),
+    Specimen("outer", 21, 6, (234, 235, 236, 237)),
+    Specimen("outer", 21, 3, (246, 247, 248, 249)),
+    Specimen("outer", 21, 12, (258, 259, 260, 261)),
+)
+
+_HELD_AS = {3001: 56, 3002: 57, 3003: 58, 3004: 59, 3005: 48, 3006: 49, 3007: 50, 3008: 51}
+_LONGEST_AT_12_KHZ = (
+    200_000  # published: 121 thousand samples at 12 kHz; 244 thousand (97) and 484 thousand at 48 kHz
+)
+_NOTES = {
+    (158,): "its labelled speed is about 2 % off its own fault line; the label is left as it is",
+    (
+        197,
+        198,
+        199,
+        200,
+    ): "no outer-race line is to be seen, the signals look healthy; the label is left as it is",
+    (
+        3001,
+        3002,
+        3003,
+        3004,
+    ): "a bearing of another maker with lines at 3.68 and 5.32 orders; nominal orders of the 6205 are kept",
+    (3005, 3006, 3007, 3008): "a bearing of another maker; nominal orders of the 6205 are kept",
+}
+_COLLECTION = Collection(
+    importer="cwru",
+    title="CWRU bearing data, drive end",
+    origin=(
+        "Case Western Reserve University Bearing Data Center, seeded fault tests, drive-end accelerometer. "
+        "The provider asks for acknowledgement; no licence text is stated."
+    ),
+    fs=FS,
+    channel="drive end",
+    extra=(Variable("motor_load", "f8", "W", "operating", "power taken from the motor as labelled"),),
+)
+
+
+class _Label(NamedTuple):
+    """What the published tables say of a recording."""
+
+    number: int
+    specimen: int
+    motor_load: int
+
+
+def import_cwru(
+    source: Path,
+    output: Path,
+    *,
+    window: float = 0.5,
+    subset: Subset = "all",
+    progress: Progress | None = None,
+) -> Import:
+    """Bring the drive-end recordings found below ``source`` into a corpus at 12 kHz.
+
+    Each (fault, diameter, clock position) is one specimen recorded at four motor loads, and has the same number
+    in every subset. The radial load is unknown; the load of the motor is stored as ``motor_load`` [W].
+
+    Parameters
+    ----------
+    source : Path
+        Folder of the published MATLAB files, in any arrangement.
+    output : Path
+        Folder of the new corpus.
+    window : float
+        Length of a record [s].
+    subset : {"all", "wang"}
+        All 64 recordings, or the 40 of Wang, Taal and Fink (2021): no 28 mil, outer race at 6 o'clock only.
+    progress : callable, optional
+        Called with the number of files done and the number of all.
+
+    Raises
+    ------
+    CorpusError
+        If nothing can be imported, the output is taken, or an argument is out of range.
+    """
+    if subset not in ("all", "wang"):
+        message = f"subset: {subset!r} is not known; choose all or wang."
+        raise CorpusError(message)
+    wanted = {label.number: label for label in _labels(subset)}
+    everything = {label.number for label in _labels("all")}
+    chosen: dict[int, Candidate] = {}
+    skipped: list[str] = []
+    for path in files_below(source, ".mat"):
+        name = path.relative_to(source).as_posix()
+        number = recording_number(path.stem)
+        if number not in everything:
+            skipped.append(
+                f"{name}: is not named after a drive-end recording at 12 kHz or a healthy one; skipped."
+            )
+        elif number in chosen:
+            skipped.append(
+                f"{name}: is recording {number} once more, after {chosen[number].source}; skipped."
+            )
+        elif number in wanted:
+            chosen[number] = Candidate(path, name, partial(_read, path, wanted[number]))
+    warnings = [
+        f"{_numbers(group)}: {note}." for group, note in _NOTES.items() if not chosen.keys().isdisjoint(group)
+    ]
+    missing = sorted(wanted.keys() - chosen.keys())
+    if missing:
+        warnings.append(
+            f"{len(missing)} of {len(wanted)} recordings were not found: {_numbers(tuple(missing))}."
+        )
+    return import_recordings(
+        _COLLECTION,
+        [chosen[number] for number in sorted(chosen)],
+        output,
+        window=window,
+        skipped=skipped,
+        warnings=warnings,
+        progress=progress,
+    )
+
+
+def recording_number(stem: str) -> int | None:
+    """Find the published number in a file name: what it begins with, or ends in after an underscore.
+
+    >>> [recording_number(stem) for stem in ("130@6_0", "98_Normal_1_12k", "12k_Drive_End_B007_0_118", "IR007")]
+    [130, 98, 118, None]
+    """
+    found = re.match(r"(\d+)(?=[@_.]|$)", stem) or re.search(r"_(\d{2,4})$", stem)
+    return int(found[1]) if found else None
+
+
+def _labels(subset: Subset) -> Iterator[_Label]:
+    for index, specimen in enumerate(SPECIMENS):
+        if subset == "all" or (specimen.diameter != 28 and specimen.clock in (None, 6)):
+            yield from (_Label(number, index, load) for load, number in enumerate(specimen.numbers))
+
+
+def _read(path: Path, label: _Label) -> Recording:
+    fault, diameter, clock, _ = SPECIMENS[label.specimen]
+    held = _HELD_AS.get(label.number, label.number)
+    warnings: list[str] = []
+    signal = one_column(read_matlab(path, f"X{held:03d}_DE_time")) * STANDARD_GRAVITY
+    if held != label.number:
+        warnings.append(f"holds X{held:03d}_DE_time, which is taken as recording {label.number} as published")
+    if fault == "healthy":
+        signal, warning = _at_12_khz(signal)
+        warnings.append(warning)
+    rpm, complaint = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[label.motor_load])
+    spall = {}
+    if fault != "healthy":
+        depth, angle = _DEPTH.get(diameter, math.nan), _CLOCK_ANGLE.get(clock or 0, math.nan)
+        spall = {"n_spalls": 1, "width": diameter * _MIL, "depth": depth, "angle": angle}
+    return Recording(
+        number=label.number,
+        rig=0,
+        specimen=label.specimen,
+        bearing=CATALOGUE["6205"],
+        shaft_rate=rpm / 60,
+        fault=fault,
+        signal=signal,
+        extra={"motor_load": label.motor_load * _HORSEPOWER},
+        warnings=(*warnings, *complaint),
+        **spall,
+    )
+
+
+def _at_12_khz(signal: FloatArray) -> tuple[FloatArray, str]:
+    """Healthy recording at 12 kHz, and how it got there.
+
+    All four were published at 48 kHz, and copies resampled to 12 kHz are about. A file does not say which it is,
+    but its length does: the published ones hold 244 thousand samples (97) or 484 thousand, the copies 121 thousand.
+    """
+    if signal.size <= _LONGEST_AT_12_KHZ:
+        return signal, f"its {signal.size} samples are taken as resampled to 12 kHz before, from 48 kHz"
+    resampled = scipy.signal.resample_poly(signal, 1, 4)
+    return resampled, (
+        f"its {signal.size} samples are taken as recorded at 48 kHz and resampled to 12 kHz with "
+        "scipy.signal.resample_poly(x, 1, 4), which rolls off above 5 kHz: compare below it"
+    )
+
+
+def _labelled_rpm(path: Path, variable: str, nominal: int) -> tuple[float, tuple[str, ...]]:
+    """Speed in the file, or the nominal one with a warning if the file has none that can be meant [rpm]."""
+    try:
+        rpm = float(one_column(read_matlab(path, variable))[0])
+    except UnusableError:
+        return nominal, (f"holds no {variable}, the nominal {nominal} rpm of its motor load are used",)
+    if not abs(rpm / nominal - 1) <= _SPEED_TOLERANCE:
+        return nominal, (
+            f"says {rpm:g} rpm in {variable}, the nominal {nominal} rpm of its motor load are used",
+        )
+    return rpm, ()
+
+
+def _numbers(group: tuple[int, ...]) -> str:
+    """Numbers of recordings in words.
+
+    >>> _numbers((158,)), _numbers((197, 198, 199, 200)), _numbers((97, 105))
+    ('158', '197-200', '97, 105')
+    """
+    if len(group) > 2 and group[-1] - group[0] == len(group) - 1:
+        return f"{group[0]}-{group[-1]}"
+    return ", ".join(str(number) for number in group)

@@ -1,0 +1,129 @@
+"""Columns of numbers out of text and NumPy files, and what to say of a file that has none.
+
+Whatever goes wrong becomes an :class:`UnusableError`, which says why without naming the file: the caller knows the
+name that the user knows.
+"""
+
+import warnings
+from collections.abc import Callable
+from itertools import islice
+from pathlib import Path
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.floating]
+Value = TypeVar("Value")
+
+_HEAD_LINES = 100
+
+
+class UnusableError(Exception):
+    """Why a file cannot be used."""
+
+
+def read_text(
+    path: Path, column: int | str | None = None, delimiter: str | None = None
+) -> NDArray[np.float64]:
+    """Columns of a delimited text file, shape (time,) for one ``column`` and (time, column) for all.
+
+    Lines before the first one of numbers are a header. ``column`` is counted from 0 or named as in the header.
+    Without ``delimiter`` it is the tab, semicolon or comma found in the first lines, or blanks.
+
+    Raises
+    ------
+    UnusableError
+        If the file is no such text or has no such column.
+    """
+    with path.open(encoding="utf-8-sig", errors="replace") as stream:
+        head = [line.rstrip("\r\n").lstrip("#") for line in islice(stream, _HEAD_LINES)]
+    separator = delimiter or next((mark for mark in "\t;," if any(mark in line for line in head)), None)
+    lines = [[field.strip() for field in line.split(separator)] for line in head]
+    index, first = _locate(lines, column)
+
+    def load() -> NDArray[np.float64]:
+        return np.loadtxt(
+            path, delimiter=separator, skiprows=first, usecols=index, ndmin=1, encoding="utf-8-sig"
+        )
+
+    return guarded("delimited text", load)
+
+
+def read_numpy(path: Path) -> NDArray[Any]:
+    """Array in a NumPy ``.npy`` file; pickled objects are refused.
+
+    Raises
+    ------
+    UnusableError
+        If the file is no such file.
+    """
+    # a memory map refuses a header that promises more than the file holds before anything is allocated
+    return guarded("NumPy", lambda: np.array(np.lib.format.open_memmap(path, mode="r")))
+
+
+def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
+    """Vector of real numbers, shape (time,).
+
+    In a table time runs along the longer axis, and ``column`` counts along the other.
+
+    >>> one_column(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), 1)
+    array([4., 5., 6.])
+
+    Raises
+    ------
+    UnusableError
+        If the values are no real numbers, no table, or a table of several columns with none chosen.
+    """
+    if values.dtype.kind not in "iuf" or values.size == 0 or values.ndim > 2:
+        message = f"holds {values.dtype} of shape {values.shape} there, not one column of real numbers"
+        raise UnusableError(message)
+    columns = np.atleast_2d(values)
+    if columns.shape[0] > columns.shape[1]:
+        columns = columns.T
+    if column is None and columns.shape[0] > 1:
+        message = f"holds {columns.shape[0]} columns there and none is chosen; say which with column"
+        raise UnusableError(message)
+    chosen = column or 0
+    if chosen >= columns.shape[0]:
+        message = f"has columns 0 to {columns.shape[0] - 1} there, not {chosen}"
+        raise UnusableError(message)
+    return columns[chosen].astype(np.float64)
+
+
+def guarded(kind: str, read: Callable[[], Value]) -> Value:
+    """Give what ``read`` gives, or an :class:`UnusableError` for whatever it raises."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return read()
+    except UnusableError:
+        raise
+    except Exception as error:  # damaged bytes make zlib, h5py and NumPy raise a dozen unrelated types
+        reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
+        message = f"is no readable {kind} file ({reason})"
+        raise UnusableError(message) from error
+
+
+def _locate(lines: list[list[str]], column: int | str | None) -> tuple[int | None, int]:
+    """Index of the column and number of the first line of numbers."""
+    header = 0
+    if isinstance(column, str):
+        header = next((number for number, fields in enumerate(lines, start=1) if column in fields), 0)
+        if not header:
+            raise UnusableError(f"has no column {column} in its first {len(lines)} lines")
+        column = lines[header - 1].index(column)
+    chosen = slice(None) if column is None else slice(column, column + 1)
+    for number, fields in enumerate(lines[header:], start=header):
+        if _are_numbers(fields[chosen]):
+            return column, number
+    where = "" if column is None else f" in column {column}"
+    raise UnusableError(f"has no line of numbers{where} among its first {len(lines)}")
+
+
+def _are_numbers(fields: list[str]) -> bool:
+    try:
+        [float(field) for field in fields]
+    except ValueError:
+        return False
+    return bool(fields)

@@ -1,0 +1,143 @@
+"""One's own recordings, described by a mapping file: which files, what is in them, which bearing, at which speed.
+
+Files are MATLAB, delimited text or NumPy; paths are relative to the mapping file and stay in its folder.
+"""
+
+import math
+from collections.abc import Hashable, Iterable
+from functools import partial
+from pathlib import Path
+
+from gen.errors import CorpusError
+from gen.importers.assemble import Collection, Import, Progress, import_recordings
+from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text
+from gen.importers.mapping import Entry, bearing_of, read_mapping
+from gen.importers.matlab import read_matlab
+from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording
+
+_METRES_PER_SECOND_SQUARED = {"g": STANDARD_GRAVITY, "m/s2": 1.0}
+_TEXT = (".csv", ".txt", ".tsv", ".dat")
+
+
+def import_generic(
+    source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None
+) -> Import:
+    """Bring the recordings that the mapping file ``source`` describes into a corpus at their sample rate.
+
+    Rigs and specimens are numbered in the order in which the mapping names them.
+
+    Parameters
+    ----------
+    source : Path
+        The mapping file (YAML).
+    output : Path
+        Folder of the new corpus.
+    window : float
+        Length of a record [s].
+    progress : callable, optional
+        Called with the number of files done and the number of all.
+
+    Raises
+    ------
+    CorpusError
+        If the mapping file is in error, nothing can be imported, the output is taken, or the window is out of
+        range.
+    """
+    mapping = read_mapping(source)
+    fs = _common_sample_rate(source, mapping.entries)
+    rigs = _numbered(entry.rig for entry in mapping.entries)
+    specimens = _numbered((entry.rig, entry.specimen) for entry in mapping.entries)
+    candidates: dict[str, Candidate] = {}
+    skipped: list[str] = []
+    for position, entry in enumerate(mapping.entries):
+        paths = _matches(source, position, entry.path)
+        if not paths:
+            skipped.append(f"{entry.path}: no such file beside {source.name}; skipped.")
+        for path in paths:
+            name = _name(path.relative_to(source.parent).as_posix(), entry)
+            if name in candidates:
+                skipped.append(f"{name}: is listed once more by files[{position}]; skipped.")
+                continue
+            places = len(candidates), rigs[entry.rig], specimens[entry.rig, entry.specimen]
+            candidates[name] = Candidate(path, name, partial(_read, path, entry, *places))
+    collection = Collection("generic", mapping.title, mapping.origin, fs, mapping.channel)
+    return import_recordings(
+        collection, list(candidates.values()), output, window=window, skipped=skipped, progress=progress
+    )
+
+
+def _common_sample_rate(source: Path, entries: tuple[Entry, ...]) -> float:
+    first = entries[0]
+    for position, entry in enumerate(entries):
+        if entry.sample_rate_hz != first.sample_rate_hz:
+            message = (
+                f"{source}: files[{position}] ({entry.path}) was sampled at {entry.sample_rate_hz:g} Hz and files[0] ({first.path}) "
+                f"at {first.sample_rate_hz:g} Hz, but a corpus has one rate; make a corpus of each, or resample first."
+            )
+            raise CorpusError(message)
+    return first.sample_rate_hz
+
+
+def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
+    """Give each distinct key its number, in order of appearance."""
+    return {key: number for number, key in enumerate(dict.fromkeys(keys))}
+
+
+def _matches(source: Path, position: int, pattern: str) -> list[Path]:
+    """Files a pattern names, sorted; none of them outside the folder of the mapping file."""
+    folder = source.parent
+    if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
+        message = f"{source}: files[{position}].path: {pattern} leads out of the folder of the mapping file; put that file above the data."
+        raise CorpusError(message)
+    exact = folder / pattern
+    paths = [exact] if exact.is_file() else sorted(path for path in folder.glob(pattern) if path.is_file())
+    for path in paths:
+        if not path.resolve().is_relative_to(folder.resolve()):
+            message = f"{source}: files[{position}].path: {path.name} is a link out of the folder; copy the file into it."
+            raise CorpusError(message)
+    return paths
+
+
+def _name(path: str, entry: Entry) -> str:
+    """Name of the recording: its file, and what is taken of it if the mapping says so.
+
+    A file may hold several recordings.
+    """
+    return ":".join([path, *(str(part) for part in (entry.variable, entry.column) if part is not None)])
+
+
+def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Recording:
+    faulty = entry.fault != "healthy"
+    unknown = math.nan if faulty else 0.0
+    return Recording(
+        number=number,
+        rig=rig,
+        specimen=specimen,
+        bearing=bearing_of(entry),
+        shaft_rate=entry.shaft_rpm / 60,
+        fault=entry.fault,
+        signal=_column(path, entry) * _METRES_PER_SECOND_SQUARED[entry.unit],
+        load=math.nan if entry.load_n is None else entry.load_n,
+        n_spalls=entry.n_spalls or int(faulty),
+        width=unknown if entry.width_mm is None else entry.width_mm * 1e-3,
+        depth=unknown if entry.depth_mm is None else entry.depth_mm * 1e-3,
+        angle=math.nan if entry.angle_deg is None else math.radians(entry.angle_deg),
+    )
+
+
+def _column(path: Path, entry: Entry) -> FloatArray:
+    """Values of the recording as they stand in the file."""
+    suffix = path.suffix.lower()
+    if suffix in _TEXT:
+        return one_column(read_text(path, entry.column, entry.delimiter))
+    if isinstance(entry.column, str):
+        message = f"has columns without names, not {entry.column}; count them from 0"
+        raise UnusableError(message)
+    if suffix == ".npy":
+        return one_column(read_numpy(path), entry.column)
+    if suffix != ".mat":
+        message = f"ends in none of .mat, .npy, {', '.join(_TEXT)}"
+        raise UnusableError(message)
+    if entry.variable is None:
+        raise UnusableError("needs the key variable, the name of its variable to take")
+    return one_column(read_matlab(path, entry.variable), entry.column)

@@ -1,0 +1,188 @@
+"""The mapping file of one's own recordings: YAML that says of each file what it holds, in human units.
+
+Every key that describes a file may be given once at the top for all of them, and again for one that differs.
+"""
+
+import difflib
+import math
+from pathlib import Path
+from typing import Annotated, Any, Literal, NamedTuple, Self
+
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PositiveFloat,
+    ValidationError,
+    model_validator,
+)
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+
+from gen.errors import CorpusError
+from gen.physics.bearing import CATALOGUE, Bearing
+
+Fault = Literal["healthy", "inner", "outer", "ball"]
+Finite = Annotated[float, Field(allow_inf_nan=False)]
+Name = Annotated[
+    str, BeforeValidator(lambda value: str(value) if type(value) is int else value), Field(min_length=1)
+]
+
+
+class Geometry(BaseModel):
+    """A bearing that is in no catalogue."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    designation: Name = "own"
+    n_balls: Annotated[int, Field(ge=3)]
+    pitch_diameter_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
+    ball_diameter_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
+    contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
+
+    @model_validator(mode="after")
+    def _balls_fit(self) -> Self:
+        if self.ball_diameter_mm >= self.pitch_diameter_mm * math.sin(math.pi / self.n_balls):
+            message = f"{self.n_balls} balls of {self.ball_diameter_mm:g} mm do not fit on the pitch circle"
+            raise ValueError(message)
+        return self
+
+
+class Entry(BaseModel):
+    """What is known of a file, or of all files that match a pattern."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    path: Name
+    bearing: Name | Geometry
+    unit: Literal["g", "m/s2"]
+    sample_rate_hz: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
+    shaft_rpm: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
+    fault: Fault
+    specimen: Name
+    rig: Name = "1"
+    variable: Name | None = None
+    column: Annotated[int, Field(ge=0)] | str | None = None
+    delimiter: Name | None = None
+    load_n: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
+    width_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)] | None = None
+    depth_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)] | None = None
+    angle_deg: Finite | None = None
+    n_spalls: Annotated[int, Field(ge=1)] | None = None
+
+    @model_validator(mode="after")
+    def _bearing_is_known(self) -> Self:
+        if isinstance(self.bearing, str) and self.bearing not in CATALOGUE:
+            known = ", ".join(CATALOGUE)
+            message = f"bearing {self.bearing} is not in the catalogue ({known}); give its geometry instead"
+            raise ValueError(message)
+        return self
+
+    @model_validator(mode="after")
+    def _healthy_has_no_spall(self) -> Self:
+        spall = [
+            key for key in ("width_mm", "depth_mm", "angle_deg", "n_spalls") if getattr(self, key) is not None
+        ]
+        if self.fault == "healthy" and spall:
+            message = f"{spall[0]} describes a spall, and fault is healthy; remove one of the two"
+            raise ValueError(message)
+        return self
+
+
+class _Top(BaseModel):
+    """The mapping file itself; further keys hold for every file."""
+
+    model_config = ConfigDict(extra="allow", frozen=True)
+
+    title: Name = "Own recordings"
+    origin: Name = "Origin and licence are not stated."
+    channel: Name = "sensor"
+    files: Annotated[list[dict[str, Any]], Field(min_length=1)]
+
+
+class Mapping(NamedTuple):
+    """A mapping file, read and checked."""
+
+    title: str
+    origin: str
+    channel: str
+    entries: tuple[Entry, ...]
+
+
+def read_mapping(path: Path) -> Mapping:
+    """Read and check a mapping file.
+
+    Raises
+    ------
+    CorpusError
+        If it is missing, no YAML, or says something that cannot be.
+    """
+    raw = _read_yaml(path)
+    try:
+        top = _Top.model_validate(raw)
+    except ValidationError as error:
+        message = f"{path}: {_sentence(error, '', raw)}"
+        raise CorpusError(message) from None
+    common = top.model_extra or {}
+    entries: list[Entry] = []
+    for number, own in enumerate(top.files):
+        try:
+            entries.append(Entry.model_validate(common | own))
+        except ValidationError as error:
+            message = f"{path}: {_sentence(error, f'files[{number}].', common, own)}"
+            raise CorpusError(message) from None
+    return Mapping(top.title, top.origin, top.channel, tuple(entries))
+
+
+def bearing_of(entry: Entry) -> Bearing:
+    """Bearing of an entry, in SI units."""
+    if isinstance(entry.bearing, str):
+        return CATALOGUE[entry.bearing]
+    geometry = entry.bearing
+    return Bearing(
+        geometry.designation,
+        geometry.n_balls,
+        geometry.pitch_diameter_mm * 1e-3,
+        geometry.ball_diameter_mm * 1e-3,
+        math.radians(geometry.contact_angle_deg),
+    )
+
+
+def _read_yaml(path: Path) -> dict[str, Any]:
+    if not path.is_file():
+        message = f"{path}: no such file; give the YAML file that describes the recordings."
+        raise CorpusError(message)
+    try:
+        raw = YAML(typ="safe", pure=True).load(path)
+    except MarkedYAMLError as error:
+        line = error.problem_mark.line + 1 if error.problem_mark else 1
+        message = f"{path}: line {line}: not YAML, {error.problem}; correct the line."
+        raise CorpusError(message) from None
+    except (YAMLError, UnicodeDecodeError, RecursionError, OSError) as error:
+        message = f"{path}: not a readable YAML file ({str(error).splitlines()[0]})."
+        raise CorpusError(message) from None
+    if not isinstance(raw, dict):
+        message = f"{path}: holds no keys; it must have files, a list of path, fault, specimen and so on."
+        raise CorpusError(message)
+    return raw
+
+
+def _sentence(
+    error: ValidationError, where: str, common: dict[str, Any], own: dict[str, Any] | None = None
+) -> str:
+    """Say the most specific complaint, at the place where the user wrote the value."""
+    complaint = max(error.errors(), key=lambda one: len(one["loc"]))
+    keys = [str(part) for part in complaint["loc"] if part not in ("str", "Geometry", "int")]
+    key = ".".join(keys)
+    if keys and own is not None and keys[0] in common and keys[0] not in own:
+        where = ""
+    if complaint["type"] == "missing":
+        return f"{where}{key} is missing; give it there, or at the top for all files."
+    if complaint["type"] == "extra_forbidden":
+        near = difflib.get_close_matches(keys[-1], [*Entry.model_fields, *Geometry.model_fields], n=1)
+        return f"{where}{key} is no key here; " + (f"did you mean {near[0]}?" if near else "remove it.")
+    message = complaint["msg"].removeprefix("Value error, ")
+    if complaint["type"] == "value_error":
+        return f"{where}{key}{': ' if key else ''}{message}."
+    return f"{where}{key}: {complaint['input']!r} is not allowed: {message[0].lower()}{message[1:]}."

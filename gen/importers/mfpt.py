@@ -1,0 +1,126 @@
+"""The MFPT fault data set of Bechhoefer: baseline, inner-race and outer-race recordings of one type of bearing.
+
+Each file holds a structure ``bearing`` with the acceleration ``gs`` [g], the sample rate ``sr`` [Hz], the shaft rate
+``rate`` [Hz] and the load ``load`` [lbf] [1]_. The set does not say which recordings share a bearing: each file
+counts as a specimen of its own, so that cross-validation within the set may leak.
+
+.. [1] E. Bechhoefer, *Condition Based Maintenance Fault Database for Testing of Diagnostic and Prognostics
+   Algorithms*, MFPT Society, 2013.
+"""
+
+import math
+from functools import partial
+from pathlib import Path
+
+import scipy.signal
+
+from gen.importers.assemble import Collection, Import, Progress, import_recordings
+from gen.importers.files import UnusableError, one_column
+from gen.importers.matlab import read_matlab
+from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below
+from gen.physics.bearing import Bearing
+
+FS = 48_828.0
+NICE = Bearing("NICE", n_balls=8, pitch_diameter=1.245 * 25.4e-3, ball_diameter=0.235 * 25.4e-3)
+
+_POUND_FORCE = 4.4482216152605  # N, by definition
+_NOMINAL_RATE = 25.0
+_FAULT_OF_PREFIX = {"baseline": "healthy", "innerracefault": "inner", "outerracefault": "outer"}
+_COLLECTION = Collection(
+    importer="mfpt",
+    title="MFPT fault data set",
+    origin="E. Bechhoefer, NRG Systems; Society for Machinery Failure Prevention Technology. CC BY-NC-SA 4.0.",
+    fs=FS,
+    channel="accelerometer",
+)
+_NOTE = "all recordings: the shaft rate is the nominal one in the files; the real one is 0.6 to 1.3 % lower where it was measured."
+
+
+def import_mfpt(
+    source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None
+) -> Import:
+    """Bring the recordings found below ``source`` into a corpus at 48,828 Hz.
+
+    The class is told by the name of the file; files recorded at a multiple of the rate are resampled, with a warning.
+
+    Parameters
+    ----------
+    source : Path
+        Folder of the published MATLAB files, in any arrangement.
+    output : Path
+        Folder of the new corpus.
+    window : float
+        Length of a record [s].
+    progress : callable, optional
+        Called with the number of files done and the number of all.
+
+    Raises
+    ------
+    CorpusError
+        If nothing can be imported, the output is taken, or the window is out of range.
+    """
+    candidates: dict[str, Candidate] = {}
+    skipped: list[str] = []
+    for path in files_below(source, ".mat"):
+        name, stem = path.relative_to(source).as_posix(), path.stem.lower()
+        fault = next((fault for prefix, fault in _FAULT_OF_PREFIX.items() if stem.startswith(prefix)), None)
+        if fault is None:
+            skipped.append(f"{name}: begins with none of baseline, InnerRaceFault, OuterRaceFault; skipped.")
+        elif stem in candidates:
+            skipped.append(
+                f"{name}: is the recording {path.stem} once more, after {candidates[stem].source}; skipped."
+            )
+        else:
+            candidates[stem] = Candidate(path, name, partial(_read, path, fault, len(candidates)))
+    return import_recordings(
+        _COLLECTION,
+        list(candidates.values()),
+        output,
+        window=window,
+        skipped=skipped,
+        warnings=[_NOTE],
+        progress=progress,
+    )
+
+
+def _read(path: Path, fault: str, number: int) -> Recording:
+    signal = one_column(read_matlab(path, "bearing.gs")) * STANDARD_GRAVITY
+    fs = _number(path, "bearing.sr")
+    factor = round(fs / FS) if math.isfinite(fs) else 0
+    if factor < 1 or factor * FS != fs:
+        message = f"was sampled at {fs:g} Hz, which is no multiple of {FS:g} Hz"
+        raise UnusableError(message)
+    warnings: list[str] = []
+    if factor > 1:
+        signal = scipy.signal.resample_poly(signal, 1, factor)
+        warnings.append(
+            f"resampled from {fs:g} Hz to {FS:g} Hz with scipy.signal.resample_poly(x, 1, {factor})"
+        )
+    rate, load = _number(path, "bearing.rate"), _number(path, "bearing.load") * _POUND_FORCE
+    if not rate > 0:
+        rate = _NOMINAL_RATE
+        warnings.append(f"states no shaft rate, the nominal {_NOMINAL_RATE:g} Hz are used")
+    if not load >= 0:
+        load = math.nan
+        warnings.append("states no load, which stays unknown")
+    spall = {} if fault == "healthy" else {"n_spalls": 1, "width": math.nan, "depth": math.nan}
+    return Recording(
+        number=number,
+        rig=0,
+        specimen=number,
+        bearing=NICE,
+        shaft_rate=rate,
+        fault=fault,
+        signal=signal,
+        load=load,
+        warnings=tuple(warnings),
+        **spall,
+    )
+
+
+def _number(path: Path, variable: str) -> float:
+    """One number of a file, which some files hold as text; NaN if it is missing or no number."""
+    try:
+        return float(read_matlab(path, variable).item())
+    except (UnusableError, ValueError, TypeError):
+        return math.nan

@@ -1,0 +1,179 @@
+"""Records of one shape, laid out in lanes for the kernel.
+
+A record is a :class:`Machine` in :class:`Motion` with its spalls. The last batch is padded with copies of its first record.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from gen.physics import kernel, motion
+from gen.physics.bearing import Bearing
+from gen.physics.kernel import FloatArray, Shape
+from gen.physics.lanes import LANES
+from gen.physics.rotor import Machine, as_columns, rest
+from gen.physics.spall import PROFILES
+
+
+class Spall(NamedTuple):
+    """One spall, in SI units; ``ball`` says which ball carries it if ``site`` is ``ball``."""
+
+    site: str
+    width: float
+    depth: float
+    angle: float
+    ball: int = 0
+
+
+class Motion(NamedTuple):
+    """How one record turns: rates, processes of unit rms with their rms, and the angles at the start [SI units]."""
+
+    shaft_rate: float
+    speed_rms: float = 0.0
+    mean_slip: float = 0.0
+    slip_rms: float = 0.0
+    spin_rms: float = 0.0
+    jitter_rms: float = 0.0
+    axis_offset: float = 0.0
+    axis_rms: float = 0.0
+    axis_limit: float = 0.0
+    unbalance: float = 0.0
+    shaft_angle: float = 0.0
+    cage_angle: float = 0.0
+    spin_angle: float = 0.0
+
+
+class Record(NamedTuple):
+    """Everything the kernel needs of one record."""
+
+    bearing: Bearing
+    machine: Machine
+    motion: Motion
+    spalls: tuple[Spall, ...]
+    frequencies: FloatArray
+    """Frequencies of the terms of all processes, shape (term,) [Hz]; see :func:`n_terms`."""
+    phases: FloatArray
+    """Their phases, shape (term,) [rad]."""
+    pickups: FloatArray
+    """Weights of the six accelerations in each channel, shape (channel, coordinate) [1]."""
+    waves: FloatArray
+    """Waviness amplitudes, shape (WAVE_ROWS,) [m], or empty."""
+
+
+def n_terms(n_balls: int) -> int:
+    """Number of cosine terms of all processes: speed, slip, spin, spin axis, and the jitter of every ball."""
+    return motion.JITTER_FIRST + motion.JITTER_TERMS * n_balls
+
+
+def spall_reach(bearing: Bearing, spall: Spall) -> tuple[float, float]:
+    """Half the angle a spall spans [rad] and the radius on which it does [m]."""
+    arc = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[spall.site]
+    return 0.5 * spall.width / arc, arc
+
+
+def slot_ranks(bearing: Bearing, spall: Spall) -> tuple[int, ...]:
+    """Which balls a spall needs a slot for, counted from the nearest: those that can be in it at the same time."""
+    if spall.site == "ball":
+        return (0,)
+    half, _ = spall_reach(bearing, spall)
+    pitch = 2 * math.pi / bearing.n_balls
+    beyond = max(0, math.ceil((half - 0.45 * pitch) / pitch))
+    return tuple(range(-beyond, beyond + 1))
+
+
+def record_shape(record: Record, profile: str = "geometric") -> Shape:
+    """Shape of the kernel that a record needs; it depends on nothing but the record."""
+    slots = sum(len(slot_ranks(record.bearing, spall)) for spall in record.spalls)
+    return kernel.make_shape(
+        record.bearing.n_balls,
+        slots,
+        len(record.pickups),
+        PROFILES.index(profile),
+        resonator=record.machine.sensor_mass > 0,
+        damped=record.machine.contact_damping > 0,
+        uneven=record.motion.jitter_rms > 0 or record.waves.size > 0,
+    )
+
+
+def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool = True) -> motion.Lanes:
+    """Records in lanes, at most ``LANES`` of them and all of ``shape``, starting from rest or from zero.
+
+    ``knot`` is the time between two knots [s].
+    """
+    padded = records + [records[0]] * (LANES - len(records))
+    machines = as_columns([record.machine for record in padded])
+    motions = Motion(*np.asarray([record.motion for record in padded], dtype=float).T)
+    n_balls = len(shape.balls)
+    state = np.zeros((kernel.N_STATE, LANES))
+    cage = np.asarray(motions.cage_angle)
+    if at_rest:
+        places = cage[:, None] + 2 * np.pi * np.arange(n_balls) / n_balls
+        state[:4] = rest(machines, places).T
+        state[4:6] = state[2:4]
+    state[kernel.CAGE_C], state[kernel.CAGE_S] = np.cos(cage), np.sin(cage)
+    state[kernel.SHAFT_C], state[kernel.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
+    waves = np.concatenate([record.waves[:, None] for record in padded], axis=1) if records[0].waves.size else np.empty(0)
+    return motion.Lanes(
+        state.ravel(),
+        _params(padded, machines, shape).ravel(),
+        _drive(padded, motions, machines, knot).ravel(),
+        np.stack([motions.shaft_angle, motions.cage_angle, motions.spin_angle]).ravel(),
+        _spalls(padded, shape).ravel(),
+        _phasors(padded, knot).ravel(),
+        waves.ravel(),
+    )
+
+
+def _params(records: list[Record], machine: Machine, shape: Shape) -> FloatArray:
+    params = np.zeros((kernel.param_rows(shape), LANES))
+    with np.errstate(divide="ignore"):
+        sensor = np.where(np.asarray(machine.sensor_mass) > 0, 1 / np.asarray(machine.sensor_mass), 0.0)
+    params[: kernel.N_CONSTANTS] = [
+        machine.load_deflection_factor, machine.contact_damping, machine.contact_cosine, machine.half_clearance, machine.ball_radius,
+        1 / np.asarray(machine.shaft_mass), 1 / np.asarray(machine.housing_mass), sensor, machine.ring_damping,
+        machine.shaft_damping, machine.shaft_stiffness, machine.ring_stiffness_x, machine.ring_stiffness_y,
+        machine.support_stiffness_x, machine.support_stiffness_y, machine.support_damping_x, machine.support_damping_y,
+        machine.sensor_stiffness_x, machine.sensor_stiffness_y, machine.sensor_damping, machine.load_x, machine.load_y,
+    ]  # fmt: skip
+    for lane, record in enumerate(records):
+        params[kernel.pickup_row(shape) :, lane] = record.pickups.ravel()
+        row = kernel.slot_row(shape)
+        for spall in record.spalls:
+            half, arc = spall_reach(record.bearing, spall)
+            race = record.bearing.inner_radius if spall.site != "outer" else -record.bearing.outer_radius
+            for _ in slot_ranks(record.bearing, spall):
+                columns = slice(row + kernel.HALF, row + kernel.SLOT_ROWS)
+                params[columns, lane] = half, arc, race, spall.depth
+                row += kernel.SLOT_ROWS
+    return params
+
+
+def _drive(records: list[Record], motions: Motion, machine: Machine, knot: float) -> FloatArray:
+    bearings = [record.bearing for record in records]
+    gamma = np.array([bearing.gamma for bearing in bearings])
+    size = np.array([bearing.pitch_diameter / bearing.ball_diameter for bearing in bearings])
+    return np.array([
+        2 * np.pi * knot * np.asarray(motions.shaft_rate), 0.5 * (1 - gamma), 0.5 * size * (1 - gamma**2), motions.mean_slip,
+        motions.speed_rms, motions.slip_rms, motions.spin_rms, motions.jitter_rms, motions.axis_offset, motions.axis_rms,
+        motions.axis_limit, motions.unbalance, machine.half_clearance, [bearing.inner_radius for bearing in bearings],
+        [bearing.outer_radius for bearing in bearings],
+    ])  # fmt: skip
+
+
+def _spalls(records: list[Record], shape: Shape) -> FloatArray:
+    sites = {"inner": motion.INNER, "outer": motion.OUTER, "ball": motion.BALL_SITE}
+    spalls = np.zeros((len(shape.slots), motion.SPALL_ROWS, LANES))
+    for lane, record in enumerate(records):
+        wanted = [(spall, rank) for spall in record.spalls for rank in slot_ranks(record.bearing, spall)]
+        for slot, (spall, rank) in enumerate(wanted):
+            spalls[slot, :, lane] = sites[spall.site], spall.angle, spall.ball, rank
+    return spalls
+
+
+def _phasors(records: list[Record], knot: float) -> FloatArray:
+    phases = np.stack([record.phases for record in records], axis=1)
+    turns = 2 * np.pi * knot * np.stack([record.frequencies for record in records], axis=1)
+    return np.stack([np.cos(phases), np.sin(phases), np.cos(turns), np.sin(turns)])
+
+

@@ -1,0 +1,279 @@
+"""The equations of motion of shaft, housing and sensor, and the Runge-Kutta step that advances them.
+
+A lane holds one record; the loop over lanes has no branch and no call, and its body is the whole classical Runge-Kutta step of that
+record in scalars, so that LLVM turns it into vector instructions. Between two knots (one per output sample) every slow quantity moves
+along a straight line: cage and shaft turn at a constant rate, ball gaps, ball jitter and spall offsets are linear in time.
+
+Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor on its resonance. Balls push along their own
+direction in the frame of the cage, in which they stand still but for their jitter. The system is that of Ophel et al. with its signs
+and reactions corrected, plus a sensor mass: Lagrange's equations of the energies in docs/model.md.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from gen.physics.lanes import INLINE, LANES
+from gen.physics.spall import drop
+
+FloatArray = NDArray[np.float64]
+
+MAX_BALLS = 24
+MAX_SLOTS = 4
+_COUNT = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None]
+COS = np.cos(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)  # (number of balls, ball): direction of each ball in the cage's frame
+SIN = np.sin(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)
+
+AXES = 6
+# Rows of ``state``: coordinates x1 y1 x2 y2 xr yr, their rates, the directions of cage and shaft, and the last accelerations.
+N_DYNAMIC = 2 * AXES
+CAGE_C, CAGE_S, SHAFT_C, SHAFT_S, ACCELERATION = range(N_DYNAMIC, N_DYNAMIC + 5)
+N_STATE = ACCELERATION + AXES
+# Rows of ``params``: constants of the record, then what holds until the next knot, then balls, slots and pickup weights.
+(
+    STIFFNESS, DAMPING, COSA, GAP, BALL, IM1, IM2, IMR, C1, C0, K0, K1X, K1Y, K2X, K2Y, C2X, C2Y, KRX, KRY, CR, WX, WY, N_CONSTANTS,
+) = range(23)  # fmt: skip
+CAGE_TURN_C, CAGE_TURN_S, SHAFT_TURN_C, SHAFT_TURN_S, UNBALANCE_P, UNBALANCE_Q, BALLS = range(N_CONSTANTS, N_CONSTANTS + 7)
+GAP0, GAP1, JITTER0, JITTER1, BALL_ROWS = range(5)  # of each ball, from here to the next knot; slopes are per half step
+OFFSET0, OFFSET1, SHARE0, SHARE1, UNDER, HALF, ARC, RACE, DEPTH, SLOT_ROWS = range(10)  # of each slot, under ball UNDER
+
+Motion = tuple[float, float, float, float]
+
+
+class Shape(NamedTuple):
+    """What a compiled kernel contains, as lengths of tuples (see :mod:`gen.physics.lanes`); a record pays for nothing else."""
+
+    balls: tuple[None, ...]
+    slots: tuple[None, ...]
+    channels: tuple[None, ...]
+    profile: tuple[None, ...]
+    resonator: tuple[None, ...]
+    damped: tuple[None, ...]
+    uneven: tuple[None, ...]
+
+
+def make_shape(
+    n_balls: int, n_slots: int, n_channels: int, profile: int, *, resonator: bool, damped: bool, uneven: bool
+) -> Shape:
+    """Shape of a kernel: 0, 1 or 4 spall slots; ``uneven`` if gaps and angles differ from ball to ball and in time."""
+    slots = n_slots if n_slots < 2 else MAX_SLOTS
+    counts = (n_balls, slots, n_channels, profile, resonator, damped, uneven)
+    return Shape(*((None,) * int(count) for count in counts))
+
+
+@njit(**INLINE)
+def slot_row(shape: Shape) -> int:
+    """First row of the slots in ``params``."""
+    return BALLS + len(shape.balls) * BALL_ROWS
+
+
+@njit(**INLINE)
+def pickup_row(shape: Shape) -> int:
+    """First row of the pickup weights in ``params``."""
+    return slot_row(shape) + len(shape.slots) * SLOT_ROWS
+
+
+@njit(**INLINE)
+def param_rows(shape: Shape) -> int:
+    """Number of rows of ``params``."""
+    return pickup_row(shape) + len(shape.channels) * AXES
+
+
+@njit(**INLINE)
+def slot_drop(shape: Shape, slot: int, tau: float, lane: int, params: FloatArray) -> tuple[float, float]:
+    """Which ball sits over a slot, and how far it has dropped [m]."""
+    if slot >= len(shape.slots):
+        return -1.0, 0.0
+    row = slot_row(shape) + slot * SLOT_ROWS
+    offset = params[(row + OFFSET0) * LANES + lane] + params[(row + OFFSET1) * LANES + lane] * tau
+    share = params[(row + SHARE0) * LANES + lane] + params[(row + SHARE1) * LANES + lane] * tau
+    half, arc = params[(row + HALF) * LANES + lane], params[(row + ARC) * LANES + lane]
+    race, depth = params[(row + RACE) * LANES + lane], params[(row + DEPTH) * LANES + lane]
+    fall = drop(len(shape.profile), offset, half, arc, params[BALL * LANES + lane], race, depth)
+    return params[(row + UNDER) * LANES + lane], share * fall
+
+
+@njit(**INLINE)
+def ball_force(
+    shape: Shape, ball: int, motion: Motion, drops: tuple[float, ...], tau: float, lane: int, params: FloatArray
+) -> tuple[float, float]:
+    """Force of one ball on the inner ring's reaction, along the axes of the cage's frame [N]."""
+    if ball >= len(shape.balls):
+        return 0.0, 0.0
+    x, y, u, v = motion
+    ball_c, ball_s = COS[len(shape.balls), ball], SIN[len(shape.balls), ball]
+    gap = params[GAP * LANES + lane]
+    if len(shape.uneven):
+        row = BALLS + ball * BALL_ROWS
+        gap = params[(row + GAP0) * LANES + lane] + params[(row + GAP1) * LANES + lane] * tau
+        jitter = params[(row + JITTER0) * LANES + lane] + params[(row + JITTER1) * LANES + lane] * tau
+        ball_c, ball_s = ball_c - jitter * ball_s, ball_s + jitter * ball_c
+    squeeze = x * ball_c + y * ball_s - gap
+    if len(shape.slots) > 0:
+        squeeze -= drops[1] if drops[0] == ball else 0.0
+    if len(shape.slots) > 1:
+        squeeze -= drops[3] if drops[2] == ball else 0.0
+        squeeze -= drops[5] if drops[4] == ball else 0.0
+        squeeze -= drops[7] if drops[6] == ball else 0.0
+    squeeze = max(squeeze, 0.0)
+    force = params[STIFFNESS * LANES + lane] * (squeeze * math.sqrt(squeeze))
+    if len(shape.damped):
+        approach = u * ball_c + v * ball_s
+        damped = max(force + params[DAMPING * LANES + lane] * approach, 0.0)
+        force = damped if squeeze > 0.0 else 0.0
+    return force * ball_c, force * ball_s
+
+
+@njit(**INLINE)
+def four_balls(
+    shape: Shape, first: int, motion: Motion, drops: tuple[float, ...], tau: float, lane: int, params: FloatArray
+) -> tuple[float, float]:
+    """Force of four balls; a loop over balls would not be unrolled before LLVM looks at the loop over lanes."""
+    ax, ay = ball_force(shape, first, motion, drops, tau, lane, params)
+    bx, by = ball_force(shape, first + 1, motion, drops, tau, lane, params)
+    cx, cy = ball_force(shape, first + 2, motion, drops, tau, lane, params)
+    dx, dy = ball_force(shape, first + 3, motion, drops, tau, lane, params)
+    return (ax + bx) + (cx + dx), (ay + by) + (cy + dy)
+
+
+@njit(**INLINE)
+def contact_force(
+    shape: Shape, motion: Motion, c: float, s: float, tau: float, lane: int, params: FloatArray
+) -> tuple[float, float]:
+    """Force that all balls together put on the housing, and its reaction on the shaft [N].
+
+    ``motion`` is displacement and velocity of the shaft relative to the housing; ``c`` and ``s`` are the direction of the cage.
+    """
+    cosa = params[COSA * LANES + lane]
+    x, y, u, v = motion
+    seen = (cosa * (x * c + y * s), cosa * (y * c - x * s), cosa * (u * c + v * s), cosa * (v * c - u * s))
+    under0, drop0 = slot_drop(shape, 0, tau, lane, params)
+    under1, drop1 = slot_drop(shape, 1, tau, lane, params)
+    under2, drop2 = slot_drop(shape, 2, tau, lane, params)
+    under3, drop3 = slot_drop(shape, 3, tau, lane, params)
+    drops = (under0, drop0, under1, drop1, under2, drop2, under3, drop3)
+    ax, ay = four_balls(shape, 0, seen, drops, tau, lane, params)
+    bx, by = four_balls(shape, 4, seen, drops, tau, lane, params)
+    cx, cy = four_balls(shape, 8, seen, drops, tau, lane, params)
+    dx, dy = four_balls(shape, 12, seen, drops, tau, lane, params)
+    ex, ey = four_balls(shape, 16, seen, drops, tau, lane, params)
+    fx, fy = four_balls(shape, 20, seen, drops, tau, lane, params)
+    along, across = cosa * (ax + bx + cx + dx + ex + fx), cosa * (ay + by + cy + dy + ey + fy)
+    return along * c - across * s, along * s + across * c
+
+
+@njit(**INLINE)
+def accelerations(
+    shape: Shape, q: tuple[float, ...], turn: Motion, tau: float, lane: int, params: FloatArray
+) -> tuple[float, float, float, float, float, float]:
+    """Accelerations of the three bodies [m s-2]; ``turn`` holds the directions of cage and shaft."""
+    x1, y1, x2, y2, xr, yr, u1, v1, u2, v2, ur, vr = q
+    c, s, shaft_c, shaft_s = turn
+    dx, dy, du, dv = x1 - x2, y1 - y2, u1 - u2, v1 - v2
+    fx, fy = contact_force(shape, (dx, dy, du, dv), c, s, tau, lane, params)
+    c1, c0, k0 = params[C1 * LANES + lane], params[C0 * LANES + lane], params[K0 * LANES + lane]
+    jx = fx + c1 * du + params[K1X * LANES + lane] * dx
+    jy = fy + c1 * dv + params[K1Y * LANES + lane] * dy
+    p, q_ = params[UNBALANCE_P * LANES + lane], params[UNBALANCE_Q * LANES + lane]
+    f1x = params[WX * LANES + lane] + (p * shaft_c + q_ * shaft_s) - jx - c0 * u1 - k0 * x1
+    f1y = params[WY * LANES + lane] + (p * shaft_s - q_ * shaft_c) - jy - c0 * v1 - k0 * y1
+    f2x = jx - params[C2X * LANES + lane] * u2 - params[K2X * LANES + lane] * x2
+    f2y = jy - params[C2Y * LANES + lane] * v2 - params[K2Y * LANES + lane] * y2
+    arx = ary = 0.0
+    if len(shape.resonator):
+        cr, imr = params[CR * LANES + lane], params[IMR * LANES + lane]
+        rx = params[KRX * LANES + lane] * (x2 - xr) + cr * (u2 - ur)
+        ry = params[KRY * LANES + lane] * (y2 - yr) + cr * (v2 - vr)
+        f2x, f2y, arx, ary = f2x - rx, f2y - ry, rx * imr, ry * imr
+    im1, im2 = params[IM1 * LANES + lane], params[IM2 * LANES + lane]
+    return f1x * im1, f1y * im1, f2x * im2, f2y * im2, arx, ary
+
+
+@njit(**INLINE)
+def moved(q: tuple[float, ...], p: tuple[float, ...], a: tuple[float, ...], h: float) -> tuple[float, ...]:
+    """State after ``h`` seconds at rates ``p`` and accelerations ``a``."""
+    return (
+        q[0] + h * p[0], q[1] + h * p[1], q[2] + h * p[2], q[3] + h * p[3], q[4] + h * p[4], q[5] + h * p[5],
+        q[6] + h * a[0], q[7] + h * a[1], q[8] + h * a[2], q[9] + h * a[3], q[10] + h * a[4], q[11] + h * a[5],
+    )  # fmt: skip
+
+
+@njit(**INLINE)
+def simpson(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...], d: tuple[float, ...]) -> tuple[float, ...]:
+    """Runge-Kutta mean of the slopes of the four stages."""
+    return (
+        (a[0] + 2 * (b[0] + c[0]) + d[0]) * (1 / 6), (a[1] + 2 * (b[1] + c[1]) + d[1]) * (1 / 6),
+        (a[2] + 2 * (b[2] + c[2]) + d[2]) * (1 / 6), (a[3] + 2 * (b[3] + c[3]) + d[3]) * (1 / 6),
+        (a[4] + 2 * (b[4] + c[4]) + d[4]) * (1 / 6), (a[5] + 2 * (b[5] + c[5]) + d[5]) * (1 / 6),
+    )  # fmt: skip
+
+
+@njit(**INLINE)
+def half_turn(turn: Motion, lane: int, params: FloatArray) -> Motion:
+    """Directions of cage and shaft half a step later."""
+    c, s, shaft_c, shaft_s = turn
+    dc, ds = params[CAGE_TURN_C * LANES + lane], params[CAGE_TURN_S * LANES + lane]
+    pc, ps = params[SHAFT_TURN_C * LANES + lane], params[SHAFT_TURN_S * LANES + lane]
+    return c * dc - s * ds, s * dc + c * ds, shaft_c * pc - shaft_s * ps, shaft_s * pc + shaft_c * ps
+
+
+@njit(**INLINE)
+def advance(shape: Shape, state: FloatArray, params: FloatArray, dt: float, n_steps: int, history: FloatArray, at: int) -> None:
+    """Advance every lane from one knot to the next by ``n_steps`` classical Runge-Kutta steps.
+
+    Parameters
+    ----------
+    shape : Shape
+        What the kernel contains.
+    state, params : array, shape (row * LANES + lane)
+        What moves, and what holds until the next knot.
+    dt : float
+        Step [s].
+    n_steps : int
+        Steps to the next knot.
+    history : array, shape (step * channel * LANES + lane)
+        Receives, from row ``at`` on, the picked-up acceleration at the start of each step [m s-2].
+    at : int
+        First row of ``history`` to fill.
+    """
+    pickup = pickup_row(shape)
+    n_channels = len(shape.channels)
+    for step in range(n_steps):
+        tau = 2.0 * step
+        for lane in range(LANES):
+            q = (
+                state[lane], state[LANES + lane], state[2 * LANES + lane], state[3 * LANES + lane],
+                state[4 * LANES + lane], state[5 * LANES + lane], state[6 * LANES + lane], state[7 * LANES + lane],
+                state[8 * LANES + lane], state[9 * LANES + lane], state[10 * LANES + lane], state[11 * LANES + lane],
+            )  # fmt: skip
+            turn = (
+                state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane],
+                state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane],
+            )  # fmt: skip
+            a1 = accelerations(shape, q, turn, tau, lane, params)
+            turn = half_turn(turn, lane, params)
+            q2 = moved(q, q[6:], a1, 0.5 * dt)
+            a2 = accelerations(shape, q2, turn, tau + 1.0, lane, params)
+            q3 = moved(q, q2[6:], a2, 0.5 * dt)
+            a3 = accelerations(shape, q3, turn, tau + 1.0, lane, params)
+            turn = half_turn(turn, lane, params)
+            q4 = moved(q, q3[6:], a3, dt)
+            a4 = accelerations(shape, q4, turn, tau + 2.0, lane, params)
+            new = moved(q, simpson(q[6:], q2[6:], q3[6:], q4[6:]), simpson(a1, a2, a3, a4), dt)
+            for row in range(N_DYNAMIC):
+                state[row * LANES + lane] = new[row]
+            for row in range(4):
+                state[(CAGE_C + row) * LANES + lane] = turn[row]
+            for axis in range(AXES):
+                state[(ACCELERATION + axis) * LANES + lane] = a1[axis]
+        for channel in range(n_channels):
+            row = at + step * n_channels + channel
+            for lane in range(LANES):
+                value = 0.0
+                for axis in range(AXES):
+                    weight = params[(pickup + channel * AXES + axis) * LANES + lane]
+                    value += weight * state[(ACCELERATION + axis) * LANES + lane]
+                history[row * LANES + lane] = value

@@ -1,0 +1,156 @@
+"""The machine around the bearing: masses, springs, dampers, loads; where it rests, and how fast it can swing.
+
+Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor on its resonance; see docs/model.md.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+# Heaviest ball load before anything moves, Stribeck: 5 W / Z; three times that covers what spalls were seen to do to it.
+STRIBECK, DYNAMIC_FACTOR, LOADED_BALLS = 5.0, 3.0, 3
+
+
+class Machine(NamedTuple):
+    """Constants of the equations of motion of one record, in SI units."""
+
+    load_deflection_factor: float
+    contact_damping: float
+    contact_cosine: float
+    half_clearance: float
+    ball_radius: float
+    shaft_mass: float
+    housing_mass: float
+    sensor_mass: float
+    """0 if there is no sensor resonance."""
+    ring_damping: float
+    shaft_damping: float
+    shaft_stiffness: float
+    ring_stiffness_x: float
+    ring_stiffness_y: float
+    support_stiffness_x: float
+    support_stiffness_y: float
+    support_damping_x: float
+    support_damping_y: float
+    sensor_stiffness_x: float
+    sensor_stiffness_y: float
+    sensor_damping: float
+    load_x: float
+    load_y: float
+
+
+def as_columns(machines: list[Machine]) -> Machine:
+    """The same constants as arrays, shape (record,) each."""
+    return Machine(*np.asarray(machines, dtype=float).T)
+
+
+def fastest_swing(machine: Machine, n_balls: int) -> FloatArray | float:
+    """Upper bound of the angular eigenfrequencies under load [rad/s]; fields may be arrays of shape (record,).
+
+    The sum of the squared eigenfrequencies per direction bounds the largest; ball loads are taken as ``DYNAMIC_FACTOR`` times
+    the static Stribeck load on three balls, and the preload on all.
+    """
+    load = np.hypot(machine.load_x, machine.load_y)
+    factor = machine.load_deflection_factor
+    ball_load = DYNAMIC_FACTOR * STRIBECK * load / n_balls
+    squeeze = np.maximum(-np.asarray(machine.half_clearance), 0.0)
+    contact = 1.5 * factor ** (2 / 3) * LOADED_BALLS * ball_load ** (1 / 3) + 1.5 * factor * n_balls * np.sqrt(squeeze)
+    ring = np.maximum(machine.ring_stiffness_x, machine.ring_stiffness_y)
+    support = np.maximum(machine.support_stiffness_x, machine.support_stiffness_y)
+    square = (contact + ring) * (1 / machine.shaft_mass + 1 / machine.housing_mass)
+    square = square + machine.shaft_stiffness / machine.shaft_mass + support / machine.housing_mass
+    sensor = np.maximum(machine.sensor_stiffness_x, machine.sensor_stiffness_y)
+    sensor_mass = np.where(np.asarray(machine.sensor_mass) > 0, machine.sensor_mass, np.inf)
+    square = square + np.where(np.isfinite(sensor_mass), sensor * (1 / sensor_mass + 1 / machine.housing_mass), 0.0)
+    return np.sqrt(square)
+
+
+def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Force and stiffness of every ball under a static displacement of the shaft relative to the housing.
+
+    Parameters
+    ----------
+    machine : Machine
+        Arrays of shape (record,).
+    displacement : array, shape (record, axis)
+        Relative displacement [m].
+    angles : array, shape (record, ball)
+        Where the balls are [rad].
+
+    Returns
+    -------
+    force, stiffness : arrays, shape (record, ball)
+        [N] and [N/m].
+    """
+    along = displacement[:, :1] * np.cos(angles) + displacement[:, 1:] * np.sin(angles)
+    cosine = np.asarray(machine.contact_cosine)[:, None]
+    squeeze = np.maximum(along * cosine - np.asarray(machine.half_clearance)[:, None], 0.0)
+    factor = np.asarray(machine.load_deflection_factor)[:, None]
+    return factor * squeeze**1.5 * cosine, 1.5 * factor * np.sqrt(squeeze) * cosine**2
+
+
+def rest(machine: Machine, angles: FloatArray) -> FloatArray:
+    """Static equilibrium under the load, spalls aside, by damped Newton steps.
+
+    Parameters
+    ----------
+    machine : Machine
+        Arrays of shape (record,).
+    angles : array, shape (record, ball)
+        Where the balls are [rad].
+
+    Returns
+    -------
+    array, shape (record, coordinate)
+        x1, y1, x2, y2 [m].
+    """
+    load = np.stack([machine.load_x, machine.load_y], axis=1)
+    weight = np.maximum(np.hypot(*load.T), 1e-12)
+    support = np.stack([machine.support_stiffness_x, machine.support_stiffness_y], axis=1)
+    ring = np.stack([machine.ring_stiffness_x, machine.ring_stiffness_y], axis=1)
+    ground = np.broadcast_to(np.asarray(machine.shaft_stiffness)[:, None], support.shape)
+    reach = np.maximum(machine.half_clearance, 0) / machine.contact_cosine
+    reach = reach + 2 * (weight / machine.load_deflection_factor) ** (2 / 3)
+    housing = load / (support + ground)
+    q = np.concatenate([housing + load / weight[:, None] * reach[:, None], housing], axis=1)
+    for _ in range(200):
+        residual, jacobian = _balance(machine, q, angles, load, support, ring, ground)
+        if np.all(np.abs(residual).max(axis=1) < 1e-9 * weight):
+            break
+        # a lone ball holds nothing sideways: a soft spring keeps the step finite and vanishes with the residual
+        soft = 1e-3 * np.abs(residual).max(axis=1) / 1e-6
+        step = np.linalg.solve(jacobian + soft[:, None, None] * np.eye(4), residual[..., None])[..., 0]
+        longest = np.abs(step).max(axis=1, keepdims=True)
+        q = q + step * np.minimum(1.0, 2e-6 / np.maximum(longest, 1e-30))
+    return q
+
+
+def _balance(
+    machine: Machine, q: FloatArray, angles: FloatArray, load: FloatArray, support: FloatArray, ring: FloatArray, ground: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """Unbalanced force on each coordinate, shape (record, 4), and its negative derivative, shape (record, 4, 4)."""
+    relative = q[:, :2] - q[:, 2:]
+    force, stiffness = ball_forces(machine, relative, angles)
+    directions = np.stack([np.cos(angles), np.sin(angles)], axis=2)
+    pushed = np.einsum("rb,rba->ra", force, directions) + ring * relative
+    residual = np.concatenate([load - pushed - ground * q[:, :2], pushed - support * q[:, 2:]], axis=1)
+    contact = np.einsum("rb,rba,rbc->rac", stiffness, directions, directions) + ring[:, :, None] * np.eye(2)
+    jacobian = np.empty((len(q), 4, 4))
+    jacobian[:, :2, :2] = contact + ground[:, :, None] * np.eye(2)
+    jacobian[:, :2, 2:] = jacobian[:, 2:, :2] = -contact
+    jacobian[:, 2:, 2:] = contact + support[:, :, None] * np.eye(2)
+    return residual, jacobian
+
+
+def sensor_springs(mass: float, frequency: float, damping_ratio: float) -> tuple[float, float]:
+    """Stiffness [N/m] and damping [N s/m] of a resonance at ``frequency`` [Hz].
+
+    >>> round(sensor_springs(0.2, 3000.0, 0.03)[1], 4)
+    226.1947
+    """
+    omega = 2 * math.pi * frequency
+    return mass * omega**2, 2 * damping_ratio * mass * omega
