@@ -13,8 +13,9 @@ recordings what a recording is, what it must be, how it is cut into records
 assemble   the files of a set into a corpus, whole or not at all
 ========== ===================================================================
 
-An importer names its files and how to read each (:class:`~gen.importers.recordings.Candidate`); ``assemble``
-reads them one after the other. A file that cannot be used is skipped with a sentence and never enters in part.
+An importer names its files and how to read each (:class:`~gen.importers.recordings.Candidate`);
+``assemble`` reads them one after the other. A file that cannot be used is skipped with a sentence, and none
+enters in part.
 """
 
 from gen.importers.assemble import Import

@@ -1,15 +1,16 @@
 """The Case Western Reserve University set: seeded faults in the drive-end bearing of a 2 hp motor, 12 kHz.
 
-Recordings are known by their published numbers, wherever the files lie. Each oddity of the published files [1]_
-that is met is handled and told in a warning; nothing is corrected in silence.
+Recordings are known by their published numbers, wherever the files lie. Each oddity of the published files
+[1]_ that is met is handled and told in a warning; nothing is corrected in silence.
 
-.. [1] W. A. Smith, R. B. Randall, "Rolling element bearing diagnostics using the Case Western Reserve University
-   data: A benchmark study", Mech. Syst. Signal Process. 64-65 (2015) 100-131.
+.. [1] W. A. Smith, R. B. Randall, "Rolling element bearing diagnostics using the Case Western Reserve
+   University data: A benchmark study", Mech. Syst. Signal Process. 64-65 (2015) 100-131.
 """
 
 import math
 import re
 from collections.abc import Iterator
+from collections.abc import Set as AbstractSet
 from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple
@@ -32,7 +33,7 @@ _MIL = 25.4e-6  # m
 _NOMINAL_RPM = (1797, 1772, 1750, 1730)
 _SPEED_TOLERANCE = 0.05
 _DEPTH = {7: 11 * _MIL, 14: 11 * _MIL, 21: 11 * _MIL}
-_CLOCK_ANGLE = {3: 0.0, 6: -math.pi / 2, 12: math.pi / 2}
+_CLOCK_ANGLE: dict[int | None, float] = {3: 0.0, 6: -math.pi / 2, 12: math.pi / 2}
 
 
 class Specimen(NamedTuple):
@@ -64,25 +65,17 @@ SPECIMENS = (
 )
 
 _HELD_AS = {3001: 56, 3002: 57, 3003: 58, 3004: 59, 3005: 48, 3006: 49, 3007: 50, 3008: 51}
-_LONGEST_AT_12_KHZ = (
-    200_000  # published: 121 thousand samples at 12 kHz; 244 thousand (97) and 484 thousand at 48 kHz
-)
-_NOTES = {
-    (158,): "its labelled speed is about 2 % off its own fault line; the label is left as it is",
-    (
-        197,
-        198,
-        199,
-        200,
-    ): "no outer-race line is to be seen, the signals look healthy; the label is left as it is",
+_LONGEST_AT_12_KHZ = 200_000
+_NOTES = (
+    (158, 158, "its labelled speed is about 2 % off its own fault line; the label is left as it is"),
+    (197, 200, "they show no outer-race line and look healthy; the label is left as it is"),
     (
         3001,
-        3002,
-        3003,
         3004,
-    ): "a bearing of another maker with lines at 3.68 and 5.32 orders; nominal orders of the 6205 are kept",
-    (3005, 3006, 3007, 3008): "a bearing of another maker; nominal orders of the 6205 are kept",
-}
+        "a bearing of another maker, with lines at 3.68 and 5.32 orders; the orders of the 6205 are kept",
+    ),
+    (3005, 3008, "a bearing of another maker; the orders of the 6205 are kept"),
+)
 _COLLECTION = Collection(
     importer="cwru",
     title="CWRU bearing data, drive end",
@@ -114,8 +107,8 @@ def import_cwru(
 ) -> Import:
     """Bring the drive-end recordings found below ``source`` into a corpus at 12 kHz.
 
-    Each (fault, diameter, clock position) is one specimen recorded at four motor loads, and has the same number
-    in every subset. The radial load is unknown; the load of the motor is stored as ``motor_load`` [W].
+    Each (fault, diameter, clock position) is one specimen recorded at four motor loads, and has the same
+    number in every subset. The radial load is unknown; that of the motor is stored as ``motor_load`` [W].
 
     Parameters
     ----------
@@ -138,38 +131,25 @@ def import_cwru(
     if subset not in ("all", "wang"):
         message = f"subset: {subset!r} is not known; choose all or wang."
         raise CorpusError(message)
+    published = {label.number for label in _labels("all")}
     wanted = {label.number: label for label in _labels(subset)}
-    everything = {label.number for label in _labels("all")}
-    chosen: dict[int, Candidate] = {}
+    found: dict[int, Candidate] = {}
     skipped: list[str] = []
     for path in files_below(source, ".mat"):
-        name = path.relative_to(source).as_posix()
-        number = recording_number(path.stem)
-        if number not in everything:
-            skipped.append(
-                f"{name}: is not named after a drive-end recording at 12 kHz or a healthy one; skipped."
-            )
-        elif number in chosen:
-            skipped.append(
-                f"{name}: is recording {number} once more, after {chosen[number].source}; skipped."
-            )
+        name, number = path.relative_to(source).as_posix(), recording_number(path.stem)
+        if number not in published:
+            skipped.append(f"{name}: has no number of a drive-end recording at 12 kHz in its name; skipped.")
+        elif number in found:
+            skipped.append(f"{name}: is {number} once more, after {found[number].source}; skipped.")
         elif number in wanted:
-            chosen[number] = Candidate(path, name, partial(_read, path, wanted[number]))
-    warnings = [
-        f"{_numbers(group)}: {note}." for group, note in _NOTES.items() if not chosen.keys().isdisjoint(group)
-    ]
-    missing = sorted(wanted.keys() - chosen.keys())
-    if missing:
-        warnings.append(
-            f"{len(missing)} of {len(wanted)} recordings were not found: {_numbers(tuple(missing))}."
-        )
+            found[number] = Candidate(path, name, partial(_read, path, wanted[number]))
     return import_recordings(
         _COLLECTION,
-        [chosen[number] for number in sorted(chosen)],
+        [found[number] for number in sorted(found)],
         output,
         window=window,
         skipped=skipped,
-        warnings=warnings,
+        warnings=_warnings(found.keys(), wanted.keys()),
         progress=progress,
     )
 
@@ -177,7 +157,7 @@ def import_cwru(
 def recording_number(stem: str) -> int | None:
     """Find the published number in a file name: what it begins with, or ends in after an underscore.
 
-    >>> [recording_number(stem) for stem in ("130@6_0", "98_Normal_1_12k", "12k_Drive_End_B007_0_118", "IR007")]
+    >>> [recording_number(stem) for stem in ("130@6_0", "98_Normal_1_12k", "B007_0_118", "IR007")]
     [130, 98, 118, None]
     """
     found = re.match(r"(\d+)(?=[@_.]|$)", stem) or re.search(r"_(\d{2,4})$", stem)
@@ -190,22 +170,32 @@ def _labels(subset: Subset) -> Iterator[_Label]:
             yield from (_Label(number, index, load) for load, number in enumerate(specimen.numbers))
 
 
+def _warnings(found: AbstractSet[int], wanted: AbstractSet[int]) -> list[str]:
+    """Tell what is known to be odd about the recordings found, and which were not."""
+    warnings = [
+        f"{first if first == last else f'{first}-{last}'}: {note}."
+        for first, last, note in _NOTES
+        if any(first <= number <= last for number in found)
+    ]
+    missing = sorted(wanted - found)
+    if missing:
+        numbers = ", ".join(str(number) for number in missing)
+        warnings.append(f"{len(missing)} of {len(wanted)} recordings were not found: {numbers}.")
+    return warnings
+
+
 def _read(path: Path, label: _Label) -> Recording:
     fault, diameter, clock, _ = SPECIMENS[label.specimen]
     held = _HELD_AS.get(label.number, label.number)
     warnings: list[str] = []
     signal = one_column(read_matlab(path, f"X{held:03d}_DE_time")) * STANDARD_GRAVITY
     if held != label.number:
-        warnings.append(f"holds X{held:03d}_DE_time, which is taken as recording {label.number} as published")
+        warnings.append(f"holds X{held:03d}_DE_time, which is recording {label.number} as published")
     if fault == "healthy":
         signal, warning = _at_12_khz(signal)
         warnings.append(warning)
-    rpm, complaint = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[label.motor_load])
-    spall = {}
-    if fault != "healthy":
-        depth, angle = _DEPTH.get(diameter, math.nan), _CLOCK_ANGLE.get(clock or 0, math.nan)
-        spall = {"n_spalls": 1, "width": diameter * _MIL, "depth": depth, "angle": angle}
-    return Recording(
+    rpm, complaints = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[label.motor_load])
+    recording = Recording(
         number=label.number,
         rig=0,
         specimen=label.specimen,
@@ -214,16 +204,24 @@ def _read(path: Path, label: _Label) -> Recording:
         fault=fault,
         signal=signal,
         extra={"motor_load": label.motor_load * _HORSEPOWER},
-        warnings=(*warnings, *complaint),
-        **spall,
+        warnings=(*warnings, *complaints),
+    )
+    if fault == "healthy":
+        return recording
+    return recording._replace(
+        n_spalls=1,
+        width=diameter * _MIL,
+        depth=_DEPTH.get(diameter, math.nan),
+        angle=_CLOCK_ANGLE.get(clock, math.nan),
     )
 
 
 def _at_12_khz(signal: FloatArray) -> tuple[FloatArray, str]:
     """Healthy recording at 12 kHz, and how it got there.
 
-    All four were published at 48 kHz, and copies resampled to 12 kHz are about. A file does not say which it is,
-    but its length does: the published ones hold 244 thousand samples (97) or 484 thousand, the copies 121 thousand.
+    All four were published at 48 kHz, and copies resampled to 12 kHz are about. A file does not say which
+    it is, but its length does: 244 thousand samples (97) or 484 thousand at 48 kHz, at most 121 thousand at
+    12 kHz.
     """
     if signal.size <= _LONGEST_AT_12_KHZ:
         return signal, f"its {signal.size} samples are taken as resampled to 12 kHz before, from 48 kHz"
@@ -238,21 +236,8 @@ def _labelled_rpm(path: Path, variable: str, nominal: int) -> tuple[float, tuple
     """Speed in the file, or the nominal one with a warning if the file has none that can be meant [rpm]."""
     try:
         rpm = float(one_column(read_matlab(path, variable))[0])
-    except UnusableError:
-        return nominal, (f"holds no {variable}, the nominal {nominal} rpm of its motor load are used",)
+    except UnusableError as reason:
+        return nominal, (f"{reason}: the nominal {nominal} rpm of its motor load are used",)
     if not abs(rpm / nominal - 1) <= _SPEED_TOLERANCE:
-        return nominal, (
-            f"says {rpm:g} rpm in {variable}, the nominal {nominal} rpm of its motor load are used",
-        )
+        return nominal, (f"says {rpm:g} rpm in {variable}: the nominal {nominal} rpm of its load are used",)
     return rpm, ()
-
-
-def _numbers(group: tuple[int, ...]) -> str:
-    """Numbers of recordings in words.
-
-    >>> _numbers((158,)), _numbers((197, 198, 199, 200)), _numbers((97, 105))
-    ('158', '197-200', '97, 105')
-    """
-    if len(group) > 2 and group[-1] - group[0] == len(group) - 1:
-        return f"{group[0]}-{group[-1]}"
-    return ", ".join(str(number) for number in group)

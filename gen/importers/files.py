@@ -1,7 +1,7 @@
 """Columns of numbers out of text and NumPy files, and what to say of a file that has none.
 
-Whatever goes wrong becomes an :class:`UnusableError`, which says why without naming the file: the caller knows the
-name that the user knows.
+Whatever goes wrong becomes an :class:`UnusableError`, which says why without naming the file: the caller
+knows the name that the user knows.
 """
 
 import warnings
@@ -28,8 +28,8 @@ def read_text(
 ) -> NDArray[np.float64]:
     """Columns of a delimited text file, shape (time,) for one ``column`` and (time, column) for all.
 
-    Lines before the first one of numbers are a header. ``column`` is counted from 0 or named as in the header.
-    Without ``delimiter`` it is the tab, semicolon or comma found in the first lines, or blanks.
+    Lines before the first one of numbers are a header. ``column`` is counted from 0 or named as in the
+    header. Without ``delimiter`` it is the tab, semicolon or comma found in the first lines, or blanks.
 
     Raises
     ------
@@ -85,7 +85,7 @@ def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
         message = f"holds {columns.shape[0]} columns there and none is chosen; say which with column"
         raise UnusableError(message)
     chosen = column or 0
-    if chosen >= columns.shape[0]:
+    if not 0 <= chosen < columns.shape[0]:
         message = f"has columns 0 to {columns.shape[0] - 1} there, not {chosen}"
         raise UnusableError(message)
     return columns[chosen].astype(np.float64)
@@ -111,14 +111,16 @@ def _locate(lines: list[list[str]], column: int | str | None) -> tuple[int | Non
     if isinstance(column, str):
         header = next((number for number, fields in enumerate(lines, start=1) if column in fields), 0)
         if not header:
-            raise UnusableError(f"has no column {column} in its first {len(lines)} lines")
+            message = f"has no column {column} in its first {len(lines)} lines"
+            raise UnusableError(message)
         column = lines[header - 1].index(column)
     chosen = slice(None) if column is None else slice(column, column + 1)
     for number, fields in enumerate(lines[header:], start=header):
         if _are_numbers(fields[chosen]):
             return column, number
     where = "" if column is None else f" in column {column}"
-    raise UnusableError(f"has no line of numbers{where} among its first {len(lines)}")
+    message = f"has no line of numbers{where} among its first {len(lines)}"
+    raise UnusableError(message)
 
 
 def _are_numbers(fields: list[str]) -> bool:

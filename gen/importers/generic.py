@@ -1,4 +1,4 @@
-"""One's own recordings, described by a mapping file: which files, what is in them, which bearing, at which speed.
+"""One's own recordings, described by a mapping file: which files, what is in them, which bearing, what speed.
 
 Files are MATLAB, delimited text or NumPy; paths are relative to the mapping file and stay in its folder.
 """
@@ -68,11 +68,11 @@ def import_generic(
 
 def _common_sample_rate(source: Path, entries: tuple[Entry, ...]) -> float:
     first = entries[0]
-    for position, entry in enumerate(entries):
-        if entry.sample_rate_hz != first.sample_rate_hz:
+    for position, other in enumerate(entries):
+        if other.sample_rate_hz != first.sample_rate_hz:
             message = (
-                f"{source}: files[{position}] ({entry.path}) was sampled at {entry.sample_rate_hz:g} Hz and files[0] ({first.path}) "
-                f"at {first.sample_rate_hz:g} Hz, but a corpus has one rate; make a corpus of each, or resample first."
+                f"{source}: files[{position}] ({other.path}) is at {other.sample_rate_hz:g} Hz and files[0] "
+                f"({first.path}) at {first.sample_rate_hz:g} Hz; make a corpus of each, it has one rate."
             )
             raise CorpusError(message)
     return first.sample_rate_hz
@@ -84,25 +84,26 @@ def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
 
 
 def _matches(source: Path, position: int, pattern: str) -> list[Path]:
-    """Files a pattern names, sorted; none of them outside the folder of the mapping file."""
-    folder = source.parent
+    """Files that a pattern names, sorted; none may lie outside the folder of the mapping file."""
+    folder, where = source.parent, f"{source}: files[{position}].path: {pattern}"
     if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
-        message = f"{source}: files[{position}].path: {pattern} leads out of the folder of the mapping file; put that file above the data."
+        message = f"{where} leads out of the folder of the mapping file; put the mapping above the data."
         raise CorpusError(message)
     exact = folder / pattern
-    paths = [exact] if exact.is_file() else sorted(path for path in folder.glob(pattern) if path.is_file())
+    try:
+        paths = [exact] if exact.is_file() else sorted(filter(Path.is_file, folder.glob(pattern)))
+    except ValueError as error:
+        message = f"{where} is no pattern of file names ({error}); write it like data/*.mat."
+        raise CorpusError(message) from None
     for path in paths:
         if not path.resolve().is_relative_to(folder.resolve()):
-            message = f"{source}: files[{position}].path: {path.name} is a link out of the folder; copy the file into it."
+            message = f"{where} is or leads to a link out of the folder; copy the files into it."
             raise CorpusError(message)
     return paths
 
 
 def _name(path: str, entry: Entry) -> str:
-    """Name of the recording: its file, and what is taken of it if the mapping says so.
-
-    A file may hold several recordings.
-    """
+    """Name of a recording: its file and, as a file may hold several, what is taken of it."""
     return ":".join([path, *(str(part) for part in (entry.variable, entry.column) if part is not None)])
 
 

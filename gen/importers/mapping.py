@@ -12,8 +12,9 @@ from pydantic import (
     BaseModel,
     BeforeValidator,
     ConfigDict,
+    Discriminator,
     Field,
-    PositiveFloat,
+    Tag,
     ValidationError,
     model_validator,
 )
@@ -25,6 +26,7 @@ from gen.physics.bearing import CATALOGUE, Bearing
 
 Fault = Literal["healthy", "inner", "outer", "ball"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
+Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Name = Annotated[
     str, BeforeValidator(lambda value: str(value) if type(value) is int else value), Field(min_length=1)
 ]
@@ -37,8 +39,8 @@ class Geometry(BaseModel):
 
     designation: Name = "own"
     n_balls: Annotated[int, Field(ge=3)]
-    pitch_diameter_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
-    ball_diameter_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
+    pitch_diameter_mm: Positive
+    ball_diameter_mm: Positive
     contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
 
     @model_validator(mode="after")
@@ -55,19 +57,22 @@ class Entry(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     path: Name
-    bearing: Name | Geometry
+    bearing: Annotated[
+        Annotated[Name, Tag("name")] | Annotated[Geometry, Tag("geometry")],
+        Discriminator(lambda value: "geometry" if isinstance(value, dict) else "name"),
+    ]
     unit: Literal["g", "m/s2"]
-    sample_rate_hz: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
-    shaft_rpm: Annotated[PositiveFloat, Field(allow_inf_nan=False)]
+    sample_rate_hz: Positive
+    shaft_rpm: Positive
     fault: Fault
     specimen: Name
     rig: Name = "1"
     variable: Name | None = None
-    column: Annotated[int, Field(ge=0)] | str | None = None
+    column: int | str | None = None
     delimiter: Name | None = None
     load_n: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
-    width_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)] | None = None
-    depth_mm: Annotated[PositiveFloat, Field(allow_inf_nan=False)] | None = None
+    width_mm: Positive | None = None
+    depth_mm: Positive | None = None
     angle_deg: Finite | None = None
     n_spalls: Annotated[int, Field(ge=1)] | None = None
 
@@ -122,7 +127,7 @@ def read_mapping(path: Path) -> Mapping:
     try:
         top = _Top.model_validate(raw)
     except ValidationError as error:
-        message = f"{path}: {_sentence(error, '', raw)}"
+        message = f"{path}: {_sentence(error, '', raw, None)}"
         raise CorpusError(message) from None
     common = top.model_extra or {}
     entries: list[Entry] = []
@@ -168,21 +173,24 @@ def _read_yaml(path: Path) -> dict[str, Any]:
     return raw
 
 
-def _sentence(
-    error: ValidationError, where: str, common: dict[str, Any], own: dict[str, Any] | None = None
-) -> str:
-    """Say the most specific complaint, at the place where the user wrote the value."""
-    complaint = max(error.errors(), key=lambda one: len(one["loc"]))
-    keys = [str(part) for part in complaint["loc"] if part not in ("str", "Geometry", "int")]
+def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: dict[str, Any] | None) -> str:
+    """Say the most telling complaint, at the place where the user wrote the value."""
+    # a mistyped key comes before the missing one it causes, a part of the geometry before "not a string"
+    complaint = max(error.errors(), key=lambda one: (one["type"] == "extra_forbidden", len(one["loc"])))
+    keys = [str(part) for part in complaint["loc"] if part not in ("name", "geometry", "int", "str")]
     key = ".".join(keys)
-    if keys and own is not None and keys[0] in common and keys[0] not in own:
+    if own is not None and keys and keys[0] in common and keys[0] not in own:
         where = ""
-    if complaint["type"] == "missing":
-        return f"{where}{key} is missing; give it there, or at the top for all files."
-    if complaint["type"] == "extra_forbidden":
-        near = difflib.get_close_matches(keys[-1], [*Entry.model_fields, *Geometry.model_fields], n=1)
-        return f"{where}{key} is no key here; " + (f"did you mean {near[0]}?" if near else "remove it.")
     message = complaint["msg"].removeprefix("Value error, ")
-    if complaint["type"] == "value_error":
-        return f"{where}{key}{': ' if key else ''}{message}."
-    return f"{where}{key}: {complaint['input']!r} is not allowed: {message[0].lower()}{message[1:]}."
+    match complaint["type"]:
+        case "missing":
+            return f"{where}{key} is missing; give it there" + (
+                "." if own is None else ", or at the top for all files."
+            )
+        case "extra_forbidden":
+            near = difflib.get_close_matches(keys[-1], [*Entry.model_fields, *Geometry.model_fields], n=1)
+            return f"{where}{key} is no key here; " + (f"did you mean {near[0]}?" if near else "remove it.")
+        case "value_error":
+            return f"{where}{key}{': ' if key else ''}{message}."
+        case _:
+            return f"{where}{key}: {complaint['input']!r} is not allowed; {message[0].lower()}{message[1:]}."

@@ -1,9 +1,9 @@
 """One variable of a MATLAB file, level 5 [1]_ or 7.3 (HDF5), whatever state the file is in.
 
-A level 5 file is a header and a row of elements, each a type, a length and its bytes; an array is an element
-made of elements. They are read here and not by ``scipy.io.loadmat``, which trusts the types it finds: of 1,000
-bytes altered one at a time in the tags of a first array, 29 ended the process (scipy 1.17). Here every type and
-length is checked before it is used.
+A level 5 file is a header and a row of elements, each a type, a length and its bytes; an array is an
+element of elements. They are read here and not by ``scipy.io.loadmat``, which trusts the types it finds: of
+1,000 bytes altered one at a time in the tags of a first array, 29 ended the process (scipy 1.17). Here
+every type and length is checked before it is used.
 
 .. [1] The MathWorks, *MAT-File Format*, chapter 1.
 """
@@ -65,7 +65,8 @@ def _read_hdf5(path: Path, variable: str) -> NDArray[Any]:
     with h5py.File(path) as file:
         value = file.get(variable.replace(".", "/"))
         if not isinstance(value, h5py.Dataset):
-            raise UnusableError(f"holds {_listing(list(file))}, not {variable}")
+            message = f"holds {_listing(list(file))}, not {variable}"
+            raise UnusableError(message)
         return np.asarray(value)
 
 
@@ -80,7 +81,8 @@ def _read_level_5(path: Path, variable: str) -> NDArray[Any]:
         if array.name == wanted:
             return _values(_field(array, fields, order), variable, order)
         names.append(array.name)
-    raise UnusableError(f"holds {_listing(names)}, not {wanted}")
+    message = f"holds {_listing(names)}, not {wanted}"
+    raise UnusableError(message)
 
 
 def _elements(data: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
@@ -92,7 +94,8 @@ def _elements(data: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
         if kind >> 16:
             kind, length, start, room = kind & 0xFFFF, kind >> 16, position + 4, 4
         if length > room:
-            raise UnusableError(f"is truncated or damaged: {length} bytes announced where {room} are left")
+            message = f"is truncated or damaged: {length} bytes announced where {room} are left"
+            raise UnusableError(message)
         yield kind, data[start : start + length]
         position = start + length
         if kind != _COMPRESSED:
@@ -103,7 +106,8 @@ def _array(kind: int, data: memoryview, order: str) -> _Array:
     if kind == _COMPRESSED:
         kind, data = next(_elements(memoryview(zlib.decompress(data)), order))
     if kind != _MATRIX:
-        raise UnusableError(f"is damaged: an element of type {kind} where an array should be")
+        message = f"is damaged: an element of type {kind} where an array should be"
+        raise UnusableError(message)
     (_, flags), (_, shape), (_, name), *parts = _elements(data, order)
     (flag, *_) = np.frombuffer(flags, order + "u4").tolist()
     sides = tuple(np.frombuffer(shape, order + "i4").tolist())
@@ -114,23 +118,29 @@ def _field(array: _Array, fields: list[str], order: str) -> _Array:
     """Follow field names into structures of one element."""
     for field in fields:
         if array.kind != _STRUCTURE or math.prod(array.shape) != 1:
-            raise UnusableError(f"holds {array.name or 'a field'}, but not as one structure with a {field}")
+            message = f"holds {array.name or 'a field'}, but not as one structure with a {field}"
+            raise UnusableError(message)
         (_, width), (_, text), *values = array.parts
         (size,) = np.frombuffer(width, order + "i4").tolist()
-        names = [bytes(text[at : at + size]).rstrip(b"\0").decode("latin-1") for at in range(0, len(text), size)]
+        names = [
+            bytes(text[at : at + size]).rstrip(b"\0").decode("latin-1") for at in range(0, len(text), size)
+        ]
         if field not in names:
-            raise UnusableError(f"holds a structure of {_listing(names)}, not {field}")
+            message = f"holds a structure of {_listing(names)}, not {field}"
+            raise UnusableError(message)
         array = _array(*values[names.index(field)], order)
     return array
 
 
 def _values(array: _Array, variable: str, order: str) -> NDArray[Any]:
     if array.kind not in (_TEXT, *_NUMERIC) or array.is_complex:
-        raise UnusableError(f"holds {variable}, but neither as real numbers nor as text")
+        message = f"holds {variable}, but neither as real numbers nor as text"
+        raise UnusableError(message)
     kind, data = array.parts[0]
     known = _TEXTS[order] if array.kind == _TEXT else _NUMBERS
     if kind not in known:
-        raise UnusableError(f"is damaged: values of unknown type {kind} in {variable}")
+        message = f"is damaged: values of unknown type {kind} in {variable}"
+        raise UnusableError(message)
     if array.kind == _TEXT:
         return np.array(bytes(data).decode(known[kind]))
     return np.frombuffer(data, order + known[kind]).reshape(array.shape, order="F")

@@ -1,8 +1,8 @@
-"""The MFPT fault data set of Bechhoefer: baseline, inner-race and outer-race recordings of one type of bearing.
+"""The MFPT fault data set of Bechhoefer: healthy, inner-race and outer-race recordings of one bearing type.
 
-Each file holds a structure ``bearing`` with the acceleration ``gs`` [g], the sample rate ``sr`` [Hz], the shaft rate
-``rate`` [Hz] and the load ``load`` [lbf] [1]_. The set does not say which recordings share a bearing: each file
-counts as a specimen of its own, so that cross-validation within the set may leak.
+Each file holds a structure ``bearing`` with the acceleration ``gs`` [g], the sample rate ``sr`` [Hz], the
+shaft rate ``rate`` [Hz] and the load ``load`` [lbf] [1]_. The set does not say which recordings share a
+bearing: each file counts as a specimen of its own, so that cross-validation within the set may leak.
 
 .. [1] E. Bechhoefer, *Condition Based Maintenance Fault Database for Testing of Diagnostic and Prognostics
    Algorithms*, MFPT Society, 2013.
@@ -18,10 +18,9 @@ from gen.importers.assemble import Collection, Import, Progress, import_recordin
 from gen.importers.files import UnusableError, one_column
 from gen.importers.matlab import read_matlab
 from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below
-from gen.physics.bearing import Bearing
+from gen.physics.bearing import CATALOGUE
 
 FS = 48_828.0
-NICE = Bearing("NICE", n_balls=8, pitch_diameter=1.245 * 25.4e-3, ball_diameter=0.235 * 25.4e-3)
 
 _POUND_FORCE = 4.4482216152605  # N, by definition
 _NOMINAL_RATE = 25.0
@@ -29,11 +28,11 @@ _FAULT_OF_PREFIX = {"baseline": "healthy", "innerracefault": "inner", "outerrace
 _COLLECTION = Collection(
     importer="mfpt",
     title="MFPT fault data set",
-    origin="E. Bechhoefer, NRG Systems; Society for Machinery Failure Prevention Technology. CC BY-NC-SA 4.0.",
+    origin="E. Bechhoefer, NRG Systems; Machinery Failure Prevention Technology Society. CC BY-NC-SA 4.0.",
     fs=FS,
     channel="accelerometer",
 )
-_NOTE = "all recordings: the shaft rate is the nominal one in the files; the real one is 0.6 to 1.3 % lower where it was measured."
+_NOTE = "all: the shaft rate in the files is nominal; where measured, the real one is 0.6 to 1.3 % lower."
 
 
 def import_mfpt(
@@ -41,7 +40,8 @@ def import_mfpt(
 ) -> Import:
     """Bring the recordings found below ``source`` into a corpus at 48,828 Hz.
 
-    The class is told by the name of the file; files recorded at a multiple of the rate are resampled, with a warning.
+    The name of a file tells its class; a file recorded at a multiple of the rate is resampled, with a
+    warning.
 
     Parameters
     ----------
@@ -67,9 +67,7 @@ def import_mfpt(
         if fault is None:
             skipped.append(f"{name}: begins with none of baseline, InnerRaceFault, OuterRaceFault; skipped.")
         elif stem in candidates:
-            skipped.append(
-                f"{name}: is the recording {path.stem} once more, after {candidates[stem].source}; skipped."
-            )
+            skipped.append(f"{name}: is {path.stem} once more, after {candidates[stem].source}; skipped.")
         else:
             candidates[stem] = Candidate(path, name, partial(_read, path, fault, len(candidates)))
     return import_recordings(
@@ -93,34 +91,31 @@ def _read(path: Path, fault: str, number: int) -> Recording:
     warnings: list[str] = []
     if factor > 1:
         signal = scipy.signal.resample_poly(signal, 1, factor)
-        warnings.append(
-            f"resampled from {fs:g} Hz to {FS:g} Hz with scipy.signal.resample_poly(x, 1, {factor})"
-        )
+        warnings.append(f"resampled from {fs:g} to {FS:g} Hz with scipy.signal.resample_poly(x, 1, {factor})")
     rate, load = _number(path, "bearing.rate"), _number(path, "bearing.load") * _POUND_FORCE
     if not rate > 0:
         rate = _NOMINAL_RATE
-        warnings.append(f"states no shaft rate, the nominal {_NOMINAL_RATE:g} Hz are used")
+        warnings.append(f"states no shaft rate: the nominal {_NOMINAL_RATE:g} Hz are used")
     if not load >= 0:
         load = math.nan
-        warnings.append("states no load, which stays unknown")
-    spall = {} if fault == "healthy" else {"n_spalls": 1, "width": math.nan, "depth": math.nan}
-    return Recording(
+        warnings.append("states no load: it stays unknown")
+    recording = Recording(
         number=number,
         rig=0,
         specimen=number,
-        bearing=NICE,
+        bearing=CATALOGUE["NICE"],
         shaft_rate=rate,
         fault=fault,
         signal=signal,
         load=load,
         warnings=tuple(warnings),
-        **spall,
     )
+    return recording if fault == "healthy" else recording._replace(n_spalls=1, width=math.nan, depth=math.nan)
 
 
 def _number(path: Path, variable: str) -> float:
     """One number of a file, which some files hold as text; NaN if it is missing or no number."""
     try:
         return float(read_matlab(path, variable).item())
-    except (UnusableError, ValueError, TypeError):
+    except (UnusableError, ValueError):
         return math.nan

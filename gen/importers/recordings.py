@@ -1,7 +1,7 @@
 """What a recording is, what it must be to be used, and how it is cut into records.
 
-A recording is refused if it is shorter than a window, constant, not finite or beyond what accelerometers take;
-else it is cut into consecutive windows of one length, and the last incomplete one is dropped.
+A recording is refused if it is shorter than a window, constant, not finite or beyond what accelerometers
+take; else it is cut into consecutive windows of one length, and the last incomplete one is dropped.
 """
 
 from collections.abc import Callable, Mapping
@@ -25,8 +25,9 @@ _AS_RECORDED = ("rig", "specimen", "shaft_rate", "load", "n_spalls", "width", "d
 class Recording(NamedTuple):
     """One recording and what is known of it, in SI units; NaN is what is not known.
 
-    ``signal`` is of shape (time,) [m s-2]; ``number`` tells the recording from the others of its set; ``extra``
-    holds variables beyond the schema; ``warnings`` says what was done or assumed beyond reading the file.
+    ``signal`` is of shape (time,) [m s-2]; ``number`` tells the recording from the others of its set;
+    ``extra`` holds variables beyond the schema; ``warnings`` says what was done or assumed beyond reading
+    the file.
     """
 
     number: int
@@ -71,32 +72,36 @@ def read_recording(candidate: Candidate, length: int, fs: float) -> Recording:
     try:
         if candidate.path.stat().st_size == 0:
             raise UnusableError("is empty (0 bytes), copy it again")
-        recording = candidate.read()
+        with np.errstate(over="ignore", invalid="ignore"):
+            recording = candidate.read()
     except OSError as error:
         message = f"could not be read ({error.strerror or error})"
         raise UnusableError(message) from error
-    signal = recording.signal
-    wrong = np.count_nonzero(~np.isfinite(signal))
-    if wrong:
-        message = f"has {wrong} samples of {signal.size} that are not finite numbers"
-        raise UnusableError(message)
-    if signal.size < length:
-        message = f"holds {signal.size / fs:.3g} s, less than one window of {length / fs:g} s"
-        raise UnusableError(message)
-    if np.ptp(signal) == 0:
-        message = f"is constant, each sample is {signal[0]:g} m/s^2"
-        raise UnusableError(message)
-    largest = np.abs(signal).max()
-    if largest > _LARGEST_ACCELERATION:
-        message = (
-            f"reaches {largest:.3g} m/s^2, more than the {_LARGEST_ACCELERATION:g} m/s^2 of any accelerometer"
-        )
-        raise UnusableError(message)
+    flaw = _flaw(recording.signal, length, fs)
+    if flaw is not None:
+        raise UnusableError(flaw)
     return recording
 
 
+def _flaw(signal: FloatArray, length: int, fs: float) -> str | None:
+    """Say what is wrong with a signal, if anything is."""
+    wrong = np.count_nonzero(~np.isfinite(signal))
+    if wrong:
+        return f"has {wrong} samples of {signal.size} that are not finite numbers"
+    if signal.size < length:
+        return f"holds {signal.size / fs:.3g} s, less than one window of {length / fs:g} s"
+    largest, limit = np.abs(signal).max(), _LARGEST_ACCELERATION
+    if largest > limit:
+        return (
+            f"reaches {largest:.3g} m/s^2, more than the {limit:g} m/s^2 of any accelerometer; check its unit"
+        )
+    if np.ptp(signal) == 0:
+        return f"is constant, each sample is {signal[0]:g} m/s^2"
+    return None
+
+
 def cut(recording: Recording, source: str, length: int, fs: float) -> list[Record]:
-    """Cut consecutive windows of ``length`` samples; the source of each ends in ``#`` and its first sample."""
+    """Cut consecutive windows of ``length`` samples, whose sources end in ``#`` and their first sample."""
     known = {
         **{name: getattr(recording, name) for name in _AS_RECORDED},
         **orders(recording.bearing)._asdict(),

@@ -1,0 +1,170 @@
+"""The baselines, from no learning at all to an ensemble, as one registry of scikit-learn estimators.
+
+Missing features are filled with the median of the training records. Classes weigh alike, however many records
+they have. Sizes are chosen for a few hundred to a few thousand records of about a hundred features.
+"""
+
+from collections.abc import Callable
+from typing import Any, Self
+
+import numpy as np
+from scipy.special import softmax
+from sklearn.base import BaseEstimator, ClassifierMixin
+from sklearn.dummy import DummyClassifier
+from sklearn.ensemble import (
+    ExtraTreesClassifier,
+    HistGradientBoostingClassifier,
+    RandomForestClassifier,
+    VotingClassifier,
+)
+from sklearn.impute import SimpleImputer
+from sklearn.linear_model import LogisticRegression
+from sklearn.pipeline import Pipeline, make_pipeline
+from sklearn.preprocessing import StandardScaler
+from sklearn.svm import SVC
+from sklearn.utils.validation import check_is_fitted, validate_data
+
+from features.baselines.records import FloatArray, IntArray
+from gen.corpus import FAULTS
+
+TREES = 300
+
+
+class EnvelopeRule(ClassifierMixin, BaseEstimator):
+    """The rule of an analyst, untrained: the fault whose comb stands highest, or healthy if none stands out.
+
+    A comb is the mean logarithm of three harmonics of a fault line over the floor of the whitened envelope
+    spectrum. Of white noise, fewer than one record in a hundred has one above 1.0, three harmonics that are on
+    average e times the floor.
+
+    Parameters
+    ----------
+    threshold
+        The level a comb must exceed to be a fault.
+    """
+
+    COMBS = {"inner": "whitened_bpfi_comb", "outer": "whitened_bpfo_comb", "ball": "whitened_2bsf_comb"}
+
+    def __init__(self, threshold: float = 1.0) -> None:
+        self.threshold = threshold
+
+    def fit(self, X: Any, y: object = None) -> Self:  # noqa: ARG002
+        """Take note of the columns of a data frame; there is nothing to learn.
+
+        Raises
+        ------
+        ValueError
+            If a comb is not among the columns.
+        """
+        missing = set(self.COMBS.values()) - set(getattr(X, "columns", ()))
+        if missing:
+            message = f"envelope rule: no column {min(missing)!r}; give a data frame with the lines features."
+            raise ValueError(message)
+        validate_data(self, X, skip_check_array=True)
+        self.classes_ = np.arange(len(FAULTS))
+        return self
+
+    def predict_proba(self, X: Any) -> FloatArray:
+        """Softmax of threshold and comb levels, shape (record, class); a missing level counts as none."""
+        check_is_fitted(self)
+        validate_data(self, X, skip_check_array=True, reset=False)
+        levels = np.full((len(X), len(FAULTS)), self.threshold)
+        for fault, column in self.COMBS.items():
+            levels[:, FAULTS.index(fault)] = np.nan_to_num(X[column].to_numpy(), nan=-np.inf)
+        return softmax(levels, axis=1)
+
+    def predict(self, X: Any) -> IntArray:
+        """Index into ``gen.corpus.FAULTS``, shape (record,)."""
+        return self.classes_[self.predict_proba(X).argmax(axis=1)]
+
+
+def _majority(seed: int) -> DummyClassifier:
+    return DummyClassifier(strategy="most_frequent", random_state=seed)
+
+
+def _envelope_rule(seed: int) -> EnvelopeRule:  # noqa: ARG001
+    return EnvelopeRule()
+
+
+def _filled(*steps: Any) -> Pipeline:
+    return make_pipeline(SimpleImputer(strategy="median", keep_empty_features=True), *steps)
+
+
+def _logistic_regression(seed: int) -> Pipeline:
+    return _filled(
+        StandardScaler(),
+        LogisticRegression(C=0.1, max_iter=5000, class_weight="balanced", random_state=seed),
+    )
+
+
+def _svm(seed: int) -> Pipeline:
+    return _filled(StandardScaler(), SVC(class_weight="balanced", break_ties=True, random_state=seed))
+
+
+def _random_forest(seed: int) -> Pipeline:
+    return _filled(RandomForestClassifier(TREES, class_weight="balanced", random_state=seed))
+
+
+def _extra_trees(seed: int) -> Pipeline:
+    return _filled(ExtraTreesClassifier(TREES, class_weight="balanced", random_state=seed))
+
+
+def _gradient_boosting(seed: int) -> HistGradientBoostingClassifier:
+    return HistGradientBoostingClassifier(
+        max_iter=60,
+        max_leaf_nodes=8,
+        learning_rate=0.15,
+        early_stopping=False,
+        class_weight="balanced",
+        random_state=seed,
+    )
+
+
+def _ensemble(seed: int) -> VotingClassifier:
+    members = [
+        ("random_forest", _random_forest(seed)),
+        ("extra_trees", _extra_trees(seed)),
+        ("logistic_regression", _logistic_regression(seed)),
+    ]
+    return VotingClassifier(members, voting="soft")
+
+
+ESTIMATORS: dict[str, Callable[[int], Any]] = {
+    "majority": _majority,
+    "envelope_rule": _envelope_rule,
+    "logistic_regression": _logistic_regression,
+    "svm": _svm,
+    "random_forest": _random_forest,
+    "extra_trees": _extra_trees,
+    "gradient_boosting": _gradient_boosting,
+    "ensemble": _ensemble,
+}
+UNTRAINED = ("majority", "envelope_rule")
+DEFAULT_ESTIMATOR = "ensemble"
+
+
+def make_estimator(name: str, seed: int) -> Any:
+    """Unfitted baseline.
+
+    Raises
+    ------
+    ValueError
+        For a name that is not in the registry.
+    """
+    if name not in ESTIMATORS:
+        message = f"estimator: {name!r} is no baseline; choose from {', '.join(ESTIMATORS)}."
+        raise ValueError(message)
+    return ESTIMATORS[name](seed)
+
+
+def class_probabilities(estimator: Any, features: Any) -> FloatArray:
+    """Probability of each of ``estimator.classes_``, shape (record, class); the largest is the prediction.
+
+    For a support vector machine, which has none, the softmax of its decision values.
+    """
+    if hasattr(estimator, "predict_proba"):
+        return np.asarray(estimator.predict_proba(features))
+    decision = np.asarray(estimator.decision_function(features))
+    if decision.ndim == 1:
+        decision = np.stack([-decision, decision], axis=1)
+    return softmax(decision, axis=1)

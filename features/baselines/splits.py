@@ -1,0 +1,147 @@
+"""Cross-validation that keeps all records of a specimen, or of a rig, on one side of every split.
+
+Records of one specimen share its geometry, path and background. A random split of records therefore scores how
+well a classifier recognises specimens, and scores 1.00 even when the labels mean nothing.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+from sklearn.model_selection import StratifiedGroupKFold
+
+from features.baselines.estimators import class_probabilities, make_estimator
+from features.baselines.records import (
+    DEFAULT_GROUPS,
+    FloatArray,
+    IntArray,
+    Records,
+    features_of,
+    labelled_records,
+)
+from features.baselines.scores import Scores, confusion_matrix, figures, score
+from gen.corpus import FAULTS
+from gen.errors import CorpusError
+
+Grouping = Literal["specimen", "rig"]
+Split = tuple[IntArray, IntArray]
+
+
+def cross_validate(
+    table: xr.Dataset,
+    estimator: str,
+    *,
+    by: Grouping = "specimen",
+    folds: int = 5,
+    groups: Sequence[str] = DEFAULT_GROUPS,
+    seed: int = 0,
+) -> Scores:
+    """Scores of a baseline on specimens or rigs it was not trained on.
+
+    Parameters
+    ----------
+    table
+        A feature table.
+    estimator
+        A name of ``ESTIMATORS``.
+    by
+        What stays on one side of every split.
+    folds
+        Number of splits; the predictions of all are pooled, and the balanced accuracy of each is kept.
+    groups
+        Groups of features.
+    seed
+        Of splits, estimator and bootstrap.
+
+    Raises
+    ------
+    CorpusError
+        If the table has a single class, or too few specimens or rigs for the folds.
+    ValueError
+        For an unknown estimator.
+    """
+    records = labelled_records(table, features_of(table, groups))
+    check_groups(records, by, folds)
+    splits = grouped_splits(records.fault, getattr(records, by), folds, seed)
+    return score_splits(records, records.fault, estimator, splits, seed)
+
+
+def check_groups(records: Records, by: Grouping, folds: int) -> None:
+    """Refuse what cannot be cross-validated by group.
+
+    Raises
+    ------
+    CorpusError
+        If there is a single class, a class with too few groups or records, or too few groups.
+    """
+    group = getattr(records, by)
+    present = np.unique(records.fault)
+    if len(present) < 2:
+        message = f"cross-validation: all records are {FAULTS[present[0]]}; give a corpus with two or more classes."
+        raise CorpusError(message)
+    if folds < 2:
+        message = f"cross-validation: folds: {folds} is too few; use 2 or more."
+        raise CorpusError(message)
+    count = len(np.unique(group))
+    if count < folds:
+        advice = f"use at most {count} folds" if count > 1 else "test on another corpus instead"
+        message = f"cross-validation: {count} {by}(s) cannot fill {folds} folds; {advice}."
+        raise CorpusError(message)
+    for c in present:
+        of_class = records.fault == c
+        if len(np.unique(group[of_class])) < 2:
+            message = (
+                f"cross-validation: all {FAULTS[c]} records are of one {by}, so that none would be left to train on; "
+                f"give a corpus with two or more, or test on another corpus instead."
+            )
+            raise CorpusError(message)
+        if np.count_nonzero(of_class) < folds:
+            message = f"cross-validation: {np.count_nonzero(of_class)} {FAULTS[c]} records for {folds} folds; use fewer."
+            raise CorpusError(message)
+
+
+def grouped_splits(fault: IntArray, group: IntArray, folds: int, seed: int) -> list[Split]:
+    """Training and test records of each fold, classes spread as evenly as the groups allow."""
+    splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
+    splits = list(splitter.split(np.zeros((len(fault), 1)), fault, group))
+    for train, test in splits:
+        check_disjoint(group, train, test)
+    return [(train, test) for train, test in splits if len(test)]
+
+
+def check_disjoint(group: IntArray, train: IntArray, test: IntArray) -> None:
+    """Refuse a split that has a group on both sides.
+
+    Raises
+    ------
+    CorpusError
+        Naming the first such group.
+    """
+    shared = np.intersect1d(group[train], group[test])
+    if len(shared):
+        message = f"split: group {shared[0]} is in training and test alike; keep all its records on one side."
+        raise CorpusError(message)
+
+
+def score_splits(
+    records: Records, labels: IntArray, estimator: str, splits: Sequence[Split], seed: int
+) -> Scores:
+    """Scores against ``labels`` of the predictions pooled over splits; classes a fold lacks get probability 0."""
+    classes = np.unique(labels)
+    probabilities = np.zeros((len(labels), len(FAULTS)))
+    folds: list[float] = []
+    for train, test in splits:
+        fitted = make_estimator(estimator, seed).fit(records.features.iloc[train], labels[train])
+        probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, records.features.iloc[test])
+        classes = np.union1d(classes, fitted.classes_)
+        folds.append(_balanced_accuracy(labels[test], probabilities[test]))
+    pooled = score(records._replace(fault=labels), probabilities[:, classes], classes, seed)
+    return replace(pooled, folds=tuple(folds))
+
+
+def _balanced_accuracy(fault: IntArray, probabilities: FloatArray) -> float:
+    present, every = np.unique(fault), np.arange(len(FAULTS))
+    matrix = confusion_matrix(fault, probabilities.argmax(axis=1), present, every)
+    return figures(matrix, present, every).balanced_accuracy

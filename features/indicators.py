@@ -1,0 +1,235 @@
+"""Features of vibration records in four groups: fault lines, envelope shape, band energies, time statistics.
+
+``records -> six whitened analytic signals -> level of their envelope spectra -> lines; moduli -> shape``
+
+The six signals are 0.3-5 kHz cepstrally pre-whitened, 0.3-5 kHz divided by its power spectral density, and
+four narrower bands of the latter. Nothing above 5 kHz is used, so that what a machine was recorded with shows
+as little as can be, and ``lines`` and ``shape`` are free of gain and colour; ``bands`` and ``time`` are not
+and say much about the machine itself. The lines are those of [1]_.
+
+.. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
+       Process.* 25 (2011) 485-520.
+"""
+
+from collections.abc import Sequence
+from itertools import combinations, pairwise
+
+import numpy as np
+from scipy.fft import ifft, next_fast_len
+
+from features.lines import FAMILIES, LINE_NAMES, Orders, highest_order, read_lines
+from features.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, standardised_moments, time_statistics
+from features.spectra import (
+    ComplexArray,
+    FloatArray,
+    analytic_band,
+    band_energies,
+    cepstrally_whitened,
+    envelope_spectrum,
+    fourier_coefficients,
+    psd,
+    psd_whitened,
+    running_median,
+)
+
+__all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
+
+TOP = 5000.0  # Hz
+BROAD = (300.0, TOP)
+NARROW = ((500.0, 1500.0), (1500.0, 2500.0), (2500.0, 3500.0), (3500.0, TOP))
+WHITENING_WIDTH = 50.0  # Hz
+FLOOR_WIDTH = (3.0, 30.0)  # orders of the shaft, but at least so many Hz
+
+SHORTEST = (2.0, 0.05)  # turns of the shaft, and seconds: less shows no line
+LOWEST_RATE = 2 * NARROW[0][1]  # Hz
+
+ENERGY_HZ = (20.0, 100.0, 200.0, 400.0, 800.0, 1500.0, 2500.0, 3500.0, TOP)
+ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
+FAINTEST_ENERGY = 1e-12  # of the whole: 120 dB down
+
+BATCH = 16  # records worked on at once: what they need stays in a core's cache
+
+VIEWS = ("cepstral", "whitened", "bands_max", "bands_mean")
+RIVALS = tuple(combinations(range(len(FAMILIES)), 2))
+NAMES = {
+    "lines": (
+        *(f"{view}_{line}" for view in VIEWS for line in LINE_NAMES),
+        *(f"{view}_{FAMILIES[a]}_over_{FAMILIES[b]}" for view in VIEWS for a, b in RIVALS),
+    ),
+    "shape": (
+        *(f"{view}_{shape}" for view in VIEWS for shape in SHAPE_NAMES),
+        *("raw_kurtosis", "raw_crest_factor"),
+    ),
+    "bands": (
+        *(f"energy_{low:g}-{high:g}_Hz" for low, high in pairwise(ENERGY_HZ)),
+        *(f"energy_{low:g}-{high:g}_orders" for low, high in pairwise(ENERGY_ORDERS)),
+    ),
+    "time": tuple(f"time_{name}" for name in TIME_NAMES),
+}
+GROUPS = tuple(NAMES)
+
+
+def feature_names(groups: Sequence[str] = GROUPS) -> tuple[str, ...]:
+    """Names of the features of some groups, in the order of the columns of `indicators`.
+
+    Raises
+    ------
+    ValueError
+        For a group that does not exist.
+    """
+    return tuple(name for group in _checked(groups) for name in NAMES[group])
+
+
+def feature_groups(groups: Sequence[str] = GROUPS) -> tuple[str, ...]:
+    """Group of each feature of `feature_names`."""
+    return tuple(group for group in _checked(groups) for _ in NAMES[group])
+
+
+def _checked(groups: Sequence[str]) -> Sequence[str]:
+    unknown = [group for group in groups if group not in NAMES]
+    if unknown or isinstance(groups, str):
+        message = f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(GROUPS)}."
+        raise ValueError(message)
+    return groups
+
+
+def indicators(
+    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str] = GROUPS
+) -> tuple[FloatArray, tuple[str, ...]]:
+    """Features of records, and their names.
+
+    A record gets NaN throughout if its signal is constant or not finite, or if its shaft rate or one of its
+    orders is not a positive number. Lines and shape are NaN too if it lasts less than two turns or 0.05 s, or
+    if fs is below 3 kHz.
+
+    Parameters
+    ----------
+    x
+        Signals, shape (record, time).
+    fs
+        Sample rate [Hz].
+    shaft_rate
+        Shape (record,) [Hz].
+    orders
+        Nominal fault orders, each of shape (record,).
+    groups
+        Any of `GROUPS`, in the order wanted. ``lines`` and ``shape`` are cheaper together than apart.
+
+    Returns
+    -------
+    Shape (record, feature), and a name for each feature.
+
+    Raises
+    ------
+    ValueError
+        For a group that does not exist.
+    """
+    names = feature_names(groups)
+    values = np.full((len(x), len(names)), np.nan)
+    usable = np.flatnonzero(_usable(x, shaft_rate, orders))
+    for start in range(0, len(usable), BATCH):
+        rows = usable[start : start + BATCH]
+        batch = np.asarray(x[rows], dtype=np.float64)
+        nominal = Orders(*(order[rows] for order in orders))
+        values[rows] = _features(batch, fs, shaft_rate[rows], nominal, groups)
+    return values, names
+
+
+def _usable(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.ndarray:
+    known = [np.isfinite(values) & (values > 0) for values in (shaft_rate, *orders)]
+    return np.isfinite(x).all(axis=-1) & (x.max(axis=-1) > x.min(axis=-1)) & np.logical_and.reduce(known)
+
+
+def _features(
+    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str]
+) -> FloatArray:
+    found: dict[str, FloatArray] = {}
+    if "lines" in groups or "shape" in groups:
+        found["lines"], found["shape"] = _lines_and_shape(x, fs, shaft_rate, orders)
+    if "bands" in groups:
+        found["bands"] = _log_energies(x, fs, shaft_rate)
+    if "time" in groups:
+        found["time"] = time_statistics(x)
+    return np.concatenate([found[group] for group in groups], axis=-1)
+
+
+def _lines_and_shape(
+    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders
+) -> tuple[FloatArray, FloatArray]:
+    duration = x.shape[-1] / fs
+    lines = np.full((len(x), len(NAMES["lines"])), np.nan)
+    shape = np.full((len(x), len(NAMES["shape"])), np.nan)
+    long_enough = np.flatnonzero(duration * shaft_rate >= SHORTEST[0])
+    if fs < LOWEST_RATE or duration < SHORTEST[1] or not long_enough.size:
+        return lines, shape
+    shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
+    coefficients = fourier_coefficients(x[long_enough], fs, TOP)
+    read = [_read(z, duration, shaft_rate, orders) for z in _signals(coefficients, duration, fs)]
+    line_views, shape_views = (_views(np.stack(values, axis=1)) for values in zip(*read, strict=True))
+    over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
+    lines[long_enough] = np.concatenate([_flat(line_views), _flat(over)], axis=-1)
+    shape[long_enough] = np.concatenate([_flat(shape_views), _raw_shape(coefficients)], axis=-1)
+    return lines, shape
+
+
+def _signals(coefficients: ComplexArray, duration: float, fs: float) -> list[ComplexArray]:
+    """Two broad analytic signals, then the narrow bands of which more than half is below the Nyquist rate.
+
+    In single precision: whitened coefficients are all about as large as one another, and it takes two thirds
+    of the time.
+    """
+    cepstral = cepstrally_whitened(coefficients).astype(np.complex64)
+    whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration)).astype(np.complex64)
+    narrow = [(whitened, band) for band in NARROW if sum(band) < fs]
+    cuts = [(cepstral, BROAD), (whitened, BROAD), *narrow]
+    return [
+        analytic_band(source, round(low * duration), round(high * duration)) for source, (low, high) in cuts
+    ]
+
+
+def _read(
+    z: ComplexArray, duration: float, shaft_rate: FloatArray, orders: Orders
+) -> tuple[FloatArray, FloatArray]:
+    rate = z.shape[-1] / duration
+    frequencies, spectrum = envelope_spectrum(z, rate)
+    resolution = frequencies[1]
+    bins = min(int(np.max(highest_order(orders) * shaft_rate) / resolution) + 2, len(frequencies))
+    level = log_level(spectrum, resolution, shaft_rate, bins)
+    lines = read_lines(level, shaft_rate / resolution, orders)
+    return lines, envelope_shape(z, spectrum, rate, shaft_rate)
+
+
+def log_level(spectrum: FloatArray, resolution: float, shaft_rate: FloatArray, bins: int) -> FloatArray:
+    """Logarithm of the first bins of envelope spectra over their running median, shape (record, bins)."""
+    width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
+    floor = running_median(spectrum, width, bins)
+    least = np.finfo(spectrum.dtype).tiny
+    return np.log(np.maximum(spectrum[:, :bins], least) / np.maximum(floor, least))
+
+
+def _views(values: FloatArray) -> FloatArray:
+    """Both broad signals, then maximum and mean of the narrow ones, shape (record, view, value)."""
+    narrow = values[:, 2:]
+    return np.stack([values[:, 0], values[:, 1], narrow.max(axis=1), narrow.mean(axis=1)], axis=1)
+
+
+def _flat(values: FloatArray) -> FloatArray:
+    return values.reshape(len(values), -1)
+
+
+def _raw_shape(coefficients: ComplexArray) -> FloatArray:
+    """Kurtosis and crest factor of what lies below 5 kHz, shape (record, 2)."""
+    n = next_fast_len(2 * coefficients.shape[-1])
+    raw = np.real(np.asarray(ifft(2 * coefficients, n=n, axis=-1, norm="forward")))
+    kurtosis, _ = standardised_moments(raw)
+    return np.stack([kurtosis, np.abs(raw).max(axis=-1) / np.sqrt(np.mean(raw**2, axis=-1))], axis=-1)
+
+
+def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray) -> FloatArray:
+    """Natural logarithm of band energies [unit of x squared], in bands of Hz, then of orders."""
+    frequencies, density = psd(x, fs)
+    density[:, frequencies > TOP] = 0.0
+    in_hz = band_energies(density, frequencies, ENERGY_HZ)
+    in_orders = band_energies(density, frequencies, np.multiply.outer(shaft_rate, ENERGY_ORDERS))
+    least = FAINTEST_ENERGY * (frequencies[1] - frequencies[0]) * density.sum(axis=-1, keepdims=True)
+    return np.log(np.maximum(np.concatenate([in_hz, in_orders], axis=-1), least + np.finfo(float).tiny))

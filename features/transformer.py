@@ -1,0 +1,83 @@
+"""The features of this package as a scikit-learn transformer, for signals that are no corpus.
+
+Stateless: ``transform`` needs no ``fit``, which only takes note of the number of samples. All signals share
+one sample rate, one shaft rate and one bearing.
+"""
+
+from collections.abc import Sequence
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+from sklearn.base import BaseEstimator, TransformerMixin
+from sklearn.utils import Tags
+from sklearn.utils.validation import check_is_fitted, validate_data
+
+from features.indicators import GROUPS, Orders, feature_names, indicators
+from features.spectra import FloatArray
+
+
+class IndicatorTransformer(TransformerMixin, BaseEstimator):
+    """Signals, shape (record, time), to features, shape (record, feature).
+
+    The rules of `features.indicators.indicators` for what cannot be read hold here too: NaN throughout for a
+    signal that is constant or not finite, NaN lines and shape for one that is too short. Put an imputer
+    behind it if that can happen.
+
+    Parameters
+    ----------
+    fs
+        Sample rate [Hz].
+    shaft_rate
+        Shaft rate [Hz].
+    ftf, bpfo, bpfi, bsf
+        Nominal fault orders, those of a 6205 by default; ``bsf`` is the spin of a ball.
+    groups
+        Any of ``lines``, ``shape``, ``bands``, ``time``.
+    """
+
+    def __init__(
+        self,
+        fs: float = 12_000.0,
+        shaft_rate: float = 30.0,
+        ftf: float = 0.3983,
+        bpfo: float = 3.5848,
+        bpfi: float = 5.4152,
+        bsf: float = 2.3567,
+        groups: Sequence[str] = GROUPS,
+    ) -> None:
+        self.fs = fs
+        self.shaft_rate = shaft_rate
+        self.ftf = ftf
+        self.bpfo = bpfo
+        self.bpfi = bpfi
+        self.bsf = bsf
+        self.groups = groups
+
+    def fit(self, X: ArrayLike, y: object = None) -> Self:  # noqa: ARG002
+        """Take note of the number of samples of X, shape (record, time)."""
+        self._signals(X, reset=True)
+        return self
+
+    def transform(self, X: ArrayLike) -> FloatArray:
+        """Features of X, shape (record, time) to (record, feature)."""
+        x = self._signals(X, reset=False)
+        records = np.ones(len(x))
+        orders = Orders(*(order * records for order in (self.ftf, self.bpfo, self.bpfi, self.bsf)))
+        values, _ = indicators(x, self.fs, self.shaft_rate * records, orders, self.groups)
+        return values
+
+    def _signals(self, X: ArrayLike, *, reset: bool) -> FloatArray:
+        x: Any = X
+        return np.asarray(validate_data(self, x, dtype=np.float64, ensure_all_finite=False, reset=reset))
+
+    def get_feature_names_out(self, input_features: object = None) -> np.ndarray:  # noqa: ARG002
+        """Names of the features, shape (feature,)."""
+        check_is_fitted(self, "n_features_in_")
+        return np.array(feature_names(self.groups), dtype=object)
+
+    def __sklearn_tags__(self) -> Tags:
+        tags = super().__sklearn_tags__()
+        tags.requires_fit = False
+        tags.input_tags.allow_nan = True
+        return tags

@@ -1,0 +1,193 @@
+"""From a YAML file to a :class:`Recipe`, or to a sentence that says where the file is wrong.
+
+A recipe is given as a path or by the name of one that ships with Raceway. YAML 1.2 is read without tags, so a recipe can run no code.
+"""
+
+import difflib
+import hashlib
+import json
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from pydantic import BaseModel, ValidationError
+from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
+
+from gen.errors import RecipeError
+from gen.recipe.model import Recipe
+
+_LARGEST = 1_000_000  # bytes; a recipe is some kilobytes
+_MOST_NODES = 20_000  # values once aliases are written out
+
+
+def shipped_recipes() -> dict[str, Path]:
+    """Names and paths of the recipes that ship with Raceway."""
+    folder = Path(str(files("raceway_recipes")))
+    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+
+
+def find_recipe(recipe: Path | str) -> Path:
+    """Path of a recipe given as a path or by name.
+
+    Raises
+    ------
+    RecipeError
+        If there is neither such a file nor such a name.
+    """
+    path = Path(recipe)
+    if path.is_file():
+        return path
+    shipped = shipped_recipes()
+    if str(recipe) in shipped:
+        return shipped[str(recipe)]
+    near = difflib.get_close_matches(str(recipe), shipped, 1)
+    guess = f"did you mean {near[0]}?" if near else "raceway recipes lists the names."
+    raise RecipeError(f"{recipe}: neither a file nor one of the recipes {', '.join(shipped)}; {guess}")
+
+
+def read_recipe(recipe: Path | str, *, seed: int | None = None, records: int | None = None) -> Recipe:
+    """Read and check a recipe.
+
+    Parameters
+    ----------
+    recipe : path or str
+        File, or name of a recipe that ships with Raceway.
+    seed, records : int, optional
+        Take the place of the recipe's own.
+
+    Raises
+    ------
+    RecipeError
+        If the file is missing, no YAML, or asks for what cannot be; one sentence for each thing that is wrong.
+    """
+    path = find_recipe(recipe)
+    data = _load(path)
+    overrides = {"seed": seed, "records": records}
+    data |= {key: value for key, value in overrides.items() if value is not None}
+    try:
+        return Recipe.model_validate(data)
+    except ValidationError as error:
+        raise RecipeError("\n".join(f"{path}: {sentence}" for sentence in _sentences(error))) from None
+
+
+def recipe_hash(recipe: Recipe) -> str:
+    """SHA-256 of what the recipe says, whatever its layout and comments."""
+    text = json.dumps(recipe.model_dump(mode="json"), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def recipe_schema() -> str:
+    """JSON schema of a recipe, for editors."""
+    schema = Recipe.model_json_schema()
+    return json.dumps({"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}, indent=1) + "\n"
+
+
+def _load(path: Path) -> dict[str, Any]:
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise RecipeError(f"{path}: {path.stat().st_size} bytes is no recipe; at most {_LARGEST} are read.")
+        data = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
+    except (OSError, UnicodeDecodeError) as error:
+        raise RecipeError(f"{path}: cannot be read ({error}); give a YAML file in UTF-8.") from None
+    except (YAMLError, RecursionError, ValueError) as error:
+        reason = " ".join(str(error).split())
+        raise RecipeError(f"{path}: is not valid YAML ({reason}); correct it there.") from None
+    if not isinstance(data, dict) or not all(isinstance(key, str) for key in data):
+        raise RecipeError(f"{path}: a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes.")
+    left = [data]
+    for _ in range(_MOST_NODES):
+        if not left:
+            return data
+        node = left.pop()
+        left += node.values() if isinstance(node, dict) else node if isinstance(node, list) else []
+    raise RecipeError(f"{path}: more than {_MOST_NODES} values once aliases are written out; a recipe has some hundred.")
+
+
+def _sentences(error: ValidationError) -> list[str]:
+    """One sentence per thing that is wrong; an error inside one branch of a union names only that branch."""
+    sentences = []
+    for item in error.errors():
+        place = _place(item["loc"])
+        value = item["input"]
+        shown = f"{value!r} " if isinstance(value, str | int | float | bool) or value is None else ""
+        text = item["msg"].removeprefix("Value error, ")
+        match item["type"]:
+            case "extra_forbidden":
+                sentence = f"{place}: no such key{_near(item['loc'])}"
+            case "missing":
+                sentence = f"{place}: is missing; give it."
+            case "union_tag_invalid":
+                expected = item["ctx"]["expected_tags"].replace("'", "")
+                sentence = f"{place}.kind: {item['ctx']['tag']!r} is not one of {expected}."
+            case "union_tag_not_found":
+                sentence = f"{place}: {shown or 'this '}needs a kind, such as kind: {_first_kind(item)}."
+            case "value_error":
+                sentence = f"{place}: {text}" if place else text
+            case "too_short" if value:
+                continue
+            case "too_short":
+                sentence = f"{place}: is empty; give at least one."
+            case _:
+                sentence = f"{place}: {shown}is not allowed here; {text[0].lower()}{text[1:]}."
+        if place.endswith("width_mm") and "is not in" in sentence:
+            sentence = sentence.removesuffix(".") + "; for a bearing without a fault use kind: healthy."
+        sentences.append(sentence)
+    return list(dict.fromkeys(sentences))
+
+
+def _first_kind(item: Any) -> str:
+    return "catalogue" if item["loc"] == ("bearing",) else "uniform"
+
+
+def _place(location: tuple[int | str, ...]) -> str:
+    """Path of a value as it stands in the file, without the names of the union branches pydantic puts in."""
+    place, node = "", _Cursor(Recipe)
+    for step in location:
+        if isinstance(step, int):
+            place += f"[{step}]"
+        elif node.knows(step) or step not in _BRANCHES:
+            place += f".{step}" if place else step
+            node = node.into(step)
+    return place
+
+
+_BRANCHES = {
+    "constant", "uniform", "loguniform", "normal", "choice", "grid", "catalogue", "geometry", "adc", "float32", "physical", "snr",
+    "healthy", "inner", "outer", "ball", "[key]",
+}  # fmt: skip
+
+
+class _Cursor:
+    """Where in the recipe's sections a location has led so far."""
+
+    def __init__(self, *models: type[BaseModel]) -> None:
+        self.models = models
+
+    def knows(self, key: str) -> bool:
+        return any(key in model.model_fields for model in self.models)
+
+    def into(self, key: str) -> "_Cursor":
+        found = [model.model_fields[key].annotation for model in self.models if key in model.model_fields]
+        return _Cursor(*_sections(found))
+
+    def keys(self) -> list[str]:
+        return sorted({name for model in self.models for name in model.model_fields})
+
+
+def _sections(annotations: list[Any]) -> list[type[BaseModel]]:
+    sections: list[type[BaseModel]] = []
+    for annotation in annotations:
+        if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+            sections.append(annotation)
+        sections += _sections(list(getattr(annotation, "__args__", ())))
+    return sections
+
+
+def _near(location: tuple[int | str, ...]) -> str:
+    node = _Cursor(Recipe)
+    for step in location[:-1]:
+        if isinstance(step, str) and node.knows(step):
+            node = node.into(step)
+    near = difflib.get_close_matches(str(location[-1]), node.keys(), 1)
+    return f"; did you mean {near[0]}?" if near else f"; allowed are {', '.join(node.keys())}."

@@ -1,0 +1,381 @@
+"""Scenarios: rigs, specimens and records, fully drawn; what is random about a record is settled here.
+
+A rig is one machine with its path, background and sensor; it has healthy and faulty specimens, and each specimen several records.
+Every level and purpose has a random stream of its own, found by number and never by the order of work. The streams of everything but
+the fault do not know the fault: a record with and without it differ in the fault alone.
+"""
+
+import math
+import warnings
+from dataclasses import asdict, dataclass, replace
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from pydantic import BaseModel
+from scipy.stats import qmc
+
+from gen.corpus import FAULTS, SPLITS
+from gen.distributions import Grid, weighted_index
+from gen.errors import RecipeError
+from gen.physics.batch import Spall
+from gen.physics.bearing import CATALOGUE, Bearing
+from gen.recipe import BallFault, Modes, RaceFault, Recipe, Section, split_unit
+
+Drawn = dict[str, float]
+_QUASI_RANDOM_DIMENSIONS = 64
+
+
+class Purpose(IntEnum):
+    """What a random stream is for."""
+
+    RIG = 0
+    CLASSES = 1
+    SPLIT = 2
+    SPECIMEN = 3
+    FAULT = 4
+    WAVINESS = 5
+    RECORD = 6
+    MOTION = 7
+    NOISE = 8
+
+
+@dataclass(frozen=True)
+class Mode:
+    """A resonance: frequency [Hz], damping ratio and signed gain [1]."""
+
+    frequency: float
+    damping: float
+    gain: float
+
+
+@dataclass(frozen=True)
+class Tone:
+    """A line: frequency [Hz or shaft orders], rms relative to the noise, and depth of its modulation by the shaft."""
+
+    frequency: float
+    level: float
+    modulation: float = 0.0
+
+
+@dataclass(frozen=True)
+class Background:
+    """What a machine sounds like without the bearing; levels are relative to its noise."""
+
+    slope: float
+    floor: float
+    modes: tuple[Mode, ...]
+    modulation: tuple[float, float]
+    harmonics: tuple[Tone, ...]
+    tones: tuple[Tone, ...]
+    impulses: Tone | None
+    knocks: Tone | None
+
+
+@dataclass(frozen=True)
+class Rig:
+    """One machine."""
+
+    number: int
+    bearing: Bearing
+    machine: Drawn
+    resonator: Drawn | None
+    channels: tuple[tuple[str, float], ...]
+    """Body and direction [rad] of each channel."""
+    direct: float
+    modes: tuple[Mode, ...]
+    modulation: tuple[float, float]
+    background: Background
+    gain: float
+    background_rms: float
+
+
+@dataclass(frozen=True)
+class Specimen:
+    """One physical bearing."""
+
+    number: int
+    bearing: Bearing
+    properties: Drawn
+    fault: str
+    spalls: tuple[Spall, ...]
+    """Outer race angles count from the load direction."""
+    profile: str
+    axis: Drawn
+    split: str
+
+
+@dataclass(frozen=True)
+class Operation:
+    """One record: how the machine ran, and how loud the bearing was."""
+
+    number: int
+    conditions: Drawn
+    snr: float | None
+    rms: float | None
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """One record, fully drawn."""
+
+    seed: int
+    rig: Rig
+    specimen: Specimen
+    record: Operation
+
+    def rng(self, purpose: Purpose) -> np.random.Generator:
+        """Stream of this record for what is random in time."""
+        return stream(self.seed, self.rig.number, self.specimen.number, self.record.number, purpose)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Every drawn value, for storage."""
+        return {"rig": asdict(self.rig), "specimen": asdict(self.specimen), "record": asdict(self.record)}
+
+    def without_fault(self) -> "Scenario":
+        """The same record of the same specimen before it was damaged."""
+        return replace(self, specimen=replace(self.specimen, fault="healthy", spalls=()))
+
+
+def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:
+    """Random stream of one purpose at one place; levels above a record leave the lower numbers at 0."""
+    sequence = np.random.SeedSequence(seed, spawn_key=(rig, specimen, record, int(purpose)))
+    return np.random.Generator(np.random.PCG64DXSM(sequence))
+
+
+class Draws:
+    """Values of one rig, specimen or record, drawn one after the other.
+
+    The first come from a quasi-random point if there is one; grids follow the number of the item.
+    """
+
+    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], turn: int) -> None:
+        self._rng = rng
+        self._point = list(point[::-1])
+        self._turn = turn
+
+    def u(self) -> float:
+        """Next number in [0, 1)."""
+        return float(self._point.pop()) if self._point else float(self._rng.random())
+
+    def value(self, distribution: Any) -> float:
+        """Value of a distribution in its own unit."""
+        u = self.u()
+        if isinstance(distribution, Grid):
+            self._turn, place = divmod(self._turn, len(distribution.values))
+            return float(distribution.values[place])
+        return distribution.draw(u)
+
+    def section(self, section: Section) -> Drawn:
+        """Every distribution of a section, in SI units, by its key without the unit."""
+        drawn: Drawn = {}
+        for key, distribution in section:
+            if isinstance(distribution, BaseModel) and hasattr(distribution, "draw"):
+                name, factor = split_unit(key)
+                drawn[name] = self.value(distribution) * factor
+        return drawn
+
+    def happens(self, section: Any) -> bool:
+        """Whether something with a probability is there."""
+        return self.u() < section.probability
+
+
+def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> list[Scenario]:
+    """Records ``first`` to ``stop`` of a corpus, drawn.
+
+    Any range gives the same records as a range that contains it.
+
+    Raises
+    ------
+    RecipeError
+        If a drawn bearing cannot exist or a drawn spall does not fit it.
+    """
+    stop = recipe.n_records if stop is None else min(stop, recipe.n_records)
+    per_specimen = recipe.corpus.records_per_specimen
+    per_rig = recipe.corpus.specimens_per_rig
+    first_specimen, last_specimen = first // per_specimen, (stop - 1) // per_specimen
+    first_rig, last_rig = first_specimen // per_rig, last_specimen // per_rig
+    rig_points = _points(recipe, Purpose.RIG, first_rig, last_rig + 1)
+    rigs = {number: _draw_rig(recipe, number, point) for number, point in rig_points.items()}
+    specimens = {
+        number: _draw_specimen(recipe, rigs[number // per_rig], number, point)
+        for number, point in _points(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
+    }
+    return [
+        Scenario(
+            recipe.seed,
+            rigs[number // per_specimen // per_rig],
+            specimens[number // per_specimen],
+            _draw_record(recipe, specimens[number // per_specimen], number, point),
+        )
+        for number, point in _points(recipe, Purpose.RECORD, first, stop).items()
+    ]
+
+
+def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
+    """Quasi-random points of items ``first`` to ``stop`` of a level; empty ones if sampling is random."""
+    if recipe.corpus.sampling == "random":
+        return {number: np.empty(0) for number in range(first, stop)}
+    engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
+    rng = stream(recipe.seed, 0, 0, 0, level)
+    engine = engine_type(_QUASI_RANDOM_DIMENSIONS, scramble=True, rng=rng)
+    engine.fast_forward(first)
+    with warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "The balance properties", UserWarning)  # of the range; the whole sequence has them
+        return dict(zip(range(first, stop), engine.random(stop - first), strict=True))
+
+
+def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
+    draws = Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number)
+    machine = draws.section(recipe.machine)
+    resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator)
+    bearing = _draw_bearing(recipe, draws, number)
+    level = draws.section(recipe.level)
+    channels = []
+    for channel in recipe.recording.channels:
+        body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
+        channels.append((body, draws.section(channel)["angle"]))
+    modulation = _draw_modulation(draws, recipe.path.modulation)
+    direct = draws.section(recipe.path)["direct"]
+    modes = _draw_modes(draws, recipe.path.modes)
+    background = _draw_background(recipe, draws)
+    return Rig(
+        number, bearing, machine, resonator, tuple(channels), direct, modes, modulation, background,
+        level.get("gain", 1.0), level.get("background", 1.0),
+    )  # fmt: skip
+
+
+def _draw_bearing(recipe: Recipe, draws: Draws, rig: int) -> Bearing:
+    chosen = recipe.bearing
+    if chosen.kind == "catalogue":
+        return CATALOGUE[chosen.designations[int(draws.u() * len(chosen.designations))]]
+    drawn = draws.section(chosen)
+    n_balls, ball = round(drawn["n_balls"]), drawn["ball_share"] * drawn["pitch"]
+    # neighbours must not touch: 0.85 leaves the cage its bars
+    largest = 0.85 * math.pi * drawn["pitch"] / n_balls
+    if drawn["ball_share"] > 0.6 or ball <= 0:
+        raise RecipeError(f"rig {rig}: ball_share {drawn['ball_share']:g} gives no bearing; keep it below 0.45.")
+    return Bearing(chosen.designation, n_balls, drawn["pitch"], min(ball, largest), drawn["contact_angle"])
+
+
+def _draw_modes(draws: Draws, modes: Modes | None) -> tuple[Mode, ...]:
+    if modes is None:
+        return ()
+    found = []
+    for _ in range(round(draws.value(modes.count))):
+        frequency, damping = draws.value(modes.frequency_hz), draws.value(modes.damping_percent) / 100
+        gain, sign = 10 ** (draws.value(modes.gain_db) / 20), 1.0 if draws.u() < 0.5 else -1.0
+        found.append(Mode(frequency, damping, sign * gain))
+    return tuple(found)
+
+
+def _draw_modulation(draws: Draws, modulation: Any) -> tuple[float, float]:
+    if modulation is None or not draws.happens(modulation):
+        return 0.0, 0.0
+    return draws.value(modulation.first), draws.value(modulation.second)
+
+
+def _draw_background(recipe: Recipe, draws: Draws) -> Background:
+    wanted = recipe.background
+    slope, floor = draws.value(wanted.slope), 10 ** (draws.value(wanted.floor_db) / 20)
+    harmonics, tones = [], []
+    if wanted.harmonics is not None and draws.happens(wanted.harmonics):
+        for order in range(1, round(draws.value(wanted.harmonics.count)) + 1):
+            harmonics.append(Tone(order, 10 ** (draws.value(wanted.harmonics.level_db) / 20)))
+    if wanted.tones is not None and draws.happens(wanted.tones):
+        for _ in range(round(draws.value(wanted.tones.count))):
+            level = 10 ** (draws.value(wanted.tones.level_db) / 20)
+            tones.append(Tone(draws.value(wanted.tones.frequency_hz), level, draws.value(wanted.tones.modulation)))
+    impulses = knocks = None
+    if wanted.impulses is not None and draws.happens(wanted.impulses):
+        impulses = Tone(draws.value(wanted.impulses.rate_hz), 10 ** (draws.value(wanted.impulses.level_db) / 20))
+    if wanted.knocks is not None and draws.happens(wanted.knocks):
+        knocks = Tone(draws.value(wanted.knocks.orders), 10 ** (draws.value(wanted.knocks.level_db) / 20))
+    modes, modulation = _draw_modes(draws, wanted.modes), _draw_modulation(draws, wanted.modulation)
+    return Background(slope, floor, modes, modulation, tuple(harmonics), tuple(tones), impulses, knocks)
+
+
+def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64]) -> Specimen:
+    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN), point, number % recipe.corpus.specimens_per_rig)
+    properties = draws.section(recipe.specimen)
+    bearing = replace(
+        rig.bearing, inner_conformity=properties["inner_conformity"], outer_conformity=properties["outer_conformity"]
+    )
+    place = number % recipe.corpus.specimens_per_rig
+    fault = fault_of_each_specimen(recipe, rig.number)[place]
+    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), place)
+    wanted = [entry for entry in recipe.faults if entry.kind == fault]
+    entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
+    split = _draw_split(recipe, rig.number, place)
+    if not isinstance(entry, RaceFault | BallFault):
+        return Specimen(number, bearing, properties, fault, (), "geometric", {}, split)
+    spalls = _draw_spalls(draws, entry, bearing, number)
+    axis = draws.section(entry) if isinstance(entry, BallFault) else {}
+    axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander", "spin_wander") if name in axis}
+    return Specimen(number, bearing, properties, fault, spalls, entry.profile, axis, split)
+
+
+def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int) -> tuple[Spall, ...]:
+    carrier = int(draws.u() * bearing.n_balls)
+    spalls = []
+    for _ in range(round(draws.value(entry.spalls))):
+        width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
+        spalls.append(Spall(entry.kind, width, depth, math.radians(draws.value(entry.angle_deg)), carrier))
+        radius = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[entry.kind]
+        if width > 1.4 * radius:
+            raise RecipeError(
+                f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit a {entry.kind} radius of {radius * 1e3:.3g} mm; "
+                f"keep width_mm below {1.4 * radius * 1e3:.3g}."
+            )
+    return tuple(spalls)
+
+
+def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
+    """Fault classes of the specimens of a rig: by weight, but never all healthy or all faulty if the recipe has both."""
+    weights = {kind: 0.0 for kind in FAULTS}
+    for entry in recipe.faults:
+        weights[entry.kind] += entry.weight
+    total, count = sum(weights.values()), recipe.corpus.specimens_per_rig
+    rng = stream(recipe.seed, rig, 0, 0, Purpose.CLASSES)
+    shares = {kind: weight / total * count for kind, weight in weights.items() if weight > 0}
+    chosen = [kind for kind, share in shares.items() for _ in range(math.floor(share + 1e-9))]
+    rest = np.array([share - math.floor(share + 1e-9) for share in shares.values()])
+    if len(chosen) < count:
+        # largest weighted random keys: as many of the rest as are missing, each by its fraction, none twice
+        keys = np.log(np.maximum(rng.random(len(rest)), 1e-300)) / np.maximum(rest, 1e-9)
+        chosen += [list(shares)[i] for i in np.argsort(-keys, kind="stable")[: count - len(chosen)]]
+    faulty = [kind for kind in shares if kind != "healthy"]
+    if "healthy" in shares and faulty:
+        if "healthy" not in chosen:
+            chosen[int(rng.integers(count))] = "healthy"
+        elif all(kind == "healthy" for kind in chosen):
+            chosen[0] = faulty[weighted_index(tuple(shares[kind] for kind in faulty), rng.random())]
+    return [chosen[i] for i in rng.permutation(count)]
+
+
+def _draw_split(recipe: Recipe, rig: int, place: int) -> str:
+    split, corpus = recipe.corpus.split, recipe.corpus
+    if split.by == "rig":
+        rank = stream(recipe.seed, 0, 0, 0, Purpose.SPLIT).permutation(corpus.rigs)[rig]
+        u = (rank + 0.5) / corpus.rigs
+    else:
+        rank = stream(recipe.seed, rig, 0, 0, Purpose.SPLIT).permutation(corpus.specimens_per_rig)[place]
+        u = (rank + (rig * 0.6180339887 + 0.5) % 1) / corpus.specimens_per_rig  # golden ratio: even over rigs too
+    train, validation, test = SPLITS
+    return test if u < split.test else validation if u < split.test + split.validation else train
+
+
+def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray[np.float64]) -> Operation:
+    rig = specimen.number // recipe.corpus.specimens_per_rig
+    turn = number % recipe.corpus.records_per_specimen
+    draws = Draws(stream(recipe.seed, rig, specimen.number, number, Purpose.RECORD), point, turn)
+    conditions = draws.section(recipe.operation)
+    level = recipe.level
+    if level.kind == "physical":
+        return Operation(number, conditions, None, None)
+    u = draws.u()
+    snr = (level.healthy_db if specimen.fault == "healthy" else level.faulty_db).draw(u)
+    return Operation(number, conditions, snr, draws.value(level.rms_m_s2))
+
+

@@ -1,0 +1,1 @@
+"""The recipes that ship with Raceway, one YAML file per corpus."""

@@ -1,0 +1,230 @@
+"""The feature table: signal and operating variables go in, everything known is carried along."""
+
+import re
+import sys
+
+import numpy as np
+import pytest
+import xarray as xr
+from distributed import Client
+
+from features import feature_table
+from features.indicators import GROUPS, feature_names
+from features.table import part_features, read_table, write_table
+from gen.corpus import (
+    ROLES,
+    SCHEMA,
+    Variable,
+    make_dataset,
+    open_corpus,
+    part_name,
+    part_paths,
+    write_index,
+    write_manifest,
+    write_part,
+)
+from gen.errors import CorpusError
+
+FS, SAMPLES, RECORDS, PARTS = 12_000.0, 3000, 5, 3
+SNR = Variable("snr", "f8", "dB", "latent", "ratio of signal to background")
+KNOWN = {"shaft_rate": 30.0, "sample_rate": FS, "ftf": 0.3983, "bpfo": 3.5848, "bpfi": 5.4152, "bsf": 2.3567}
+
+
+def columns(rng):
+    values = {
+        "i1": lambda: rng.integers(0, 3, RECORDS),
+        "i2": lambda: rng.integers(0, 3, RECORDS),
+        "i4": lambda: rng.integers(0, 9, RECORDS),
+        "f8": lambda: rng.uniform(0.0, 1.0, RECORDS),
+        "str": lambda: [f"text {n}" for n in range(RECORDS)],
+    }
+    drawn = {variable.name: values[variable.dtype]() for variable in (*SCHEMA, SNR)}
+    return drawn | {name: np.full(RECORDS, value) for name, value in KNOWN.items()}
+
+
+def part_dataset(number, rng, spoiled=None):
+    signal = rng.standard_normal((RECORDS, 2, SAMPLES)).astype(np.float32)
+    if spoiled == number:
+        signal[1, 0, 5] = np.nan
+        signal[2, 0] = 0.25
+    texts = {"title": "A corpus for a test", "history": "made", "seed": 7}
+    return make_dataset(signal, FS, ("housing", "sensor"), columns(rng), extra=(SNR,), attributes=texts)
+
+
+def make_corpus(directory, spoiled=None, change=lambda dataset: dataset):
+    (directory / "parts").mkdir(parents=True)
+    rows = []
+    for number in range(PARTS):
+        dataset = change(part_dataset(number, np.random.default_rng(number), spoiled))
+        rows.append(write_part(dataset, directory / "parts" / part_name(number)))
+    write_index(directory, rows)
+    write_manifest(directory, rows, complete=True)
+    return directory
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory):
+    return make_corpus(tmp_path_factory.mktemp("corpus") / "corpus")
+
+
+@pytest.fixture(scope="module")
+def table(corpus):
+    return feature_table(corpus)
+
+
+def test_every_record_has_a_row_of_named_finite_features(table):
+    assert table["features"].dims == ("record", "feature")
+    assert table["features"].dtype == np.float64
+    assert tuple(table["feature"].values) == feature_names()
+    assert set(table["group"].values) == set(GROUPS)
+    assert table.sizes["record"] == RECORDS * PARTS
+    assert np.isfinite(table["features"]).all()
+    assert table.attrs["records_with_missing_features"] == 0
+
+
+def test_everything_known_of_a_record_is_carried_along_with_its_attributes(corpus, table):
+    with open_corpus(corpus) as source:
+        for variable in (*SCHEMA, SNR):
+            xr.testing.assert_identical(
+                table[variable.name].variable, source[variable.name].load().variable.drop_encoding()
+            )
+            assert table[variable.name].attrs["role"] in ROLES
+        assert source.attrs.items() <= table.attrs.items()
+
+
+def test_rows_are_in_the_order_of_the_corpus(corpus, table):
+    for number, path in enumerate(part_paths(corpus)):
+        rows = slice(RECORDS * number, RECORDS * (number + 1))
+        np.testing.assert_array_equal(table["features"].values[rows], part_features(path))
+
+
+def test_groups_are_chosen_by_name(corpus, table):
+    chosen = feature_table(corpus, groups=("time", "lines"))
+    assert tuple(chosen["feature"].values) == feature_names(("time", "lines"))
+    xr.testing.assert_equal(chosen["features"], table["features"].sel(feature=chosen["feature"]))
+
+
+def test_another_channel_has_other_features(corpus, table):
+    assert not np.allclose(feature_table(corpus, channel=1)["features"], table["features"])
+
+
+def test_two_workers_and_this_process_give_the_same_numbers(corpus, table):
+    done = []
+    with Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
+        parallel = feature_table(corpus, scheduler=client, progress=lambda *counts: done.append(counts))
+        xr.testing.assert_identical(feature_table(corpus, scheduler=client.scheduler.address), table)
+    xr.testing.assert_identical(parallel, table)
+    assert done == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_a_large_corpus_gets_a_cluster_of_its_own_and_the_same_numbers(corpus, table, monkeypatch):
+    monkeypatch.setattr("features.table.INLINE_RECORDS", 0)
+    xr.testing.assert_identical(feature_table(corpus), table)
+
+
+def test_features_do_not_change_when_labels_latents_and_provenance_are_shuffled(tmp_path, table):
+    def shuffle(dataset):
+        rng = np.random.default_rng(99)
+        for name, variable in dataset.variables.items():
+            if variable.attrs.get("role") in ROLES[1:]:
+                dataset[name] = variable.copy(data=rng.permutation(variable.values))
+        return dataset
+
+    shuffled = feature_table(make_corpus(tmp_path / "shuffled", change=shuffle))
+    assert not shuffled["snr"].equals(table["snr"])
+    assert not shuffled["fault"].equals(table["fault"])
+    np.testing.assert_array_equal(shuffled["features"], table["features"])
+
+
+def test_features_do_not_need_labels_latents_or_provenance(tmp_path, corpus):
+    path = part_paths(corpus)[0]
+    with xr.open_dataset(path, decode_times=False) as part:
+        hidden = [name for name, known in part.variables.items() if known.attrs.get("role") in ROLES[1:]]
+        bare = part.drop_vars(hidden).load()
+    write_part(bare, tmp_path / "part-00000.nc")
+    np.testing.assert_array_equal(part_features(tmp_path / "part-00000.nc"), part_features(path))
+
+
+def test_records_of_several_sample_rates_in_a_part_each_have_their_own(tmp_path, corpus):
+    path = part_paths(corpus)[0]
+    with xr.open_dataset(path, decode_times=False) as part:
+        mixed = part.load()
+    whole = part_features(path)
+    mixed["sample_rate"][3] = 2 * FS
+    mixed["sample_rate"][4] = np.nan
+    write_part(mixed, tmp_path / "part-00000.nc")
+    values = part_features(tmp_path / "part-00000.nc")
+    np.testing.assert_array_equal(values[:3], whole[:3])
+    assert not np.allclose(values[3], whole[3])
+    assert np.isnan(values[4]).all()
+
+
+def test_records_that_cannot_be_read_are_nan_and_counted(tmp_path):
+    table = feature_table(make_corpus(tmp_path / "spoiled", spoiled=1))
+    missing = np.isnan(table["features"]).all("feature")
+    assert np.flatnonzero(missing).tolist() == [RECORDS + 1, RECORDS + 2]
+    assert table.attrs["records_with_missing_features"] == 2
+
+
+def test_a_table_survives_netcdf(tmp_path, table):
+    path = tmp_path / "table.nc"
+    write_table(table, path)
+    again = read_table(path)
+    xr.testing.assert_equal(again, table)
+    assert again["fault"].dtype == np.int8
+    assert again["fault"].attrs["flag_meanings"] == "healthy inner outer ball"
+    assert again.attrs == table.attrs
+    assert [file.name for file in tmp_path.iterdir()] == ["table.nc"]
+
+
+def test_a_table_survives_parquet_as_columns(tmp_path, table):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    path = tmp_path / "table.parquet"
+    write_table(table, path)
+    again = parquet.read_table(path)
+    assert set(again.column_names) == {*feature_names(), *(variable.name for variable in (*SCHEMA, SNR))}
+    for name in ("cepstral_bpfo_comb", "time_rms"):
+        np.testing.assert_array_equal(again[name].to_numpy(), table["features"].sel(feature=name))
+    assert again["bearing"].to_pylist() == table["bearing"].values.tolist()
+    assert again.schema.field("width").metadata[b"units"] == b"m"
+    assert [file.name for file in tmp_path.iterdir()] == ["table.parquet"]
+
+
+def test_parquet_without_pyarrow_says_what_to_install(tmp_path, table, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(CorpusError, match=r"install raceway\[parquet\], or write \.nc"):
+        write_table(table, tmp_path / "table.parquet")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("name", ["table.csv", "table", "table.nc.gz"])
+def test_another_suffix_is_refused(tmp_path, table, name):
+    with pytest.raises(CorpusError, match=re.escape("use .nc or .parquet.")):
+        write_table(table, tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["table.nc", "table.parquet"])
+def test_a_table_that_cannot_be_written_is_named(tmp_path, table, name):
+    with pytest.raises(CorpusError, match=rf"{name}: could not be written"):
+        write_table(table, tmp_path / "nowhere" / name)
+
+
+def test_what_is_no_feature_table_is_refused_by_name(tmp_path, corpus):
+    (tmp_path / "text.nc").write_text("no netCDF")
+    with pytest.raises(CorpusError, match=r"text\.nc: not a readable netCDF file"):
+        read_table(tmp_path / "text.nc")
+    with pytest.raises(CorpusError, match=r"missing\.nc: not a readable netCDF file"):
+        read_table(tmp_path / "missing.nc")
+    with pytest.raises(CorpusError, match=r"corpus\.nc: holds no features"):
+        read_table(corpus / "corpus.nc")
+
+
+@pytest.mark.parametrize("channel", [-1, 2])
+def test_a_channel_that_does_not_exist_is_refused(corpus, channel):
+    with pytest.raises(CorpusError, match="give one of 0 to 1"):
+        feature_table(corpus, channel=channel)
+
+
+def test_a_corpus_that_does_not_exist_is_refused(tmp_path):
+    with pytest.raises(CorpusError, match="no such folder"):
+        feature_table(tmp_path / "nowhere")

@@ -1,0 +1,43 @@
+"""The scikit-learn transformer keeps scikit-learn's rules and computes what the feature table holds."""
+
+import numpy as np
+from sklearn.base import clone
+from sklearn.utils.estimator_checks import parametrize_with_checks
+
+from features.indicators import Orders, feature_names, indicators
+from features.transformer import IndicatorTransformer
+
+FAST = {"fs": 3000.0, "shaft_rate": 400.0}  # so fast that scikit-learn's few samples are several turns
+
+
+@parametrize_with_checks(
+    [
+        IndicatorTransformer(),
+        IndicatorTransformer(groups=("time", "bands")),
+        IndicatorTransformer(**FAST, groups=("lines", "shape")),
+    ]
+)
+def test_the_transformer_keeps_the_rules_of_scikit_learn(estimator, check):
+    check(estimator)
+
+
+def test_the_transformer_computes_the_indicators():
+    x = np.random.default_rng(0).standard_normal((3, 6000))
+    orders = Orders(*(np.full(3, order) for order in (0.4, 3.6, 5.4, 2.4)))
+    expected, names = indicators(x, 12_800.0, np.full(3, 25.0), orders, ("shape", "lines"))
+    transformer = IndicatorTransformer(12_800.0, 25.0, 0.4, 3.6, 5.4, 2.4, ("shape", "lines"))
+    np.testing.assert_array_equal(transformer.fit_transform(x), expected)
+    assert tuple(transformer.get_feature_names_out()) == names
+
+
+def test_the_transformer_has_no_state():
+    x = np.random.default_rng(0).standard_normal((2, 6000))
+    transformer = IndicatorTransformer()
+    np.testing.assert_array_equal(transformer.transform(x), clone(transformer).fit(-x).transform(x))
+
+
+def test_signals_too_short_for_a_line_have_statistics_alone():
+    x = np.random.default_rng(0).standard_normal((2, 40))
+    values = IndicatorTransformer().fit_transform(x)
+    assert np.isfinite(IndicatorTransformer(groups=("time", "bands")).fit_transform(x)).all()
+    assert np.isnan(values[:, : len(feature_names(("lines", "shape")))]).all()
