@@ -5,11 +5,10 @@ whatever a recipe asks for, so that one value never moves another.
 """
 
 import math
-from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 from scipy.special import ndtr, ndtri
 
 Number = Annotated[float, Field(strict=True)]
@@ -158,27 +157,31 @@ def weighted_index(weights: tuple[float, ...], u: float) -> int:
 
 def _from_number(value: Any) -> Any:
     if isinstance(value, bool):
-        raise ValueError(f"{value} is neither a number nor a distribution; write 1.5 or {{kind: uniform, low: 1, high: 2}}.")
+        raise ValueError(  # noqa: TRY004 - pydantic makes sentences of ValueError only
+            f"{value} is neither a number nor a distribution; write 1.5 or {{kind: uniform, low: 1, high: 2}}."
+        )
     return {"kind": "constant", "value": value} if isinstance(value, int | float) else value
 
 
 Distribution = Annotated[
     Annotated[Constant | Uniform | LogUniform | Normal | Choice | Grid, Field(discriminator="kind")],
-    BeforeValidator(_from_number, json_schema_input_type=float | Constant | Uniform | LogUniform | Normal | Choice | Grid),
+    BeforeValidator(
+        _from_number, json_schema_input_type=float | Constant | Uniform | LogUniform | Normal | Choice | Grid
+    ),
 ]
 
 
-def within(low: float, high: float, *, open_low: bool = False) -> Any:
-    """Type of a distribution whose values all lie between ``low`` and ``high``."""
-    text = f"{'(' if open_low else '['}{low:g}, {high:g}]"
-    return Annotated[Distribution, AfterValidator(_check_support(low, high, open_low, text)), Field(description=f"in {text}")]
+def within(low: float, high: float, *, open_low: bool = False, default: float | None = None) -> Any:
+    """Field of a distribution whose values all lie between ``low`` and ``high``; required if it has no default."""
+    bounds = {"low": low, "high": high, "open_low": open_low}
+    text = f"in {'(' if open_low else '['}{low:g}, {high:g}]"
+    return Field(default=... if default is None else default, description=text, json_schema_extra=bounds)
 
 
-def _check_support(low: float, high: float, open_low: bool, text: str) -> Callable[[Any], Any]:  # noqa: FBT001
-    def check(distribution: Any) -> Any:
-        for end in distribution.support():
-            if not low <= end <= high or (open_low and end == low):
-                raise ValueError(f"{end:g} is not in {text}.")
-        return distribution
-
-    return check
+def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:
+    """Return ``distribution`` if all its values lie within the ``bounds`` of its field, else raise ValueError."""
+    low, high, open_low = bounds["low"], bounds["high"], bounds["open_low"]
+    for end in distribution.support():
+        if not low <= end <= high or (open_low and end == low):
+            raise ValueError(f"{end:g} is not in {'(' if open_low else '['}{low:g}, {high:g}].")
+    return distribution

@@ -112,7 +112,12 @@ def modulation(depths: tuple[float, float], turn: FloatArray, rng: np.random.Gen
 
 
 def machine_background(
-    scenario: Scenario, filters: _RigFilters, turn: FloatArray, fs: float, n_channels: int, rng: np.random.Generator
+    scenario: Scenario,
+    filters: _RigFilters,
+    turn: FloatArray,
+    fs: float,
+    n_channels: int,
+    rng: np.random.Generator,
 ) -> FloatArray:
     """Noise, shaft harmonics, tones, impulses and knocks of the rig, shape (channel, time), the noise at unit rms [1]."""
     background, n = scenario.rig.background, len(turn)

@@ -81,7 +81,13 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
             some = places[first : first + LANES]
             lanes = lay_out([records[place] for place in some], shape, 1 / fs)
             response, diverged = integrate(
-                shape, lanes, 1 / (fs * factor), factor, decimation_taps(factor), n_settle, lead + recipe.n_samples
+                shape,
+                lanes,
+                1 / (fs * factor),
+                factor,
+                decimation_taps(factor),
+                n_settle,
+                lead + recipe.n_samples,
             )
             acceleration[some] = response.T[: len(some)]
             for lane, place in enumerate(some):
@@ -178,7 +184,14 @@ def physical_record(scenario: Scenario) -> Record:
     spalls = tuple(s._replace(angle=s.angle + shift) if s.site == "outer" else s for s in specimen.spalls)
     frequencies, phases = _processes(specimen.bearing, conditions["shaft"], rng)
     found = Record(
-        specimen.bearing, _machine(scenario), turning, spalls, frequencies, phases, pickups, _waviness(scenario)
+        specimen.bearing,
+        _machine(scenario),
+        turning,
+        spalls,
+        frequencies,
+        phases,
+        pickups,
+        _waviness(scenario),
     )
     if sum(len(slot_ranks(specimen.bearing, spall)) for spall in spalls) > MAX_SLOTS:
         raise SimulationError(

@@ -1,7 +1,7 @@
 """Every baseline on one corpus, each number beside the controls that say what it is worth.
 
-Beside the score on unseen specimens (or rigs) stand a split of random records, which leaks, the same scores after
-the labels were permuted among specimens, which must be at chance, and the scores on another corpus.
+Beside the score on unseen specimens (or rigs) stand a split of random records, which leaks, the grouped score
+after the labels were permuted among specimens, which must be at chance, and the score on another corpus.
 """
 
 import json
@@ -21,7 +21,6 @@ from features.baselines.records import (
     Records,
     features_of,
     labelled_records,
-    title_of,
 )
 from features.baselines.scores import Scores
 from features.baselines.splits import Grouping, check_groups, grouped_splits, score_splits
@@ -45,7 +44,7 @@ class Content:
 
 @dataclass(frozen=True)
 class Baseline:
-    """Scores of one estimator: by group, and the controls; ``test`` is on the other corpus, if there is one."""
+    """Scores of one estimator: by group, its controls, and on the other corpus if there is one."""
 
     grouped: Scores
     leaky: Scores
@@ -110,8 +109,9 @@ def benchmark(
     names = features_of(table, groups)
     records = labelled_records(table, names)
     check_groups(records, by, folds)
-    if test is not None:
-        _check_apart(table, test, names)
+    strange = None if test is None else labelled_records(test, names)
+    if strange is not None:
+        _check_apart(records, strange)
     group = getattr(records, by)
     splits = grouped_splits(records.fault, group, folds, seed)
     leaking = grouped_splits(records.fault, np.arange(len(group)), folds, seed)
@@ -123,15 +123,13 @@ def benchmark(
             grouped=score_splits(records, records.fault, name, splits, seed),
             leaky=score_splits(records, records.fault, name, leaking, seed),
             null=score_splits(records, permuted, name, null, seed),
-            test=None
-            if test is None
-            else evaluate(test, train(table, name, groups=groups, seed=seed), seed=seed),
+            test=None if test is None else evaluate(test, train(table, name, groups=groups, seed=seed), seed=seed),
         )
         if progress is not None:
             progress(done, len(ESTIMATORS))
     return Results(
-        corpus=_content(table, records),
-        test=None if test is None else _content(test, labelled_records(test, names)),
+        corpus=_content(records),
+        test=None if strange is None else _content(strange),
         by=by,
         folds=folds,
         seed=seed,
@@ -143,7 +141,7 @@ def benchmark(
 
 
 def permuted_labels(records: Records, seed: int) -> IntArray:
-    """Labels dealt anew among specimens: each keeps one label for all its records, but not its own.
+    """Labels dealt anew among specimens, each still with one label for all its records, shape (record,).
 
     A specimen recorded healthy and faulty counts as two.
     """
@@ -152,21 +150,20 @@ def permuted_labels(records: Records, seed: int) -> IntArray:
     return rng.permutation(units[1])[number.reshape(-1)]
 
 
-def _check_apart(table: xr.Dataset, test: xr.Dataset, names: Sequence[str]) -> None:
-    digests = record_digests(labelled_records(table, names).features.to_numpy())
-    shared = seen_records(labelled_records(test, names).features.to_numpy(), digests)
+def _check_apart(records: Records, test: Records) -> None:
+    shared = seen_records(test.features.to_numpy(), record_digests(records.features.to_numpy()))
     if shared:
         message = (
-            f"{title_of(test)}: {shared} of its records are in the training corpus too; "
+            f"{test.title}: {shared} of its records are in the training corpus too; "
             f"test on records the models have not seen."
         )
         raise CorpusError(message)
 
 
-def _content(table: xr.Dataset, records: Records) -> Content:
+def _content(records: Records) -> Content:
     counts = np.bincount(records.fault, minlength=len(FAULTS))
     return Content(
-        title=title_of(table),
+        title=records.title,
         records=len(records.fault),
         recordings=len(np.unique(records.recording)),
         specimens=len(np.unique(records.specimen)),

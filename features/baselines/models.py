@@ -1,7 +1,7 @@
-"""A trained baseline with all it needs to be used again: its features by name, its classes, and what it was trained on.
+"""A trained baseline with all it needs to be used again: its features by name, its classes, and its training.
 
-Model files are written by skops and hold no pickle: loading one runs no code from it, and only the types named in
-:data:`TRUSTED` and those skops knows are made.
+Model files are written by skops and hold no pickle: loading one runs no code from it, and makes only the types
+named in ``TRUSTED`` and those skops knows.
 """
 
 import hashlib
@@ -12,15 +12,14 @@ from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import skops.io
 import xarray as xr
 from numpy.typing import NDArray
 
-from features.baselines.estimators import DEFAULT_ESTIMATOR, class_probabilities, make_estimator
-from features.baselines.records import DEFAULT_GROUPS, FloatArray, features_of, labelled_records, title_of
+from features.baselines.estimators import DEFAULT_ESTIMATOR, Estimator, class_probabilities, make_estimator
+from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
 from features.baselines.scores import Scores, score
 from features.table import feature_table
 from gen.corpus import FAULTS
@@ -59,7 +58,7 @@ class Model:
         Of the libraries it was made with.
     """
 
-    estimator: Any
+    estimator: Estimator
     name: str
     classes: tuple[str, ...]
     features: tuple[str, ...]
@@ -89,10 +88,7 @@ def train(
     """
     names = features_of(table, groups)
     records = labelled_records(table, names)
-    present = np.unique(records.fault)
-    if len(present) < 2:
-        message = f"{title_of(table)}: all records are {FAULTS[present[0]]}; give a corpus with two or more classes."
-        raise CorpusError(message)
+    check_classes(records)
     fitted = make_estimator(estimator, seed).fit(records.features, records.fault)
     return Model(
         estimator=fitted,
@@ -100,7 +96,7 @@ def train(
         classes=tuple(FAULTS[c] for c in fitted.classes_),
         features=names,
         groups=tuple(groups),
-        corpus=title_of(table),
+        corpus=records.title,
         records=len(records.fault),
         seed=seed,
         digests=record_digests(records.features.to_numpy()),
@@ -128,21 +124,19 @@ def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: 
     model = model if isinstance(model, Model) else load_model(model)
     table = data if isinstance(data, xr.Dataset) else feature_table(data, model.groups)
     records = labelled_records(table, model.features)
-    scores = score(
-        records, class_probabilities(model.estimator, records.features), model.estimator.classes_, seed
-    )
+    scores = score(records, class_probabilities(model.estimator, records.features), model.estimator.classes_, seed)
     return replace(scores, seen=seen_records(records.features.to_numpy(), model.digests))
 
 
 def record_digests(features: FloatArray) -> NDArray[np.uint64]:
-    """A 64-bit digest of the features of each record, shape (record, feature) to (record,)."""
+    """Digest each row of features to 64 bits, shape (record, feature) to (record,)."""
     rows = (np.ascontiguousarray(row, dtype="<f8").tobytes() for row in features)
     digests = (int.from_bytes(hashlib.blake2b(row, digest_size=8).digest(), "little") for row in rows)
     return np.fromiter(digests, dtype=np.uint64, count=len(features))
 
 
 def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
-    """Number of records of which the digest is known; those without any feature are no evidence."""
+    """Count the records of which the digest is known; those without any feature are no evidence."""
     known = np.isfinite(features).any(axis=1)
     return int(np.isin(record_digests(features[known]), digests).sum())
 
@@ -184,10 +178,12 @@ def load_model(path: Path | str) -> Model:
         foreign = [] if damaged else sorted(set(skops.io.get_untrusted_types(file=path)) - set(TRUSTED))
         content = None if damaged or foreign else skops.io.load(path, trusted=list(TRUSTED))
     except FileNotFoundError:
-        raise CorpusError(f"{path}: no such file; give a model made with raceway train.") from None
+        message = f"{path}: no such file; give a model made with raceway train."
+        raise CorpusError(message) from None
     except Exception as error:
         # a foreign file can trip the readers of zip, JSON, NumPy and scikit-learn in any way
-        raise CorpusError(f"{path}: not a readable model ({_first_line(error)}); train it again.") from error
+        message = f"{path}: not a readable model ({_first_line(error)}); train it again."
+        raise CorpusError(message) from error
     if foreign:
         message = f"{path}: holds {foreign[0]}, which no model of raceway holds; use only models you trust."
         raise CorpusError(message)

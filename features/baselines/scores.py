@@ -106,7 +106,7 @@ def _score(
 
 
 def confusion_matrix(fault: IntArray, predicted: IntArray, rows: IntArray, columns: IntArray) -> IntArray:
-    """Number of records of each class of ``rows`` that were given each name of ``columns``.
+    """Count the records of each class of ``rows`` that were given each name of ``columns``.
 
     ``rows`` and ``columns`` are ascending; shape (row, column).
     """
@@ -128,9 +128,7 @@ def figures(matrix: IntArray, rows: IntArray, columns: IntArray) -> Figures:
     )
 
 
-def bootstrap_interval(
-    fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int
-) -> tuple[float, float]:
+def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> tuple[float, float]:
     """95 % percentile interval of the balanced accuracy, resampling the specimens of each class."""
     rng = np.random.default_rng(seed)
     classes = np.unique(fault)

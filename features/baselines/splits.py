@@ -1,12 +1,12 @@
 """Cross-validation that keeps all records of a specimen, or of a rig, on one side of every split.
 
 Records of one specimen share its geometry, path and background. A random split of records therefore scores how
-well a classifier recognises specimens, and scores 1.00 even when the labels mean nothing.
+well a classifier recognises specimens, and can score 1.00 even when the labels mean nothing.
 """
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
@@ -18,6 +18,7 @@ from features.baselines.records import (
     FloatArray,
     IntArray,
     Records,
+    check_classes,
     features_of,
     labelled_records,
 )
@@ -77,38 +78,47 @@ def check_groups(records: Records, by: Grouping, folds: int) -> None:
         If there is a single class, a class with too few groups or records, or too few groups.
     """
     group = getattr(records, by)
-    present = np.unique(records.fault)
-    if len(present) < 2:
-        message = f"cross-validation: all records are {FAULTS[present[0]]}; give a corpus with two or more classes."
-        raise CorpusError(message)
+    present = check_classes(records)
+    where = f"{records.title}, cross-validation"
     if folds < 2:
-        message = f"cross-validation: folds: {folds} is too few; use 2 or more."
+        message = f"{where}: {folds} folds are too few; use 2 or more."
         raise CorpusError(message)
     count = len(np.unique(group))
     if count < folds:
         advice = f"use at most {count} folds" if count > 1 else "test on another corpus instead"
-        message = f"cross-validation: {count} {by}(s) cannot fill {folds} folds; {advice}."
+        message = f"{where}: {count} {by}(s) cannot fill {folds} folds; {advice}."
         raise CorpusError(message)
     for c in present:
-        of_class = records.fault == c
-        if len(np.unique(group[of_class])) < 2:
+        fault, of_class = FAULTS[c], group[records.fault == c]
+        if len(np.unique(of_class)) < 2:
             message = (
-                f"cross-validation: all {FAULTS[c]} records are of one {by}, so that none would be left to train on; "
+                f"{where}: all {fault} records are of one {by}, and none would be left to train on; "
                 f"give a corpus with two or more, or test on another corpus instead."
             )
             raise CorpusError(message)
-        if np.count_nonzero(of_class) < folds:
-            message = f"cross-validation: {np.count_nonzero(of_class)} {FAULTS[c]} records for {folds} folds; use fewer."
+        if len(of_class) < folds:
+            message = f"{where}: {len(of_class)} {fault} record(s) for {folds} folds; use fewer folds."
             raise CorpusError(message)
 
 
 def grouped_splits(fault: IntArray, group: IntArray, folds: int, seed: int) -> list[Split]:
-    """Training and test records of each fold, classes spread as evenly as the groups allow."""
+    """Training and test records of each fold, classes spread as evenly as the groups allow.
+
+    Raises
+    ------
+    CorpusError
+        If a fold leaves a class without a training record.
+    """
     splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
-    splits = list(splitter.split(np.zeros((len(fault), 1)), fault, group))
+    splits: list[Any] = list(splitter.split(np.zeros((len(fault), 1)), fault, group))
     for train, test in splits:
         check_disjoint(group, train, test)
-    return [(train, test) for train, test in splits if len(test)]
+        untaught = np.setdiff1d(fault, fault[train])
+        if len(untaught):
+            name = FAULTS[untaught[0]]
+            message = f"cross-validation: a fold leaves no {name} record to train on; use fewer folds."
+            raise CorpusError(message)
+    return splits
 
 
 def check_disjoint(group: IntArray, train: IntArray, test: IntArray) -> None:
@@ -125,16 +135,15 @@ def check_disjoint(group: IntArray, train: IntArray, test: IntArray) -> None:
         raise CorpusError(message)
 
 
-def score_splits(
-    records: Records, labels: IntArray, estimator: str, splits: Sequence[Split], seed: int
-) -> Scores:
-    """Scores against ``labels`` of the predictions pooled over splits; classes a fold lacks get probability 0."""
+def score_splits(records: Records, labels: IntArray, estimator: str, splits: Sequence[Split], seed: int) -> Scores:
+    """Scores against ``labels`` of the predictions pooled over splits, which test each record once."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
     for train, test in splits:
-        fitted = make_estimator(estimator, seed).fit(records.features.iloc[train], labels[train])
-        probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, records.features.iloc[test])
+        known, unknown = records.features.iloc[train], records.features.iloc[test]
+        fitted = make_estimator(estimator, seed).fit(known, labels[train])
+        probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, unknown)
         classes = np.union1d(classes, fitted.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
     pooled = score(records._replace(fault=labels), probabilities[:, classes], classes, seed)

@@ -6,9 +6,11 @@ module   responsibility
 schema   dimensions, variables, units and roles
 part     one self-describing netCDF-4 file of records
 index    manifest, ``corpus.nc`` over the parts, opening, checks
+card     a page about the corpus for whoever finds it
 ======== =====================================================
 """
 
+from gen.corpus.card import data_card
 from gen.corpus.index import (
     open_corpus,
     part_paths,
@@ -50,6 +52,7 @@ __all__ = [
     "Codec",
     "PartRow",
     "Variable",
+    "data_card",
     "describe_part",
     "make_dataset",
     "open_corpus",

@@ -45,12 +45,16 @@ def read_manifest(directory: Path) -> dict[str, Any]:
     """
     path = directory / "manifest.json"
     if not directory.is_dir():
-        raise CorpusError(f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json.")
+        raise CorpusError(
+            f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."
+        )
     try:
         manifest = json.loads(path.read_text(encoding="utf-8"))
         rows = [PartRow(**row) for row in manifest["parts"]]
     except FileNotFoundError:
-        raise CorpusError(f"{directory}: holds no manifest.json, so it is no corpus; make one with raceway generate.") from None
+        raise CorpusError(
+            f"{directory}: holds no manifest.json, so it is no corpus; make one with raceway generate."
+        ) from None
     except (ValueError, TypeError, KeyError, UnicodeDecodeError) as error:
         raise CorpusError(f"{path}: not a corpus manifest ({error!r}); generate or copy the corpus again.") from error
     if manifest.get("raceway_format") != FORMAT:
@@ -58,7 +62,9 @@ def read_manifest(directory: Path) -> dict[str, Any]:
         raise CorpusError(f"{path}: corpus format {found!r}, this version of raceway reads format {FORMAT}.")
     for row in rows:
         if not isinstance(row.name, str) or not _PART_NAME.fullmatch(row.name):
-            raise CorpusError(f"{path}: {row.name!r} is not the name of a part (part-00000.nc, ...); do not trust this corpus.")
+            raise CorpusError(
+                f"{path}: {row.name!r} is not the name of a part (part-00000.nc, ...); do not trust this corpus."
+            )
     return manifest | {"parts": rows}
 
 
@@ -75,7 +81,7 @@ def part_paths(directory: Path | str, check: Literal["sha256", "size"] = "sha256
     directory = Path(directory)
     manifest = read_manifest(directory)
     if not manifest["complete"]:
-        raise CorpusError(f"{directory}: unfinished; the same raceway generate command completes it.")
+        raise CorpusError(f"{directory}: unfinished; the raceway generate command that began it completes it.")
     problems = list(part_problems(directory, manifest["parts"], check))
     if problems:
         raise CorpusError(problems[0])
@@ -88,9 +94,11 @@ def part_problems(directory: Path, rows: list[PartRow], check: Literal["sha256",
     for row in rows:
         path = directory / "parts" / row.name
         if not path.is_file():
-            problems.append(f"{path}: missing; copy it again, or complete the corpus with raceway generate.")
+            problems.append(f"{path}: missing; copy it again, or run the command that made the corpus again.")
         elif path.stat().st_size != row.bytes or (check == "sha256" and sha256(path) != row.sha256):
-            problems.append(f"{path}: altered, it is not the file the manifest names; copy or generate it again.")
+            problems.append(
+                f"{path}: altered, it is not the file the manifest names; copy it again or delete it and make the corpus again."
+            )
     return problems
 
 
@@ -122,9 +130,9 @@ def open_corpus(directory: Path | str, check: Literal["sha256", "size"] = "sha25
             signal: Any = file[SIGNAL]
             sources = {source.file_name for source in signal.virtual_sources()} if signal.is_virtual else {"no part"}
     except (OSError, KeyError, RuntimeError) as error:
-        raise CorpusError(f"{path}: not a corpus index ({error}); the same raceway generate command writes it again.") from error
+        raise CorpusError(f"{path}: not a corpus index ({error}); make or copy the corpus again.") from error
     if sources != names:
-        foreign = sorted(sources ^ names)[0]
+        foreign = min(sources ^ names)
         raise CorpusError(f"{path}: index and manifest disagree about {foreign}; do not trust this corpus.")
     return xr.open_dataset(path, engine="netcdf4", decode_times=False)
 
@@ -144,7 +152,9 @@ def write_index(directory: Path, rows: list[PartRow]) -> None:
         _write_virtual_signal(directory, rows, temporary)
         replace_durably(temporary, path)
     except (OSError, RuntimeError) as error:
-        raise CorpusError(f"{path}: could not be written ({error}); free some space or choose another folder.") from error
+        raise CorpusError(
+            f"{path}: could not be written ({error}); free some space or choose another folder."
+        ) from error
     finally:
         with suppress(FileNotFoundError):
             temporary.unlink()
@@ -193,7 +203,9 @@ def _write_virtual_signal(directory: Path, rows: list[PartRow], path: Path) -> N
     with h5py.File(directory / "parts" / rows[0].name) as part:
         model: Any = part[SIGNAL]
         shape, dtype = model.shape, model.dtype
-        attributes = {key: model.attrs[key] for key in model.attrs if key not in ("DIMENSION_LIST", "_Netcdf4Coordinates")}
+        attributes = {
+            key: model.attrs[key] for key in model.attrs if key not in ("DIMENSION_LIST", "_Netcdf4Coordinates")
+        }
     layout = h5py.VirtualLayout((sum(row.records for row in rows), *shape[1:]), dtype)
     first = 0
     for row in rows:
@@ -226,7 +238,9 @@ def validate_corpus(directory: Path | str) -> list[str]:
             for row in manifest["parts"]:
                 with open_part(directory / "parts" / row.name) as part:
                     here = index.isel(record=slice(first, first + row.records))
-                    problems += [f"{directory / 'parts' / row.name}: {text}" for text in _part_content_problems(part, here)]
+                    problems += [
+                        f"{directory / 'parts' / row.name}: {text}" for text in _part_content_problems(part, here)
+                    ]
                 first += row.records
             if index.sizes["record"] != first:
                 problems.append(f"{directory / 'corpus.nc'}: {index.sizes['record']} records, the parts hold {first}.")
@@ -240,12 +254,12 @@ def _part_content_problems(part: xr.Dataset, index: xr.Dataset) -> list[str]:
     if problems:
         return problems
     if set(part.variables) != set(index.variables) or part.sizes != index.sizes:
-        return ["corpus.nc has other variables or sizes; the same raceway generate command writes it again."]
+        return ["corpus.nc has other variables or sizes; make or copy the corpus again."]
     signal = part[SIGNAL].values
     for record in np.flatnonzero(~np.isfinite(signal).all(axis=(1, 2))):
         problems.append(f"record {record} of the part has samples that are not finite.")
     for name in part.variables:
         same = part[name].values, index[name].values
         if not np.array_equal(*same, equal_nan=same[0].dtype.kind == "f"):
-            problems.append(f"{name} differs from corpus.nc; the same raceway generate command writes it again.")
+            problems.append(f"{name} differs from corpus.nc; make or copy the corpus again.")
     return problems

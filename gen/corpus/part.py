@@ -90,7 +90,9 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
         replace_durably(temporary, path)
     except (OSError, RuntimeError) as error:
-        raise CorpusError(f"{path}: could not be written ({error}); free some space or choose another folder.") from error
+        raise CorpusError(
+            f"{path}: could not be written ({error}); free some space or choose another folder."
+        ) from error
     finally:
         with suppress(FileNotFoundError):
             temporary.unlink()
@@ -123,7 +125,9 @@ def write_text_durably(text: str, path: Path) -> None:
         temporary.write_text(text, encoding="utf-8")
         replace_durably(temporary, path)
     except OSError as error:
-        raise CorpusError(f"{path}: could not be written ({error}); free some space or choose another folder.") from error
+        raise CorpusError(
+            f"{path}: could not be written ({error}); free some space or choose another folder."
+        ) from error
     finally:
         with suppress(FileNotFoundError):
             temporary.unlink()

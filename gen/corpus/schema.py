@@ -45,9 +45,21 @@ SCHEMA = (
     Variable("bearing", "str", "1", "operating", "designation of the bearing"),
     Variable("fault", "i1", "1", "label", "fault class", FAULTS),
     Variable("n_spalls", "i2", "1", "label", "number of spalls"),
-    Variable("width", "f8", "m", "label", "width of the widest spall along the rolling direction, 0 if healthy"),
-    Variable("depth", "f8", "m", "label", "depth of the widest spall, 0 if healthy"),
-    Variable("angle", "f8", "rad", "label", "angle of the widest spall on its race or ball, NaN if healthy"),
+    Variable(
+        "width",
+        "f8",
+        "m",
+        "label",
+        "width of the widest spall along the rolling direction, 0 if healthy, NaN if unknown",
+    ),
+    Variable("depth", "f8", "m", "label", "depth of the widest spall, 0 if healthy, NaN if unknown"),
+    Variable(
+        "angle",
+        "f8",
+        "rad",
+        "label",
+        "angle of the widest spall on its race or ball, NaN if healthy or unknown",
+    ),
     Variable("rig", "i4", "1", "provenance", "number of the machine"),
     Variable("specimen", "i4", "1", "provenance", "number of the physical bearing"),
     Variable("recording", "i4", "1", "provenance", "number of the recording the record was cut from"),
@@ -58,7 +70,11 @@ SCHEMA = (
 
 def signal_attributes(counts_per_unit: float | None) -> dict[str, Any]:
     """Attributes of the signal; with ``counts_per_unit``, those by which readers undo the converter (CF-1.11, 8.1)."""
-    attributes: dict[str, Any] = {"units": "m s-2", "long_name": "acceleration of the sensor", "role": "signal"}
+    attributes: dict[str, Any] = {
+        "units": "m s-2",
+        "long_name": "acceleration of the sensor",
+        "role": "signal",
+    }
     if counts_per_unit is not None:
         attributes |= {
             "scale_factor": 1.0 / counts_per_unit,

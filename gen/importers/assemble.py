@@ -109,9 +109,7 @@ def import_recordings(
     temporary = output.with_name(f".{output.name}.{os.getpid()}.tmp")
     try:
         (temporary / "parts").mkdir(parents=True)
-        rows = _write_parts(
-            _records(candidates, collection, length, log, progress), collection, temporary / "parts"
-        )
+        rows = _write_parts(_records(candidates, collection, length, log, progress), collection, temporary / "parts")
         if not rows:
             raise CorpusError(_nothing_usable(collection.importer, log.skipped))
         _finish(collection, rows, log, length, temporary)
@@ -121,9 +119,7 @@ def import_recordings(
         raise CorpusError(message) from error
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
-    return Import(
-        output, log.recordings.total(), log.records.total(), tuple(log.skipped), tuple(log.warnings)
-    )
+    return Import(output, log.recordings.total(), log.records.total(), tuple(log.skipped), tuple(log.warnings))
 
 
 def _records(
@@ -196,11 +192,7 @@ def _data_card(collection: Collection, log: _Log, length: int) -> str:
         "",
         "| fault | recordings | records |",
         "|---|---|---|",
-        *(
-            f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |"
-            for fault in FAULTS
-            if log.recordings[fault]
-        ),
+        *(f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |" for fault in FAULTS if log.recordings[fault]),
     ]
     for heading, sentences in (("What was done or assumed", log.warnings), ("What was skipped", log.skipped)):
         lines += ["", f"## {heading}", "", *(f"- {sentence}" for sentence in sentences or ("Nothing.",))]

@@ -23,9 +23,7 @@ class UnusableError(Exception):
     """Why a file cannot be used."""
 
 
-def read_text(
-    path: Path, column: int | str | None = None, delimiter: str | None = None
-) -> NDArray[np.float64]:
+def read_text(path: Path, column: int | str | None = None, delimiter: str | None = None) -> NDArray[np.float64]:
     """Columns of a delimited text file, shape (time,) for one ``column`` and (time, column) for all.
 
     Lines before the first one of numbers are a header. ``column`` is counted from 0 or named as in the
@@ -43,9 +41,7 @@ def read_text(
     index, first = _locate(lines, column)
 
     def load() -> NDArray[np.float64]:
-        return np.loadtxt(
-            path, delimiter=separator, skiprows=first, usecols=index, ndmin=1, encoding="utf-8-sig"
-        )
+        return np.loadtxt(path, delimiter=separator, skiprows=first, usecols=index, ndmin=1, encoding="utf-8-sig")
 
     return guarded("delimited text", load)
 

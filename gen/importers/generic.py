@@ -19,9 +19,7 @@ _METRES_PER_SECOND_SQUARED = {"g": STANDARD_GRAVITY, "m/s2": 1.0}
 _TEXT = (".csv", ".txt", ".tsv", ".dat")
 
 
-def import_generic(
-    source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None
-) -> Import:
+def import_generic(source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None) -> Import:
     """Bring the recordings that the mapping file ``source`` describes into a corpus at their sample rate.
 
     Rigs and specimens are numbered in the order in which the mapping names them.

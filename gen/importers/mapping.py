@@ -27,9 +27,7 @@ from gen.physics.bearing import CATALOGUE, Bearing
 Fault = Literal["healthy", "inner", "outer", "ball"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Name = Annotated[
-    str, BeforeValidator(lambda value: str(value) if type(value) is int else value), Field(min_length=1)
-]
+Name = Annotated[str, BeforeValidator(lambda value: str(value) if type(value) is int else value), Field(min_length=1)]
 
 
 class Geometry(BaseModel):
@@ -86,9 +84,7 @@ class Entry(BaseModel):
 
     @model_validator(mode="after")
     def _healthy_has_no_spall(self) -> Self:
-        spall = [
-            key for key in ("width_mm", "depth_mm", "angle_deg", "n_spalls") if getattr(self, key) is not None
-        ]
+        spall = [key for key in ("width_mm", "depth_mm", "angle_deg", "n_spalls") if getattr(self, key) is not None]
         if self.fault == "healthy" and spall:
             message = f"{spall[0]} describes a spall, and fault is healthy; remove one of the two"
             raise ValueError(message)

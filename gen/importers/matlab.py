@@ -122,9 +122,7 @@ def _field(array: _Array, fields: list[str], order: str) -> _Array:
             raise UnusableError(message)
         (_, width), (_, text), *values = array.parts
         (size,) = np.frombuffer(width, order + "i4").tolist()
-        names = [
-            bytes(text[at : at + size]).rstrip(b"\0").decode("latin-1") for at in range(0, len(text), size)
-        ]
+        names = [bytes(text[at : at + size]).rstrip(b"\0").decode("latin-1") for at in range(0, len(text), size)]
         if field not in names:
             message = f"holds a structure of {_listing(names)}, not {field}"
             raise UnusableError(message)

@@ -35,9 +35,7 @@ _COLLECTION = Collection(
 _NOTE = "all: the shaft rate in the files is nominal; where measured, the real one is 0.6 to 1.3 % lower."
 
 
-def import_mfpt(
-    source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None
-) -> Import:
+def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None) -> Import:
     """Bring the recordings found below ``source`` into a corpus at 48,828 Hz.
 
     The name of a file tells its class; a file recorded at a multiple of the rate is resampled, with a

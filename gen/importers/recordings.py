@@ -92,9 +92,7 @@ def _flaw(signal: FloatArray, length: int, fs: float) -> str | None:
         return f"holds {signal.size / fs:.3g} s, less than one window of {length / fs:g} s"
     largest, limit = np.abs(signal).max(), _LARGEST_ACCELERATION
     if largest > limit:
-        return (
-            f"reaches {largest:.3g} m/s^2, more than the {limit:g} m/s^2 of any accelerometer; check its unit"
-        )
+        return f"reaches {largest:.3g} m/s^2, more than the {limit:g} m/s^2 of any accelerometer; check its unit"
     if np.ptp(signal) == 0:
         return f"is constant, each sample is {signal[0]:g} m/s^2"
     return None
@@ -114,9 +112,7 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
     }
     signal = recording.signal.astype(np.float32)
     starts = range(0, signal.size - length + 1, length)
-    return [
-        Record(signal[start : start + length], known | {"source": f"{source}#{start}"}) for start in starts
-    ]
+    return [Record(signal[start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
 
 
 def files_below(folder: Path, suffix: str) -> list[Path]:

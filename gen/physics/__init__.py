@@ -1,1 +1,16 @@
-"""x"""
+"""The model: floats and arrays in and out, no files, no units but SI.
+
+========= ================================================================
+module    responsibility
+========= ================================================================
+bearing   geometry, catalogue, fault frequencies in orders of the shaft
+hertz     point contact: curvature to load-deflection factor
+lanes     how kernels are compiled: one record per lane
+spall     how far a ball drops as it rolls over a defect
+rotor     machine constants, static rest, fastest swing
+kernel    equations of motion and the Runge-Kutta step
+motion    how shaft, cage, balls and spalls move between two steps' knots
+integrate a batch from start to end, decimated on the way
+batch     records laid out in lanes
+========= ================================================================
+"""

@@ -113,7 +113,9 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
         state[4:6] = state[2:4]
     state[kernel.CAGE_C], state[kernel.CAGE_S] = np.cos(cage), np.sin(cage)
     state[kernel.SHAFT_C], state[kernel.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
-    waves = np.concatenate([record.waves[:, None] for record in padded], axis=1) if records[0].waves.size else np.empty(0)
+    waves = (
+        np.concatenate([record.waves[:, None] for record in padded], axis=1) if records[0].waves.size else np.empty(0)
+    )
     return motion.Lanes(
         state.ravel(),
         _params(padded, machines, shape).ravel(),
@@ -175,5 +177,3 @@ def _phasors(records: list[Record], knot: float) -> FloatArray:
     phases = np.stack([record.phases for record in records], axis=1)
     turns = 2 * np.pi * knot * np.stack([record.frequencies for record in records], axis=1)
     return np.stack([np.cos(phases), np.sin(phases), np.cos(turns), np.sin(turns)])
-
-

@@ -57,10 +57,14 @@ def race_factors(bearing: Bearing) -> tuple[float, float]:
     ball = 2 / bearing.ball_diameter
     modulus = effective_modulus(bearing.youngs_modulus, bearing.poisson_ratio)
     inner = contact_factor(
-        ball + cosine / bearing.inner_radius, ball - 1 / (bearing.inner_conformity * bearing.ball_diameter), modulus
+        ball + cosine / bearing.inner_radius,
+        ball - 1 / (bearing.inner_conformity * bearing.ball_diameter),
+        modulus,
     )
     outer = contact_factor(
-        ball - cosine / bearing.outer_radius, ball - 1 / (bearing.outer_conformity * bearing.ball_diameter), modulus
+        ball - cosine / bearing.outer_radius,
+        ball - 1 / (bearing.outer_conformity * bearing.ball_diameter),
+        modulus,
     )
     return inner, outer
 

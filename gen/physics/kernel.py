@@ -24,7 +24,9 @@ FloatArray = NDArray[np.float64]
 MAX_BALLS = 24
 MAX_SLOTS = 4
 _COUNT = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None]
-COS = np.cos(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)  # (number of balls, ball): direction of each ball in the cage's frame
+COS = np.cos(
+    2 * np.pi * np.arange(MAX_BALLS) / _COUNT
+)  # (number of balls, ball): direction of each ball in the cage's frame
 SIN = np.sin(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)
 
 AXES = 6
@@ -36,7 +38,9 @@ N_STATE = ACCELERATION + AXES
 (
     STIFFNESS, DAMPING, COSA, GAP, BALL, IM1, IM2, IMR, C1, C0, K0, K1X, K1Y, K2X, K2Y, C2X, C2Y, KRX, KRY, CR, WX, WY, N_CONSTANTS,
 ) = range(23)  # fmt: skip
-CAGE_TURN_C, CAGE_TURN_S, SHAFT_TURN_C, SHAFT_TURN_S, UNBALANCE_P, UNBALANCE_Q, BALLS = range(N_CONSTANTS, N_CONSTANTS + 7)
+CAGE_TURN_C, CAGE_TURN_S, SHAFT_TURN_C, SHAFT_TURN_S, UNBALANCE_P, UNBALANCE_Q, BALLS = range(
+    N_CONSTANTS, N_CONSTANTS + 7
+)
 GAP0, GAP1, JITTER0, JITTER1, BALL_ROWS = range(5)  # of each ball, from here to the next knot; slopes are per half step
 OFFSET0, OFFSET1, SHARE0, SHARE1, UNDER, HALF, ARC, RACE, DEPTH, SLOT_ROWS = range(10)  # of each slot, under ball UNDER
 
@@ -98,7 +102,13 @@ def slot_drop(shape: Shape, slot: int, tau: float, lane: int, params: FloatArray
 
 @njit(**INLINE)
 def ball_force(
-    shape: Shape, ball: int, motion: Motion, drops: tuple[float, ...], tau: float, lane: int, params: FloatArray
+    shape: Shape,
+    ball: int,
+    motion: Motion,
+    drops: tuple[float, ...],
+    tau: float,
+    lane: int,
+    params: FloatArray,
 ) -> tuple[float, float]:
     """Force of one ball on the inner ring's reaction, along the axes of the cage's frame [N]."""
     if ball >= len(shape.balls):
@@ -129,7 +139,13 @@ def ball_force(
 
 @njit(**INLINE)
 def four_balls(
-    shape: Shape, first: int, motion: Motion, drops: tuple[float, ...], tau: float, lane: int, params: FloatArray
+    shape: Shape,
+    first: int,
+    motion: Motion,
+    drops: tuple[float, ...],
+    tau: float,
+    lane: int,
+    params: FloatArray,
 ) -> tuple[float, float]:
     """Force of four balls; a loop over balls would not be unrolled before LLVM looks at the loop over lanes."""
     ax, ay = ball_force(shape, first, motion, drops, tau, lane, params)
@@ -202,7 +218,9 @@ def moved(q: tuple[float, ...], p: tuple[float, ...], a: tuple[float, ...], h: f
 
 
 @njit(**INLINE)
-def simpson(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...], d: tuple[float, ...]) -> tuple[float, ...]:
+def simpson(
+    a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...], d: tuple[float, ...]
+) -> tuple[float, ...]:
     """Runge-Kutta mean of the slopes of the four stages."""
     return (
         (a[0] + 2 * (b[0] + c[0]) + d[0]) * (1 / 6), (a[1] + 2 * (b[1] + c[1]) + d[1]) * (1 / 6),
@@ -221,7 +239,9 @@ def half_turn(turn: Motion, lane: int, params: FloatArray) -> Motion:
 
 
 @njit(**INLINE)
-def advance(shape: Shape, state: FloatArray, params: FloatArray, dt: float, n_steps: int, history: FloatArray, at: int) -> None:
+def advance(
+    shape: Shape, state: FloatArray, params: FloatArray, dt: float, n_steps: int, history: FloatArray, at: int
+) -> None:
     """Advance every lane from one knot to the next by ``n_steps`` classical Runge-Kutta steps.
 
     Parameters

@@ -12,9 +12,34 @@ import numpy as np
 from numba import njit
 
 from gen.physics.kernel import (
-    BALL_ROWS, BALLS, CAGE_C, CAGE_S, CAGE_TURN_C, CAGE_TURN_S, COS, GAP0, GAP1, JITTER0, JITTER1, OFFSET0, OFFSET1,
-    RACE, SHAFT_C, SHAFT_S, SHAFT_TURN_C, SHAFT_TURN_S, SHARE0, SHARE1, SIN, SLOT_ROWS, UNBALANCE_P, UNBALANCE_Q, UNDER, FloatArray,
-    Shape, slot_row,
+    BALL_ROWS,
+    BALLS,
+    CAGE_C,
+    CAGE_S,
+    CAGE_TURN_C,
+    CAGE_TURN_S,
+    COS,
+    GAP0,
+    GAP1,
+    JITTER0,
+    JITTER1,
+    OFFSET0,
+    OFFSET1,
+    RACE,
+    SHAFT_C,
+    SHAFT_S,
+    SHAFT_TURN_C,
+    SHAFT_TURN_S,
+    SHARE0,
+    SHARE1,
+    SIN,
+    SLOT_ROWS,
+    UNBALANCE_P,
+    UNBALANCE_Q,
+    UNDER,
+    FloatArray,
+    Shape,
+    slot_row,
 )  # fmt: skip
 from gen.physics.lanes import INLINE, KERNEL, LANES, cosine, sine
 
@@ -86,19 +111,30 @@ def turn_rings(lanes: Lanes, n_steps: int, dt: float, moves: FloatArray) -> None
     for lane in range(LANES):
         speed = 1 + drive[SPEED_RMS * LANES + lane] * process(phasors, 0, SPEED_TERMS, lane)
         shaft = drive[SHAFT_STEP * LANES + lane] * speed
-        slip = drive[MEAN_SLIP * LANES + lane] + drive[SLIP_RMS * LANES + lane] * process(phasors, SLIP_FIRST, SLIP_TERMS, lane)
+        slip = drive[MEAN_SLIP * LANES + lane] + drive[SLIP_RMS * LANES + lane] * process(
+            phasors, SLIP_FIRST, SLIP_TERMS, lane
+        )
         cage = drive[CAGE_RATIO * LANES + lane] * shaft * (1 - slip)
         wander = 1 + drive[SPIN_RMS * LANES + lane] * process(phasors, SPIN_FIRST, SPIN_TERMS, lane)
         moves[SHAFT * LANES + lane] = shaft
         moves[CAGE * LANES + lane] = cage
         moves[SPIN * LANES + lane] = drive[SPIN_RATIO * LANES + lane] * shaft * wander
         half = 0.5 / n_steps
-        params[CAGE_TURN_C * LANES + lane], params[CAGE_TURN_S * LANES + lane] = cosine(cage * half), sine(cage * half)
-        params[SHAFT_TURN_C * LANES + lane], params[SHAFT_TURN_S * LANES + lane] = cosine(shaft * half), sine(shaft * half)
+        params[CAGE_TURN_C * LANES + lane], params[CAGE_TURN_S * LANES + lane] = (
+            cosine(cage * half),
+            sine(cage * half),
+        )
+        params[SHAFT_TURN_C * LANES + lane], params[SHAFT_TURN_S * LANES + lane] = (
+            cosine(shaft * half),
+            sine(shaft * half),
+        )
         omega = shaft / (n_steps * dt)
         params[UNBALANCE_P * LANES + lane] = drive[UNBALANCE * LANES + lane] * omega * omega
         params[UNBALANCE_Q * LANES + lane] = 0.0
-        for row in (CAGE_C, SHAFT_C):  # a phasor turned 1e5 times keeps its angle to 1e-13, its length needs help
+        for row in (
+            CAGE_C,
+            SHAFT_C,
+        ):  # a phasor turned 1e5 times keeps its angle to 1e-13, its length needs help
             c, s = state[row * LANES + lane], state[(row + 1) * LANES + lane]
             stretch = 1.5 - 0.5 * (c * c + s * s)
             state[row * LANES + lane], state[(row + 1) * LANES + lane] = c * stretch, s * stretch
@@ -125,7 +161,15 @@ def fold_waviness(lanes: Lanes, n_balls: int, race: int, c: FloatArray, s: Float
 
 
 @njit(**INLINE)
-def waviness(lanes: Lanes, n_balls: int, cage_c: FloatArray, cage_s: FloatArray, in_c: FloatArray, in_s: FloatArray, w: FloatArray) -> None:
+def waviness(
+    lanes: Lanes,
+    n_balls: int,
+    cage_c: FloatArray,
+    cage_s: FloatArray,
+    in_c: FloatArray,
+    in_s: FloatArray,
+    w: FloatArray,
+) -> None:
     """Waviness under every ball, both races together, into ``w`` (ball * LANES + lane) [m]."""
     folded = np.zeros(2 * n_balls * LANES)
     fold_waviness(lanes, n_balls, 0, in_c, in_s, folded)
@@ -247,7 +291,9 @@ def place_balls(shape: Shape, lanes: Lanes, n_steps: int) -> None:
             row = slot_row(shape) + slot * SLOT_ROWS
             lanes.params[(row + SHARE1) * LANES + lane] = 0.0
             lanes.params[(row + SHARE0) * LANES + lane] = (
-                share_on_track(lanes, lane) if lanes.spalls[(slot * SPALL_ROWS + SITE) * LANES + lane] == BALL_SITE else 1.0
+                share_on_track(lanes, lane)
+                if lanes.spalls[(slot * SPALL_ROWS + SITE) * LANES + lane] == BALL_SITE
+                else 1.0
             )
     if len(shape.uneven):
         move_balls(lanes, len(shape.balls), n_steps, moves)
@@ -255,5 +301,7 @@ def place_balls(shape: Shape, lanes: Lanes, n_steps: int) -> None:
             row = BALLS + ball * BALL_ROWS
             for value, slope in ((GAP0, GAP1), (JITTER0, JITTER1)):
                 for lane in range(LANES):
-                    lanes.params[(row + value) * LANES + lane] += 2 * n_steps * lanes.params[(row + slope) * LANES + lane]
+                    lanes.params[(row + value) * LANES + lane] += (
+                        2 * n_steps * lanes.params[(row + slope) * LANES + lane]
+                    )
                     lanes.params[(row + slope) * LANES + lane] = 0.0

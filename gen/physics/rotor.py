@@ -130,7 +130,13 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
 
 
 def _balance(
-    machine: Machine, q: FloatArray, angles: FloatArray, load: FloatArray, support: FloatArray, ring: FloatArray, ground: FloatArray
+    machine: Machine,
+    q: FloatArray,
+    angles: FloatArray,
+    load: FloatArray,
+    support: FloatArray,
+    ring: FloatArray,
+    ground: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Unbalanced force on each coordinate, shape (record, 4), and its negative derivative, shape (record, 4, 4)."""
     relative = q[:, :2] - q[:, 2:]

@@ -8,7 +8,17 @@ reading files, names, error sentences, hash and JSON schema
 ======= ========================================================
 """
 
-from gen.recipe.model import MAX_OVERSAMPLING, BallFault, Channel, Modes, Modulation, RaceFault, Recipe, Section, split_unit
+from gen.recipe.model import (
+    MAX_OVERSAMPLING,
+    BallFault,
+    Channel,
+    Modes,
+    Modulation,
+    RaceFault,
+    Recipe,
+    Section,
+    split_unit,
+)
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_schema, shipped_recipes
 
 __all__ = [

@@ -7,10 +7,20 @@ sections of its own. :func:`split_unit` is the one place where human units becom
 import math
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, StrictInt, StringConstraints, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StrictInt,
+    StringConstraints,
+    ValidationInfo,
+    field_validator,
+    model_validator,
+)
 
 from gen.corpus import Codec
-from gen.distributions import Number, within
+from gen.distributions import Distribution, Number, check_bounds, within
 from gen.physics.bearing import CATALOGUE
 from gen.physics.kernel import MAX_BALLS, MAX_SLOTS
 
@@ -50,6 +60,12 @@ class Section(BaseModel):
     """A part of a recipe: frozen, with no key it does not know."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, validate_default=True)
+
+    @field_validator("*")
+    @classmethod
+    def _within_bounds(cls, value: Any, info: ValidationInfo) -> Any:
+        bounds = cls.model_fields[info.field_name or ""].json_schema_extra
+        return check_bounds(value, bounds) if isinstance(bounds, dict) else value
 
 
 class Split(Section):
@@ -92,8 +108,10 @@ class Channel(Section):
     """
 
     name: Name
-    body: Annotated[dict[Body, Weight], BeforeValidator(_certain, json_schema_input_type=Body | dict[Body, Weight])] = {"sensor": 1.0}
-    angle_deg: within(-360, 360) = 90.0
+    body: Annotated[dict[Body, Weight], BeforeValidator(_certain, json_schema_input_type=Body | dict[Body, Weight])] = {
+        "sensor": 1.0
+    }
+    angle_deg: Distribution = within(-360, 360, default=90.0)
 
 
 class Recording(Section):
@@ -121,51 +139,51 @@ class GeometryBearing(Section):
 
     kind: Literal["geometry"]
     designation: Name = "geometry"
-    n_balls: within(5, MAX_BALLS)
-    pitch_mm: within(5, 1000, open_low=True)
-    ball_share: within(0.05, 0.45)
-    contact_angle_deg: within(-40, 40) = 0.0
+    n_balls: Distribution = within(5, MAX_BALLS)
+    pitch_mm: Distribution = within(5, 1000, open_low=True)
+    ball_share: Distribution = within(0.05, 0.45)
+    contact_angle_deg: Distribution = within(-40, 40, default=0.0)
 
 
 class Resonator(Section):
     """Mass on a spring between housing and sensor."""
 
-    mass_kg: within(0, 10, open_low=True) = 0.2
-    frequency_hz: within(100, 50_000) = 3000.0
-    damping_percent: within(0.1, 50) = 3.0
+    mass_kg: Distribution = within(0, 10, open_low=True, default=0.2)
+    frequency_hz: Distribution = within(100, 50_000, default=3000.0)
+    damping_percent: Distribution = within(0.1, 50, default=3.0)
 
 
 class Machine(Section):
     """Masses, springs and dampers, drawn per rig."""
 
-    shaft_mass_kg: within(0, 1000, open_low=True) = 5.5
-    housing_mass_kg: within(0, 1000, open_low=True) = 3.0
-    support_frequency_hz: within(10, 5000) = 423.0
-    support_damping_percent: within(0.1, 100) = 5.0
-    support_ratio: within(0.1, 10) = 1.0
-    ring_damping_n_s_m: within(0, 1e5) = 1000.0
-    ring_stiffness_n_m: within(0, 1e9) = 0.0
-    shaft_damping_n_s_m: within(0, 1e5) = 200.0
-    shaft_stiffness_n_m: within(0, 1e9) = 0.0
-    contact_damping_n_s_m: within(0, 1e4) = 0.0
-    balance_mm_s: within(0, 100) = 1.0
-    load_angle_deg: within(-360, 360) = -90.0
+    shaft_mass_kg: Distribution = within(0, 1000, open_low=True, default=5.5)
+    housing_mass_kg: Distribution = within(0, 1000, open_low=True, default=3.0)
+    support_frequency_hz: Distribution = within(10, 5000, default=423.0)
+    support_damping_percent: Distribution = within(0.1, 100, default=5.0)
+    support_ratio: Distribution = within(0.1, 10, default=1.0)
+    ring_damping_n_s_m: Distribution = within(0, 1e5, default=1000.0)
+    ring_stiffness_n_m: Distribution = within(0, 1e9, default=0.0)
+    shaft_damping_n_s_m: Distribution = within(0, 1e5, default=200.0)
+    shaft_stiffness_n_m: Distribution = within(0, 1e9, default=0.0)
+    contact_damping_n_s_m: Distribution = within(0, 1e4, default=0.0)
+    balance_mm_s: Distribution = within(0, 100, default=1.0)
+    load_angle_deg: Distribution = within(-360, 360, default=-90.0)
     resonator: Resonator | None = Resonator()
 
 
 class Modes(Section):
     """Resonances: how many, where, how damped, and how strong beside the direct part."""
 
-    count: within(0, 16)
-    frequency_hz: within(10, 50_000)
-    damping_percent: within(0.05, 50)
-    gain_db: within(-80, 80) = 0.0
+    count: Distribution = within(0, 16)
+    frequency_hz: Distribution = within(10, 50_000)
+    damping_percent: Distribution = within(0.05, 50)
+    gain_db: Distribution = within(-80, 80, default=0.0)
 
 
 class Path(Section):
     """Linear path from bearing to sensor, drawn per rig: a direct part and base-excited resonances with random signs."""
 
-    direct: within(0, 10) = 1.0
+    direct: Distribution = within(0, 10, default=1.0)
     modes: Modes | None = None
     modulation: "Modulation | None" = None
 
@@ -174,49 +192,49 @@ class Modulation(Section):
     """Amplitude modulation at one and two times the shaft rate, in a share of the rigs."""
 
     probability: Annotated[Number, Field(ge=0, le=1)]
-    first: within(0, 1)
-    second: within(0, 1)
+    first: Distribution = within(0, 1)
+    second: Distribution = within(0, 1)
 
 
 class Harmonics(Section):
     """Lines at multiples of the shaft rate, in a share of the rigs; levels are relative to the noise."""
 
     probability: Annotated[Number, Field(ge=0, le=1)]
-    count: within(1, 64)
-    level_db: within(-80, 40)
+    count: Distribution = within(1, 64)
+    level_db: Distribution = within(-80, 40)
 
 
 class Tones(Section):
     """Lines at fixed frequencies, in a share of the rigs; levels are relative to the noise."""
 
     probability: Annotated[Number, Field(ge=0, le=1)]
-    count: within(1, 64)
-    frequency_hz: within(1, 100_000)
-    level_db: within(-80, 40)
-    modulation: within(0, 1) = 0.0
+    count: Distribution = within(1, 64)
+    frequency_hz: Distribution = within(1, 100_000)
+    level_db: Distribution = within(-80, 40)
+    modulation: Distribution = within(0, 1, default=0.0)
 
 
 class Impulses(Section):
     """Ringing impulses that no fault causes, at random times; levels are peaks relative to the noise."""
 
     probability: Annotated[Number, Field(ge=0, le=1)]
-    rate_hz: within(0.1, 1000)
-    level_db: within(-80, 60)
+    rate_hz: Distribution = within(0.1, 1000)
+    level_db: Distribution = within(-80, 60)
 
 
 class Knocks(Section):
     """Ringing impulses locked to the shaft; levels are peaks relative to the noise."""
 
     probability: Annotated[Number, Field(ge=0, le=1)]
-    orders: within(0.1, 20)
-    level_db: within(-80, 60)
+    orders: Distribution = within(0.1, 20)
+    level_db: Distribution = within(-80, 60)
 
 
 class Background(Section):
     """What the machine sounds like without the bearing: drawn per rig, on healthy and faulty records alike."""
 
-    slope: within(-2, 4) = 0.0
-    floor_db: within(-120, 20) = -40.0
+    slope: Distribution = within(-2, 4, default=0.0)
+    floor_db: Distribution = within(-120, 20, default=-40.0)
     modes: Modes | None = None
     modulation: Modulation | None = None
     harmonics: Harmonics | None = None
@@ -229,38 +247,38 @@ class PhysicalLevel(Section):
     """The bearing as it was simulated, times a gain drawn per rig, over a background of drawn rms."""
 
     kind: Literal["physical"] = "physical"
-    gain: within(0, 1000, open_low=True) = 1.0
-    background_m_s2: within(0, 1000) = 0.3
+    gain: Distribution = within(0, 1000, open_low=True, default=1.0)
+    background_m_s2: Distribution = within(0, 1000, default=0.3)
 
 
 class SnrLevel(Section):
     """Bearing over background by a drawn ratio, and the whole record at a drawn rms, so that no level gives the class away."""
 
     kind: Literal["snr"]
-    faulty_db: within(-60, 60)
-    healthy_db: within(-60, 60)
-    rms_m_s2: within(0, 1000, open_low=True) = 5.0
+    faulty_db: Distribution = within(-60, 60)
+    healthy_db: Distribution = within(-60, 60)
+    rms_m_s2: Distribution = within(0, 1000, open_low=True, default=5.0)
 
 
 class Operation(Section):
     """How the machine runs, drawn per record."""
 
-    shaft_rpm: within(1, 100_000)
-    label_error_percent: within(-50, 50) = 0.0
-    load_n: within(1, 1e7) = 300.0
-    speed_wander_percent: within(0, 10) = 0.1
-    mean_slip_percent: within(-10, 20) = 0.0
-    slip_percent: within(0, 10) = 1.0
-    jitter_deg: within(0, 5) = 0.3
+    shaft_rpm: Distribution = within(1, 100_000)
+    label_error_percent: Distribution = within(-50, 50, default=0.0)
+    load_n: Distribution = within(1, 1e7, default=300.0)
+    speed_wander_percent: Distribution = within(0, 10, default=0.1)
+    mean_slip_percent: Distribution = within(-10, 20, default=0.0)
+    slip_percent: Distribution = within(0, 10, default=1.0)
+    jitter_deg: Distribution = within(0, 5, default=0.3)
 
 
 class Specimen(Section):
     """How one physical bearing differs from its drawing."""
 
-    diametral_clearance_um: within(-60, 500) = 10.0
-    inner_conformity: within(0.505, 0.6) = 0.52
-    outer_conformity: within(0.505, 0.6) = 0.52
-    waviness_nm: within(0, 10_000) = 0.0
+    diametral_clearance_um: Distribution = within(-60, 500, default=10.0)
+    inner_conformity: Distribution = within(0.505, 0.6, default=0.52)
+    outer_conformity: Distribution = within(0.505, 0.6, default=0.52)
+    waviness_nm: Distribution = within(0, 10_000, default=0.0)
 
 
 class Healthy(Section):
@@ -275,10 +293,10 @@ class RaceFault(Section):
 
     kind: Literal["inner", "outer"]
     weight: Weight = 1.0
-    spalls: within(1, MAX_SLOTS) = 1
-    width_mm: within(0, 20, open_low=True)
-    depth_um: within(0, 5000, open_low=True) = 280.0
-    angle_deg: within(-360, 360) = 0.0
+    spalls: Distribution = within(1, MAX_SLOTS, default=1)
+    width_mm: Distribution = within(0, 20, open_low=True)
+    depth_um: Distribution = within(0, 5000, open_low=True, default=280.0)
+    angle_deg: Distribution = within(-360, 360, default=0.0)
     profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular"] = "geometric"
 
 
@@ -287,15 +305,15 @@ class BallFault(Section):
 
     kind: Literal["ball"]
     weight: Weight = 1.0
-    spalls: within(1, MAX_SLOTS) = 1
-    width_mm: within(0, 20, open_low=True)
-    depth_um: within(0, 5000, open_low=True) = 280.0
-    angle_deg: within(-360, 360) = 0.0
+    spalls: Distribution = within(1, MAX_SLOTS, default=1)
+    width_mm: Distribution = within(0, 20, open_low=True)
+    depth_um: Distribution = within(0, 5000, open_low=True, default=280.0)
+    angle_deg: Distribution = within(-360, 360, default=0.0)
     profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular"] = "geometric"
-    track_deg: within(0, 90) = 8.6
-    axis_offset_deg: within(-90, 90) = 0.0
-    axis_wander_deg: within(0, 180) = 0.0
-    spin_wander_percent: within(0, 20) = 0.0
+    track_deg: Distribution = within(0, 90, default=8.6)
+    axis_offset_deg: Distribution = within(-90, 90, default=0.0)
+    axis_wander_deg: Distribution = within(0, 180, default=0.0)
+    spin_wander_percent: Distribution = within(0, 20, default=0.0)
 
 
 Fault = Annotated[Healthy | RaceFault | BallFault, Field(discriminator="kind")]
@@ -343,9 +361,13 @@ class Recipe(Section):
         if not kinds:
             raise ValueError("faults all have weight 0; give at least one a weight above 0.")
         if len(kinds) > 1 and self.corpus.specimens_per_rig < 2:
-            raise ValueError("corpus.specimens_per_rig: 1 is not enough for healthy and faulty bearings on every rig; use at least 2.")
+            raise ValueError(
+                "corpus.specimens_per_rig: 1 is not enough for healthy and faulty bearings on every rig; use at least 2."
+            )
         if self.corpus.split.validation + self.corpus.split.test >= 1:
-            raise ValueError("corpus.split: validation and test leave nothing to train on; let them add up to less than 1.")
+            raise ValueError(
+                "corpus.split: validation and test leave nothing to train on; let them add up to less than 1."
+            )
         if self.machine.resonator is None and any("sensor" in channel.body for channel in self.recording.channels):
             raise ValueError("recording.channels: body sensor needs machine.resonator; give one, or use body: housing.")
         if self.n_samples < 16:
@@ -353,4 +375,3 @@ class Recipe(Section):
         if len({channel.name for channel in self.recording.channels}) < len(self.recording.channels):
             raise ValueError("recording.channels: two channels have one name; give each its own.")
         return self
-

@@ -94,14 +94,18 @@ def _load(path: Path) -> dict[str, Any]:
         reason = " ".join(str(error).split())
         raise RecipeError(f"{path}: is not valid YAML ({reason}); correct it there.") from None
     if not isinstance(data, dict) or not all(isinstance(key, str) for key in data):
-        raise RecipeError(f"{path}: a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes.")
+        raise RecipeError(
+            f"{path}: a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes."
+        )
     left = [data]
     for _ in range(_MOST_NODES):
         if not left:
             return data
         node = left.pop()
         left += node.values() if isinstance(node, dict) else node if isinstance(node, list) else []
-    raise RecipeError(f"{path}: more than {_MOST_NODES} values once aliases are written out; a recipe has some hundred.")
+    raise RecipeError(
+        f"{path}: more than {_MOST_NODES} values once aliases are written out; a recipe has some hundred."
+    )
 
 
 def _sentences(error: ValidationError) -> list[str]:

@@ -7,8 +7,7 @@ the fault do not know the fault: a record with and without it differ in the faul
 
 import math
 import warnings
-from dataclasses import asdict, dataclass, replace
-from enum import IntEnum
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,126 +21,9 @@ from gen.errors import RecipeError
 from gen.physics.batch import Spall
 from gen.physics.bearing import CATALOGUE, Bearing
 from gen.recipe import BallFault, Modes, RaceFault, Recipe, Section, split_unit
+from gen.scenarios.model import Background, Drawn, Mode, Operation, Purpose, Rig, Scenario, Specimen, Tone, stream
 
-Drawn = dict[str, float]
 _QUASI_RANDOM_DIMENSIONS = 64
-
-
-class Purpose(IntEnum):
-    """What a random stream is for."""
-
-    RIG = 0
-    CLASSES = 1
-    SPLIT = 2
-    SPECIMEN = 3
-    FAULT = 4
-    WAVINESS = 5
-    RECORD = 6
-    MOTION = 7
-    NOISE = 8
-
-
-@dataclass(frozen=True)
-class Mode:
-    """A resonance: frequency [Hz], damping ratio and signed gain [1]."""
-
-    frequency: float
-    damping: float
-    gain: float
-
-
-@dataclass(frozen=True)
-class Tone:
-    """A line: frequency [Hz or shaft orders], rms relative to the noise, and depth of its modulation by the shaft."""
-
-    frequency: float
-    level: float
-    modulation: float = 0.0
-
-
-@dataclass(frozen=True)
-class Background:
-    """What a machine sounds like without the bearing; levels are relative to its noise."""
-
-    slope: float
-    floor: float
-    modes: tuple[Mode, ...]
-    modulation: tuple[float, float]
-    harmonics: tuple[Tone, ...]
-    tones: tuple[Tone, ...]
-    impulses: Tone | None
-    knocks: Tone | None
-
-
-@dataclass(frozen=True)
-class Rig:
-    """One machine."""
-
-    number: int
-    bearing: Bearing
-    machine: Drawn
-    resonator: Drawn | None
-    channels: tuple[tuple[str, float], ...]
-    """Body and direction [rad] of each channel."""
-    direct: float
-    modes: tuple[Mode, ...]
-    modulation: tuple[float, float]
-    background: Background
-    gain: float
-    background_rms: float
-
-
-@dataclass(frozen=True)
-class Specimen:
-    """One physical bearing."""
-
-    number: int
-    bearing: Bearing
-    properties: Drawn
-    fault: str
-    spalls: tuple[Spall, ...]
-    """Outer race angles count from the load direction."""
-    profile: str
-    axis: Drawn
-    split: str
-
-
-@dataclass(frozen=True)
-class Operation:
-    """One record: how the machine ran, and how loud the bearing was."""
-
-    number: int
-    conditions: Drawn
-    snr: float | None
-    rms: float | None
-
-
-@dataclass(frozen=True)
-class Scenario:
-    """One record, fully drawn."""
-
-    seed: int
-    rig: Rig
-    specimen: Specimen
-    record: Operation
-
-    def rng(self, purpose: Purpose) -> np.random.Generator:
-        """Stream of this record for what is random in time."""
-        return stream(self.seed, self.rig.number, self.specimen.number, self.record.number, purpose)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Every drawn value, for storage."""
-        return {"rig": asdict(self.rig), "specimen": asdict(self.specimen), "record": asdict(self.record)}
-
-    def without_fault(self) -> "Scenario":
-        """The same record of the same specimen before it was damaged."""
-        return replace(self, specimen=replace(self.specimen, fault="healthy", spalls=()))
-
-
-def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:
-    """Random stream of one purpose at one place; levels above a record leave the lower numbers at 0."""
-    sequence = np.random.SeedSequence(seed, spawn_key=(rig, specimen, record, int(purpose)))
-    return np.random.Generator(np.random.PCG64DXSM(sequence))
 
 
 class Draws:
@@ -222,7 +104,9 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
     engine = engine_type(_QUASI_RANDOM_DIMENSIONS, scramble=True, rng=rng)
     engine.fast_forward(first)
     with warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "The balance properties", UserWarning)  # of the range; the whole sequence has them
+        warnings.filterwarnings(
+            "ignore", "The balance properties", UserWarning
+        )  # of the range; the whole sequence has them
         return dict(zip(range(first, stop), engine.random(stop - first), strict=True))
 
 
@@ -281,8 +165,8 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     slope, floor = draws.value(wanted.slope), 10 ** (draws.value(wanted.floor_db) / 20)
     harmonics, tones = [], []
     if wanted.harmonics is not None and draws.happens(wanted.harmonics):
-        for order in range(1, round(draws.value(wanted.harmonics.count)) + 1):
-            harmonics.append(Tone(order, 10 ** (draws.value(wanted.harmonics.level_db) / 20)))
+        orders = range(1, round(draws.value(wanted.harmonics.count)) + 1)
+        harmonics = [Tone(order, 10 ** (draws.value(wanted.harmonics.level_db) / 20)) for order in orders]
     if wanted.tones is not None and draws.happens(wanted.tones):
         for _ in range(round(draws.value(wanted.tones.count))):
             level = 10 ** (draws.value(wanted.tones.level_db) / 20)
@@ -297,10 +181,16 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
 
 
 def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64]) -> Specimen:
-    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN), point, number % recipe.corpus.specimens_per_rig)
+    draws = Draws(
+        stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN),
+        point,
+        number % recipe.corpus.specimens_per_rig,
+    )
     properties = draws.section(recipe.specimen)
     bearing = replace(
-        rig.bearing, inner_conformity=properties["inner_conformity"], outer_conformity=properties["outer_conformity"]
+        rig.bearing,
+        inner_conformity=properties["inner_conformity"],
+        outer_conformity=properties["outer_conformity"],
     )
     place = number % recipe.corpus.specimens_per_rig
     fault = fault_of_each_specimen(recipe, rig.number)[place]
@@ -322,7 +212,11 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
     for _ in range(round(draws.value(entry.spalls))):
         width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
         spalls.append(Spall(entry.kind, width, depth, math.radians(draws.value(entry.angle_deg)), carrier))
-        radius = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[entry.kind]
+        radius = {
+            "inner": bearing.inner_radius,
+            "outer": bearing.outer_radius,
+            "ball": bearing.ball_diameter / 2,
+        }[entry.kind]
         if width > 1.4 * radius:
             raise RecipeError(
                 f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit a {entry.kind} radius of {radius * 1e3:.3g} mm; "
@@ -333,7 +227,7 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
 
 def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     """Fault classes of the specimens of a rig: by weight, but never all healthy or all faulty if the recipe has both."""
-    weights = {kind: 0.0 for kind in FAULTS}
+    weights = dict.fromkeys(FAULTS, 0.0)
     for entry in recipe.faults:
         weights[entry.kind] += entry.weight
     total, count = sum(weights.values()), recipe.corpus.specimens_per_rig
@@ -377,5 +271,3 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
     u = draws.u()
     snr = (level.healthy_db if specimen.fault == "healthy" else level.faulty_db).draw(u)
     return Operation(number, conditions, snr, draws.value(level.rms_m_s2))
-
-

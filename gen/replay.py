@@ -1,0 +1,69 @@
+"""Any record of a generated corpus, made again from its recipe and compared with what is stored."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from gen.corpus import SIGNAL, open_corpus, read_manifest
+from gen.errors import CorpusError
+from gen.labels import part_dataset
+from gen.measure import measure
+from gen.recipe import Recipe, read_recipe, recipe_hash
+from gen.scenarios import draw_scenarios
+from gen.simulate import simulate
+
+
+def corpus_recipe(directory: Path) -> Recipe:
+    """Recipe of a generated corpus, with the seed and size it was made with.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus was not generated, or its recipe is not the one the manifest names.
+    """
+    manifest = read_manifest(directory)
+    path = directory / "recipe.yaml"
+    if not path.is_file() or "overrides" not in manifest:
+        raise CorpusError(f"{directory}: holds no recipe.yaml, so it was not generated and cannot be replayed.")
+    recipe = read_recipe(path, **manifest["overrides"])
+    if recipe_hash(recipe) != manifest["recipe_sha256"]:
+        raise CorpusError(f"{path}: is not the recipe the corpus was made from; restore it to replay.")
+    return recipe
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """A record made again."""
+
+    dataset: xr.Dataset
+    """The new record, one row, in the corpus layout (undecoded)."""
+    identical: bool
+    """Whether its samples are those in the corpus, bit for bit."""
+
+
+def replay(directory: Path | str, record: int) -> Replayed:
+    """Make one record of a generated corpus again from its recipe, and compare it with the stored one.
+
+    ``record`` counts the records of the corpus from 0.
+
+    Raises
+    ------
+    CorpusError
+        If there is no such record, or the corpus was not generated.
+    """
+    directory = Path(directory)
+    recipe = corpus_recipe(directory)
+    with open_corpus(directory, check="size") as corpus:
+        n_records = corpus.sizes["record"]
+        if not 0 <= record < n_records:
+            raise CorpusError(f"{directory}: record {record} is not in it; it has records 0 to {n_records - 1}.")
+        number = int(corpus["recording"][record])
+    scenarios = draw_scenarios(recipe, number, number + 1)
+    response = simulate(scenarios, recipe)
+    measured = measure(response, scenarios, recipe)
+    dataset = part_dataset(measured, scenarios, recipe, response.oversampling)
+    with xr.open_dataset(directory / "corpus.nc", mask_and_scale=False, decode_times=False, engine="netcdf4") as raw:
+        stored = raw[SIGNAL][record].values
+    return Replayed(dataset, bool(np.array_equal(stored, measured.signal[0], equal_nan=stored.dtype.kind == "f")))
