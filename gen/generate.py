@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib.metadata import version
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -206,7 +207,7 @@ def _on_cluster(
         return client.submit(_numbered_part, recipe, part, directory, known.get(part_name(part)), pure=False)
 
     width = 2 * max(sum(client.nthreads().values()), 1)
-    running = as_completed([submit(part) for part, _ in zip(waiting, range(width), strict=False)])
+    running = as_completed([submit(part) for part in islice(waiting, width)])
     for future in running:
         yield future.result()
         following = next(waiting, None)

@@ -81,7 +81,7 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
         """Index into ``gen.corpus.FAULTS``, shape (record,)."""
         return self.classes_[self.predict_proba(X).argmax(axis=1)]
 
-    def _columns(self, X: Any, *, reset: bool) -> None:  # noqa: ANN401 the stubs of validate_data want a string
+    def _columns(self, X: Any, *, reset: bool) -> None:
         """Take note of the names of the columns, or compare them with those."""
         validate_data(self, X, skip_check_array=True, reset=reset)
 
@@ -117,16 +117,18 @@ def _extra_trees(seed: int) -> Pipeline:
     return _filled(ExtraTreesClassifier(TREES, class_weight="balanced", random_state=seed))
 
 
-def _gradient_boosting(seed: int) -> HistGradientBoostingClassifier:
-    return HistGradientBoostingClassifier(
-        max_iter=60,
+def _gradient_boosting(seed: int) -> Pipeline:
+    boosting = HistGradientBoostingClassifier(
+        max_iter=40,
         max_leaf_nodes=8,
+        min_samples_leaf=5,
         max_bins=32,  # weighted classes make each bin cost 0.1 ms per feature and fit
-        learning_rate=0.15,
+        learning_rate=0.2,
         early_stopping=False,  # pyright: ignore[reportArgumentType]
         class_weight="balanced",
         random_state=seed,
     )
+    return _filled(boosting)
 
 
 def _ensemble(seed: int) -> VotingClassifier:

@@ -3,17 +3,22 @@
 The full-rate history is kept for a few knots only: long enough for the anti-alias filter, whose outputs are all that leaves the batch.
 """
 
+from collections.abc import Callable
+from hashlib import sha256
+from inspect import getsource
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 from scipy.signal import firwin
 
+from gen.physics import kernel, lanes, motion, spall
 from gen.physics.kernel import N_DYNAMIC, FloatArray, Shape, advance
-from gen.physics.lanes import INLINE, KERNEL, LANES
+from gen.physics.lanes import COMPILED, INLINE, KERNEL, LANES
 from gen.physics.motion import ANGLE_ROWS, Lanes, place_balls, to_next_knot
 
 HALF_TAPS = 34  # per output sample; with beta 8 at least 80 dB from 1.025 Nyquist on
-FAR_OFF = 1e-3  # displacement [m] beyond which a record has diverged
+FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
 _BLOCK = 32  # knots between two runs of the filter
 
 
@@ -61,9 +66,76 @@ def filter_knot(taps: FloatArray, history: FloatArray, first: int, width: int, t
             total[i] += taps[tap] * history[first + tap * width + i]
 
 
-@njit(**KERNEL)
+@njit(**COMPILED)
+def integrate_lanes(
+    shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
+) -> tuple[FloatArray, NDArray[np.int64]]:
+    """See :func:`integrate`."""
+    batch = Lanes(
+        batch.state.copy(),
+        batch.params.copy(),
+        batch.drive,
+        batch.angles.copy(),
+        batch.spalls,
+        batch.phasors.copy(),
+        batch.waves,
+    )
+    n_channels, n_taps = len(shape.channels), taps.size
+    width = n_channels * LANES
+    lead = (n_taps - 1) // (2 * n_steps) + n_settle
+    history = np.zeros((n_taps - 1 + _BLOCK * n_steps) * width)
+    response = np.empty((n_out, n_channels, LANES))
+    diverged = np.full(LANES, -1)
+    moves = np.empty(ANGLE_ROWS * LANES)
+    total = np.empty(width)
+    place_balls(shape, batch, n_steps)
+    for first in range(0, lead + n_out, _BLOCK):
+        for knot in range(_BLOCK):
+            to_next_knot(shape, batch, n_steps, dt, moves)
+            advance(
+                shape,
+                batch.state,
+                batch.params,
+                dt,
+                n_steps,
+                history,
+                (n_taps - 1 + knot * n_steps) * n_channels,
+            )
+            for lane in range(LANES):
+                inside = True
+                for row in range(N_DYNAMIC // 2):
+                    inside &= abs(batch.state[row * LANES + lane]) < FAR_OFF
+                if not inside and diverged[lane] < 0:
+                    diverged[lane] = first + knot
+        for knot in range(_BLOCK):
+            out = first + knot - lead
+            if 0 <= out < n_out:
+                filter_knot(taps, history, knot * n_steps * width, width, total)
+                for i in range(width):
+                    response[out, i // LANES, i % LANES] = total[i]
+        for i in range((n_taps - 1) * width):
+            history[i] = history[_BLOCK * n_steps * width + i]
+    return response, diverged
+
+
+def _cached(sources: str) -> Callable[..., tuple[FloatArray, NDArray[np.int64]]]:
+    """Compile and cache; numba looks for changes in this file alone, but what a function closes over is part of its key."""
+
+    @njit(**KERNEL)
+    def cached(shape, lanes, dt, n_steps, taps, n_settle, n_out):  # noqa: ANN001, ANN202
+        _ = sources
+        return integrate_lanes(shape, lanes, dt, n_steps, taps, n_settle, n_out)
+
+    return cached
+
+
+_compiled = _cached(
+    sha256("".join(getsource(module) for module in (lanes, spall, kernel, motion)).encode()).hexdigest()
+)
+
+
 def integrate(
-    shape: Shape, lanes: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
+    shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
 ) -> tuple[FloatArray, NDArray[np.int64]]:
     """Integrate a batch and return what its pickups give at the knots.
 
@@ -71,7 +143,7 @@ def integrate(
     ----------
     shape : Shape
         What the kernel contains.
-    lanes : Lanes
+    batch : Lanes
         The batch; its arrays are left untouched.
     dt : float
         Step [s].
@@ -89,48 +161,4 @@ def integrate(
     diverged : array, shape (lane,)
         Knot at which a record left the finite range, -1 if it never did.
     """
-    lanes = Lanes(
-        lanes.state.copy(),
-        lanes.params.copy(),
-        lanes.drive,
-        lanes.angles.copy(),
-        lanes.spalls,
-        lanes.phasors.copy(),
-        lanes.waves,
-    )
-    n_channels, n_taps = len(shape.channels), taps.size
-    width = n_channels * LANES
-    lead = (n_taps - 1) // (2 * n_steps) + n_settle
-    history = np.zeros((n_taps - 1 + _BLOCK * n_steps) * width)
-    response = np.empty((n_out, n_channels, LANES))
-    diverged = np.full(LANES, -1)
-    moves = np.empty(ANGLE_ROWS * LANES)
-    total = np.empty(width)
-    place_balls(shape, lanes, n_steps)
-    for first in range(0, lead + n_out, _BLOCK):
-        for knot in range(_BLOCK):
-            to_next_knot(shape, lanes, n_steps, dt, moves)
-            advance(
-                shape,
-                lanes.state,
-                lanes.params,
-                dt,
-                n_steps,
-                history,
-                (n_taps - 1 + knot * n_steps) * n_channels,
-            )
-            for lane in range(LANES):
-                inside = True
-                for row in range(N_DYNAMIC // 2):
-                    inside &= abs(lanes.state[row * LANES + lane]) < FAR_OFF
-                if not inside and diverged[lane] < 0:
-                    diverged[lane] = first + knot
-        for knot in range(_BLOCK):
-            out = first + knot - lead
-            if 0 <= out < n_out:
-                filter_knot(taps, history, knot * n_steps * width, width, total)
-                for i in range(width):
-                    response[out, i // LANES, i % LANES] = total[i]
-        for i in range((n_taps - 1) * width):
-            history[i] = history[_BLOCK * n_steps * width + i]
-    return response, diverged
+    return _compiled(shape, batch, dt, n_steps, taps, n_settle, n_out)

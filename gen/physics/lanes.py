@@ -13,7 +13,8 @@ LANES = 32  # records advanced side by side; below 16 LLVM keeps the loop scalar
 
 FASTMATH = {"nsz", "arcp", "contract", "afn"}
 INLINE: dict[str, Any] = {"forceinline": True, "fastmath": FASTMATH, "error_model": "numpy"}
-KERNEL: dict[str, Any] = {"fastmath": FASTMATH, "error_model": "numpy", "cache": True, "nogil": True}
+COMPILED: dict[str, Any] = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True}
+KERNEL: dict[str, Any] = {**COMPILED, "cache": True}
 
 
 @njit(**INLINE)

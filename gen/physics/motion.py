@@ -41,7 +41,7 @@ from gen.physics.kernel import (
     Shape,
     slot_row,
 )  # fmt: skip
-from gen.physics.lanes import INLINE, KERNEL, LANES, cosine, sine
+from gen.physics.lanes import COMPILED, INLINE, LANES, cosine, sine
 
 # Rows of ``drive``: what a record's motion is made of.
 (
@@ -282,7 +282,7 @@ def to_next_knot(shape: Shape, lanes: Lanes, n_steps: int, dt: float, moves: Flo
         lanes.angles[i] += moves[i]
 
 
-@njit(**KERNEL)
+@njit(**COMPILED)
 def place_balls(shape: Shape, lanes: Lanes, n_steps: int) -> None:
     """Let gaps, jitter and shares start at their values at the first knot instead of running there from zero."""
     moves = np.zeros(ANGLE_ROWS * LANES)

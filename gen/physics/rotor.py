@@ -119,13 +119,15 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     q = np.concatenate([housing + load / weight[:, None] * reach[:, None], housing], axis=1)
     for _ in range(200):
         residual, jacobian = _balance(machine, q, angles, load, support, ring, ground)
-        if np.all(np.abs(residual).max(axis=1) < 1e-9 * weight):
+        moving = np.abs(residual).max(axis=1) >= 1e-9 * weight
+        if not moving.any():
             break
         # a lone ball holds nothing sideways: a soft spring keeps the step finite and vanishes with the residual
         soft = 1e-3 * np.abs(residual).max(axis=1) / 1e-6
         step = np.linalg.solve(jacobian + soft[:, None, None] * np.eye(4), residual[..., None])[..., 0]
         longest = np.abs(step).max(axis=1, keepdims=True)
-        q = q + step * np.minimum(1.0, 2e-6 / np.maximum(longest, 1e-30))
+        step *= np.minimum(1.0, 2e-6 / np.maximum(longest, 1e-30))
+        q = np.where(moving[:, None], q + step, q)  # who has arrived does not wait for the others: they must not matter
     return q
 
 

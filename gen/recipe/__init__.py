@@ -1,11 +1,12 @@
 """The recipe: YAML in, a frozen model out.
 
-======= ========================================================
-module  responsibility
-======= ========================================================
-model   sections, keys, bounds and units of a recipe
-reading files, names, error sentences, hash and JSON schema
-======= ========================================================
+========= ========================================================
+module    responsibility
+========= ========================================================
+model     sections, keys, bounds and units of a recipe
+reading   files, names, error sentences, hash and JSON schema
+reference ``recipes/README.md`` and ``recipes/schema.json``
+========= ========================================================
 """
 
 from gen.recipe.model import (
@@ -19,7 +20,7 @@ from gen.recipe.model import (
     Section,
     split_unit,
 )
-from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_schema, shipped_recipes
+from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
 
 __all__ = [
     "MAX_OVERSAMPLING",
@@ -33,6 +34,7 @@ __all__ = [
     "find_recipe",
     "read_recipe",
     "recipe_hash",
+    "recipe_purpose",
     "recipe_schema",
     "shipped_recipes",
     "split_unit",

@@ -279,6 +279,8 @@ class Specimen(Section):
     inner_conformity: Distribution = within(0.505, 0.6, default=0.52)
     outer_conformity: Distribution = within(0.505, 0.6, default=0.52)
     waviness_nm: Distribution = within(0, 10_000, default=0.0)
+    contact_angle_deg: Distribution = within(0, 30, default=0.0)
+    """Contact angle beyond that of the drawing, as axial load brings it about: nominal orders do not know it."""
 
 
 class Healthy(Section):

@@ -27,6 +27,16 @@ def shipped_recipes() -> dict[str, Path]:
     return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
 
 
+def recipe_purpose(path: Path) -> str:
+    """What a recipe is for: the comment it opens with, on one line."""
+    comment = []
+    for line in path.read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            break
+        comment.append(line.lstrip("# "))
+    return " ".join(comment)
+
+
 def find_recipe(recipe: Path | str) -> Path:
     """Path of a recipe given as a path or by name.
 

@@ -189,6 +189,7 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     properties = draws.section(recipe.specimen)
     bearing = replace(
         rig.bearing,
+        contact_angle=rig.bearing.contact_angle + properties["contact_angle"],
         inner_conformity=properties["inner_conformity"],
         outer_conformity=properties["outer_conformity"],
     )

@@ -1,0 +1,137 @@
+"""What a recipe would make, without making it: counts, bytes, steps and a rough time.
+
+Records are drawn and checked as :func:`gen.generate` would, so that what it refuses is refused here; nothing is simulated or written.
+"""
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from pathlib import Path
+
+from gen.corpus import FAULTS, SPLITS
+from gen.physics.batch import record_shape
+from gen.physics.kernel import Shape
+from gen.physics.lanes import LANES
+from gen.recipe import Recipe, read_recipe
+from gen.scenarios import Scenario, draw_scenarios
+from gen.simulate import lead_samples, physical_record, steps_per_sample
+
+MOST_DRAWN = 5000  # records, about 1 s; of a larger corpus as many parts, spread over it
+
+# Rough, so that a plan costs nothing: what raceway bench gave on one core of a shared machine with AVX-512
+LANE_STEPS_PER_SECOND = 10e6  # integration, lanes that pad a batch included
+SECONDS_PER_SAMPLE = 4e-7  # path, background, converter, compression, per channel
+COMPILE_SECONDS = 7.0  # per kernel
+
+STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
+COMPRESSED = {"zlib": 0.73, "zstd": 0.75, "none": 1.0}  # of vibration that uses a part of the converter's range
+BYTES_PER_RECORD = 4000  # labels and drawn values
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What a recipe would make.
+
+    ``classes``, ``splits`` and ``steps_per_sample`` count records. If the ``drawn`` records are not all, these and the estimates are scaled
+    up from them. ``estimated_seconds`` is for one worker; ``compile_seconds`` come on top the first time on a machine.
+    """
+
+    recipe: str
+    title: str
+    seed: int
+    rigs: int
+    specimens: int
+    records: int
+    parts: int
+    sample_rate: float
+    duration: float
+    channels: tuple[str, ...]
+    classes: dict[str, int]
+    splits: dict[str, int]
+    steps_per_sample: dict[int, int]
+    kernels: int
+    bytes: int
+    estimated_seconds: float
+    compile_seconds: float
+    drawn: int
+
+
+def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = None) -> Plan:
+    """Draw and check what a recipe would make.
+
+    Parameters
+    ----------
+    recipe : path or str
+        Recipe file, or name of a recipe that ships with Raceway.
+    seed, records : int, optional
+        Take the place of the recipe's own.
+
+    Raises
+    ------
+    RecipeError, SimulationError
+        If the recipe asks for what cannot be.
+    """
+    checked = read_recipe(recipe, seed=seed, records=records)
+    ranges = _some_ranges(checked)
+    scenarios = [draw_scenarios(checked, first, stop) for first, stop in ranges]
+    scale = checked.n_records / sum(len(part) for part in scenarios)
+    factors, lane_steps, kernels = Counter[int](), 0, set[Shape]()
+    for part in scenarios:
+        batches = _batches(part, checked)
+        kernels |= {shape for shape, _ in batches}
+        for (_, factor), count in batches.items():
+            factors[factor] += count
+            lane_steps += factor * math.ceil(count / LANES) * LANES * samples_integrated(checked)
+    specimens_drawn = [scenario.specimen for part in scenarios for scenario in part]
+    classes = Counter(specimen.fault for specimen in specimens_drawn)
+    splits = Counter(specimen.split for specimen in specimens_drawn)
+    samples = checked.n_records * checked.n_samples * len(checked.recording.channels)
+    corpus = checked.corpus
+    specimens = math.ceil(checked.n_records / corpus.records_per_specimen)
+    return Plan(
+        recipe=checked.name,
+        title=checked.title,
+        seed=checked.seed,
+        rigs=math.ceil(specimens / corpus.specimens_per_rig),
+        specimens=specimens,
+        records=checked.n_records,
+        parts=checked.n_parts,
+        sample_rate=checked.recording.sample_rate_hz,
+        duration=checked.recording.duration_s,
+        channels=tuple(channel.name for channel in checked.recording.channels),
+        classes={fault: round(classes[fault] * scale) for fault in FAULTS if classes[fault]},
+        splits={split: round(splits[split] * scale) for split in SPLITS if splits[split]},
+        steps_per_sample={factor: round(factors[factor] * scale) for factor in sorted(factors)},
+        kernels=len(kernels),
+        bytes=round(samples * _bytes_per_sample(checked) + checked.n_records * BYTES_PER_RECORD),
+        estimated_seconds=lane_steps * scale / LANE_STEPS_PER_SECOND + samples * SECONDS_PER_SAMPLE,
+        compile_seconds=len(kernels) * COMPILE_SECONDS,
+        drawn=len(specimens_drawn),
+    )
+
+
+def samples_integrated(recipe: Recipe) -> int:
+    """Samples of a record that are integrated, those that settle and are dropped included."""
+    settling = max(round(recipe.recording.settle_s * recipe.recording.sample_rate_hz), lead_samples(recipe))
+    return settling + recipe.n_samples
+
+
+def _some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
+    """Records of every part, or of as many parts as ``MOST_DRAWN`` records make, spread over the corpus."""
+    size = recipe.corpus.records_per_part
+    parts = min(recipe.n_parts, max(1, MOST_DRAWN // size))
+    firsts = [place * recipe.n_parts // parts * size for place in range(parts)]
+    return [(first, min(first + min(size, MOST_DRAWN), recipe.n_records)) for first in firsts]
+
+
+def _batches(scenarios: list[Scenario], recipe: Recipe) -> Counter[tuple[Shape, int]]:
+    """Number of records of a part for each kernel and number of steps per sample."""
+    batches: Counter[tuple[Shape, int]] = Counter()
+    for scenario in scenarios:
+        record = physical_record(scenario)
+        batches[record_shape(record, scenario.specimen.profile), steps_per_sample(record, scenario, recipe)] += 1
+    return batches
+
+
+def _bytes_per_sample(recipe: Recipe) -> float:
+    return STORED_BYTES[recipe.recording.converter.kind] * COMPRESSED[recipe.corpus.codec]

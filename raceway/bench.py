@@ -1,0 +1,142 @@
+"""How fast this machine turns a recipe into records and features, stage by stage, with one worker.
+
+One part is made as :func:`gen.generate` makes it: draw, simulate, measure, write; then features of what was written. The time in the
+kernel alone is taken apart, and its rate counts the steps of real records, not of the lanes that pad a batch.
+"""
+
+import os
+import platform
+import statistics
+import tempfile
+import time
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from features.table import part_features
+from gen.corpus import write_part
+from gen.labels import part_dataset
+from gen.measure import measure
+from gen.physics.batch import lay_out, record_shape
+from gen.physics.integrate import decimation_taps, integrate
+from gen.physics.kernel import Shape
+from gen.physics.lanes import LANES
+from gen.physics.motion import Lanes
+from gen.plan import samples_integrated
+from gen.recipe import Recipe, read_recipe
+from gen.scenarios import Scenario, draw_scenarios
+from gen.simulate import lead_samples, physical_record, simulate, steps_per_sample
+
+REPEATS = 5
+_MADE = ("draw", "simulate", "measure", "write")
+
+
+@dataclass(frozen=True)
+class Bench:
+    """Medians over ``repeats``; ``stage_seconds`` are for all ``records``, and ``integrate`` is part of ``simulate``."""
+
+    recipe: str
+    records: int
+    record_steps: int
+    kernel_record_steps_per_second: float
+    records_per_second: float
+    features_records_per_second: float
+    stage_seconds: dict[str, float]
+    repeats: int
+    machine: dict[str, Any]
+
+
+def bench(recipe: Path | str, records: int | None = None) -> Bench:
+    """Time the stages on the first records of a recipe, by default on as many as make a part.
+
+    Raises
+    ------
+    RecipeError, SimulationError
+        If the recipe asks for what cannot be.
+    """
+    checked = read_recipe(recipe)
+    wanted = min(records or checked.corpus.records_per_part, checked.n_records)
+    scenarios = draw_scenarios(checked, 0, wanted)
+    batches = _batches(scenarios, checked)
+    seconds: dict[str, list[float]] = defaultdict(list)
+
+    def timed(stage: str, work: Callable[..., Any], *given: Any) -> Any:
+        start = time.perf_counter()
+        result = work(*given)
+        seconds[stage].append(time.perf_counter() - start)
+        return result
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part-00000.nc"
+        for _ in range(1 + REPEATS):  # the first warms up: kernels are compiled, caches filled
+            drawn = timed("draw", draw_scenarios, checked, 0, wanted)
+            response = timed("simulate", simulate, drawn, checked)
+            measured = timed("measure", measure, response, drawn, checked)
+            timed("write", _write, measured, drawn, checked, response.oversampling, path)
+            timed("features", part_features, path)
+            timed("integrate", _integrate, batches, checked)
+    stages = {stage: statistics.median(times[1:]) for stage, times in seconds.items()}
+    steps = samples_integrated(checked) * sum(factor * n for _, _, factor, n in batches)
+    return Bench(
+        recipe=checked.name,
+        records=wanted,
+        record_steps=steps,
+        kernel_record_steps_per_second=steps / stages["integrate"],
+        records_per_second=wanted / sum(stages[stage] for stage in _MADE),
+        features_records_per_second=wanted / stages["features"],
+        stage_seconds=stages,
+        repeats=REPEATS,
+        machine=_machine(),
+    )
+
+
+Batch = tuple[Shape, Lanes, int, int]
+"""Kernel, records in lanes, steps per sample, number of records."""
+
+
+def _batches(scenarios: list[Scenario], recipe: Recipe) -> list[Batch]:
+    """The batches :func:`gen.simulate` makes of scenarios."""
+    groups = defaultdict(list)
+    for scenario in scenarios:
+        record = physical_record(scenario)
+        factor = steps_per_sample(record, scenario, recipe)
+        groups[record_shape(record, scenario.specimen.profile), factor].append(record)
+    knot = 1 / recipe.recording.sample_rate_hz
+    return [
+        (shape, lay_out(some, shape, knot), factor, len(some))
+        for (shape, factor), records in groups.items()
+        for some in (records[first : first + LANES] for first in range(0, len(records), LANES))
+    ]
+
+
+def _integrate(batches: list[Batch], recipe: Recipe) -> None:
+    fs, lead = recipe.recording.sample_rate_hz, lead_samples(recipe)
+    n_out = lead + recipe.n_samples
+    for shape, lanes, factor, _ in batches:
+        taps = decimation_taps(factor)
+        integrate(shape, lanes, 1 / (fs * factor), factor, taps, samples_integrated(recipe) - n_out, n_out)
+
+
+def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, oversampling: Any, path: Path) -> None:
+    write_part(part_dataset(measured, scenarios, recipe, oversampling), path, recipe.corpus.codec)
+
+
+def _machine() -> dict[str, Any]:
+    names = ("raceway", "numba", "numpy", "scipy")
+    return {
+        "processor": _processor(),
+        "cores": os.cpu_count(),
+        "python": platform.python_version(),
+        **{name: version(name) for name in names},
+    }
+
+
+def _processor() -> str:
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return platform.processor()
+    return next((line.partition(":")[2].strip() for line in lines if line.startswith("model name")), platform.machine())

@@ -1,0 +1,96 @@
+"""The group of all commands, and the entry point ``raceway``."""
+
+import inspect
+import re
+import sys
+from collections.abc import Sequence
+from typing import Any, NoReturn
+
+import click
+
+from raceway import corpora, importing, learning
+from raceway.ending import Interrupted, NoReader, exit_code, listen_for_signals
+
+
+class Raceway(click.Group):
+    """A group that lists its commands in the order of the work, and ends as :mod:`raceway.ending` says."""
+
+    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
+        """Names of the commands, in the order they were added."""
+        return list(self.commands)
+
+    def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any) -> NoReturn:  # type: ignore[override]
+        """Run a command line and exit."""
+        extra["standalone_mode"] = False
+        sys.exit(exit_code(lambda: super(Raceway, self).main(args, prog_name, **extra)))
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run a command, and tell what click would pass off as an abort or a plain failure."""
+        try:
+            result = super().invoke(ctx)
+            sys.stdout.flush()
+        except KeyboardInterrupt:
+            raise Interrupted("interrupted; nothing is left half done, the same command starts again.") from None
+        except BrokenPipeError:
+            raise NoReader("") from None
+        return result
+
+
+@click.group(cls=Raceway, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.version_option(package_name="raceway", message="%(package)s %(version)s")
+def cli() -> None:
+    """Make labelled vibration corpora of healthy and cracked rolling bearings, and find out what they are worth.
+
+    A first round, about a minute:
+
+      raceway plan quickstart                       what the recipe would make
+      raceway generate quickstart -o corpus         make it
+      raceway info corpus                           what is in it
+      raceway benchmark corpus -o report            classifiers, scored without leakage
+
+    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). With --json a command prints one JSON
+    object on standard output; progress and errors go to standard error.
+
+    Exit codes:
+
+      0 done   1 checked and found wanting   2 bad usage or input
+      70 an error of Raceway itself   130 interrupted
+
+    Completion of commands and options:
+
+      eval "$(_RACEWAY_COMPLETE=bash_source raceway)"     in ~/.bashrc
+      eval "$(_RACEWAY_COMPLETE=zsh_source raceway)"      in ~/.zshrc
+      _RACEWAY_COMPLETE=fish_source raceway | source      in config.fish
+    """
+
+
+def keep_examples(command: click.Command) -> None:
+    """Keep the lines of indented paragraphs of the help as they are; click would fill them up."""
+    command.help = re.sub(r"\n\n(?= )", "\n\n\b\n", inspect.cleandoc(command.help or ""))
+    for inner in getattr(command, "commands", {}).values():
+        keep_examples(inner)
+
+
+for command in (
+    corpora.recipes,
+    corpora.plan,
+    corpora.generate,
+    importing.import_,
+    corpora.validate,
+    corpora.info,
+    corpora.replay,
+    learning.plot,
+    learning.features,
+    learning.train,
+    learning.evaluate,
+    learning.benchmark,
+    learning.bench,
+):
+    cli.add_command(command)
+keep_examples(cli)
+
+
+def main() -> NoReturn:
+    """Run the command line of this process."""
+    listen_for_signals()
+    cli.main(prog_name="raceway")

@@ -1,0 +1,313 @@
+"""Laws of the baselines: no leak, no luck, the same numbers every time, and files that cannot do harm."""
+
+import json
+import zipfile
+from dataclasses import asdict
+from pathlib import Path
+
+import numpy as np
+import pytest
+import skops.io
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from sklearn.base import BaseEstimator
+
+from features.baselines import (
+    ESTIMATORS,
+    benchmark,
+    cross_validate,
+    evaluate,
+    load_model,
+    save_model,
+    train,
+)
+from features.baselines.benchmark import permuted_labels, write_results
+from features.baselines.estimators import COMBS, class_probabilities
+from features.baselines.models import TRUSTED
+from features.baselines.records import features_of, labelled_records
+from features.baselines.splits import check_disjoint, grouped_splits
+from gen.corpus import FAULTS
+from gen.errors import CorpusError
+
+NAMES = (*COMBS.values(), *(f"whitened_line_{n}" for n in range(5)), "raw_kurtosis", "raw_crest_factor")
+GROUPS = ("lines",) * 8 + ("shape",) * 2
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_trees():
+    """Laws hold for forests of any size; small ones grow faster."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("features.baselines.estimators.TREES", 30)
+        yield
+
+
+def make_table(
+    specimens: int = 20,
+    records: int = 4,
+    *,
+    told: float = 2.0,
+    signature: float = 0.0,
+    windows: int = 1,
+    classes: int = 4,
+    rigs: int = 5,
+    seed: int = 0,
+) -> xr.Dataset:
+    """A feature table whose combs tell the fault by ``told`` and whose other features tell the specimen by ``signature``.
+
+    Each recording is cut into ``windows`` records.
+    """
+    rng = np.random.default_rng(seed)
+    specimen = np.repeat(np.arange(specimens), records)
+    fault = (specimen % classes).astype(np.int8)
+    features = 0.5 + 0.3 * rng.standard_normal((len(specimen), len(NAMES)))
+    for name, column in COMBS.items():
+        features[:, NAMES.index(column)] += told * (fault == FAULTS.index(name))
+    features[:, 3:] += signature * rng.standard_normal((specimens, len(NAMES) - 3))[specimen]
+    columns = {
+        "fault": fault,
+        "rig": specimen // classes % rigs,
+        "specimen": specimen,
+        "recording": np.arange(len(specimen)) // windows,
+    }
+    return xr.Dataset(
+        {"features": (("record", "feature"), features), **{key: ("record", value) for key, value in columns.items()}},
+        {"feature": np.array(NAMES, dtype=object), "group": ("feature", np.array(GROUPS, dtype=object))},
+        {"title": "a made-up corpus"},
+    )
+
+
+def records_of(table: xr.Dataset):
+    return labelled_records(table, features_of(table, ("lines", "shape")))
+
+
+@given(specimens=st.integers(2, 6), records=st.integers(2, 5), folds=st.integers(2, 5), seed=st.integers(0, 99))
+@settings(deadline=None)
+def test_every_record_is_tested_once_and_never_beside_its_own_specimen(specimens, records, folds, seed):
+    found = records_of(make_table(4 * max(specimens, folds), records))
+    splits = grouped_splits(found.fault, found.specimen, folds, seed)
+    assert sorted(np.concatenate([test for _, test in splits])) == list(range(len(found.fault)))
+    for known, test in splits:
+        assert not set(found.specimen[known]) & set(found.specimen[test])
+        assert set(found.fault[known]) == set(found.fault)
+
+
+def test_a_split_that_tears_a_specimen_apart_is_refused():
+    with pytest.raises(CorpusError, match="group 7 is in training and test alike"):
+        check_disjoint(np.array([3, 7, 7]), np.array([0, 1]), np.array([2]))
+
+
+def test_numbers_that_start_again_on_each_rig_are_different_specimens():
+    table = make_table(8, 3)
+    again = table.assign(specimen=table.specimen % 4, recording=table.recording * 0)
+    assert len(np.unique(records_of(again).specimen)) == 8
+    assert len(np.unique(records_of(again).recording)) == 8
+
+
+@given(seed=st.integers(0, 999))
+@settings(deadline=None)
+def test_permuted_labels_are_dealt_to_whole_specimens(seed):
+    found = records_of(make_table(12, 3))
+    labels = permuted_labels(found, seed)
+    assert sorted(labels) == sorted(found.fault)
+    assert all(len(set(labels[found.specimen == number])) == 1 for number in range(12))
+
+
+def test_a_leaky_split_finds_labels_that_mean_nothing_and_a_grouped_one_does_not():
+    results = benchmark(make_table(40, 5, told=0.0, signature=5.0), folds=4).baselines["extra_trees"]
+    assert results.leaky.balanced_accuracy > 0.95
+    assert results.grouped.balanced_accuracy < 0.45
+    assert results.null.balanced_accuracy < 0.45
+
+
+@pytest.fixture(scope="module")
+def results(few_trees):  # noqa: ARG001
+    return benchmark(make_table(24, 3), make_table(8, 4, windows=2, seed=1), folds=3, seed=5)
+
+
+def test_a_benchmark_holds_every_baseline_with_its_controls(results):
+    assert list(results.baselines) == list(ESTIMATORS)
+    for name, found in results.baselines.items():
+        low = 0.24 if name == "majority" else 0.95
+        assert found.grouped.balanced_accuracy >= low
+        assert len(found.grouped.folds) == 3
+        assert found.null.balanced_accuracy < 0.6
+        assert found.test.by_recording.records == 16
+        assert found.test.seen == 0
+    assert results.corpus.classes == dict.fromkeys(FAULTS, 18)
+
+
+def test_a_benchmark_gives_the_same_numbers_again(results):
+    again = benchmark(make_table(24, 3), make_table(8, 4, windows=2, seed=1), folds=3, seed=5)
+    assert again == results
+
+
+def test_results_are_plain_json(results, tmp_path):
+    write_results(results, tmp_path / "results.json")
+    held = json.loads((tmp_path / "results.json").read_text())
+    expected = asdict(results.baselines["svm"].test)
+    assert held["baselines"]["svm"]["test"]["confusion"] == [list(row) for row in expected["confusion"]]
+    assert held["corpus"]["specimens"] == 24
+
+
+def test_cross_validation_by_rig_keeps_rigs_together():
+    table = make_table(40, 2, rigs=5)
+    assert cross_validate(table, "logistic_regression", by="rig").balanced_accuracy > 0.95
+    with pytest.raises(CorpusError, match=r"5 rig\(s\) cannot fill 6 folds; use at most 5 folds"):
+        cross_validate(table, "logistic_regression", by="rig", folds=6)
+
+
+@pytest.mark.parametrize("name", list(ESTIMATORS))
+def test_a_baseline_survives_its_file_and_missing_features(name, tmp_path):
+    table = make_table(12, 4)
+    holed = table.copy(deep=True)
+    holed["features"][::5] = np.nan
+    holed["features"][:, 2] = np.nan
+    for known in (table, holed):
+        model = train(known, name, seed=3)
+        save_model(model, tmp_path / "model.skops")
+        again = load_model(tmp_path / "model.skops")
+        frame = records_of(holed).features
+        np.testing.assert_array_equal(
+            class_probabilities(again.estimator, frame), class_probabilities(model.estimator, frame)
+        )
+        assert (again.name, again.classes, again.features, again.groups, again.corpus, again.records, again.seed) == (
+            name, FAULTS, NAMES, ("lines", "shape"), "a made-up corpus", 48, 3
+        )  # fmt: skip
+        assert evaluate(holed, again) == evaluate(holed, tmp_path / "model.skops")
+    assert not list(tmp_path.glob(".*"))
+
+
+@pytest.mark.parametrize("name", list(ESTIMATORS))
+def test_probabilities_sum_to_one_and_their_largest_is_the_prediction(name):
+    for classes in (2, 4):
+        table = make_table(12, 4, told=0.3, classes=classes)
+        model = train(table, name)
+        frame = records_of(table).features
+        found = class_probabilities(model.estimator, frame)
+        np.testing.assert_allclose(found.sum(axis=1), 1.0)
+        np.testing.assert_array_equal(model.estimator.classes_[found.argmax(axis=1)], model.estimator.predict(frame))
+
+
+def test_the_order_of_the_columns_of_a_table_does_not_matter():
+    model = train(make_table(), "ensemble")
+    other = make_table(seed=1, told=0.5)
+    assert evaluate(other.isel(feature=slice(None, None, -1)), model) == evaluate(other, model)
+
+
+def test_records_seen_in_training_are_counted():
+    table, other = make_table(), make_table(seed=1)
+    model = train(table, "svm")
+    assert evaluate(table, model).seen == 80
+    assert evaluate(other, model).seen == 0
+    assert evaluate(xr.concat([other, table.isel(record=[4, 5])], "record"), model).seen == 2
+
+
+def test_a_class_the_model_does_not_know_is_an_error_of_its_own():
+    found = evaluate(make_table(classes=4), train(make_table(classes=2), "logistic_regression"))
+    assert found.classes == FAULTS
+    assert found.model_classes == ("healthy", "inner")
+    assert found.balanced_accuracy <= 0.5
+    assert np.shape(found.confusion) == (4, 2)
+
+
+def test_the_envelope_rule_learns_nothing():
+    table = make_table()
+    shuffled = table.assign(fault=("record", np.roll(table.fault.values, 7)))
+    assert evaluate(table, train(table, "envelope_rule")) == evaluate(table, train(shuffled, "envelope_rule"))
+    with pytest.raises(ValueError, match="give a data frame with the lines features"):
+        train(table.isel(feature=slice(3, None)), "envelope_rule")
+
+
+@pytest.fixture(scope="module")
+def model_file(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("model") / "model.skops"
+    save_model(train(make_table(8, 2), "logistic_regression"), path)
+    return path
+
+
+@given(data=st.data())
+@settings(deadline=None, max_examples=60)
+def test_a_damaged_model_is_refused_in_one_sentence_or_still_the_same(model_file, data):
+    content = bytearray(model_file.read_bytes())
+    place = data.draw(st.integers(0, len(content) - 1))
+    if data.draw(st.booleans()):
+        del content[place:]
+    else:
+        content[place] ^= data.draw(st.integers(1, 255))
+    path = model_file.with_name("damaged.skops")
+    path.write_bytes(content)
+    sentence = ""
+    try:
+        found = load_model(path)
+    except CorpusError as error:
+        found, sentence = load_model(model_file), str(error)
+    assert evaluate(make_table(), found) == evaluate(make_table(), model_file)
+    assert not sentence or (sentence.startswith(str(path)) and "\n" not in sentence)
+
+
+class Stranger(BaseEstimator):
+    """An estimator that is not one of ours."""
+
+
+@pytest.mark.parametrize(
+    ("content", "sentence"),
+    [
+        (b"", "not a readable model"),
+        (b"\x80\x04K*.", "not a readable model"),
+        (skops.io.dumps(Stranger()), "Stranger, which no model of raceway holds"),
+        (skops.io.dumps({"raceway_model": 99}), "not a model of this version"),
+        (skops.io.dumps([1, 2]), "not a model of this version"),
+        (skops.io.dumps({"raceway_model": 1, "estimator": 3}), "not a complete model"),
+    ],
+)
+def test_a_foreign_model_is_refused(content, sentence, tmp_path):
+    path = tmp_path / "model.skops"
+    path.write_bytes(content)
+    with pytest.raises(CorpusError, match=sentence):
+        load_model(path)
+
+
+def test_a_missing_model_is_named(tmp_path):
+    with pytest.raises(CorpusError, match="no such file; give a model made with raceway train"):
+        load_model(tmp_path / "none.skops")
+
+
+def test_model_files_hold_no_pickle(model_file):
+    with zipfile.ZipFile(model_file) as archive:
+        assert all(name == "schema.json" or name.endswith(".npy") for name in archive.namelist())
+    assert set(skops.io.get_untrusted_types(file=model_file)) <= set(TRUSTED)
+
+
+def without(table: xr.Dataset, name: str) -> xr.Dataset:
+    return table.drop_vars(name)
+
+
+@pytest.mark.parametrize(
+    ("table", "sentence"),
+    [
+        (make_table(8, 2, classes=1), "all records are healthy; give a corpus with two or more classes"),
+        (make_table(4, 3), r"4 specimen\(s\) cannot fill 5 folds; use at most 4 folds"),
+        (make_table(6, 5), "all outer records are of one specimen"),
+        (make_table(8, 2), r"4 healthy record\(s\) for 5 folds; use fewer folds"),
+        (make_table(8, 2).isel(record=[]), "holds no record"),
+        (without(make_table(), "specimen"), "lacks 'specimen'; make it again with raceway features"),
+        (make_table().isel(feature=slice(0, 8)), "lacks 'shape'"),
+        (make_table().assign(fault=("record", np.full(80, 9))), "values outside 0..3"),
+    ],
+)
+def test_what_cannot_be_cross_validated_is_refused_in_one_sentence(table, sentence):
+    with pytest.raises(CorpusError, match=sentence) as caught:
+        cross_validate(table, "logistic_regression")
+    assert str(caught.value).startswith("a made-up corpus")
+
+
+def test_a_test_corpus_with_training_records_is_refused():
+    table = make_table()
+    with pytest.raises(CorpusError, match="2 of its records are in the training corpus too"):
+        benchmark(table, table.isel(record=[0, 1]))
+
+
+def test_an_unknown_baseline_is_named_with_what_there_is():
+    with pytest.raises(ValueError, match="'forest' is no baseline; choose from majority, envelope_rule"):
+        train(make_table(), "forest")

@@ -1,0 +1,95 @@
+"""Laws of the figures of merit: what is counted, what does not matter, and what does not make them surer."""
+
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from sklearn.metrics import f1_score, recall_score
+
+from features.baselines.records import Records
+from features.baselines.scores import bootstrap_interval, score
+from gen.corpus import FAULTS
+
+
+@st.composite
+def labelled(draw):
+    """Fault, prediction and specimen of some records; the prediction may name classes that are absent."""
+    size = draw(st.integers(1, 60))
+    present = draw(st.sets(st.integers(0, 3), min_size=1))
+    fault = draw(arrays(np.intp, size, elements=st.sampled_from(sorted(present))))
+    predicted = draw(arrays(np.intp, size, elements=st.integers(0, 3)))
+    specimen = draw(arrays(np.intp, size, elements=st.integers(0, 9)))
+    return fault, predicted, specimen
+
+
+def tested(fault, specimen, recording):
+    unused = np.zeros(len(fault), dtype=int)
+    return Records("made up", pd.DataFrame(index=range(len(fault))), fault, unused, specimen, recording)
+
+
+def scores_of(fault, predicted, specimen):
+    return score(tested(fault, specimen, np.arange(len(fault))), np.eye(4)[predicted], np.arange(4))
+
+
+@given(labelled())
+@settings(deadline=None)
+def test_figures_agree_with_those_of_scikit_learn_over_the_classes_present(case):
+    fault, predicted, specimen = case
+    found = scores_of(fault, predicted, specimen)
+    present = np.unique(fault)
+    recall = recall_score(fault, predicted, labels=present, average="macro", zero_division=0)
+    f1 = f1_score(fault, predicted, labels=present, average="macro", zero_division=0)
+    assert found.balanced_accuracy == pytest.approx(recall)
+    assert found.macro_f1 == pytest.approx(f1)
+    assert found.accuracy == pytest.approx(np.mean(fault == predicted))
+    assert found.classes == tuple(FAULTS[c] for c in present)
+
+
+@given(labelled())
+@settings(deadline=None)
+def test_the_confusion_matrix_counts_each_record_once(case):
+    fault, predicted, specimen = case
+    found = scores_of(fault, predicted, specimen)
+    assert np.sum(found.confusion) == len(fault) == found.records
+    assert [sum(row) for row in found.confusion] == [np.sum(fault == c) for c in np.unique(fault)]
+    assert np.sum(found.confusion, axis=0).tolist() == np.bincount(predicted, minlength=4).tolist()
+
+
+@given(labelled(), st.randoms(use_true_random=False))
+@settings(deadline=None)
+def test_scores_do_not_depend_on_the_order_of_the_records(case, random):
+    order = list(range(len(case[0])))
+    random.shuffle(order)
+    assert scores_of(*(values[order] for values in case)) == scores_of(*case)
+
+
+@given(labelled())
+@settings(deadline=None)
+def test_recordings_of_one_record_score_like_records(case):
+    found = scores_of(*case)
+    assert found.by_recording == replace(found, by_recording=None)
+
+
+def test_a_recording_is_decided_by_the_mean_of_its_windows():
+    fault = np.array([1, 1, 1, 2])
+    records = tested(fault, np.array([0, 0, 0, 1]), np.array([0, 0, 0, 1]))
+    unsure, sure = [0.4, 0.6], [1.0, 0.0]
+    found = score(records, np.array([unsure, unsure, sure, [0.0, 1.0]]), np.array([1, 2]))
+    assert found.by_recording is not None
+    assert found.balanced_accuracy == pytest.approx((1 / 3 + 1) / 2)
+    assert found.by_recording.balanced_accuracy == 1.0
+    assert found.by_recording.records == 2
+
+
+@given(labelled())
+@settings(deadline=None)
+def test_more_records_of_the_same_specimens_do_not_narrow_the_interval(case):
+    fault, predicted, specimen = case
+    once = bootstrap_interval(fault, predicted == fault, specimen, 0)
+    thrice = bootstrap_interval(*(np.repeat(values, 3) for values in (fault, predicted == fault, specimen)), 0)
+    assert once == pytest.approx(thrice)
+    assert 0 <= once[0] <= once[1] <= 1

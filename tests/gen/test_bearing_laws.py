@@ -1,0 +1,74 @@
+"""Laws of the geometry: fault frequencies are what counting passages gives."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.physics.bearing import CATALOGUE, orders, slipping_orders
+from tests.strategies import bearings
+
+law = settings(deadline=None, max_examples=100)
+slips = st.floats(-0.1, 0.2)
+
+
+@law
+@given(bearings())
+def test_the_passages_over_both_races_add_up_to_the_number_of_balls(bearing):
+    found = orders(bearing)
+    assert found.bpfo + found.bpfi == pytest.approx(bearing.n_balls, rel=1e-12)
+
+
+@law
+@given(bearings(), slips)
+def test_slip_takes_from_the_outer_race_what_it_gives_to_the_inner_one(bearing, slip):
+    rolling, slipping = orders(bearing), slipping_orders(bearing, slip)
+    assert slipping.bpfo == pytest.approx(rolling.bpfo * (1 - slip), rel=1e-12)
+    assert slipping.bpfo + slipping.bpfi == pytest.approx(bearing.n_balls, rel=1e-12)
+
+
+@law
+@given(bearings())
+def test_the_cage_turns_at_less_than_half_the_shaft_rate(bearing):
+    assert 0 < orders(bearing).ftf < 0.5
+    assert slipping_orders(bearing, 0.0) == orders(bearing)
+
+
+@law
+@given(bearings())
+def test_balls_roll_without_sliding_on_both_races(bearing):
+    """Surface speeds in the frame of the cage, in which ball centres stand still [pitch diameters times shaft rate]."""
+    found = orders(bearing)
+    ball = found.bsf * bearing.ball_diameter
+    assert ball == pytest.approx((1 - found.ftf) * 2 * bearing.inner_radius, rel=1e-12)
+    assert ball == pytest.approx(found.ftf * 2 * bearing.outer_radius, rel=1e-12)
+
+
+@law
+@given(bearings(), slips)
+def test_balls_counted_over_a_mark_on_either_race_come_at_the_ball_pass_orders(bearing, slip):
+    found = slipping_orders(bearing, slip)
+    turns = 1000
+    places = np.arange(bearing.n_balls) / bearing.n_balls
+    over_outer = np.floor(places + turns * found.ftf) - np.floor(places)
+    over_inner = np.floor(places + turns * (1 - found.ftf)) - np.floor(places)
+    assert over_outer.sum() == pytest.approx(turns * found.bpfo, abs=1.01)
+    assert over_inner.sum() == pytest.approx(turns * found.bpfi, abs=1.01)
+
+
+@law
+@given(bearings())
+def test_the_contact_angle_moves_the_orders_as_its_cosine_shrinks_the_ball(bearing):
+    flat = replace(bearing, contact_angle=0.0)
+    assert bearing.gamma == pytest.approx(flat.gamma * math.cos(bearing.contact_angle), rel=1e-12)
+    assert orders(bearing).bpfo >= orders(flat).bpfo
+
+
+@pytest.mark.parametrize("designation", CATALOGUE)
+def test_a_bearing_of_the_catalogue_carries_its_own_name_and_room_for_its_balls(designation):
+    bearing = CATALOGUE[designation]
+    assert bearing.designation == designation
+    assert bearing.n_balls * bearing.ball_diameter < math.pi * bearing.pitch_diameter

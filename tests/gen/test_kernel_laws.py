@@ -1,0 +1,234 @@
+"""Laws of the equations of motion and of the step that advances them."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.physics.batch import Motion, Spall
+from gen.physics.bearing import CATALOGUE
+from gen.physics.lanes import LANES
+from gen.physics.rotor import Machine, sensor_springs
+from tests.reference import march_lanes, march_twin
+from tests.strategies import (
+    angles,
+    extended_records,
+    machines,
+    record,
+    spalls,
+    steady_motions,
+    steady_records,
+    wandering_records,
+)
+
+law = settings(deadline=None, max_examples=20)
+KNOT = 1 / 12_000
+STANDING = Motion(0.0)
+SPRING, DAMPER = sensor_springs(0.2, 3000.0, 0.03)
+RIG = Machine(
+    load_deflection_factor=9.26e9, contact_damping=0.0, contact_cosine=1.0, half_clearance=5e-6,
+    ball_radius=CATALOGUE["6205"].ball_diameter / 2, shaft_mass=5.5, housing_mass=3.0, sensor_mass=0.2, ring_damping=1000.0,
+    shaft_damping=200.0, shaft_stiffness=0.0, ring_stiffness_x=0.0, ring_stiffness_y=0.0, support_stiffness_x=6e7,
+    support_stiffness_y=5e7, support_damping_x=2250.0, support_damping_y=2000.0, sensor_stiffness_x=SPRING,
+    sensor_stiffness_y=SPRING, sensor_damping=DAMPER, load_x=20.0, load_y=-300.0,
+)  # fmt: skip
+UNDAMPED = RIG._replace(
+    ring_damping=0.0, shaft_damping=0.0, support_damping_x=0.0, support_damping_y=0.0, sensor_damping=0.0
+)
+MASSES = np.repeat([RIG.shaft_mass, RIG.housing_mass, RIG.sensor_mass], 2)
+
+
+def accelerations(some, start):
+    """Accelerations of a record in the state ``start`` at its beginning, shape (coordinate,) [m s-2]."""
+    return march_lanes([some], 1, 1, KNOT, start)[0].accelerations[0]
+
+
+def displaced(*, along, by, clearance):
+    """State in which the shaft lies in the direction ``along``, ``by`` deeper than the clearance."""
+    start = np.zeros(12)
+    start[:2] = (clearance + by) * np.cos(along), (clearance + by) * np.sin(along)
+    return start
+
+
+def assert_the_twin_agrees(drawn):
+    lanes = march_lanes([drawn], 8, 4, KNOT)[0]
+    twin = march_twin(drawn, lanes.states[0], 8, 4, KNOT)
+    static = math.hypot(drawn.machine.load_x, drawn.machine.load_y) / drawn.machine.shaft_mass
+    largest = max(np.abs(twin.accelerations).max(), 1e-3 * static)  # at rest only rounding is left to compare
+    np.testing.assert_allclose(lanes.angles, twin.angles, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(lanes.states[:, :6], twin.states[:, :6], rtol=0, atol=1e-16)
+    np.testing.assert_allclose(lanes.accelerations, twin.accelerations, rtol=0, atol=1e-9 * largest)
+
+
+@law
+@given(steady_records())
+def test_the_kernel_goes_where_its_twin_goes_without_a_fault(drawn):
+    assert_the_twin_agrees(drawn)
+
+
+@law
+@given(wandering_records())
+def test_the_kernel_goes_where_its_twin_goes_with_everything_at_once(drawn):
+    assert_the_twin_agrees(drawn)
+
+
+@law
+@given(extended_records())
+def test_a_spall_under_several_balls_lets_each_of_them_drop(drawn):
+    assert_the_twin_agrees(drawn)
+
+
+def test_the_error_of_a_smooth_trajectory_falls_with_the_fourth_power_of_the_step():
+    smooth = record(RIG._replace(half_clearance=-12e-6), Motion(29.95, unbalance=2.75e-5))
+    start = np.array([1e-6, -18e-6, 3e-7, -6e-6, 3e-7, -6e-6, 1e-4, -2e-4, 0, 1e-4, 0, 0])
+    steps = [4, 8, 16, 32]  # 48 to 384 kHz
+    exact, *trips = (march_lanes([smooth], 240, n, KNOT, start)[0].states[:, :6] for n in [128, *steps])
+    errors = [np.abs(trip - exact).max() for trip in trips]
+    slope = -np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(4, abs=0.2)
+
+
+def energy(states):
+    """Energy of the undamped rig with its cage at 0, shape (knot,) [J]."""
+    shaft, housing, sensor = states[:, 0:2], states[:, 2:4], states[:, 4:6]
+    turns = 2 * np.pi * np.arange(9) / 9
+    relative = shaft - housing
+    squeeze = relative[:, :1] * np.cos(turns) + relative[:, 1:] * np.sin(turns) - UNDAMPED.half_clearance
+    contact = UNDAMPED.load_deflection_factor * np.maximum(squeeze, 0) ** 2.5 / 2.5
+    support = np.array([UNDAMPED.support_stiffness_x, UNDAMPED.support_stiffness_y])
+    springs = support @ (housing**2).T / 2 + SPRING * np.sum((housing - sensor) ** 2, axis=1) / 2
+    load = states[:, 0] * UNDAMPED.load_x + states[:, 1] * UNDAMPED.load_y
+    return states[:, 6:] ** 2 @ MASSES / 2 + contact.sum(axis=1) + springs - load
+
+
+def energy_drift(n_steps):
+    start = np.zeros(12)
+    start[1] = 8e-6  # 0.1 s of falling, hitting and ringing
+    found = energy(march_lanes([record(UNDAMPED, STANDING)], 1200, n_steps, KNOT, start)[0].states)
+    return np.abs(found - found[0]).max() / abs(found[0])
+
+
+def test_without_damping_and_rotation_the_energy_stays_and_the_more_so_the_finer_the_step():
+    assert energy_drift(16) < 1e-4
+    assert energy_drift(32) < energy_drift(16) < energy_drift(8)
+
+
+@law
+@given(machines(contact_damping=0.0), steady_motions(), st.integers(0, 2**32 - 1))
+def test_the_bearing_moves_momentum_but_makes_none(machine, motion, seed):
+    still = motion._replace(unbalance=0.0)
+    start = np.random.default_rng(seed).normal(size=12) * np.repeat([1e-5, 1e-2], 6)
+    masses = np.repeat([machine.shaft_mass, machine.housing_mass, machine.sensor_mass], 2)
+    forces = masses * accelerations(record(machine, still), start)
+    total = forces.reshape(3, 2).sum(axis=0)
+    ground = np.array([machine.support_stiffness_x, machine.support_stiffness_y]) * start[2:4]
+    ground += np.array([machine.support_damping_x, machine.support_damping_y]) * start[8:10]
+    ground += machine.shaft_stiffness * start[:2] + machine.shaft_damping * start[6:8]
+    load = np.array([machine.load_x, machine.load_y])
+    np.testing.assert_allclose(total, load - ground, rtol=0, atol=1e-12 * np.abs(forces).max())
+
+
+@given(machines(contact_damping=0.0), steady_motions(), st.lists(spalls(), min_size=2, max_size=4))
+@law
+def test_a_mirrored_machine_gives_the_mirrored_record(machine, motion, some):
+    """x -> -x: angles become pi minus themselves, the shaft turns the other way, ball i becomes ball -i."""
+    there = record(machine, motion, some)
+    turned = motion._replace(
+        shaft_rate=-motion.shaft_rate,
+        shaft_angle=math.pi - motion.shaft_angle,
+        cage_angle=math.pi - motion.cage_angle,
+        spin_angle=-motion.spin_angle,
+    )
+    mirrored = [
+        spall._replace(angle=math.pi - spall.angle if spall.site == "outer" else -spall.angle, ball=-spall.ball % 9)
+        for spall in some
+    ]
+    back = record(machine._replace(load_x=-machine.load_x), turned, mirrored)
+    trips = march_lanes([there, back], 600, 8, KNOT)  # 50 ms
+    sign = np.tile([-1.0, 1.0], 3)
+    largest = np.abs(trips[0].states[:, :6]).max()
+    np.testing.assert_allclose(trips[1].states[:, :6], sign * trips[0].states[:, :6], rtol=0, atol=1e-12 * largest)
+
+
+@law
+@given(steady_records(), angles)
+def test_a_machine_turned_as_a_whole_gives_the_turned_record(there, turn):
+    machine = there.machine._replace(
+        ring_stiffness_y=there.machine.ring_stiffness_x,
+        support_stiffness_y=there.machine.support_stiffness_x,
+        support_damping_y=there.machine.support_damping_x,
+        sensor_stiffness_y=there.machine.sensor_stiffness_x,
+    )
+    c, s = math.cos(turn), math.sin(turn)
+    load = c * machine.load_x - s * machine.load_y, s * machine.load_x + c * machine.load_y
+    motion = there.motion._replace(
+        shaft_angle=there.motion.shaft_angle + turn, cage_angle=there.motion.cage_angle + turn
+    )
+    here = there._replace(machine=machine)
+    moved = there._replace(machine=machine._replace(load_x=load[0], load_y=load[1]), motion=motion)
+    one, other = (trip.states[:, :6].reshape(-1, 3, 2) for trip in march_lanes([here, moved], 240, 8, KNOT))
+    np.testing.assert_allclose(one @ np.array([[c, s], [-s, c]]), other, rtol=0, atol=1e-12 * np.abs(one).max())
+
+
+@law
+@given(machines(half_clearance=1e-4, contact_damping=0.0), st.integers(0, 2**32 - 1))
+def test_balls_with_room_to_spare_push_nothing(machine, seed):
+    alone = machine._replace(ring_damping=0.0, ring_stiffness_x=0.0, ring_stiffness_y=0.0)
+    start = np.random.default_rng(seed).uniform(-1, 1, 12) * np.repeat([2e-5, 1e-2], 6)
+    load = np.array([machine.load_x, machine.load_y])
+    held = load - machine.shaft_damping * start[6:8] - machine.shaft_stiffness * start[:2]
+    found = accelerations(record(alone, STANDING), start)[:2]
+    np.testing.assert_allclose(found, held / machine.shaft_mass, rtol=0, atol=1e-14 * np.abs(found).max() + 1e-12)
+
+
+@law
+@given(st.integers(0, 8), st.floats(1e-8, 1.5e-6))
+def test_the_force_of_a_ball_grows_with_the_power_three_halves_of_its_deflection(ball, deflection):
+    lone = record(RIG._replace(load_x=0.0, load_y=0.0), STANDING)  # 5 um of clearance: the next ball is not reached
+    along = 2 * np.pi * ball / 9
+    start = displaced(along=along, by=deflection, clearance=RIG.half_clearance)
+    force = -RIG.shaft_mass * accelerations(lone, start)[:2]
+    expected = RIG.load_deflection_factor * deflection**1.5
+    np.testing.assert_allclose(force, expected * np.array([np.cos(along), np.sin(along)]), rtol=1e-7, atol=1e-9)
+
+
+@law
+@given(st.floats(0, 0.5), st.floats(1e-8, 1e-6))
+def test_a_damped_contact_never_pulls(speed, deflection):
+    damped = record(
+        RIG._replace(load_x=0.0, load_y=0.0, contact_damping=600.0, ring_damping=0.0, shaft_damping=0.0),
+        Motion(0.0, jitter_rms=1e-9),
+        [Spall("outer", 2e-4, 1e-4, 2.0), Spall("outer", 2e-4, 1e-4, 2.0)],
+    )
+    start = displaced(along=0.0, by=deflection, clearance=RIG.half_clearance)
+    start[6] = -speed  # away from the ball
+    force = -RIG.shaft_mass * accelerations(damped, start)[0]
+    elastic = RIG.load_deflection_factor * deflection**1.5
+    assert force == pytest.approx(max(elastic - 600.0 * speed, 0.0), rel=1e-6, abs=1e-9)
+
+
+def test_a_bearing_at_rest_stays_there_until_the_shaft_turns():
+    trip = march_lanes([record(RIG, STANDING)], 600, 8, KNOT)[0]
+    assert np.abs(trip.states[-1] - trip.states[0]).max() < 1e-12
+    turning = march_lanes([record(RIG, Motion(29.95))], 600, 8, KNOT)[0]
+    assert np.abs(turning.states[-1, :6] - turning.states[0, :6]).max() > 1e-8
+
+
+def test_a_shaft_let_go_comes_to_rest_where_the_static_balance_says():
+    standing = record(RIG, STANDING)
+    let_go = march_lanes([standing], 6000, 8, KNOT, np.zeros(12))[0]  # 0.5 s
+    at_rest = march_lanes([standing], 0, 1, KNOT)[0].states[0]
+    np.testing.assert_allclose(let_go.states[-1], at_rest, rtol=0, atol=1e-12)
+
+
+@law
+@given(st.lists(wandering_records(), min_size=2, max_size=5), st.permutations(range(LANES)))
+def test_a_record_does_not_depend_on_its_lane_or_its_neighbours(drawn, order):
+    batch = [drawn[place % len(drawn)] for place in order]
+    alone = march_lanes(drawn[:1], 20, 4, KNOT)[0]
+    for lane, trip in enumerate(march_lanes(batch, 20, 4, KNOT)):
+        if order[lane] % len(drawn) == 0:
+            np.testing.assert_array_equal(trip.accelerations, alone.accelerations)
+            np.testing.assert_array_equal(trip.states, alone.states)

@@ -1,0 +1,123 @@
+"""Laws of the machine: where it rests and how fast it can swing."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.physics.lanes import LANES
+from gen.physics.rotor import Machine, as_columns, ball_forces, fastest_swing, rest, sensor_springs
+from tests.strategies import angles, machines
+
+law = settings(deadline=None, max_examples=50)
+N_BALLS = 9
+
+
+def ball_angles(cage, n_records=1):
+    return np.tile(cage + 2 * np.pi * np.arange(N_BALLS) / N_BALLS, (n_records, 1))
+
+
+def stiffness(machine, at_rest, places):
+    """Stiffness matrix of x1 y1 x2 y2 xr yr about a state, shape (coordinate, coordinate) [N/m]."""
+    columns = as_columns([machine])
+    _, balls = ball_forces(columns, (at_rest[:2] - at_rest[2:4])[None], places)
+    directions = np.stack([np.cos(places[0]), np.sin(places[0])])
+    contact = directions * balls[0] @ directions.T + np.diag([machine.ring_stiffness_x, machine.ring_stiffness_y])
+    support = np.diag([machine.support_stiffness_x, machine.support_stiffness_y])
+    sensor = np.diag([machine.sensor_stiffness_x, machine.sensor_stiffness_y])
+    zero = np.zeros((2, 2))
+    return np.block([
+        [contact + machine.shaft_stiffness * np.eye(2), -contact, zero],
+        [-contact, contact + support + sensor, -sensor],
+        [zero, -sensor, sensor],
+    ])  # fmt: skip
+
+
+@law
+@given(st.lists(machines(), min_size=1, max_size=8), angles)
+def test_at_rest_every_force_has_its_counterforce(some, cage):
+    machine, places = as_columns(some), ball_angles(cage, len(some))
+    q = rest(machine, places)
+    force, _ = ball_forces(machine, q[:, :2] - q[:, 2:], places)
+    pushed = np.stack([np.sum(force * np.cos(places), axis=1), np.sum(force * np.sin(places), axis=1)], axis=1)
+    ring = np.stack([machine.ring_stiffness_x, machine.ring_stiffness_y], axis=1)
+    pushed += ring * (q[:, :2] - q[:, 2:])
+    load = np.stack([machine.load_x, machine.load_y], axis=1)
+    support = np.stack([machine.support_stiffness_x, machine.support_stiffness_y], axis=1)
+    weight = np.hypot(*load.T)[:, None]
+    on_shaft = load - pushed - np.asarray(machine.shaft_stiffness)[:, None] * q[:, :2]
+    np.testing.assert_allclose(on_shaft / weight, 0, atol=1e-8)
+    np.testing.assert_allclose((pushed - support * q[:, 2:]) / weight, 0, atol=1e-8)
+
+
+@law
+@given(st.lists(machines(), min_size=2, max_size=6), angles)
+def test_where_a_machine_rests_does_not_depend_on_the_others_in_its_batch(some, cage):
+    places = ball_angles(cage, LANES)
+    mixed = rest(as_columns([some[lane % len(some)] for lane in range(LANES)]), places)
+    alike = rest(as_columns([some[0]] * LANES), places)
+    np.testing.assert_array_equal(mixed[:: len(some)], alike[:: len(some)])
+
+
+@law
+@given(machines(), angles)
+def test_without_clearance_to_cross_a_heavier_load_sinks_deeper(machine, cage):
+    doubled = machine._replace(load_x=2 * machine.load_x, load_y=2 * machine.load_y)
+    q = rest(as_columns([machine, doubled]), ball_angles(cage, 2))
+    load = np.array([machine.load_x, machine.load_y])
+    assert load @ q[1, :2] > load @ q[0, :2]
+
+
+@law
+@given(machines(contact_damping=0.0), angles)
+def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
+    places = ball_angles(cage)
+    at_rest = rest(as_columns([machine]), places)[0]
+    masses = np.repeat([machine.shaft_mass, machine.housing_mass, machine.sensor_mass], 2)
+    squares = np.linalg.eigvals(stiffness(machine, at_rest, places) / masses[:, None]).real
+    assert math.sqrt(squares.max()) <= float(fastest_swing(machine, N_BALLS))
+
+
+@law
+@given(machines())
+def test_a_machine_without_a_sensor_mass_swings_no_faster_than_with_one(machine):
+    without = machine._replace(sensor_mass=0.0)
+    assert float(fastest_swing(without, N_BALLS)) < float(fastest_swing(machine, N_BALLS))
+
+
+@law
+@given(st.lists(machines(), min_size=1, max_size=5))
+def test_the_bound_is_the_same_for_one_machine_and_for_many(some):
+    together = np.asarray(fastest_swing(as_columns(some), N_BALLS))
+    alone = [float(fastest_swing(machine, N_BALLS)) for machine in some]
+    np.testing.assert_allclose(together, alone, rtol=1e-14)
+
+
+@law
+@given(st.floats(0.01, 1), st.floats(100, 1e4), st.floats(0.001, 0.3))
+def test_sensor_springs_ring_at_their_frequency_and_die_at_their_damping(mass, frequency, damping):
+    spring, damper = sensor_springs(mass, frequency, damping)
+    poles = np.roots([mass, damper, spring])
+    assert abs(poles[0]) == pytest.approx(2 * math.pi * frequency, rel=1e-9)
+    assert -poles[0].real / abs(poles[0]) == pytest.approx(damping, rel=1e-9)
+
+
+@law
+@given(machines(), angles, st.floats(0, 1))
+def test_a_ball_force_is_the_slope_of_its_energy_and_its_stiffness_the_slope_of_its_force(machine, cage, share):
+    columns, places = as_columns([machine]), ball_angles(cage)
+    along = np.array([np.cos(cage), np.sin(cage)])
+    deep = (machine.half_clearance + (1 + share) * 1e-6) * along / machine.contact_cosine
+    step = 1e-10
+    before, slope = ball_forces(columns, (deep - step * along)[None], places)
+    after, _ = ball_forces(columns, (deep + step * along)[None], places)
+    assert (after - before)[0, 0] / (2 * step) == pytest.approx(slope[0, 0], rel=1e-4)
+
+
+def test_columns_hold_every_field_of_every_machine():
+    fields = {name: float(place) for place, name in enumerate(Machine._fields)}
+    columns = as_columns([Machine(**fields), Machine(**{name: value + 100 for name, value in fields.items()})])
+    for name, value in fields.items():
+        np.testing.assert_array_equal(getattr(columns, name), [value, value + 100])

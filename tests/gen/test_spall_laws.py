@@ -1,0 +1,101 @@
+"""Laws of the drop of a ball over a spall."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.physics.bearing import CATALOGUE
+from gen.physics.spall import GEOMETRIC, PROFILES, RECTANGULAR, drop, largest_drop
+from tests.reference import rigid_path
+from tests.strategies import depths
+
+law = settings(deadline=None, max_examples=100)
+every_profile = pytest.mark.parametrize("profile", range(len(PROFILES)), ids=PROFILES)
+BEARING = CATALOGUE["6205"]
+BALL = BEARING.ball_diameter / 2
+RACES = {"inner": BEARING.inner_radius, "outer": -BEARING.outer_radius}
+races = st.sampled_from(sorted(RACES.values()))
+halves = st.floats(1e-3, 0.15)
+shares = st.floats(0, 1)
+
+
+def fall(profile, offset, half, race, depth=1.0):
+    return drop(profile, offset, half, abs(race), BALL, race, depth)
+
+
+@every_profile
+@law
+@given(st.floats(1.0, 100.0), halves, races, depths)
+def test_off_the_spall_nothing_drops(profile, beyond, half, race, depth):
+    for offset in (beyond * half, -beyond * half):
+        assert fall(profile, offset, half, race, depth) == 0.0
+
+
+@every_profile
+@law
+@given(shares, halves, races, depths)
+def test_a_ball_drops_no_deeper_than_the_spall_and_alike_on_both_sides(profile, share, half, race, depth):
+    found = fall(profile, share * half, half, race, depth)
+    assert 0.0 <= found <= depth * (1 + 1e-12)
+    assert fall(profile, -share * half, half, race, depth) == found
+
+
+@law
+@given(shares, st.floats(1e-3, 0.16), races, depths)
+def test_the_geometric_drop_is_the_path_of_a_rigid_ball_over_two_edges(share, half, race, depth):
+    expected = rigid_path(share * half, half, abs(race), BALL, race, depth)
+    assert fall(GEOMETRIC, share * half, half, race, depth) == pytest.approx(expected, rel=1e-9, abs=1e-15)
+
+
+@law
+@given(shares, halves, races)
+def test_a_ball_on_an_edge_keeps_its_distance_from_that_edge(share, half, race):
+    """The triangle of ring centre, edge and ball centre, without a sagitta in it."""
+    offset = share * half
+    angle = half - offset
+    reach = abs(race) + math.copysign(BALL, race)
+    centre = reach - math.copysign(fall(GEOMETRIC, offset, half, race), race)
+    from_edge = math.hypot(centre * math.cos(angle) - abs(race), centre * math.sin(angle))
+    assert from_edge == pytest.approx(BALL, rel=1e-9)
+
+
+@every_profile
+@law
+@given(st.floats(-1.2, 1.2), halves, races, depths)
+def test_drops_have_no_jump_but_those_of_the_rectangular_profile(profile, share, half, race, depth):
+    if profile == RECTANGULAR:
+        edge = fall(profile, half * (1 - 1e-9), half, race, depth), fall(profile, half * (1 + 1e-9), half, race, depth)
+        assert edge == (depth, 0.0)
+        return
+    step = 1e-7
+    here = fall(profile, share * half, half, race, depth)
+    there = fall(profile, (share + step) * half, half, race, depth)
+    steepest = max(10 * depth, abs(race) * half)
+    assert abs(there - here) < step * steepest
+
+
+@law
+@given(halves, races, st.floats(1.01, 2.0))
+def test_a_wider_spall_lets_a_ball_drop_deeper(half, race, wider):
+    assert fall(GEOMETRIC, 0.0, wider * half, race) > fall(GEOMETRIC, 0.0, half, race)
+
+
+@law
+@given(st.floats(1e-4, 2e-3), races, depths)
+def test_the_largest_drop_is_the_largest_of_all_drops(width, race, depth):
+    half = width / 2 / abs(race)
+    path = [fall(GEOMETRIC, offset, half, race, depth) for offset in np.linspace(-half, half, 101)]
+    assert largest_drop(width, abs(race), BALL, race, depth) == pytest.approx(max(path), rel=1e-12)
+
+
+@law
+@given(st.floats(0.08e-3, 1e-3), st.floats(0.05, 0.95))
+def test_a_convex_race_lets_a_ball_drop_deeper_than_a_concave_one(width, share):
+    drops = [
+        drop(GEOMETRIC, share * width / 2 / abs(race), width / 2 / abs(race), abs(race), BALL, race, 1.0)
+        for race in (RACES["inner"], RACES["outer"])
+    ]
+    assert drops[0] > drops[1] > 0

@@ -1,0 +1,152 @@
+"""Hypothesis strategies for bearings, machines, motions and spalls that a recipe could ask for.
+
+Records have nine balls and, site by site, shapes that other tests use too: each new shape of a kernel takes seconds to compile.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from hypothesis import strategies as st
+
+from gen.physics.batch import Motion, Record, Spall, n_terms
+from gen.physics.bearing import CATALOGUE, Bearing
+from gen.physics.motion import HIGHEST_ORDER, LOWEST_ORDER, N_ORDERS
+from gen.physics.rotor import Machine, sensor_springs
+
+PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular")
+NO_WAVES = np.empty(0)
+
+seeds = st.integers(0, 2**32 - 1)
+angles = st.floats(-np.pi, np.pi)
+widths = st.floats(0.15e-3, 2e-3)
+depths = st.floats(2e-6, 3e-4)
+
+
+@st.composite
+def bearings(draw):
+    """A bearing whose balls leave room for a cage."""
+    n_balls = draw(st.integers(5, 24))
+    pitch = draw(st.floats(0.01, 0.5))
+    share = draw(st.floats(0.05, min(0.45, 0.85 * np.pi / n_balls)))
+    return Bearing(
+        "drawn",
+        n_balls,
+        pitch,
+        share * pitch,
+        draw(st.floats(-0.6, 0.6)),
+        draw(st.floats(0.51, 0.56)),
+        draw(st.floats(0.51, 0.56)),
+    )
+
+
+@st.composite
+def machines(draw, *, half_clearance=None, contact_damping=None):
+    """A machine of some kilograms around a 6205, its load anywhere."""
+    shaft, housing, sensor = draw(st.floats(1, 10)), draw(st.floats(1, 15)), draw(st.floats(0.05, 0.5))
+    spring, damper = sensor_springs(sensor, draw(st.floats(1200, 4500)), draw(st.floats(0.01, 0.06)))
+    stiffness, load, direction = draw(st.floats(1.5e7, 3e8)), draw(st.floats(50, 3000)), draw(angles)
+    ratio = draw(st.floats(0.7, 1.5))
+    return Machine(
+        load_deflection_factor=draw(st.floats(8e9, 1.05e10)),
+        contact_damping=draw(st.floats(10, 600)) if contact_damping is None else contact_damping,
+        contact_cosine=draw(st.floats(0.9, 1)),
+        half_clearance=draw(st.floats(-6e-6, 10e-6)) if half_clearance is None else half_clearance,
+        ball_radius=CATALOGUE["6205"].ball_diameter / 2,
+        shaft_mass=shaft,
+        housing_mass=housing,
+        sensor_mass=sensor,
+        ring_damping=draw(st.floats(0, 2500)),
+        shaft_damping=draw(st.floats(0, 500)),
+        shaft_stiffness=draw(st.floats(0, 1e6)),
+        ring_stiffness_x=draw(st.floats(0, 1e6)),
+        ring_stiffness_y=draw(st.floats(0, 1e6)),
+        support_stiffness_x=stiffness,
+        support_stiffness_y=stiffness * ratio,
+        support_damping_x=draw(st.floats(100, 4000)),
+        support_damping_y=draw(st.floats(100, 4000)),
+        sensor_stiffness_x=spring,
+        sensor_stiffness_y=spring * ratio,
+        sensor_damping=damper,
+        load_x=load * np.cos(direction),
+        load_y=load * np.sin(direction),
+    )
+
+
+@st.composite
+def spalls(draw, sites=("inner", "outer", "ball")):
+    """A spall on one of ``sites``, narrower than the space between two balls."""
+    return Spall(
+        draw(st.sampled_from(sites)), draw(widths), draw(depths), draw(angles), draw(st.integers(0, 8))
+    )
+
+
+@st.composite
+def steady_motions(draw):
+    """Motion at a constant rate, from anywhere."""
+    return Motion(
+        draw(st.floats(10, 60)),
+        unbalance=draw(st.floats(0, 1e-4)),
+        shaft_angle=draw(angles),
+        cage_angle=draw(angles),
+        spin_angle=draw(angles),
+    )
+
+
+@st.composite
+def wandering_motions(draw):
+    """Motion with all its random processes at work."""
+    return draw(steady_motions())._replace(
+        speed_rms=draw(st.floats(0, 0.01)),
+        mean_slip=draw(st.floats(-0.01, 0.02)),
+        slip_rms=draw(st.floats(0, 0.02)),
+        spin_rms=draw(st.floats(0, 0.05)),
+        jitter_rms=draw(st.floats(1e-3, 2e-2)),
+        axis_offset=draw(st.floats(-0.2, 0.2)),
+        axis_rms=draw(st.floats(0, 0.3)),
+        axis_limit=draw(st.floats(0.05, 0.3)),
+    )
+
+
+def waves(seed, rms):
+    """Amplitudes of the waviness of both races, all orders alike, shape (row,) [m]."""
+    phases = np.random.default_rng(seed).uniform(0, 2 * np.pi, (2, N_ORDERS))
+    amplitude = rms * np.sqrt(2 / (HIGHEST_ORDER - LOWEST_ORDER + 1))
+    return np.concatenate([amplitude * part for race in phases for part in (np.cos(race), np.sin(race))])
+
+
+def record(machine, motion, some_spalls=(), *, seed=0, waviness=0.0):
+    """A 6205 in ``machine``, its processes drawn from ``seed``; uneven if it has jitter or waviness."""
+    bearing = replace(CATALOGUE["6205"], contact_angle=float(np.arccos(machine.contact_cosine)))
+    rng = np.random.default_rng(seed)
+    return Record(
+        bearing,
+        machine,
+        motion,
+        tuple(some_spalls),
+        rng.uniform(0.3, 60, n_terms(bearing.n_balls)),
+        rng.uniform(0, 2 * np.pi, n_terms(bearing.n_balls)),
+        np.eye(6),
+        waves(seed, waviness) if waviness else NO_WAVES,
+    )
+
+
+@st.composite
+def steady_records(draw):
+    """A healthy record of even balls at a constant rate, without contact damping."""
+    return record(draw(machines(contact_damping=0.0)), draw(steady_motions()))
+
+
+@st.composite
+def wandering_records(draw):
+    """A record with everything at once: two to four spalls, damped contacts, wander, jitter, waviness."""
+    some = draw(st.lists(spalls(), min_size=2, max_size=4))
+    seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
+    return record(draw(machines()), draw(wandering_motions()), some, seed=seed, waviness=rms)
+
+
+@st.composite
+def extended_records(draw):
+    """A record with one spall on the inner race that two balls can be in at once, and perhaps another one."""
+    wide = Spall("inner", draw(st.floats(11.5e-3, 18e-3)), draw(st.floats(3e-6, 50e-6)), draw(angles))
+    other = draw(st.lists(spalls(), max_size=1))
+    return draw(wandering_records())._replace(spalls=(wide, *other))
