@@ -32,7 +32,7 @@ test: lint
 	$(BIN)/python -m pytest
 
 generated: $(VENV)/installed
-	$(BIN)/python -m gen.recipe.reference recipes
+	$(BIN)/python -m gen.recipe.reference .
 
 bench: $(VENV)/installed
 	$(BIN)/raceway bench ophel2025

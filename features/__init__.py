@@ -14,6 +14,8 @@ indicators   the feature vector of records, in four groups [pure]
 transformer  the same as a scikit-learn transformer
 table        corpus -> feature table (record, feature), part by part; reading and writing
 baselines    classifiers on a feature table, scored by specimen or rig beside their controls
+pictures     records, corpora and scores as figures
+report       one page of all that, and the picture of a record
 ============ =================================================================================
 """
 

@@ -248,6 +248,7 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
         color=[COLOURS[FAULTS[c]] for c in present],
     )
     axes.set(xlabel=quantity.label, ylabel="records")
+    axes.locator_params(axis="x", nbins=5)
     if wide:
         axes.set_xscale("log")
         axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))

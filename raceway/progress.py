@@ -84,10 +84,11 @@ def compilation_noticed() -> Iterator[None]:
 
         said = False
 
-        def on_start(self, event: Any) -> None:  # noqa: ARG002
-            if not self.said:
+        def on_start(self, event: Any) -> None:
+            for_keeps = event.data["dispatcher"].stats.cache_path is not None  # the others are small, and compiled each time
+            if for_keeps and not self.said:
                 self.said = True
-                notice("compiling kernels for this machine: some seconds each, once; they are kept for the next time.")
+                notice("compiling kernels for this machine: some seconds each, and kept for the next time.")
 
         def on_end(self, event: Any) -> None:
             """Nothing to say."""

@@ -5,18 +5,18 @@ was drawn as. All it shares with the kernel is what the kernel promises: between
 """
 
 import math
+from hashlib import sha256
+from inspect import getsource
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from gen.physics import motion
+from gen.physics import kernel, lanes, motion, spall
 from gen.physics.batch import Record, lay_out, record_shape
-from gen.physics.integrate import place_balls
-from gen.physics.kernel import AXES, N_DYNAMIC, FloatArray, Shape, advance
+from gen.physics.kernel import ACCELERATION, AXES, CAGE_C, N_DYNAMIC, N_STATE, FloatArray, advance
 from gen.physics.lanes import KERNEL, LANES
-from gen.physics.motion import ANGLE_ROWS, Lanes, to_next_knot
+from gen.physics.motion import ANGLE_ROWS, place_balls, to_next_knot
 
 EVERY_ACCELERATION = np.eye(AXES)
 
@@ -30,6 +30,8 @@ class Trip(NamedTuple):
     """At the start of each step, shape (step, coordinate) [m s-2]."""
     angles: FloatArray
     """Of shaft, cage and ball spin, shape (knot, angle) [rad]."""
+    directions: FloatArray
+    """Cosine and sine of the cage's and of the shaft's angle, as the steps use them, shape (knot, 4)."""
 
 
 class Slow(NamedTuple):
@@ -114,22 +116,24 @@ def drops(record: Record, angles: FloatArray, places: FloatArray, share: float) 
     shaft, _, spin = angles
     ball, inner, outer = bearing.ball_diameter / 2, bearing.inner_radius, bearing.outer_radius
     total = np.zeros(bearing.n_balls)
-    for spall in record.spalls:
-        if spall.site == "ball":
-            half = spall.width / 2 / ball
-            on_inner, on_outer = wrapped(spin + spall.angle), wrapped(spin + spall.angle - math.pi)
-            fallen = rigid_path(on_inner, half, ball, ball, inner, spall.depth)
-            fallen += rigid_path(on_outer, half, ball, ball, -outer, spall.depth)
-            total[spall.ball] += share * fallen
+    for fault in record.spalls:
+        if fault.site == "ball":
+            half = fault.width / 2 / ball
+            on_inner, on_outer = wrapped(spin + fault.angle), wrapped(spin + fault.angle - math.pi)
+            fallen = rigid_path(on_inner, half, ball, ball, inner, fault.depth)
+            fallen += rigid_path(on_outer, half, ball, ball, -outer, fault.depth)
+            total[fault.ball] += share * fallen
             continue
-        race, centre = (inner, shaft + spall.angle) if spall.site == "inner" else (-outer, spall.angle)
+        race, centre = (inner, shaft + fault.angle) if fault.site == "inner" else (-outer, fault.angle)
         for number, place in enumerate(places):
             offset = wrapped(place - centre)
-            total[number] += rigid_path(offset, spall.width / 2 / abs(race), abs(race), ball, race, spall.depth)
+            total[number] += rigid_path(offset, fault.width / 2 / abs(race), abs(race), ball, race, fault.depth)
     return total
 
 
-def contact_force(record: Record, y: FloatArray, angles: FloatArray, gaps: FloatArray, jitter: FloatArray, share: float):
+def contact_force(
+    record: Record, y: FloatArray, angles: FloatArray, gaps: FloatArray, jitter: FloatArray, share: float
+):
     """Force of all balls on the housing, shape (axis,) [N]."""
     machine, n_balls = record.machine, record.bearing.n_balls
     places = angles[1] + 2 * np.pi * np.arange(n_balls) / n_balls
@@ -184,7 +188,9 @@ def march_twin(record: Record, start: FloatArray, n_knots: int, n_steps: int, kn
             accelerations.append(k1[6:])
             y = y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         states.append(y)
-    return Trip(np.array(states), np.array(accelerations), slow.angles)
+    cage, shaft = slow.angles[:, 1], slow.angles[:, 0]
+    directions = np.stack([np.cos(cage), np.sin(cage), np.cos(shaft), np.sin(shaft)], axis=1)
+    return Trip(np.array(states), np.array(accelerations), slow.angles, directions)
 
 
 def march_lanes(
@@ -193,32 +199,36 @@ def march_lanes(
     """The same by the lane kernel, one trip per record; all of one shape, from static rest unless a ``start`` is given."""
     every = [record._replace(pickups=EVERY_ACCELERATION) for record in records]
     shape = record_shape(every[0])
-    lanes = lay_out(every, shape, knot)
+    batch = lay_out(every, shape, knot)
     if start is not None:
-        lanes.state.reshape(-1, LANES)[:N_DYNAMIC] = np.asarray(start)[:, None]
-    states = np.empty((n_knots + 1, N_DYNAMIC, LANES))
+        batch.state.reshape(-1, LANES)[:N_DYNAMIC] = np.asarray(start)[:, None]
+    states = np.empty((n_knots + 1, N_STATE, LANES))
     angles = np.empty((n_knots + 1, ANGLE_ROWS, LANES))
     history = np.empty(n_knots * n_steps * AXES * LANES)
-    _march(shape, lanes, knot / n_steps, n_steps, states, angles, history)
+    _march(shape, batch, knot / n_steps, n_steps, states, angles, history)
     accelerations = history.reshape(-1, AXES, LANES)
-    return [Trip(states[..., i], accelerations[..., i], angles[..., i]) for i in range(len(records))]
+    return [
+        Trip(states[:, :N_DYNAMIC, i], accelerations[..., i], angles[..., i], states[:, CAGE_C:ACCELERATION, i])
+        for i in range(len(records))
+    ]
 
 
-@njit(**KERNEL)
-def _march(
-    shape: Shape,
-    lanes: Lanes,
-    dt: float,
-    n_steps: int,
-    states: NDArray[np.float64],
-    angles: NDArray[np.float64],
-    history: NDArray[np.float64],
-) -> None:
-    moves = np.empty(ANGLE_ROWS * LANES)
-    place_balls(shape, lanes, n_steps)
-    for knot in range(len(states)):
-        states[knot] = lanes.state[: N_DYNAMIC * LANES].reshape(N_DYNAMIC, LANES)
-        angles[knot] = lanes.angles.reshape(ANGLE_ROWS, LANES)
-        if knot + 1 < len(states):
-            to_next_knot(shape, lanes, n_steps, dt, moves)
-            advance(shape, lanes.state, lanes.params, dt, n_steps, history, knot * n_steps * AXES)
+def _cached(sources: str):
+    """Compile and cache; numba sees changes in this file alone, but what a function closes over is part of its key."""
+
+    @njit(**KERNEL)
+    def march(shape, lanes, dt, n_steps, states, angles, history):
+        _ = sources
+        moves = np.empty(ANGLE_ROWS * LANES)
+        place_balls(shape, lanes, n_steps)
+        for knot in range(len(states)):
+            states[knot] = lanes.state.reshape(N_STATE, LANES)
+            angles[knot] = lanes.angles.reshape(ANGLE_ROWS, LANES)
+            if knot + 1 < len(states):
+                to_next_knot(shape, lanes, n_steps, dt, moves)
+                advance(shape, lanes.state, lanes.params, dt, n_steps, history, knot * n_steps * AXES)
+
+    return march
+
+
+_march = _cached(sha256("".join(map(getsource, (lanes, spall, kernel, motion))).encode()).hexdigest())

@@ -75,9 +75,7 @@ def machines(draw, *, half_clearance=None, contact_damping=None):
 @st.composite
 def spalls(draw, sites=("inner", "outer", "ball")):
     """A spall on one of ``sites``, narrower than the space between two balls."""
-    return Spall(
-        draw(st.sampled_from(sites)), draw(widths), draw(depths), draw(angles), draw(st.integers(0, 8))
-    )
+    return Spall(draw(st.sampled_from(sites)), draw(widths), draw(depths), draw(angles), draw(st.integers(0, 8)))
 
 
 @st.composite

@@ -6,11 +6,11 @@ module   responsibility
 schema   dimensions, variables, units and roles
 part     one self-describing netCDF-4 file of records
 index    manifest, ``corpus.nc`` over the parts, opening, checks
-card     a page about the corpus for whoever finds it
+card     the data card of a corpus, and the page about the format
 ======== =====================================================
 """
 
-from gen.corpus.card import data_card
+from gen.corpus.card import data_card, format_page
 from gen.corpus.index import (
     open_corpus,
     part_paths,
@@ -54,6 +54,7 @@ __all__ = [
     "Variable",
     "data_card",
     "describe_part",
+    "format_page",
     "make_dataset",
     "open_corpus",
     "open_part",

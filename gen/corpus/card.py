@@ -1,9 +1,9 @@
-"""The data card: what a corpus holds, in Markdown, for whoever finds the folder."""
+"""Pages in Markdown: the data card of a corpus, for whoever finds the folder, and the format, for whoever reads one."""
 
 import numpy as np
 import xarray as xr
 
-from gen.corpus.schema import FAULTS, SIGNAL, SPLITS
+from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS
 
 
 def data_card(corpus: xr.Dataset, origin: str) -> str:
@@ -36,6 +36,48 @@ def data_card(corpus: xr.Dataset, origin: str) -> str:
             attributes = (variable.attrs.get(key, "") for key in ("units", "role", "long_name"))
             lines.append(f"| `{name}` | " + " | ".join(_plain(value) for value in attributes) + " |")
     return "\n".join([*lines, "", "Open it with `gen.open_corpus(folder)` or any netCDF-4 reader on `corpus.nc`.", ""])
+
+
+_FORMAT = f"""# The corpus format, version {FORMAT}
+
+A corpus is a folder:
+
+| file | what it is |
+|---|---|
+| `corpus.nc` | every per-record variable, and the signal as an HDF5 virtual dataset over the parts: one file to any netCDF-4 reader |
+| `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
+| `manifest.json` | whether the corpus is complete; of each part its records, bytes and SHA-256; recipe hash and versions |
+| `recipe.yaml` | the recipe it was made from, if it was simulated |
+| `README.md` | the data card |
+
+HDF5 reads a part that is missing as fill values, without an error: `gen.open_corpus` compares every part with the manifest before anything is
+read, and refuses what is missing or altered. `raceway validate` looks at everything.
+
+The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray and netCDF4 undo by themselves, or 32-bit
+floating point. Text is stored as fixed-length characters. Every other variable has one value per record, and a `role`:
+
+- `operating`: what an analyst on site knows; features may use it,
+- `label`: what a classifier is to find out,
+- `latent`: the truth of a simulation,
+- `provenance`: where the record comes from.
+
+A corpus may hold further per-record variables with a `long_name` and a `role`. These it must have:
+
+| variable | type | unit | role | what it is |
+|---|---|---|---|---|
+"""
+
+
+def format_page() -> str:
+    """Markdown page about the format, its table from the schema."""
+    rows = []
+    for variable in SCHEMA:
+        flags = (
+            f" ({', '.join(f'{code} {name}' for code, name in enumerate(variable.flags))})" if variable.flags else ""
+        )
+        cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
+        rows.append(f"| {' | '.join(cells)} |")
+    return _FORMAT + "\n".join(rows) + "\n"
 
 
 def _plain(text: object) -> str:

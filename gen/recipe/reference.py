@@ -1,4 +1,7 @@
-"""``recipes/schema.json`` and ``recipes/README.md``, written from the model: ``python -m gen.recipe.reference FOLDER``."""
+"""Pages written from the code: ``python -m gen.recipe.reference ROOT`` renews them.
+
+``recipes/schema.json`` and ``recipes/README.md`` follow from the model of the recipe, ``docs/format.md`` from the schema of the corpus.
+"""
 
 import sys
 from pathlib import Path
@@ -8,6 +11,7 @@ from typing import Annotated, Any, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
+from gen.corpus import format_page
 from gen.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform
 from gen.recipe import model
 from gen.recipe.reading import recipe_purpose, recipe_schema, shipped_recipes
@@ -25,11 +29,21 @@ def readme() -> str:
     lines = [_HEAD, "| distribution | keys | what it gives |", "|---|---|---|"]
     for distribution in (Constant, Uniform, LogUniform, Normal, Choice, Grid):
         keys = ", ".join(name for name in distribution.model_fields if name != "kind")
-        lines.append(f"| `{distribution.model_fields['kind'].annotation.__args__[0]}` | {keys} | {_first_line(distribution)} |")
+        lines.append(
+            f"| `{distribution.model_fields['kind'].annotation.__args__[0]}` | {keys} | {_first_line(distribution)} |"
+        )
     lines += ["", "## Shipped", "", "| name | what for |", "|---|---|"]
     lines += [f"| `{name}` | {recipe_purpose(path)} |" for name, path in shipped_recipes().items()]
     for section in _sections(model.Recipe, []):
-        lines += ["", f"## {section.__name__}", "", _first_line(section), "", "| key | allowed | default |", "|---|---|---|"]
+        lines += [
+            "",
+            f"## {section.__name__}",
+            "",
+            _first_line(section),
+            "",
+            "| key | allowed | default |",
+            "|---|---|---|",
+        ]
         lines += [_row(name, field) for name, field in section.model_fields.items()]
     return "\n".join(lines) + "\n"
 
@@ -60,7 +74,12 @@ def _type(annotation: Any, field: FieldInfo) -> str:
     if names:
         return ", ".join(f"`{name}`" for name in names)
     limits = ", ".join(_limit(entry) for entry in field.metadata if _limit(entry))
-    plain = getattr(annotation, "__name__", "").replace("str", "text").replace("int", "whole number").replace("float", "number")
+    plain = (
+        getattr(annotation, "__name__", "")
+        .replace("str", "text")
+        .replace("int", "whole number")
+        .replace("float", "number")
+    )
     return f"{plain if plain.isascii() and plain[:1].islower() else 'mapping'}{' ' + limits if limits else ''}"
 
 
@@ -89,7 +108,8 @@ def _first_line(thing: type) -> str:
     return (thing.__doc__ or "").strip().splitlines()[0]
 
 
+PAGES = {"recipes/schema.json": recipe_schema, "recipes/README.md": readme, "docs/format.md": format_page}
+
 if __name__ == "__main__":
-    folder = Path(sys.argv[1])
-    (folder / "schema.json").write_text(recipe_schema(), encoding="utf-8")
-    (folder / "README.md").write_text(readme(), encoding="utf-8")
+    for name, page in PAGES.items():
+        (Path(sys.argv[1]) / name).write_text(page(), encoding="utf-8")

@@ -26,13 +26,13 @@ def labelled(draw):
     return fault, predicted, specimen
 
 
-def tested(fault, specimen, recording):
+def made_records(fault, specimen, recording):
     unused = np.zeros(len(fault), dtype=int)
     return Records("made up", pd.DataFrame(index=range(len(fault))), fault, unused, specimen, recording)
 
 
 def scores_of(fault, predicted, specimen):
-    return score(tested(fault, specimen, np.arange(len(fault))), np.eye(4)[predicted], np.arange(4))
+    return score(made_records(fault, specimen, np.arange(len(fault))), np.eye(4)[predicted], np.arange(4))
 
 
 @given(labelled())
@@ -76,7 +76,7 @@ def test_recordings_of_one_record_score_like_records(case):
 
 def test_a_recording_is_decided_by_the_mean_of_its_windows():
     fault = np.array([1, 1, 1, 2])
-    records = tested(fault, np.array([0, 0, 0, 1]), np.array([0, 0, 0, 1]))
+    records = made_records(fault, np.array([0, 0, 0, 1]), np.array([0, 0, 0, 1]))
     unsure, sure = [0.4, 0.6], [1.0, 0.0]
     found = score(records, np.array([unsure, unsure, sure, [0.0, 1.0]]), np.array([1, 2]))
     assert found.by_recording is not None

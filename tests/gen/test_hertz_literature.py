@@ -35,9 +35,7 @@ def test_a_sphere_on_a_flat_of_the_same_metal_has_the_closed_form_of_hertz(radiu
 @given(st.floats(1e-4, 1.0), st.floats(1e-9, 1e-2))
 def test_a_nearly_round_contact_joins_the_round_one_without_a_step(radius, excess):
     round_one = contact_factor(1 / radius, 1 / radius, STEEL)
-    assert contact_factor((1 + excess) / radius, 1 / radius, STEEL) == pytest.approx(
-        round_one, rel=0.5 * excess + 1e-5
-    )
+    assert contact_factor((1 + excess) / radius, 1 / radius, STEEL) == pytest.approx(round_one, rel=0.5 * excess + 1e-5)
 
 
 @law

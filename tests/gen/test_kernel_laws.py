@@ -58,6 +58,7 @@ def assert_the_twin_agrees(drawn):
     static = math.hypot(drawn.machine.load_x, drawn.machine.load_y) / drawn.machine.shaft_mass
     largest = max(np.abs(twin.accelerations).max(), 1e-3 * static)  # at rest only rounding is left to compare
     np.testing.assert_allclose(lanes.angles, twin.angles, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(lanes.directions, twin.directions, rtol=0, atol=1e-12)
     np.testing.assert_allclose(lanes.states[:, :6], twin.states[:, :6], rtol=0, atol=1e-16)
     np.testing.assert_allclose(lanes.accelerations, twin.accelerations, rtol=0, atol=1e-9 * largest)
 
