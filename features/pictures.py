@@ -58,7 +58,11 @@ TURNS = 8  # of the shaft, in the waveform
 COLUMNS = 1500  # in which a long waveform is drawn
 SEGMENT = 0.05  # s, of the power spectral density
 FAINTEST_DB = 120.0  # below the highest density
-HARMONICS = (1, 2, 3)
+HARMONICS = {
+    "outer": ("BPFO", "2 BPFO", "3 BPFO"),
+    "inner": ("BPFI", "2 BPFI", "3 BPFI"),
+    "ball": ("2 BSF", "4 BSF", "6 BSF"),
+}
 TOLERANCE = 0.02  # of an order, shaded around the lines of the fault itself
 
 
@@ -138,12 +142,12 @@ def _draw_density(axes: Axes, shown: Shown) -> None:
 def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
     order, spectrum = squared_envelope(shown)
     own, others = fault_lines(shown.orders, shown.fault)
-    top = (HARMONICS[-1] + 0.15) * max(*others.values(), min(own.values(), default=0.0))
+    top = 3.15 * max(*others.values(), min(own.values(), default=0.0))
     visible = order <= top
     colour = COLOURS[shown.fault]
-    for line in (line for line in own.values() if line < top):
+    for line in own.values():
         axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=colour, alpha=0.2, linewidth=0)
-    for line in (line for line in others.values() if line < top):
+    for line in others.values():
         axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.8)
     axes.set(xlabel="order of the shaft", ylabel="squared envelope [1]", xlim=(0, top), ylim=(0, None))
@@ -164,13 +168,9 @@ def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
 
 def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str, float]]:
     """Orders at which a fault shows, three harmonics of its line, and the other lines to compare with, by name."""
-    families = {"outer": ("BPFO", 1, orders.bpfo), "inner": ("BPFI", 1, orders.bpfi), "ball": ("BSF", 2, orders.bsf)}
-    named = {
-        family: {f"{n * times if n * times > 1 else ''} {name}".strip(): n * times * float(order) for n in HARMONICS}
-        for family, (name, times, order) in families.items()
-    }
-    own = named.pop(fault, {})
-    others = dict(next(iter(lines.items())) for lines in named.values())
+    first = {"outer": float(orders.bpfo), "inner": float(orders.bpfi), "ball": 2 * float(orders.bsf)}
+    own = {name: n * first[fault] for n, name in enumerate(HARMONICS.get(fault, ()), start=1)}
+    others = {HARMONICS[other][0]: line for other, line in first.items() if other != fault}
     return own, others | {"shaft": 1.0, "FTF": float(orders.ftf)}
 
 
@@ -181,8 +181,6 @@ def _name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float
     named = [(line, name, colour) for name, line in own.items()] + [(line, name, INK) for name, line in others.items()]
     for line, name, ink in sorted(named):
         half = (len(name) + 1) / 2 * per_letter
-        if line >= top:
-            continue
         row = 0 if line - half > ends[0] else 1
         ends[row] = line + half
         weight = "normal" if ink == INK else "bold"

@@ -173,9 +173,10 @@ Distribution = Annotated[
 
 def within(low: float, high: float, *, open_low: bool = False, default: float | None = None) -> Any:
     """Field of a distribution whose values all lie between ``low`` and ``high``; required if it has no default."""
-    bounds = {"low": low, "high": high, "open_low": open_low}
+    bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low}
     text = f"in {'(' if open_low else '['}{low:g}, {high:g}]"
-    return Field(default=... if default is None else default, description=text, json_schema_extra=bounds)
+    given: dict[str, Any] = {} if default is None else {"default": default}
+    return Field(**given, description=text, json_schema_extra=bounds)
 
 
 def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:

@@ -206,7 +206,8 @@ def _on_cluster(
     def submit(part: int) -> Any:
         return client.submit(_numbered_part, recipe, part, directory, known.get(part_name(part)), pure=False)
 
-    width = 2 * max(sum(client.nthreads().values()), 1)
+    threads: Any = client.nthreads()
+    width = 2 * max(sum(threads.values()), 1)
     running = as_completed([submit(part) for part in islice(waiting, width)])
     for future in running:
         yield future.result()

@@ -5,6 +5,7 @@ background belong to the rig, and their random streams do not know the fault.
 """
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -74,7 +75,7 @@ class _RigFilters:
 
     @staticmethod
     def of(rig: Rig, n: int, fs: float) -> "_RigFilters":
-        frequency = np.fft.rfftfreq(n, 1 / fs)
+        frequency = np.fft.rfftfreq(n, 1 / fs).astype(np.float64)
         return _RigFilters(rig.direct + base_excited(rig.modes, frequency), noise_colour(rig.background, frequency))
 
 
@@ -151,7 +152,8 @@ def _ringing(hits: FloatArray, level: float, filters: _RigFilters) -> FloatArray
 
 def _filtered(x: FloatArray, spectrum: ComplexArray | FloatArray) -> FloatArray:
     """``x`` times a spectrum, around the ends: the lead takes up what wraps."""
-    return np.fft.irfft(np.fft.rfft(x) * spectrum, x.shape[-1])
+    filtered: Any = np.fft.irfft(np.fft.rfft(x) * spectrum, x.shape[-1])
+    return filtered
 
 
 def _shaft_angle(scenario: Scenario, n: int, fs: float, rng: np.random.Generator) -> FloatArray:

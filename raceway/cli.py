@@ -1,6 +1,7 @@
 """The group of all commands, and the entry point ``raceway``."""
 
 import inspect
+import os
 import re
 import sys
 from collections.abc import Sequence
@@ -9,7 +10,7 @@ from typing import Any, NoReturn
 import click
 
 from raceway import corpora, importing, learning
-from raceway.ending import Interrupted, NoReader, exit_code, listen_for_signals
+from raceway.ending import INTERRUPTED, Interrupted, NoReader, exit_code, interrupted, listen_for_signals
 
 
 class Raceway(click.Group):
@@ -92,5 +93,11 @@ keep_examples(cli)
 
 def main() -> NoReturn:
     """Run the command line of this process."""
+    os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # what matters of it comes as an exception
     listen_for_signals()
-    cli.main(prog_name="raceway")
+    try:
+        cli.main(prog_name="raceway")
+    except SystemExit:
+        if interrupted():
+            os._exit(INTERRUPTED)  # a cluster cut short while it started would not end without noise
+        raise

@@ -9,6 +9,7 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable
+from multiprocessing import resource_tracker
 from types import FrameType
 from typing import Any
 
@@ -45,8 +46,8 @@ def exit_code(call: Callable[[], Any]) -> int:
 
 
 def _verdict(error: Exception) -> tuple[int, str]:
-    from gen.errors import RacewayError  # not above: raceway --help is to answer at once
-
+    if interrupted():
+        return INTERRUPTED, str(error) if isinstance(error, Interrupted) else "interrupted."
     match error:
         case click.exceptions.NoArgsIsHelpError():
             return BAD_INPUT, error.format_message()
@@ -55,9 +56,7 @@ def _verdict(error: Exception) -> tuple[int, str]:
             return BAD_INPUT, f"{command}: {error.format_message().rstrip('.')}; see {command} --help."
         case click.ClickException():
             return error.exit_code, error.format_message()
-        case click.Abort():
-            return INTERRUPTED, "interrupted."
-        case RacewayError():
+        case _ if _is_foreseen(error):
             return BAD_INPUT, str(error)
         case OSError(strerror=str() as reason):
             where = f"{error.filename}: " if error.filename else ""
@@ -67,6 +66,12 @@ def _verdict(error: Exception) -> tuple[int, str]:
         case _:
             what = f"{type(error).__name__}: {error}"
             return INTERNAL_ERROR, f"internal error ({what}); please report it with what RACEWAY_TRACEBACK=1 shows."
+
+
+def _is_foreseen(error: Exception) -> bool:
+    """Whether ``gen`` or ``features`` made the sentence; they are not imported to find out, since that takes seconds."""
+    errors = sys.modules.get("gen.errors")
+    return errors is not None and isinstance(error, errors.RacewayError)
 
 
 def printable(text: str) -> str:
@@ -84,6 +89,8 @@ def listen_for_signals() -> None:
     A terminal sends Ctrl-C to the workers of a dask cluster too, and each would show a traceback. Here SIGINT is blocked, which every
     process and thread started later inherits, and one thread waits for it and wakes the main thread by SIGUSR1.
     """
+    # first, because the tracker unblocks SIGINT in the thread that starts it
+    resource_tracker.ensure_running()
     _on_signals(_interrupt)
     if (
         signal.getsignal(signal.SIGINT) is signal.default_int_handler
@@ -101,6 +108,11 @@ def _pass_on() -> None:
 def _on_signals(handler: Callable[[int, FrameType | None], None]) -> None:
     signal.signal(signal.SIGUSR1, handler)
     signal.signal(signal.SIGTERM, handler)
+
+
+def interrupted() -> bool:
+    """Whether a signal has come; then whatever else goes wrong is its doing."""
+    return signal.getsignal(signal.SIGUSR1) is _leave
 
 
 def _interrupt(_number: int, _frame: FrameType | None) -> None:

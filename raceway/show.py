@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-import numpy as np
 
 from raceway.ending import printable
 
@@ -21,15 +20,13 @@ def as_json(facts: Any) -> None:
 def plain(value: Any) -> Any:
     """Turn a value into what JSON knows.
 
-    >>> plain({"rms": float("nan"), "where": Path("a/b"), "counts": (np.int8(1), 2)})
+    >>> plain({"rms": float("nan"), "where": Path("a/b"), "counts": (1, 2)})
     {'rms': None, 'where': 'a/b', 'counts': [1, 2]}
     """
     if is_dataclass(value) and not isinstance(value, type):
         return plain(asdict(value))
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, np.ndarray | np.generic):
-        return plain(value.tolist())
     if isinstance(value, Sequence) and not isinstance(value, str):
         return [plain(item) for item in value]
     if isinstance(value, float) and not math.isfinite(value):

@@ -122,9 +122,11 @@ def _cached(sources: str) -> Callable[..., tuple[FloatArray, NDArray[np.int64]]]
     """Compile and cache; numba looks for changes in this file alone, but what a function closes over is part of its key."""
 
     @njit(**KERNEL)
-    def cached(shape, lanes, dt, n_steps, taps, n_settle, n_out):  # noqa: ANN001, ANN202
+    def cached(
+        shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
+    ) -> tuple[FloatArray, NDArray[np.int64]]:
         _ = sources
-        return integrate_lanes(shape, lanes, dt, n_steps, taps, n_settle, n_out)
+        return integrate_lanes(shape, batch, dt, n_steps, taps, n_settle, n_out)
 
     return cached
 

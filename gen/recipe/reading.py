@@ -125,6 +125,7 @@ def _sentences(error: ValidationError) -> list[str]:
         place = _place(item["loc"])
         value = item["input"]
         shown = f"{value!r} " if isinstance(value, str | int | float | bool) or value is None else ""
+        context = item.get("ctx", {})
         text = item["msg"].removeprefix("Value error, ")
         match item["type"]:
             case "extra_forbidden":
@@ -132,8 +133,8 @@ def _sentences(error: ValidationError) -> list[str]:
             case "missing":
                 sentence = f"{place}: is missing; give it."
             case "union_tag_invalid":
-                expected = item["ctx"]["expected_tags"].replace("'", "")
-                sentence = f"{place}.kind: {item['ctx']['tag']!r} is not one of {expected}."
+                expected = context["expected_tags"].replace("'", "")
+                sentence = f"{place}.kind: {context['tag']!r} is not one of {expected}."
             case "union_tag_not_found":
                 sentence = f"{place}: {shown or 'this '}needs a kind, such as kind: {_first_kind(item)}."
             case "value_error":

@@ -30,7 +30,7 @@ def readme() -> str:
     for distribution in (Constant, Uniform, LogUniform, Normal, Choice, Grid):
         keys = ", ".join(name for name in distribution.model_fields if name != "kind")
         lines.append(
-            f"| `{distribution.model_fields['kind'].annotation.__args__[0]}` | {keys} | {_first_line(distribution)} |"
+            f"| `{get_args(distribution.model_fields['kind'].annotation)[0]}` | {keys} | {_first_line(distribution)} |"
         )
     lines += ["", "## Shipped", "", "| name | what for |", "|---|---|"]
     lines += [f"| `{name}` | {recipe_purpose(path)} |" for name, path in shipped_recipes().items()]
@@ -62,18 +62,19 @@ def _shown(default: Any) -> str:
 
 
 def _type(annotation: Any, field: FieldInfo) -> str:
+    metadata: list[Any] = field.metadata
     sections = [found.__name__ for found in _models(annotation)]
     if sections:
         return " or ".join(dict.fromkeys(sections))
     if NoneType in get_args(annotation):
         annotation = get_args(annotation)[0]
     if get_origin(annotation) is Annotated:
-        annotation, *limits = get_args(annotation)
-        field = FieldInfo.from_annotation(Annotated[annotation, *limits])
+        annotation, *metadata = get_args(annotation)
+        metadata = [entry for part in metadata for entry in getattr(part, "metadata", [part])]
     names = [arg for arg in get_args(annotation) if isinstance(arg, str)]
     if names:
         return ", ".join(f"`{name}`" for name in names)
-    limits = ", ".join(_limit(entry) for entry in field.metadata if _limit(entry))
+    limits = ", ".join(_limit(entry) for entry in metadata if _limit(entry))
     plain = (
         getattr(annotation, "__name__", "")
         .replace("str", "text")

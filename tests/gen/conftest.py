@@ -1,0 +1,89 @@
+"""A small recipe that the tests of generation share, and ways to change it."""
+
+import copy
+import io
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from ruamel.yaml import YAML
+
+from gen.recipe import Recipe
+
+RecipeWith = Callable[..., Recipe]
+
+SMALL: dict[str, Any] = {
+    "name": "small",
+    "title": "A small corpus for tests",
+    "seed": 3,
+    "corpus": {
+        "rigs": 3,
+        "specimens_per_rig": 4,
+        "records_per_specimen": 2,
+        "records_per_part": 8,
+        "split": {"by": "specimen", "test": 0.25},
+    },
+    "recording": {
+        "sample_rate_hz": 12000,
+        "duration_s": 0.1,
+        "settle_s": 0.06,
+        "channels": [{"name": "sensor", "body": "sensor"}],
+    },
+    "bearing": {"kind": "catalogue", "designations": ["6205"]},
+    "machine": {
+        "shaft_mass_kg": {"kind": "loguniform", "low": 2, "high": 8},
+        "support_frequency_hz": {"kind": "uniform", "low": 200, "high": 500},
+        "resonator": {"frequency_hz": {"kind": "uniform", "low": 2500, "high": 3500}},
+    },
+    "specimen": {"diametral_clearance_um": {"kind": "uniform", "low": -4, "high": 12}, "waviness_nm": 20},
+    "operation": {
+        "shaft_rpm": {"kind": "uniform", "low": 1500, "high": 2000},
+        "load_n": {"kind": "loguniform", "low": 100, "high": 1000},
+        "mean_slip_percent": 0.5,
+    },
+    "faults": [
+        {"kind": "healthy"},
+        {"kind": "inner", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": 0, "high": 360}},
+        {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -40, "high": 40}},
+        {"kind": "ball", "width_mm": 0.5, "axis_wander_deg": 4, "spin_wander_percent": 0.5},
+    ],
+    "path": {"direct": 0.3, "modes": {"count": 2, "frequency_hz": {"kind": "uniform", "low": 500, "high": 5000}, "damping_percent": 3}},
+    "background": {
+        "slope": {"kind": "uniform", "low": 0, "high": 1},
+        "harmonics": {"probability": 0.8, "count": 3, "level_db": -10},
+        "tones": {"probability": 0.8, "count": 2, "frequency_hz": {"kind": "loguniform", "low": 50, "high": 4000}, "level_db": -10},
+        "impulses": {"probability": 0.5, "rate_hz": 20, "level_db": 10},
+    },
+}  # fmt: skip
+
+
+def small_with(changes: dict[str, Any]) -> dict[str, Any]:
+    """The small recipe with some values, named by their path (``corpus.rigs``), replaced."""
+    data = copy.deepcopy(SMALL)
+    for path, value in changes.items():
+        *sections, key = path.split(".")
+        section = data
+        for name in sections:
+            section = section.setdefault(name, {})
+        section[key] = value
+    return data
+
+
+@pytest.fixture(scope="session")
+def recipe_with() -> RecipeWith:
+    """Make the small recipe with some values replaced: ``recipe_with({"corpus.rigs": 2})``."""
+    return lambda changes=None: Recipe.model_validate(small_with(changes or {}))
+
+
+@pytest.fixture(scope="session")
+def write_recipe() -> Callable[..., Path]:
+    """Write the small recipe, with some values replaced, to a path."""
+
+    def write(path: Path, changes: dict[str, Any] | None = None) -> Path:
+        stream = io.StringIO()
+        YAML(typ="safe", pure=True).dump(small_with(changes or {}), stream)
+        path.write_text(stream.getvalue(), encoding="utf-8")
+        return path
+
+    return write
