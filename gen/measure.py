@@ -5,7 +5,6 @@ background belong to the rig, and their random streams do not know the fault.
 """
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +13,7 @@ from gen.recipe import Recipe
 from gen.scenarios import Background, Mode, Purpose, Rig, Scenario
 from gen.simulate import Response, lead_samples
 
-FloatArray = NDArray[np.float64]
+FloatArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complex128]
 LARGEST_COUNT = 32767
 
@@ -152,8 +151,7 @@ def _ringing(hits: FloatArray, level: float, filters: _RigFilters) -> FloatArray
 
 def _filtered(x: FloatArray, spectrum: ComplexArray | FloatArray) -> FloatArray:
     """``x`` times a spectrum, around the ends: the lead takes up what wraps."""
-    filtered: Any = np.fft.irfft(np.fft.rfft(x) * spectrum, x.shape[-1])
-    return filtered
+    return np.fft.irfft(np.fft.rfft(x) * spectrum, x.shape[-1])
 
 
 def _shaft_angle(scenario: Scenario, n: int, fs: float, rng: np.random.Generator) -> FloatArray:

@@ -50,11 +50,11 @@ A corpus is a folder:
 | `recipe.yaml` | the recipe it was made from, if it was simulated |
 | `README.md` | the data card |
 
-HDF5 reads a part that is missing as fill values, without an error: `gen.open_corpus` compares every part with the manifest before anything is
-read, and refuses what is missing or altered. `raceway validate` looks at everything.
+HDF5 reads a part that is missing as fill values, without an error: `gen.open_corpus` compares every part with
+the manifest before anything is read, and refuses what is missing or altered. `raceway validate` looks at everything.
 
-The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray and netCDF4 undo by themselves, or 32-bit
-floating point. Text is stored as fixed-length characters. Every other variable has one value per record, and a `role`:
+The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
+and netCDF4 undo by themselves, or 32-bit floating point. Text is stored as fixed-length characters. Every other variable has one value per record, and a `role`:
 
 - `operating`: what an analyst on site knows; features may use it,
 - `label`: what a classifier is to find out,
