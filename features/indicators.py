@@ -140,9 +140,7 @@ def _usable(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.ndarray
     return np.isfinite(x).all(axis=-1) & (x.max(axis=-1) > x.min(axis=-1)) & np.logical_and.reduce(known)
 
 
-def _features(
-    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str]
-) -> FloatArray:
+def _features(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str]) -> FloatArray:
     found: dict[str, FloatArray] = {}
     if "lines" in groups or "shape" in groups:
         found["lines"], found["shape"] = _lines_and_shape(x, fs, shaft_rate, orders)
@@ -153,9 +151,7 @@ def _features(
     return np.concatenate([found[group] for group in groups], axis=-1)
 
 
-def _lines_and_shape(
-    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders
-) -> tuple[FloatArray, FloatArray]:
+def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders) -> tuple[FloatArray, FloatArray]:
     duration = x.shape[-1] / fs
     lines = np.full((len(x), len(NAMES["lines"])), np.nan)
     shape = np.full((len(x), len(NAMES["shape"])), np.nan)
@@ -182,14 +178,10 @@ def _signals(coefficients: ComplexArray, duration: float, fs: float) -> list[Com
     whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration)).astype(np.complex64)
     narrow = [(whitened, band) for band in NARROW if sum(band) < fs]
     cuts = [(cepstral, BROAD), (whitened, BROAD), *narrow]
-    return [
-        analytic_band(source, round(low * duration), round(high * duration)) for source, (low, high) in cuts
-    ]
+    return [analytic_band(source, round(low * duration), round(high * duration)) for source, (low, high) in cuts]
 
 
-def _read(
-    z: ComplexArray, duration: float, shaft_rate: FloatArray, orders: Orders
-) -> tuple[FloatArray, FloatArray]:
+def _read(z: ComplexArray, duration: float, shaft_rate: FloatArray, orders: Orders) -> tuple[FloatArray, FloatArray]:
     rate = z.shape[-1] / duration
     frequencies, spectrum = envelope_spectrum(z, rate)
     resolution = frequencies[1]

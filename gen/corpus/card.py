@@ -54,7 +54,8 @@ HDF5 reads a part that is missing as fill values, without an error: `gen.open_co
 the manifest before anything is read, and refuses what is missing or altered. `raceway validate` looks at everything.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
-and netCDF4 undo by themselves, or 32-bit floating point. Text is stored as fixed-length characters. Every other variable has one value per record, and a `role`:
+and netCDF4 undo by themselves, or 32-bit floating point. Text is stored as
+fixed-length characters. Every other variable has one value per record, and a `role`:
 
 - `operating`: what an analyst on site knows; features may use it,
 - `label`: what a classifier is to find out,

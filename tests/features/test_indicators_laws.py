@@ -75,9 +75,7 @@ def test_lines_and_shape_are_free_of_gain(seed, gain):
 @given(seeds, st.floats(-20, 20))
 def test_no_feature_depends_on_a_constant_offset(seed, offset):
     x = noise(seed)
-    np.testing.assert_allclose(
-        features(x + offset, 12_000.0, 30.0), features(x, 12_000.0, 30.0), rtol=1e-3, atol=1e-3
-    )
+    np.testing.assert_allclose(features(x + offset, 12_000.0, 30.0), features(x, 12_000.0, 30.0), rtol=1e-3, atol=1e-3)
 
 
 @law

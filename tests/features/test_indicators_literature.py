@@ -69,9 +69,7 @@ def test_the_comb_of_a_race_fault_stands_out_in_real_recordings(folder, family, 
     other = {"bpfi": "bpfo", "bpfo": "bpfi"}[family]
     for view in ("cepstral", "whitened"):
         assert values[f"{view}_{family}_comb"] > 1.0
-        assert values[f"{view}_{family}_comb"] > 0.4 + max(
-            values[f"{view}_{other}_comb"], values[f"{view}_2bsf_comb"]
-        )
+        assert values[f"{view}_{family}_comb"] > 0.4 + max(values[f"{view}_{other}_comb"], values[f"{view}_2bsf_comb"])
 
 
 @real_recordings

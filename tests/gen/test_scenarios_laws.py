@@ -1,0 +1,204 @@
+"""Laws of the draws: nothing but the fault knows the fault, any range is a piece of the whole, splits do not leak."""
+
+import json
+from collections import Counter
+from itertools import product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.errors import RecipeError
+from gen.scenarios import Purpose, draw_scenarios, fault_of_each_specimen, stream
+from gen.simulate import physical_record
+
+law = settings(deadline=None, max_examples=25)
+SAMPLINGS = ("random", "sobol", "halton")
+FAULTY = ("inner", "outer", "ball")
+
+
+def faults(**weights):
+    entries = {"healthy": {}} | {kind: {"width_mm": 0.5} for kind in FAULTY}
+    return [{"kind": kind, "weight": weights.get(kind, 0.0), **entry} for kind, entry in entries.items()]
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+@pytest.mark.parametrize("only", ["healthy", *FAULTY])
+def test_nothing_but_the_fault_knows_the_fault(recipe_with, only, sampling):
+    changes = {"corpus.sampling": sampling}
+    mixed = draw_scenarios(recipe_with(changes))
+    alike = draw_scenarios(recipe_with(changes | {"faults": faults(**{only: 1.0})}))
+    assert {scenario.specimen.fault for scenario in alike} == {only}
+    for one, other in zip(mixed, alike, strict=True):
+        assert one.rig == other.rig
+        assert (one.specimen.number, one.specimen.bearing) == (other.specimen.number, other.specimen.bearing)
+        assert one.specimen.properties == other.specimen.properties
+        assert one.specimen.split == other.specimen.split
+        assert one.record == other.record
+
+
+@law
+@given(
+    st.integers(0, 2**31),
+    st.integers(2, 9),
+    st.tuples(*[st.floats(0.05, 10)] * 4),
+    st.integers(0, 2),
+)
+def test_every_rig_has_healthy_and_faulty_specimens(recipe_with, seed, specimens, weights, absent):
+    shares = dict(zip(("healthy", *FAULTY), weights, strict=True)) | dict.fromkeys(FAULTY[:absent], 0.0)
+    recipe = recipe_with({"seed": seed, "corpus.specimens_per_rig": specimens, "faults": faults(**shares)})
+    for rig in range(5):
+        found = fault_of_each_specimen(recipe, rig)
+        assert len(found) == specimens
+        assert "healthy" in found
+        assert set(found) > {"healthy"}
+        assert not set(found) & set(FAULTY[:absent])
+
+
+@pytest.mark.parametrize(
+    ("specimens", "weights"),
+    [(4, (1, 1, 1, 1)), (5, (1, 1, 1, 1)), (6, (3, 1, 1, 1)), (5, (3, 1, 1, 0)), (7, (2, 1, 1, 0.5)), (8, (2, 1, 3, 1))],
+)
+def test_classes_come_as_often_as_their_weights_say(recipe_with, specimens, weights):
+    shares = dict(zip(("healthy", *FAULTY), weights, strict=True))
+    recipe = recipe_with({"corpus.specimens_per_rig": specimens, "faults": faults(**shares)})
+    rigs = 4000
+    counts = Counter(fault for rig in range(rigs) for fault in fault_of_each_specimen(recipe, rig))
+    for kind, share in shares.items():
+        expected = specimens * share / sum(weights)
+        assert counts[kind] / rigs == pytest.approx(expected, abs=0.025)  # 3 sigma of a coin tossed 4000 times
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_any_range_of_records_is_a_piece_of_the_whole(recipe_with, sampling):
+    recipe = recipe_with({"corpus.sampling": sampling})
+    whole = draw_scenarios(recipe)
+    assert len(whole) == recipe.n_records
+    for first, stop in ((0, 1), (5, 6), (7, 12), (23, 24), (20, 100)):
+        assert draw_scenarios(recipe, first, stop) == whole[first:stop]
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_a_corpus_that_ends_early_is_the_beginning_of_the_whole(recipe_with, sampling):
+    whole = draw_scenarios(recipe_with({"corpus.sampling": sampling}))
+    assert draw_scenarios(recipe_with({"corpus.sampling": sampling, "records": 9})) == whole[:9]
+
+
+def test_another_seed_gives_other_rigs_specimens_and_records(recipe_with):
+    one, other = (draw_scenarios(recipe_with({"seed": seed})) for seed in (1, 2))
+    for here, there in zip(one, other, strict=True):
+        assert here.rig.machine != there.rig.machine
+        assert here.specimen.properties != there.specimen.properties
+        assert here.record.conditions != there.record.conditions
+
+
+def test_records_of_a_specimen_share_it_and_specimens_of_a_rig_share_it(recipe_with):
+    whole = draw_scenarios(recipe_with())
+    for scenario in whole:
+        specimen, rig = divmod(scenario.record.number, 2)[0], scenario.record.number // 8
+        assert (scenario.specimen.number, scenario.rig.number) == (specimen, rig)
+    assert len({id(scenario.specimen) for scenario in whole}) == 12
+    assert len({id(scenario.rig) for scenario in whole}) == 3
+
+
+@pytest.mark.parametrize("by", ["specimen", "rig"])
+def test_no_specimen_or_rig_is_on_both_sides_of_a_split(recipe_with, by):
+    split = {"by": by, "validation": 0.25, "test": 0.25}
+    recipe = recipe_with({"corpus.rigs": 20, "corpus.split": split})
+    sides: dict[int, set[str]] = {}
+    for scenario in draw_scenarios(recipe):
+        sides.setdefault(getattr(scenario, by).number, set()).add(scenario.specimen.split)
+    assert all(len(side) == 1 for side in sides.values())
+    shares = Counter(next(iter(side)) for side in sides.values())
+    assert shares["test"] / len(sides) == pytest.approx(0.25, abs=0.02)
+    assert shares["validation"] / len(sides) == pytest.approx(0.25, abs=0.02)
+
+
+def test_a_split_does_not_know_the_class(recipe_with):
+    recipe = recipe_with({"corpus.rigs": 300, "corpus.records_per_specimen": 1})
+    pairs = Counter((scenario.specimen.fault, scenario.specimen.split) for scenario in draw_scenarios(recipe))
+    for fault in ("healthy", *FAULTY):
+        assert pairs[fault, "test"] / 300 == pytest.approx(0.25, abs=0.1)  # 4 sigma
+
+
+@pytest.mark.parametrize("sampling", ["sobol", "halton"])
+def test_quasi_random_records_fill_the_range_of_a_value_evenly(recipe_with, sampling):
+    changes = {
+        "corpus.sampling": sampling,
+        "corpus.rigs": 8,
+        "operation.shaft_rpm": {"kind": "uniform", "low": 0.1, "high": 64},
+    }
+    drawn = draw_scenarios(recipe_with(changes | {"operation.shaft_rpm.low": 1}))
+    quantiles = [(scenario.record.conditions["shaft"] * 60 - 1) / 63 for scenario in drawn]
+    assert len(quantiles) == 64
+    assert Counter(int(64 * u) for u in quantiles) == dict.fromkeys(range(64), 1)
+
+
+def test_random_records_do_not_fill_it_evenly(recipe_with):
+    drawn = draw_scenarios(recipe_with({"corpus.rigs": 8}))
+    quantiles = [(scenario.record.conditions["shaft"] * 60 - 1500) / 500 for scenario in drawn]
+    assert len({int(64 * u) for u in quantiles}) < 50
+
+
+def test_grids_of_one_level_give_every_combination_once_before_they_come_again(recipe_with):
+    rpm, load, clearance = [1000, 1500, 2000], [100, 400], [-2, 3, 8]
+    recipe = recipe_with({
+        "corpus.specimens_per_rig": 3,
+        "corpus.records_per_specimen": 6,
+        "operation.shaft_rpm": {"kind": "grid", "values": rpm},
+        "operation.load_n": {"kind": "grid", "values": load},
+        "specimen.diametral_clearance_um": {"kind": "grid", "values": clearance},
+    })
+    combinations: dict[int, list[tuple[float, float]]] = {}
+    clearances: dict[int, set[float]] = {}
+    for scenario in draw_scenarios(recipe):
+        conditions = scenario.record.conditions
+        found = round(conditions["shaft"] * 60), conditions["load"]
+        combinations.setdefault(scenario.specimen.number, []).append(found)
+        of_rig = clearances.setdefault(scenario.rig.number, set())
+        of_rig.add(round(scenario.specimen.properties["diametral_clearance"] * 1e6))
+    assert all(sorted(found) == sorted(product(rpm, load)) for found in combinations.values())
+    assert all(found == set(clearance) for found in clearances.values())
+
+
+def test_a_record_without_its_fault_is_the_same_record(recipe_with):
+    for scenario in draw_scenarios(recipe_with()):
+        twin = scenario.without_fault()
+        assert (twin.rig, twin.record, twin.seed) == (scenario.rig, scenario.record, scenario.seed)
+        assert (twin.specimen.fault, twin.specimen.spalls) == ("healthy", ())
+        damaged, sound = physical_record(scenario), physical_record(twin)
+        assert bool(damaged.spalls) == (scenario.specimen.fault != "healthy")
+        assert sound.machine == damaged.machine
+        assert sound.motion == damaged.motion
+        for field in ("frequencies", "phases", "pickups", "waves"):
+            np.testing.assert_array_equal(getattr(sound, field), getattr(damaged, field))
+
+
+def test_streams_of_different_places_and_purposes_are_different():
+    keys = [(rig, specimen, record, purpose) for rig in (0, 1) for specimen in (0, 1) for record in (0, 1) for purpose in Purpose]
+    first = {tuple(stream(7, *key).integers(0, 2**63, 2)) for key in keys}
+    assert len(first) == len(keys)
+    assert stream(7, 1, 1, 1, Purpose.NOISE).random() == stream(7, 1, 1, 1, Purpose.NOISE).random()
+
+
+def test_a_scenario_is_plain_enough_to_be_stored_beside_its_record(recipe_with):
+    for scenario in draw_scenarios(recipe_with(), 0, 4):
+        stored = json.loads(json.dumps(scenario.as_dict()))
+        assert stored["rig"]["machine"] == scenario.rig.machine
+        assert stored["specimen"]["properties"] == scenario.specimen.properties
+        assert stored["record"]["conditions"] == scenario.record.conditions
+
+
+def test_values_are_in_si_units(recipe_with):
+    recipe = recipe_with({"operation.shaft_rpm": 1800, "specimen.diametral_clearance_um": 8, "operation.slip_percent": 2})
+    scenario = draw_scenarios(recipe, 0, 1)[0]
+    assert scenario.record.conditions["shaft"] == pytest.approx(30.0)
+    assert scenario.record.conditions["slip"] == pytest.approx(0.02)
+    assert scenario.specimen.properties["diametral_clearance"] == pytest.approx(8e-6)
+
+
+def test_a_spall_that_does_not_fit_its_ball_is_refused_by_name(recipe_with):
+    wide = [{"kind": "healthy"}, {"kind": "ball", "width_mm": 9.0}]
+    with pytest.raises(RecipeError, match=r"^specimen \d+: a spall of 9 mm does not fit a ball radius .* keep width_mm below 5\.56"):
+        draw_scenarios(recipe_with({"faults": wide}))
