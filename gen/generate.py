@@ -181,7 +181,7 @@ def _map(workers: int, scheduler: str | None, recipe: Recipe) -> Iterator[Run]:
     if scheduler is None:
         compile_kernels(recipe)
         with (
-            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None) as cluster,  # type: ignore[no-untyped-call]
+            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0") as cluster,
             Client(cluster) as client,
         ):
             yield lambda parts, directory, known: _on_cluster(client, recipe, parts, directory, known)

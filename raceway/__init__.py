@@ -3,8 +3,10 @@
 ========= =====================================================================
 module    responsibility
 ========= =====================================================================
-ending    exit codes, one sentence for what went wrong, Ctrl-C
+signals   Ctrl-C and SIGTERM, without noise from the workers
+ending    exit codes, one sentence for what went wrong
 show      results on standard output, as text or as one JSON object
+options   arguments and options that several commands share
 progress  how far a long command has come, on standard error
 summary   what is in a corpus
 bench     how fast this machine is, stage by stage

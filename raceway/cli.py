@@ -10,7 +10,8 @@ from typing import Any, NoReturn
 import click
 
 from raceway import corpora, importing, learning
-from raceway.ending import INTERRUPTED, Interrupted, NoReader, exit_code, interrupted, listen_for_signals
+from raceway.ending import Interrupted, NoReader, exit_code
+from raceway.signals import INTERRUPTED, interrupted, listen_for_signals
 
 
 class Raceway(click.Group):

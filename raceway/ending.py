@@ -4,18 +4,16 @@
 """
 
 import os
-import signal
 import sys
-import threading
 import traceback
 from collections.abc import Callable
-from multiprocessing import resource_tracker
-from types import FrameType
 from typing import Any
 
 import click
 
-DONE, FOUND_WANTING, BAD_INPUT, INTERNAL_ERROR, INTERRUPTED, NO_READER = 0, 1, 2, 70, 130, 141
+from raceway.signals import INTERRUPTED, interrupted
+
+DONE, FOUND_WANTING, BAD_INPUT, INTERNAL_ERROR, NO_READER = 0, 1, 2, 70, 141
 
 
 class Interrupted(click.ClickException):
@@ -81,46 +79,3 @@ def printable(text: str) -> str:
     'ball?[2J of a\nrig'
     """
     return "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in text)
-
-
-def listen_for_signals() -> None:
-    """Let Ctrl-C and SIGTERM raise KeyboardInterrupt in this process alone; the second ends it at once.
-
-    A terminal sends Ctrl-C to the workers of a dask cluster too, and each would show a traceback. Here SIGINT is blocked, which every
-    process and thread started later inherits, and one thread waits for it and wakes the main thread by SIGUSR1.
-    """
-    # first, because the tracker unblocks SIGINT in the thread that starts it
-    resource_tracker.ensure_running()
-    _on_signals(_interrupt)
-    if (
-        signal.getsignal(signal.SIGINT) is signal.default_int_handler
-    ):  # not in the background of a script, where Ctrl-C is ignored
-        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-        threading.Thread(target=_pass_on, daemon=True).start()
-
-
-def _pass_on() -> None:
-    while True:
-        signal.sigwait({signal.SIGINT})
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGUSR1)
-
-
-def _on_signals(handler: Callable[[int, FrameType | None], None]) -> None:
-    signal.signal(signal.SIGUSR1, handler)
-    signal.signal(signal.SIGTERM, handler)
-
-
-def interrupted() -> bool:
-    """Whether a signal has come; then whatever else goes wrong is its doing."""
-    return signal.getsignal(signal.SIGUSR1) is _leave
-
-
-def _interrupt(_number: int, _frame: FrameType | None) -> None:
-    _on_signals(_leave)
-    raise KeyboardInterrupt
-
-
-def _leave(_number: int, _frame: FrameType | None) -> None:
-    show_cursor = "\x1b[?25h" if sys.stderr.isatty() else ""
-    os.write(2, f"{show_cursor}interrupted.\n".encode())
-    os._exit(INTERRUPTED)

@@ -102,7 +102,8 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
     engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
     rng = stream(recipe.seed, 0, 0, 0, level)
     engine = engine_type(_QUASI_RANDOM_DIMENSIONS, scramble=True, rng=rng)
-    engine.fast_forward(first)
+    if first > 0:  # scipy's Sobol overflows on 0
+        engine.fast_forward(first)
     with warnings.catch_warnings():
         warnings.filterwarnings(
             "ignore", "The balance properties", UserWarning
@@ -237,9 +238,11 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     chosen = [kind for kind, share in shares.items() for _ in range(math.floor(share + 1e-9))]
     rest = np.array([share - math.floor(share + 1e-9) for share in shares.values()])
     if len(chosen) < count:
-        # largest weighted random keys: as many of the rest as are missing, each by its fraction, none twice
-        keys = np.log(np.maximum(rng.random(len(rest)), 1e-300)) / np.maximum(rest, 1e-9)
-        chosen += [list(shares)[i] for i in np.argsort(-keys, kind="stable")[: count - len(chosen)]]
+        # systematic sampling in random order: as many of the rest as are missing, each as often as its fraction says, none twice
+        order = rng.permutation(len(rest))
+        edges = np.cumsum(np.maximum(rest[order], 0.0))
+        picks = np.searchsorted(edges, rng.random() + np.arange(count - len(chosen)), side="right")
+        chosen += [list(shares)[i] for i in order[np.minimum(picks, len(rest) - 1)]]
     faulty = [kind for kind in shares if kind != "healthy"]
     if "healthy" in shares and faulty:
         if "healthy" not in chosen:

@@ -19,14 +19,16 @@ def distributions(draw):
     low, high = sorted((draw(numbers), draw(numbers)))
     values = tuple(draw(st.lists(numbers, min_size=1, max_size=5)))
     return draw(
-        st.sampled_from([
-            Constant(value=low),
-            Uniform(kind="uniform", low=low, high=high),
-            LogUniform(kind="loguniform", low=low, high=high),
-            Normal(kind="normal", mean=draw(numbers), sd=draw(numbers), low=low, high=high),
-            Choice(kind="choice", values=values),
-            Grid(kind="grid", values=values),
-        ])
+        st.sampled_from(
+            [
+                Constant(value=low),
+                Uniform(kind="uniform", low=low, high=high),
+                LogUniform(kind="loguniform", low=low, high=high),
+                Normal(kind="normal", mean=draw(numbers), sd=draw(numbers), low=low, high=high),
+                Choice(kind="choice", values=values),
+                Grid(kind="grid", values=values),
+            ]
+        )
     )
 
 

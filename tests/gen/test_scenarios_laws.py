@@ -58,7 +58,14 @@ def test_every_rig_has_healthy_and_faulty_specimens(recipe_with, seed, specimens
 
 @pytest.mark.parametrize(
     ("specimens", "weights"),
-    [(4, (1, 1, 1, 1)), (5, (1, 1, 1, 1)), (6, (3, 1, 1, 1)), (5, (3, 1, 1, 0)), (7, (2, 1, 1, 0.5)), (8, (2, 1, 3, 1))],
+    [
+        (4, (1, 1, 1, 1)),
+        (5, (1, 1, 1, 1)),
+        (6, (3, 1, 1, 1)),
+        (5, (3, 1, 1, 0)),
+        (7, (2, 1, 1, 0.5)),
+        (8, (2, 1, 3, 1)),
+    ],
 )
 def test_classes_come_as_often_as_their_weights_say(recipe_with, specimens, weights):
     shares = dict(zip(("healthy", *FAULTY), weights, strict=True))
@@ -75,7 +82,7 @@ def test_any_range_of_records_is_a_piece_of_the_whole(recipe_with, sampling):
     recipe = recipe_with({"corpus.sampling": sampling})
     whole = draw_scenarios(recipe)
     assert len(whole) == recipe.n_records
-    for first, stop in ((0, 1), (5, 6), (7, 12), (23, 24), (20, 100)):
+    for first, stop in ((0, 1), (5, 6), (7, 12), (23, 24), (20, 100), (24, 30)):
         assert draw_scenarios(recipe, first, stop) == whole[first:stop]
 
 
@@ -143,13 +150,15 @@ def test_random_records_do_not_fill_it_evenly(recipe_with):
 
 def test_grids_of_one_level_give_every_combination_once_before_they_come_again(recipe_with):
     rpm, load, clearance = [1000, 1500, 2000], [100, 400], [-2, 3, 8]
-    recipe = recipe_with({
-        "corpus.specimens_per_rig": 3,
-        "corpus.records_per_specimen": 6,
-        "operation.shaft_rpm": {"kind": "grid", "values": rpm},
-        "operation.load_n": {"kind": "grid", "values": load},
-        "specimen.diametral_clearance_um": {"kind": "grid", "values": clearance},
-    })
+    recipe = recipe_with(
+        {
+            "corpus.specimens_per_rig": 3,
+            "corpus.records_per_specimen": 6,
+            "operation.shaft_rpm": {"kind": "grid", "values": rpm},
+            "operation.load_n": {"kind": "grid", "values": load},
+            "specimen.diametral_clearance_um": {"kind": "grid", "values": clearance},
+        }
+    )
     combinations: dict[int, list[tuple[float, float]]] = {}
     clearances: dict[int, set[float]] = {}
     for scenario in draw_scenarios(recipe):
@@ -176,7 +185,13 @@ def test_a_record_without_its_fault_is_the_same_record(recipe_with):
 
 
 def test_streams_of_different_places_and_purposes_are_different():
-    keys = [(rig, specimen, record, purpose) for rig in (0, 1) for specimen in (0, 1) for record in (0, 1) for purpose in Purpose]
+    keys = [
+        (rig, specimen, record, purpose)
+        for rig in (0, 1)
+        for specimen in (0, 1)
+        for record in (0, 1)
+        for purpose in Purpose
+    ]
     first = {tuple(stream(7, *key).integers(0, 2**63, 2)) for key in keys}
     assert len(first) == len(keys)
     assert stream(7, 1, 1, 1, Purpose.NOISE).random() == stream(7, 1, 1, 1, Purpose.NOISE).random()
@@ -191,7 +206,9 @@ def test_a_scenario_is_plain_enough_to_be_stored_beside_its_record(recipe_with):
 
 
 def test_values_are_in_si_units(recipe_with):
-    recipe = recipe_with({"operation.shaft_rpm": 1800, "specimen.diametral_clearance_um": 8, "operation.slip_percent": 2})
+    recipe = recipe_with(
+        {"operation.shaft_rpm": 1800, "specimen.diametral_clearance_um": 8, "operation.slip_percent": 2}
+    )
     scenario = draw_scenarios(recipe, 0, 1)[0]
     assert scenario.record.conditions["shaft"] == pytest.approx(30.0)
     assert scenario.record.conditions["slip"] == pytest.approx(0.02)
@@ -200,5 +217,7 @@ def test_values_are_in_si_units(recipe_with):
 
 def test_a_spall_that_does_not_fit_its_ball_is_refused_by_name(recipe_with):
     wide = [{"kind": "healthy"}, {"kind": "ball", "width_mm": 9.0}]
-    with pytest.raises(RecipeError, match=r"^specimen \d+: a spall of 9 mm does not fit a ball radius .* keep width_mm below 5\.56"):
+    with pytest.raises(
+        RecipeError, match=r"^specimen \d+: a spall of 9 mm does not fit a ball radius .* keep width_mm below 5\.56"
+    ):
         draw_scenarios(recipe_with({"faults": wide}))

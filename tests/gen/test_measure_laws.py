@@ -1,0 +1,253 @@
+"""Laws of the sensor chain: levels, converter, path and background, on responses that need no simulation."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.signal import welch
+
+from gen.measure import LARGEST_COUNT, base_excited, measure
+from gen.scenarios import Background, Mode, Tone, draw_scenarios
+from gen.simulate import Response, lead_samples
+
+law = settings(deadline=None, max_examples=25)
+FS = 12_000.0
+FLOAT = {"recording.converter": {"kind": "float32"}}
+QUIET = Background(0.0, 1e-6, (), (0.0, 0.0), (), (), None, None)
+
+
+def response(recipe, n_records, make):
+    """What ``make(channel, time)`` gives as the response of every record, shape (record, channel, time)."""
+    shape = n_records, len(recipe.recording.channels), lead_samples(recipe) + recipe.n_samples
+    signal = np.broadcast_to(make(np.arange(shape[1])[:, None], np.arange(shape[2]) / FS), shape)
+    return Response(signal.copy(), np.full(n_records, 8), {})
+
+
+def silence(recipe, n_records):
+    return response(recipe, n_records, lambda channel, time: 0.0 * channel * time)
+
+
+def hiss(recipe, n_records, seed=0):
+    noise = np.random.default_rng(seed).standard_normal(lead_samples(recipe) + recipe.n_samples)
+    return response(recipe, n_records, lambda channel, time: (1 + channel) * noise)
+
+
+def rms(x):
+    return np.sqrt(np.mean(np.asarray(x, dtype=float) ** 2, axis=(1, 2)))
+
+
+def with_rig(scenarios, **changes):
+    return [replace(scenario, rig=replace(scenario.rig, **changes)) for scenario in scenarios]
+
+
+@pytest.fixture(scope="module")
+def levelled(recipe_with):
+    """A recipe whose levels are set by the ratio of bearing and background, and its scenarios."""
+    level = {
+        "kind": "snr",
+        "faulty_db": {"kind": "uniform", "low": -10, "high": 25},
+        "healthy_db": {"kind": "uniform", "low": -20, "high": 10},
+        "rms_m_s2": 1.0,
+    }
+    recipe = recipe_with(FLOAT | {"level": level, "recording.duration_s": 1.0})
+    return recipe, draw_scenarios(recipe)
+
+
+def test_the_bearing_stands_over_the_background_by_the_drawn_ratio(levelled):
+    recipe, scenarios = levelled
+    whole = measure(hiss(recipe, len(scenarios)), scenarios, recipe)
+    background = measure(silence(recipe, len(scenarios)), scenarios, recipe).signal
+    ratio = 20 * np.log10(rms(whole.signal - background) / rms(background))
+    drawn = [scenario.record.snr for scenario in scenarios]
+    np.testing.assert_allclose(ratio, drawn, atol=0.1)
+    np.testing.assert_allclose(whole.snr, drawn, atol=0.1)
+
+
+def test_a_record_has_the_drawn_rms_so_that_its_level_tells_nothing(levelled):
+    recipe, scenarios = levelled
+    found = rms(measure(hiss(recipe, len(scenarios)), scenarios, recipe).signal)
+    np.testing.assert_allclose(found, 1.0, atol=0.05)  # bearing and background are uncorrelated but for chance
+
+
+def test_the_background_does_not_know_the_class(recipe_with):
+    recipe = recipe_with(FLOAT)
+    scenarios = draw_scenarios(recipe)
+    quiet = silence(recipe, len(scenarios))
+    damaged = measure(quiet, scenarios, recipe).signal
+    sound = measure(quiet, [scenario.without_fault() for scenario in scenarios], recipe).signal
+    np.testing.assert_array_equal(damaged, sound)
+    assert rms(damaged).min() > 0.01
+
+
+def test_records_of_one_rig_share_their_colour_but_not_their_noise(recipe_with):
+    recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0})
+    scenarios = with_rig(draw_scenarios(recipe, 0, 2), background=Background(1.0, 1e-3, (), (0, 0), (), (), None, None))
+    one, other = measure(silence(recipe, 2), scenarios, recipe).signal[:, 0]
+    assert abs(np.corrcoef(one, other)[0, 1]) < 0.1
+    densities = welch(np.stack([one, other]), FS, nperseg=512)[1][:, 5:-5]
+    assert np.corrcoef(np.log(densities))[0, 1] > 0.98
+
+
+def test_a_record_is_measured_alike_alone_and_among_others(recipe_with):
+    recipe = recipe_with()
+    scenarios = draw_scenarios(recipe)
+    heard = hiss(recipe, len(scenarios))
+    together = measure(heard, scenarios, recipe)
+    for place in (0, 7, 23):
+        alone = measure(
+            Response(heard.acceleration[place : place + 1], heard.oversampling, {}), [scenarios[place]], recipe
+        )
+        np.testing.assert_array_equal(alone.signal[0], together.signal[place])
+
+
+@law
+@given(st.floats(1.0, 1000.0))
+def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recipe_with, full_scale):
+    adc = {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}}
+    recipe, exact = recipe_with(adc), recipe_with(FLOAT)
+    scenarios = draw_scenarios(recipe, 0, 3)
+    heard = response(recipe, 3, lambda channel, time: 40 * np.sin(2 * np.pi * 313 * time + channel))
+    counts, truth = measure(heard, scenarios, recipe), measure(heard, scenarios, exact)
+    assert counts.counts_per_unit == pytest.approx(LARGEST_COUNT / full_scale)
+    assert counts.signal.dtype == np.int16
+    assert np.abs(counts.signal.astype(int)).max() <= LARGEST_COUNT
+    scaled = truth.signal.astype(float) * counts.counts_per_unit
+    over = np.abs(scaled) > LARGEST_COUNT + 0.5
+    np.testing.assert_array_equal(counts.clipped, over.sum(axis=(1, 2)))
+    error = np.abs(counts.signal - scaled)[~over]
+    assert error.max(initial=0.0) <= 0.5 + 1e-6 * np.abs(scaled).max()
+    np.testing.assert_array_equal(counts.signal[over], np.sign(scaled[over]) * LARGEST_COUNT)
+
+
+def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
+    recipe = recipe_with(FLOAT | {"level": {"background_m_s2": 0.0}, "path.modes": None, "path.direct": 1.0})
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, gain=1.0)
+    heard = response(recipe, 1, lambda channel, time: 1e5 * np.cos(2 * np.pi * 500 * time))
+    measured = measure(heard, scenarios, recipe)
+    assert measured.counts_per_unit is None
+    assert measured.clipped.tolist() == [0]
+    expected = heard.acceleration[:, :, lead_samples(recipe) :]
+    np.testing.assert_allclose(measured.signal, expected, rtol=1e-6, atol=1e-2)
+
+
+def tone_through(recipe, scenarios, frequency):
+    """Amplitude and phase of a tone of amplitude 1 behind the path, as a complex number."""
+    n = lead_samples(recipe) + recipe.n_samples
+    tone = round(frequency * n / FS) * FS / n  # whole cycles: the filter runs around the ends
+    heard = response(recipe, 1, lambda channel, time: np.cos(2 * np.pi * tone * time))
+    seen = measure(heard, scenarios, recipe).signal[0, 0].astype(float)
+    time = (lead_samples(recipe) + np.arange(recipe.n_samples)) / FS
+    model = np.stack([np.cos(2 * np.pi * tone * time), -np.sin(2 * np.pi * tone * time)], axis=1)
+    real, imaginary = np.linalg.lstsq(model, seen)[0]
+    return tone, complex(real, imaginary)
+
+
+@law
+@given(
+    st.floats(100, 5500),
+    st.floats(0, 2),
+    st.lists(st.builds(Mode, st.floats(500, 5500), st.floats(0.006, 0.08), st.floats(-3, 3)), max_size=3),
+)
+def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonances(
+    recipe_with, frequency, direct, modes
+):
+    recipe = recipe_with(FLOAT | {"level": {"background_m_s2": 0.0}})
+    scenarios = with_rig(
+        draw_scenarios(recipe, 0, 1),
+        direct=direct,
+        modes=tuple(modes),
+        modulation=(0.0, 0.0),
+        gain=1.0,
+        background=QUIET,
+    )
+    tone, found = tone_through(recipe, scenarios, frequency)
+    expected = complex(direct)
+    for mode in modes:
+        stiff = mode.frequency**2 + 2j * mode.damping * mode.frequency * tone
+        expected += mode.gain * stiff / (stiff - tone**2)
+    assert found == pytest.approx(expected, abs=1e-4 * (1 + abs(expected)))
+
+
+@law
+@given(st.floats(500, 5000), st.floats(0.005, 0.1), st.floats(-2, 2))
+def test_a_resonance_follows_slow_motion_and_amplifies_at_its_frequency(frequency, damping, gain):
+    low, at = base_excited((Mode(frequency, damping, gain),), np.array([1e-3, frequency]))
+    assert low == pytest.approx(gain, abs=1e-5)
+    assert abs(at) == pytest.approx(abs(gain) * np.hypot(1, 2 * damping) / (2 * damping), rel=1e-9)
+
+
+@pytest.mark.parametrize("slope", [-0.3, 0.0, 1.0, 2.0])
+def test_the_noise_falls_with_the_drawn_slope_and_has_the_drawn_rms(recipe_with, slope):
+    recipe = recipe_with(FLOAT | {"recording.duration_s": 20.0})
+    coloured = replace(QUIET, slope=slope)
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=coloured, background_rms=0.3, gain=1.0)
+    noise = measure(silence(recipe, 1), scenarios, recipe).signal[0, 0].astype(float)
+    frequency, density = welch(noise, FS, nperseg=4096)
+    band = (frequency > 100) & (frequency < 5500)
+    fitted = np.polyfit(np.log(frequency[band]), np.log(density[band]), 1)[0]
+    assert -fitted == pytest.approx(slope, abs=0.05)
+    assert np.std(noise) == pytest.approx(0.3, rel=0.2 if slope == 2 else 0.03)  # its power is in few slow cycles
+
+
+def line(signal, frequency):
+    """Rms of a line at ``frequency``, by projection."""
+    wave = np.exp(-2j * np.pi * frequency * np.arange(len(signal)) / FS)
+    return np.sqrt(2) * abs(np.mean(signal * wave))
+
+
+def test_lines_of_the_machine_stand_at_their_frequencies_with_their_levels(recipe_with):
+    recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800})
+    sound = replace(QUIET, harmonics=(Tone(1, 0.5), Tone(2, 2.0)), tones=(Tone(1234.0, 3.0),))
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=sound, background_rms=1.0, gain=1.0)
+    signal = measure(silence(recipe, 1), scenarios, recipe).signal[0, 0].astype(float)
+    for frequency, level in ((30.0, 0.5), (60.0, 2.0), (1234.0, 3.0), (90.0, 0.0)):
+        assert line(signal, frequency) == pytest.approx(level, abs=0.03)
+
+
+def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
+    recipe = recipe_with(
+        FLOAT | {"recording.duration_s": 5.0, "operation.shaft_rpm": 1800, "path.modes": None, "path.direct": 1.0}
+    )
+    scenarios = draw_scenarios(recipe, 0, 1)
+    counts = {}
+    for kind, sound in (("knocks", Tone(2.0, 1e3)), ("impulses", Tone(40.0, 1e4))):
+        rigged = with_rig(scenarios, background=replace(QUIET, **{kind: sound}), background_rms=1.0, gain=1.0)
+        signal = measure(silence(recipe, 1), rigged, recipe).signal[0, 0]
+        counts[kind] = np.count_nonzero(np.abs(signal) > 30)
+    assert counts["knocks"] == pytest.approx(2 * 30 * 5, abs=1)
+    assert counts["impulses"] == pytest.approx(40 * 5, abs=4 * np.sqrt(200))
+
+
+def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
+    recipe = recipe_with(
+        FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800, "level": {"background_m_s2": 0.0}}
+    )
+    plain = with_rig(draw_scenarios(recipe, 0, 1), direct=1.0, modes=(), background=QUIET, gain=1.0)
+    heard = response(recipe, 1, lambda channel, time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
+    signal = measure(heard, with_rig(plain, modulation=(0.6, 0.2)), recipe).signal[0, 0].astype(float)
+    assert line(signal, 2000) == pytest.approx(1.0, abs=1e-3)
+    for order, depth in ((1, 0.6), (2, 0.2)):
+        assert line(signal, 2000 + 30 * order) == pytest.approx(depth / 2, abs=1e-3)
+        assert line(signal, 2000 - 30 * order) == pytest.approx(depth / 2, abs=1e-3)
+
+
+def test_two_channels_hear_the_same_lines_but_each_its_own_noise(recipe_with):
+    two = [{"name": "vertical", "body": "sensor"}, {"name": "horizontal", "body": "sensor", "angle_deg": 0}]
+    recipe = recipe_with(FLOAT | {"recording.channels": two, "recording.duration_s": 2.0})
+    sound = replace(QUIET, tones=(Tone(1000.0, 1.0),))
+    scenarios = with_rig(draw_scenarios(recipe, 0, 2), background=sound, background_rms=1.0, gain=1.0)
+    signal = measure(silence(recipe, 2), scenarios, recipe).signal.astype(float)
+    assert signal.shape == (2, 2, recipe.n_samples)
+    assert [line(channel, 1000) for channel in signal[0]] == pytest.approx([1.0, 1.0], abs=0.03)
+    assert np.corrcoef(signal[0])[0, 1] == pytest.approx(0.5, abs=0.05)  # half of each channel's power is the tone
+
+
+def test_a_record_that_diverged_leaves_the_others_as_they_are(recipe_with):
+    recipe = recipe_with()
+    scenarios = draw_scenarios(recipe, 0, 4)
+    fine, broken = hiss(recipe, 4), hiss(recipe, 4)
+    broken.acceleration[2] = np.nan
+    whole, rest = measure(fine, scenarios, recipe), measure(broken, scenarios, recipe)
+    np.testing.assert_array_equal(rest.signal[[0, 1, 3]], whole.signal[[0, 1, 3]])
