@@ -9,7 +9,8 @@ import numpy as np
 from hypothesis import strategies as st
 
 from gen.physics.batch import Motion, Record, Spall, n_terms
-from gen.physics.bearing import CATALOGUE, Bearing
+from gen.physics.bearing import Bearing
+from gen.physics.catalogue import CATALOGUE
 from gen.physics.motion import HIGHEST_ORDER, LOWEST_ORDER, N_ORDERS
 from gen.physics.rotor import Machine, sensor_springs
 

@@ -6,7 +6,7 @@ from itertools import cycle
 import numpy as np
 import pytest
 
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import CATALOGUE
 from gen.physics.integrate import integrate_lanes
 from gen.physics.kernel import MAX_SLOTS, N_STATE, make_shape, param_rows
 from gen.physics.lanes import LANES

@@ -23,7 +23,7 @@ from gen.importers.assemble import Collection, Import, Progress, import_recordin
 from gen.importers.files import FloatArray, UnusableError, one_column
 from gen.importers.matlab import read_matlab
 from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import CATALOGUE
 
 Subset = Literal["all", "wang"]
 

@@ -22,7 +22,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from gen.errors import CorpusError
-from gen.physics.bearing import CATALOGUE, Bearing
+from gen.physics.bearing import Bearing
+from gen.physics.catalogue import CATALOGUE
 
 Fault = Literal["healthy", "inner", "outer", "ball"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]

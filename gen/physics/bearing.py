@@ -8,14 +8,15 @@ With the outer ring fixed and pure rolling, the cage turns at ``(1 - gamma) / 2`
 
 import math
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 
 @dataclass(frozen=True)
 class Bearing:
-    """Geometry and material of a ball bearing, in SI units.
+    """Geometry, material and catalogue data of one row of a rolling bearing, in SI units; ``None`` is not known.
 
-    ``inner_conformity`` and ``outer_conformity`` are groove radius over ball diameter.
+    ``inner_conformity`` and ``outer_conformity`` are groove radius over ball diameter. In a roller bearing ``n_balls`` and
+    ``ball_diameter`` count and measure the rollers, and ``roller_length`` is the length that touches the raceways.
     """
 
     designation: str
@@ -27,6 +28,17 @@ class Bearing:
     outer_conformity: float = 0.52
     youngs_modulus: float = 207e9
     poisson_ratio: float = 0.30
+    rolling_element: Literal["ball", "roller"] = "ball"
+    roller_length: float | None = None
+    dynamic_rating: float | None = None
+    """Basic dynamic load rating, ISO 281 [N]."""
+    static_rating: float | None = None
+    """Basic static load rating, ISO 76 [N]."""
+    bore: float | None = None
+    outside_diameter: float | None = None
+    width: float | None = None
+    source: str = ""
+    """Where the numbers were seen."""
 
     @property
     def gamma(self) -> float:
@@ -56,7 +68,7 @@ class Orders(NamedTuple):
 def orders(bearing: Bearing) -> Orders:
     """Fault frequencies of pure rolling [orders of the shaft].
 
-    >>> [round(order, 4) for order in orders(CATALOGUE["6205"])]
+    >>> [round(order, 4) for order in orders(Bearing("6205", 9, 39.04e-3, 7.94e-3))]
     [0.3983, 3.5848, 5.4152, 2.3567]
     """
     gamma = bearing.gamma
@@ -71,19 +83,3 @@ def slipping_orders(bearing: Bearing, slip: float) -> Orders:
     ftf = rolling.ftf * (1 - slip)
     return Orders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), rolling.bsf)
 
-
-def _millimetres(designation: str, n_balls: int, pitch: float, ball: float) -> Bearing:
-    return Bearing(designation, n_balls, pitch * 1e-3, ball * 1e-3)
-
-
-# 6205: bearing data of the CWRU Bearing Data Center (1.537 in, 0.3126 in). NICE: Bechhoefer, MFPT fault data sets
-# (1.245 in, 0.235 in). 6205-paper: the rounded geometry of Ophel et al. The others: makers' pitch and ball sizes.
-CATALOGUE = {
-    bearing.designation: bearing
-    for bearing in (
-        _millimetres("6205", 9, 39.04, 7.94),
-        _millimetres("6205-paper", 9, 39.0, 8.0),
-        _millimetres("NICE", 8, 31.623, 5.969),
-        _millimetres("6203", 8, 28.5, 6.747),
-    )
-}

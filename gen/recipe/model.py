@@ -21,7 +21,7 @@ from pydantic import (
 
 from gen.corpus import Codec
 from gen.distributions import Distribution, Number, check_bounds, within
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import BALL_BEARINGS
 from gen.physics.kernel import MAX_BALLS, MAX_SLOTS
 
 _UNITS = {
@@ -131,7 +131,7 @@ class CatalogueBearing(Section):
     """One of the bearings of the catalogue, drawn per rig."""
 
     kind: Literal["catalogue"]
-    designations: Annotated[tuple[Literal[tuple(CATALOGUE)], ...], Field(min_length=1)]  # type: ignore[valid-type]
+    designations: Annotated[tuple[Literal[BALL_BEARINGS], ...], Field(min_length=1)]  # type: ignore[valid-type]
 
 
 class GeometryBearing(Section):

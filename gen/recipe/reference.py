@@ -1,6 +1,7 @@
 """Pages written from the code: ``python -m gen.recipe.reference ROOT`` renews them.
 
-``recipes/schema.json`` and ``recipes/README.md`` follow from the model of the recipe, ``docs/format.md`` from the schema of the corpus.
+``recipes/schema.json`` and ``recipes/README.md`` follow from the model of the recipe, ``docs/format.md`` from the schema of the corpus,
+``docs/catalogue.md`` from the catalogue of bearings.
 """
 
 import sys
@@ -13,6 +14,7 @@ from pydantic.fields import FieldInfo
 
 from gen.corpus import format_page
 from gen.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform
+from gen.physics.catalogue import catalogue_page
 from gen.recipe import model
 from gen.recipe.reading import recipe_purpose, recipe_schema, shipped_recipes
 
@@ -109,7 +111,12 @@ def _first_line(thing: type) -> str:
     return (thing.__doc__ or "").strip().splitlines()[0]
 
 
-PAGES = {"recipes/schema.json": recipe_schema, "recipes/README.md": readme, "docs/format.md": format_page}
+PAGES = {
+    "recipes/schema.json": recipe_schema,
+    "recipes/README.md": readme,
+    "docs/format.md": format_page,
+    "docs/catalogue.md": catalogue_page,
+}
 
 if __name__ == "__main__":
     for name, page in PAGES.items():

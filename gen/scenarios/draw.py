@@ -19,7 +19,8 @@ from gen.corpus import FAULTS, SPLITS
 from gen.distributions import Grid, weighted_index
 from gen.errors import RecipeError
 from gen.physics.batch import Spall
-from gen.physics.bearing import CATALOGUE, Bearing
+from gen.physics.bearing import Bearing
+from gen.physics.catalogue import CATALOGUE
 from gen.recipe import BallFault, Modes, RaceFault, Recipe, Section, split_unit
 from gen.scenarios.model import Background, Drawn, Mode, Operation, Purpose, Rig, Scenario, Specimen, Tone, stream
 

@@ -51,7 +51,7 @@ def told(run: Callable[..., Result]) -> Callable[..., dict[str, Any]]:
 @pytest.fixture
 def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
     """Start a command as a process group of its own, as a terminal does."""
-    script = tmp_path / "raceway.py"
+    script = tmp_path / "run_in_a_process.py"
     script.write_text(_START, encoding="utf-8")
     started = []
 

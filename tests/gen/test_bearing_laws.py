@@ -8,7 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.bearing import CATALOGUE, orders, slipping_orders
+from gen.physics.bearing import orders, slipping_orders
+from gen.physics.catalogue import CATALOGUE
 from tests.strategies import bearings
 
 law = settings(deadline=None, max_examples=100)

@@ -5,7 +5,8 @@
 
 import pytest
 
-from gen.physics.bearing import CATALOGUE, orders
+from gen.physics.bearing import orders
+from gen.physics.catalogue import CATALOGUE
 
 
 def test_the_orders_of_the_6205_are_those_of_its_data_sheet():

@@ -13,7 +13,8 @@ from distributed import LocalCluster
 from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, open_part, part_name, read_manifest, validate_corpus
 from gen.errors import CorpusError, RecipeError
 from gen.generate import generate
-from gen.physics.bearing import CATALOGUE, orders
+from gen.physics.bearing import orders
+from gen.physics.catalogue import CATALOGUE
 from gen.recipe import read_recipe
 from gen.replay import replay
 from gen.scenarios import draw_scenarios

@@ -14,7 +14,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import contact_factor, effective_modulus, load_deflection_factor, race_factors, series_factor
 from tests.strategies import bearings
 

@@ -17,7 +17,7 @@ from gen.importers.assemble import Collection, import_recordings
 from gen.importers.files import UnusableError
 from gen.importers.matlab import read_matlab
 from gen.importers.recordings import Candidate, Recording, cut
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import CATALOGUE
 
 law = settings(deadline=None, max_examples=60)
 NUMBERS = arrays.arrays(

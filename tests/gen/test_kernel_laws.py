@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.batch import Motion, Spall
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import CATALOGUE
 from gen.physics.lanes import LANES
 from gen.physics.rotor import Machine, sensor_springs
 from tests.reference import march_lanes, march_twin

@@ -9,7 +9,8 @@ import pytest
 
 from features.spectra import analytic_band, envelope_spectrum, fourier_coefficients
 from gen.measure import measure
-from gen.physics.bearing import CATALOGUE, orders
+from gen.physics.bearing import orders
+from gen.physics.catalogue import CATALOGUE
 from gen.scenarios import draw_scenarios
 from gen.simulate import simulate
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import CATALOGUE
 from gen.physics.spall import largest_drop
 
 DROPS = json.loads((Path(__file__).parents[1] / "golden" / "model.json").read_text())["largest_drops_6205_um"]

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.bearing import CATALOGUE
+from gen.physics.catalogue import CATALOGUE
 from gen.physics.spall import GEOMETRIC, PROFILES, RECTANGULAR, drop, largest_drop
 from tests.reference import rigid_path
 from tests.strategies import depths
@@ -99,3 +99,11 @@ def test_a_convex_race_lets_a_ball_drop_deeper_than_a_concave_one(width, share):
         for race in (RACES["inner"], RACES["outer"])
     ]
     assert drops[0] > drops[1] > 0
+
+
+@law
+@given(shares, st.floats(1e-4, 2e-3), races, st.floats(1.001, 100))
+def test_a_spall_deeper_than_a_ball_can_drop_might_as_well_have_no_bottom(share, width, race, deeper):
+    half = width / 2 / abs(race)
+    enough = fall(GEOMETRIC, 0.0, half, race)
+    assert fall(GEOMETRIC, share * half, half, race, deeper * enough) == fall(GEOMETRIC, share * half, half, race)

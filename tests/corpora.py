@@ -1,0 +1,61 @@
+"""Small corpora of random records, written without a simulation."""
+
+import numpy as np
+
+from gen.corpus import (
+    FAULTS,
+    SCHEMA,
+    SIGNAL,
+    Variable,
+    make_dataset,
+    part_name,
+    write_index,
+    write_manifest,
+    write_part,
+)
+
+FS = 1000.0
+COUNTS_PER_UNIT = 65.534
+EXTRA = (Variable("draws", "str", "1", "provenance", "drawn values"),)
+SIZES = (3, 4, 2)  # records of the parts
+
+
+def columns(first, n):
+    """Values of all per-record variables for records ``first`` to ``first + n``, no two alike where that can be."""
+    numbers = np.arange(first, first + n)
+    found = {variable.name: numbers * 1.5 + 0.25 for variable in SCHEMA if variable.dtype == "f8"}
+    found |= dict.fromkeys(("rig", "specimen", "recording", "n_spalls"), numbers)
+    texts = {"bearing": "6205", "source": "small/", "draws": "x" * 7}
+    found |= {name: [text + "y" * number for number in numbers] for name, text in texts.items()}
+    return found | {"fault": numbers % len(FAULTS), "split": numbers % 3, "sample_rate": np.full(n, FS)}
+
+
+def dataset(first, n, *, samples=50, kind="counts", channels=("a", "b")):
+    rng = np.random.default_rng(first)
+    counts = rng.integers(-32767, 32768, (n, len(channels), samples)).astype(np.int16)
+    floating = kind == "float32"
+    return make_dataset(
+        (counts / COUNTS_PER_UNIT).astype(np.float32) if floating else counts,
+        FS,
+        channels,
+        columns(first, n),
+        extra=EXTRA,
+        counts_per_unit=None if floating else COUNTS_PER_UNIT,
+        attributes={"title": "A corpus", "history": "made by a test"},
+    )
+
+
+def write_corpus(folder, sizes=SIZES, *, kind="counts", codec="zlib"):
+    """Parts of random records, index and manifest; the parts as they went in."""
+    (folder / "parts").mkdir(parents=True)
+    starts = np.concatenate([[0], np.cumsum(sizes)])
+    parts = [dataset(int(first), n, kind=kind) for first, n in zip(starts, sizes, strict=False)]
+    rows = [write_part(part, folder / "parts" / part_name(number), codec) for number, part in enumerate(parts)]
+    write_index(folder, rows)
+    write_manifest(folder, rows, complete=True)
+    return parts
+
+
+def physical(part):
+    scale = part[SIGNAL].attrs.get("scale_factor", 1.0)
+    return part[SIGNAL].values * scale

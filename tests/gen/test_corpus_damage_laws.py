@@ -1,0 +1,247 @@
+"""Laws of damage: what happens to a corpus on its way does not go unnoticed, and a failed write leaves nothing behind."""
+
+import json
+import os
+import resource
+import shutil
+import signal as signals
+
+import h5py
+import numpy as np
+import pytest
+
+from gen.corpus import (
+    SIGNAL,
+    open_corpus,
+    part_name,
+    read_manifest,
+    validate_corpus,
+    write_index,
+    write_manifest,
+    write_part,
+)
+from gen.errors import CorpusError
+from tests.corpora import SIZES, dataset, write_corpus
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("corpus") / "c"
+    write_corpus(folder)
+    return folder
+
+
+@pytest.fixture
+def copied(corpus, tmp_path):
+    return shutil.copytree(corpus, tmp_path / "copy")
+
+
+def flip(path, place=-100):
+    content = bytearray(path.read_bytes())
+    content[place] ^= 0xFF
+    path.write_bytes(content)
+
+
+def rename_in_manifest(folder, name):
+    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest["parts"][1]["name"] = name
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+
+
+def edit_index(folder, edit):
+    with h5py.File(folder / "corpus.nc", "r+") as index:
+        edit(index)
+
+
+def swap_sources(index, parts):
+    """Let the virtual signal look at other parts, or at parts in another order."""
+    shape, dtype, fill = index[SIGNAL].shape, index[SIGNAL].dtype, index[SIGNAL].fillvalue
+    attributes = {key: index[SIGNAL].attrs[key] for key in ("scale_factor", "add_offset", "units", "long_name", "role")}
+    del index[SIGNAL]
+    layout = h5py.VirtualLayout(shape, dtype)
+    first = 0
+    for name, records in parts:
+        layout[first : first + records] = h5py.VirtualSource(name, SIGNAL, (records, *shape[1:]), dtype)
+        first += records
+    fresh = index.create_virtual_dataset(SIGNAL, layout, fillvalue=fill)
+    fresh.attrs.update(attributes)
+    fresh.attrs["_FillValue"] = np.int16(fill)
+    for axis, name in enumerate(("record", "channel", "elapsed_time")):
+        fresh.dims[axis].attach_scale(index[name])
+
+
+PARTS = [(f"parts/{part_name(number)}", size) for number, size in enumerate(SIZES)]
+REFUSED = {
+    "a part is missing": (lambda c: (c / "parts" / part_name(1)).unlink(), r"part-00001\.nc: missing; copy it again"),
+    "a part is altered": (lambda c: flip(c / "parts" / part_name(1)), r"part-00001\.nc: altered, it is not the file"),
+    "a part is cut short": (lambda c: os.truncate(c / "parts" / part_name(2), 500), r"part-00002\.nc: altered"),
+    "a part is empty": (lambda c: os.truncate(c / "parts" / part_name(2), 0), r"part-00002\.nc: altered"),
+    "a part stands for another": (
+        lambda c: shutil.copyfile(c / "parts" / part_name(0), c / "parts" / part_name(2)), r"part-00002\.nc: altered",
+    ),
+    "the manifest is gone": (lambda c: (c / "manifest.json").unlink(), r"holds no manifest\.json, so it is no corpus"),
+    "the manifest is no JSON": (lambda c: (c / "manifest.json").write_text("{"), r"manifest\.json: not a corpus manifest"),
+    "the manifest lists no parts": (lambda c: (c / "manifest.json").write_text("{}"), r"manifest\.json: not a corpus manifest"),
+    "a part name leads out": (lambda c: rename_in_manifest(c, "../x"), r"'\.\./x' is not the name of a part"),
+    "a part name is a path": (lambda c: rename_in_manifest(c, "/etc/passwd"), r"is not the name of a part"),
+    "a part name is no text": (lambda c: rename_in_manifest(c, 7), r"7 is not the name of a part"),
+    "the index is gone": (lambda c: (c / "corpus.nc").unlink(), r"corpus\.nc: not a corpus index"),
+    "the index is cut short": (lambda c: os.truncate(c / "corpus.nc", 900), r"corpus\.nc: not a corpus index"),
+    "the index has no signal": (lambda c: edit_index(c, lambda i: i.pop(SIGNAL)), r"corpus\.nc: not a corpus index"),
+    "the index reads files elsewhere": (
+        lambda c: edit_index(c, lambda i: swap_sources(i, [("../secret.nc", 3), *PARTS[1:]])), r"index and manifest disagree about",
+    ),
+    "the index leaves a part out": (
+        lambda c: edit_index(c, lambda i: swap_sources(i, [PARTS[0], (PARTS[1][0], 6)])), r"index and manifest disagree about",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("damage", REFUSED)
+def test_a_damaged_corpus_is_refused_with_the_file_named_and_found_by_validation(copied, damage):
+    break_it, sentence = REFUSED[damage]
+    break_it(copied)
+    with pytest.raises(CorpusError, match=sentence):
+        open_corpus(copied)
+    problems = validate_corpus(copied)
+    assert len(problems) == 1
+    assert str(copied) in problems[0]
+    with pytest.raises(CorpusError, match=sentence):
+        raise CorpusError(problems[0])
+
+
+def set_value(index, name, value):
+    index[name][2] = value
+
+
+FOUND = {
+    "a label differs from its part": (lambda i: set_value(i, "fault", 0), "fault differs from corpus.nc"),
+    "a shaft rate differs": (lambda i: set_value(i, "shaft_rate", 99.0), "shaft_rate differs from corpus.nc"),
+    "the signal is scaled otherwise": (
+        lambda i: i[SIGNAL].attrs.modify("scale_factor", 1.0), "acceleration differs from corpus.nc",
+    ),
+    "parts of the signal are swapped": (
+        lambda i: swap_sources(i, [PARTS[1], PARTS[0], PARTS[2]]), "acceleration differs from corpus.nc",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("damage", FOUND)
+def test_validation_finds_an_index_that_does_not_say_what_its_parts_say(copied, damage):
+    break_it, sentence = FOUND[damage]
+    edit_index(copied, break_it)
+    assert any(sentence in problem for problem in validate_corpus(copied))
+
+
+@pytest.mark.xfail(strict=True, reason="validate_corpus compares values of the index with the parts, not attributes")
+@pytest.mark.parametrize(
+    ("name", "key", "value"), [(SIGNAL, "units", "g"), ("fault", "flag_meanings", "inner healthy outer ball")]
+)
+def test_validation_finds_an_index_whose_attributes_are_not_those_of_its_parts(copied, name, key, value):
+    edit_index(copied, lambda index: index[name].attrs.modify(key, value))
+    assert any(name in problem for problem in validate_corpus(copied))
+
+
+def damaged_part(change):
+    """A corpus whose last part was written with a damage of its own, everything else following from it."""
+
+    def make(folder):
+        (folder / "parts").mkdir(parents=True)
+        parts = [dataset(0, 3), change(dataset(3, 4))]
+        rows = [write_part(part, folder / "parts" / part_name(number)) for number, part in enumerate(parts)]
+        write_index(folder, rows)
+        write_manifest(folder, rows, complete=True)
+
+    return make
+
+
+def with_values(name, value):
+    def change(part):
+        part[name].values[1] = value
+        return part
+
+    return change
+
+
+def with_attribute(name, key, value):
+    def change(part):
+        part[name].attrs[key] = value
+        return part
+
+    return change
+
+
+FOUND_IN_PARTS = {
+    "a class that does not exist": (with_values("fault", 9), "fault has values outside 0..3"),
+    "a split that does not exist": (with_values("split", -1), "split has values outside 0..2"),
+    "a missing variable": (lambda part: part.drop_vars("bpfo"), "bpfo"),
+    "a wrong unit": (with_attribute("load", "units", "lbf"), "load is in 'lbf', not 'N'"),
+    "a wrong type": (lambda part: part.assign(rig=part["rig"].astype("f8").assign_attrs(part["rig"].attrs)), "rig"),
+    "no role": (with_attribute("draws", "role", "secret"), "draws needs a long_name and a role"),
+    "a missing sample": (with_values(SIGNAL, -32768), "has samples that are not finite"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("damage", FOUND_IN_PARTS)
+def test_validation_finds_a_part_that_is_not_in_the_format(tmp_path, damage):
+    change, sentence = FOUND_IN_PARTS[damage]
+    damaged_part(change)(tmp_path / "c")
+    assert any(sentence in problem for problem in validate_corpus(tmp_path / "c"))
+
+
+def test_a_corpus_under_way_is_refused_until_it_is_complete(copied):
+    write_manifest(copied, read_manifest(copied)["parts"][:2], complete=False)
+    with pytest.raises(CorpusError, match="unfinished; the raceway generate command that began it completes it"):
+        open_corpus(copied)
+
+
+def test_a_corpus_of_another_format_version_is_refused(copied):
+    manifest = json.loads((copied / "manifest.json").read_text()) | {"raceway_format": 99}
+    (copied / "manifest.json").write_text(json.dumps(manifest))
+    with pytest.raises(CorpusError, match="corpus format 99, this version of raceway reads format 1"):
+        open_corpus(copied)
+
+
+def test_sizes_alone_do_not_see_what_hashes_see(copied):
+    flip(copied / "parts" / part_name(1))
+    open_corpus(copied, check="size").close()
+    with pytest.raises(CorpusError, match="altered"):
+        open_corpus(copied, check="sha256")
+
+
+@pytest.fixture
+def small_disk():
+    """Let no file grow beyond 20 kB while a test runs, as on a disk that fills up."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    handler = signals.signal(signals.SIGXFSZ, signals.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    signals.signal(signals.SIGXFSZ, handler)
+
+
+@pytest.mark.usefixtures("small_disk")
+def test_a_full_disk_leaves_no_half_part(tmp_path):
+    large = dataset(0, 20, samples=5000)
+    with pytest.raises(CorpusError, match=r"part-00000\.nc: could not be written .* free some space"):
+        write_part(large, tmp_path / part_name(0), "none")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_full_disk_leaves_the_last_manifest_as_it_was(copied, request):
+    request.getfixturevalue("small_disk")  # after the copy
+    before = (copied / "manifest.json").read_bytes()
+    with pytest.raises(CorpusError, match=r"manifest\.json: could not be written"):
+        write_manifest(copied, read_manifest(copied)["parts"], complete=True, notes="x" * 30_000)
+    assert (copied / "manifest.json").read_bytes() == before
+    assert validate_corpus(copied) == []
+
+
+def test_a_full_disk_leaves_the_last_index_as_it_was(copied, request):
+    before = (copied / "corpus.nc").read_bytes()
+    assert len(before) > 20_000
+    request.getfixturevalue("small_disk")
+    with pytest.raises(CorpusError, match=r"corpus\.nc: could not be written"):
+        write_index(copied, read_manifest(copied)["parts"])
+    assert (copied / "corpus.nc").read_bytes() == before
+    assert {path.name for path in copied.iterdir()} == {"corpus.nc", "manifest.json", "parts"}
