@@ -27,6 +27,7 @@ class Bearing:
     outer_conformity: float = 0.52
     youngs_modulus: float = 207e9
     poisson_ratio: float = 0.30
+    roller_length: float | None = None
 
     @property
     def gamma(self) -> float:

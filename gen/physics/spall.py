@@ -11,8 +11,8 @@ from numba import njit
 
 from gen.physics.lanes import INLINE, cosine, sine
 
-PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular")
-GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR = range(4)
+PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular", "table")
+GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR, TABLE = range(5)
 RAISED_EDGE = 0.25  # share of the half width taken by each cosine flank
 
 
