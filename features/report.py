@@ -146,7 +146,7 @@ def plot_record(corpus: Path | str, record: int, path: Path | str, *, channel: i
         message = f"{path}: could not be written ({error}); free some space or choose another folder."
         raise CorpusError(message) from error
     finally:
-        with suppress(FileNotFoundError):
+        with suppress(OSError):
             temporary.unlink()
 
 

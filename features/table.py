@@ -157,7 +157,7 @@ def write_table(table: xr.Dataset, path: Path | str) -> None:
         message = f"{path}: could not be written ({error}); free some space or choose another folder."
         raise CorpusError(message) from error
     finally:
-        with suppress(FileNotFoundError):
+        with suppress(OSError):
             temporary.unlink()
 
 

@@ -105,8 +105,8 @@ def generate(
     """
     checked = read_recipe(recipe, seed=seed, records=records)
     directory = Path(directory)
-    known = _prepare(directory, Path(find_recipe(recipe)), checked)
     facts = _facts(checked, seed, records)
+    known = _prepare(directory, Path(find_recipe(recipe)), facts)
     outcomes: dict[int, Outcome] = {}
     counts = [min((part + 1) * checked.corpus.records_per_part, checked.n_records) for part in range(checked.n_parts)]
     done = 0
@@ -131,24 +131,32 @@ def generate(
     return Generated(directory, sum(row.records for row in rows), len(rows), sum(o.kept for o in ordered), failures)
 
 
-def _prepare(directory: Path, recipe_path: Path, recipe: Recipe) -> dict[str, str]:
-    """Make the folder ready, and return the hashes of the parts it already has."""
+def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, str]:
+    """Make the folder ready, and return the hashes of the parts it already has.
+
+    The manifest comes first: with it, a corpus of which nothing else is there yet can be told from a folder of something else.
+    """
     known: dict[str, str] = {}
+    begun = (directory / "manifest.json").exists()
     try:
         if directory.exists() and not directory.is_dir():
             raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
-        if (directory / "manifest.json").exists():
+        if begun and any((directory / "parts").glob("*.nc")):
             manifest = read_manifest(directory)
-            if manifest.get("recipe_sha256") != recipe_hash(recipe):
+            if manifest.get("recipe_sha256") != facts["recipe_sha256"]:
                 raise CorpusError(
                     f"{directory}: holds a corpus of another recipe, seed or size; choose another folder."
                 )
             known = {row.name: row.sha256 for row in manifest["parts"]}
-        elif directory.exists() and any(directory.iterdir()):
+        elif not begun and directory.exists() and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
-        (directory / "parts").mkdir(parents=True, exist_ok=True)
-        if not (directory / "recipe.yaml").exists():
+        else:
+            directory.mkdir(parents=True, exist_ok=True)
+            write_manifest(directory, [], complete=False, **facts)
             shutil.copyfile(recipe_path, directory / "recipe.yaml")
+        (directory / "parts").mkdir(exist_ok=True)
+        for left_behind in (directory / "parts").glob(".*.tmp"):  # by a process that was killed while it wrote
+            left_behind.unlink()
     except OSError as error:
         raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
     return known

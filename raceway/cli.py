@@ -10,8 +10,8 @@ from typing import Any, NoReturn
 import click
 
 from raceway import corpora, importing, learning
-from raceway.ending import Interrupted, NoReader, exit_code
-from raceway.signals import INTERRUPTED, interrupted, listen_for_signals
+from raceway.ending import NoReader, exit_code
+from raceway.signals import listen_for_signals
 
 
 class Raceway(click.Group):
@@ -27,12 +27,10 @@ class Raceway(click.Group):
         sys.exit(exit_code(lambda: super(Raceway, self).main(args, prog_name, **extra)))
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command, and tell what click would pass off as an abort or a plain failure."""
+        """Run a command; click would pass a closed output off as a plain failure."""
         try:
             result = super().invoke(ctx)
             sys.stdout.flush()
-        except KeyboardInterrupt:
-            raise Interrupted("interrupted; nothing is left half done, the same command starts again.") from None
         except BrokenPipeError:
             raise NoReader("") from None
         return result
@@ -96,9 +94,4 @@ def main() -> NoReturn:
     """Run the command line of this process."""
     os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # what matters of it comes as an exception
     listen_for_signals()
-    try:
-        cli.main(prog_name="raceway")
-    except SystemExit:
-        if interrupted():
-            os._exit(INTERRUPTED)  # a cluster cut short while it started would not end without noise
-        raise
+    cli.main(prog_name="raceway")

@@ -2,13 +2,14 @@
 
 import os
 import time
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from raceway import show
-from raceway.ending import DONE, FOUND_WANTING, Interrupted
+from raceway.ending import DONE, FOUND_WANTING
 from raceway.options import (
     corpus_argument,
     file_option,
@@ -20,6 +21,7 @@ from raceway.options import (
     seed_option,
 )
 from raceway.progress import compilation_noticed, notice, progress
+from raceway.signals import if_interrupted
 
 if TYPE_CHECKING:
     from gen.plan import Plan
@@ -33,10 +35,10 @@ WORTH_WORKERS = 1000  # records; a cluster takes about as long to start as these
 def recipes(as_json: bool) -> None:
     """List the recipes that ship with Raceway.
 
-    Give any of the names where a command wants a RECIPE. To write your own, copy the nearest one and change it:
+    Give any of the names where a command wants a RECIPE. To write your own, copy the nearest one and change it.
 
+      raceway recipes
       raceway plan quickstart
-      raceway plan my_recipe.yaml
     """
     from gen.recipe import recipe_purpose, shipped_recipes
 
@@ -130,21 +132,20 @@ def generate(
 
     wanted = read_recipe(recipe, seed=seed, records=records)
     start = time.monotonic()
-    try:
-        with compilation_noticed(), progress("generating", "records") as report:
-            made = generate_corpus(
-                recipe,
-                output,
-                workers=workers or _default_workers(wanted),
-                scheduler=scheduler,
-                seed=seed,
-                records=records,
-                progress=report,
-            )
-    except KeyboardInterrupt:
-        there = len(list((output / "parts").glob("part-*.nc")))
-        kept = f"{there} of {wanted.n_parts} parts are kept in {output}"
-        raise Interrupted(f"interrupted; {kept}, and the same command goes on from there.") from None
+    with (
+        if_interrupted(partial(_kept, output, wanted)),
+        compilation_noticed(),
+        progress("generating", "records") as report,
+    ):
+        made = generate_corpus(
+            recipe,
+            output,
+            workers=workers or _default_workers(wanted),
+            scheduler=scheduler,
+            seed=seed,
+            records=records,
+            progress=report,
+        )
     for failure in made.failures:
         notice(f"left out: {failure}")
     seconds = time.monotonic() - start
@@ -156,6 +157,13 @@ def generate(
     kept = f", {made.kept} of them kept from before" if made.kept else ""
     failed = f"; {len(made.failures)} could not be simulated and are left out" if made.failures else ""
     show.text(f"{made.directory}: {made.records:,} records in {made.parts:,} parts{kept}{failed}.")
+
+
+def _kept(corpus: Path, recipe: "Recipe") -> str:
+    parts = len(list((corpus / "parts").glob("part-*.nc")))
+    return (
+        f"interrupted; {parts} of {recipe.n_parts} parts are kept in {corpus}, and the same command goes on from there."
+    )
 
 
 def _default_workers(recipe: "Recipe") -> int:

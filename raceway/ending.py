@@ -11,15 +11,9 @@ from typing import Any
 
 import click
 
-from raceway.signals import INTERRUPTED, interrupted
+from raceway.signals import INTERRUPTED, leave_if_interrupted
 
 DONE, FOUND_WANTING, BAD_INPUT, INTERNAL_ERROR, NO_READER = 0, 1, 2, 70, 141
-
-
-class Interrupted(click.ClickException):
-    """Ctrl-C or SIGTERM; the message says what is kept and how to go on."""
-
-    exit_code = INTERRUPTED
 
 
 class NoReader(click.ClickException):
@@ -35,7 +29,8 @@ def exit_code(call: Callable[[], Any]) -> int:
     except NoReader:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to flush goes nowhere
         return NO_READER
-    except Exception as error:  # noqa: BLE001 - the outermost call: nothing may pass as a traceback
+    except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the outermost call: nothing may pass as a traceback
+        leave_if_interrupted()
         if os.environ.get("RACEWAY_TRACEBACK"):
             traceback.print_exc()
         code, sentence = _verdict(error)
@@ -43,10 +38,10 @@ def exit_code(call: Callable[[], Any]) -> int:
         return code
 
 
-def _verdict(error: Exception) -> tuple[int, str]:
-    if interrupted():
-        return INTERRUPTED, str(error) if isinstance(error, Interrupted) else "interrupted."
+def _verdict(error: BaseException) -> tuple[int, str]:
     match error:
+        case click.Abort() | KeyboardInterrupt():
+            return INTERRUPTED, "interrupted."
         case click.exceptions.NoArgsIsHelpError():
             return BAD_INPUT, error.format_message()
         case click.UsageError():
@@ -56,6 +51,8 @@ def _verdict(error: Exception) -> tuple[int, str]:
             return error.exit_code, error.format_message()
         case _ if _is_foreseen(error):
             return BAD_INPUT, str(error)
+        case _ if type(error).__name__ == "KilledWorker":
+            return BAD_INPUT, "the workers of the cluster died again and again; use fewer, or fewer records per part."
         case OSError(strerror=str() as reason):
             where = f"{error.filename}: " if error.filename else ""
             return BAD_INPUT, f"{where}{reason}; choose another place, or set it right there."
@@ -66,7 +63,7 @@ def _verdict(error: Exception) -> tuple[int, str]:
             return INTERNAL_ERROR, f"internal error ({what}); please report it with what RACEWAY_TRACEBACK=1 shows."
 
 
-def _is_foreseen(error: Exception) -> bool:
+def _is_foreseen(error: BaseException) -> bool:
     """Whether ``gen`` or ``features`` made the sentence; they are not imported to find out, since that takes seconds."""
     errors = sys.modules.get("gen.errors")
     return errors is not None and isinstance(error, errors.RacewayError)

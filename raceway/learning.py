@@ -155,7 +155,7 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
             f"warning: the model was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
         )
     if as_json:
-        show.as_json(scores)
+        show.as_json({"corpus": corpus, "model": model, "estimator": loaded.name, **show.plain(scores)})
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")
     _show_scores(scores)
@@ -191,8 +191,12 @@ def _show_scores(scores: "Scores") -> None:
     show_default=True,
     help="What stays on one side of every split.",
 )
-@click.option("--folds", type=int, default=5, show_default=True, help="Number of splits.")
-@click.option("--seed", type=int, default=0, show_default=True, help="Of splits, classifiers and bootstrap.")
+@click.option(
+    "--folds", type=click.IntRange(min=2), metavar="K", default=5, show_default=True, help="Number of splits."
+)
+@click.option(
+    "--seed", type=int, default=0, show_default=True, metavar="S", help="Of splits, classifiers and bootstrap."
+)
 @json_option
 def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int, seed: int, as_json: bool) -> None:
     """Score every baseline on DIR, beside its controls.

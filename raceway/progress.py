@@ -32,41 +32,45 @@ def progress(doing: str, unit: str) -> Iterator[Progress]:
 def _bar(doing: str, unit: str) -> Iterator[Progress]:
     from rich import progress as rich  # not above: raceway --help is to answer at once
     from rich.console import Console
-    from rich.text import Text
-
-    class Rate(rich.ProgressColumn):
-        """Units per second."""
-
-        def render(self, task: Any) -> Text:
-            speed = task.finished_speed or task.speed
-            return Text("" if speed is None else f"{speed:,.3g} {unit}/s")
 
     columns = (
         rich.TextColumn("{task.description}"),
         rich.BarColumn(),
         rich.MofNCompleteColumn(),
-        Rate(),
-        rich.TimeRemainingColumn(elapsed_when_finished=True),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("{task.fields[pace]}"),
     )
+    pace = _pace(unit)
     with rich.Progress(*columns, console=Console(stderr=True)) as bars:
-        task = bars.add_task(doing, total=None)
-        yield lambda done, total: bars.update(task, completed=done, total=total)
+        task = bars.add_task(doing, total=None, pace="")
+        yield lambda done, total: bars.update(task, completed=done, total=total, pace=pace(done, total))
 
 
 def _lines(doing: str, unit: str) -> Progress:
-    start = last = time.monotonic()
+    last, pace = time.monotonic(), _pace(unit)
 
     def report(done: int, total: int) -> None:
         nonlocal last
-        now = time.monotonic()
-        if done < total and now - last < SECONDS_BETWEEN_LINES:
-            return
-        last, took = now, max(now - start, 1e-9)
-        rate = done / took
-        rest = f"{show.duration((total - done) / rate)} left" if 0 < done < total else f"in {show.duration(took)}"
-        notice(f"{doing}: {done:,} of {total:,} {unit}, {rate:,.3g} {unit}/s, {rest}")
+        current = pace(done, total)
+        if done == total or time.monotonic() - last >= SECONDS_BETWEEN_LINES:
+            last = time.monotonic()
+            notice(f"{doing}: {done:,} of {total:,} {unit}, {current}")
 
     return report
+
+
+def _pace(unit: str) -> Callable[[int, int], str]:
+    """Rate and time left; from the third report on since the first, which may tell of what was there before."""
+    marks = [(time.monotonic(), 0)]
+
+    def pace(done: int, total: int) -> str:
+        marks.append((time.monotonic(), done))
+        (then, before), (now, _) = marks[0 if len(marks) < 4 else 1], marks[-1]
+        rate = max(done - before, 1e-9) / max(now - then, 1e-9)
+        left = f", {show.duration((total - done) / rate)} left" if done < total else ""
+        return f"{rate:,.3g} {unit}/s{left}"
+
+    return pace
 
 
 def notice(sentence: str) -> None:
@@ -85,7 +89,9 @@ def compilation_noticed() -> Iterator[None]:
         said = False
 
         def on_start(self, event: Any) -> None:
-            for_keeps = event.data["dispatcher"].stats.cache_path is not None  # the others are small, and compiled each time
+            for_keeps = (
+                event.data["dispatcher"].stats.cache_path is not None
+            )  # the others are small, and compiled each time
             if for_keeps and not self.said:
                 self.said = True
                 notice("compiling kernels for this machine: some seconds each, and kept for the next time.")

@@ -159,7 +159,7 @@ def save_model(model: Model, path: Path | str) -> None:
         message = f"{path}: could not be written ({error}); free some space or choose another folder."
         raise CorpusError(message) from error
     finally:
-        with suppress(FileNotFoundError):
+        with suppress(OSError):
             temporary.unlink()
 
 

@@ -60,6 +60,8 @@ def read_manifest(directory: Path) -> dict[str, Any]:
     if manifest.get("raceway_format") != FORMAT:
         found = manifest.get("raceway_format")
         raise CorpusError(f"{path}: corpus format {found!r}, this version of raceway reads format {FORMAT}.")
+    if not isinstance(manifest.get("complete"), bool) or not isinstance(manifest.get("records"), int):
+        raise CorpusError(f"{path}: does not say how complete the corpus is; generate or copy the corpus again.")
     for row in rows:
         if not isinstance(row.name, str) or not _PART_NAME.fullmatch(row.name):
             raise CorpusError(
@@ -156,7 +158,7 @@ def write_index(directory: Path, rows: list[PartRow]) -> None:
             f"{path}: could not be written ({error}); free some space or choose another folder."
         ) from error
     finally:
-        with suppress(FileNotFoundError):
+        with suppress(OSError):
             temporary.unlink()
 
 

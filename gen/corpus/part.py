@@ -94,7 +94,7 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
             f"{path}: could not be written ({error}); free some space or choose another folder."
         ) from error
     finally:
-        with suppress(FileNotFoundError):
+        with suppress(OSError):
             temporary.unlink()
     return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path))
 
@@ -129,5 +129,5 @@ def write_text_durably(text: str, path: Path) -> None:
             f"{path}: could not be written ({error}); free some space or choose another folder."
         ) from error
     finally:
-        with suppress(FileNotFoundError):
+        with suppress(OSError):
             temporary.unlink()

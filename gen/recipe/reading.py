@@ -51,6 +51,8 @@ def find_recipe(recipe: Path | str) -> Path:
     shipped = shipped_recipes()
     if str(recipe) in shipped:
         return shipped[str(recipe)]
+    if path.is_dir():
+        raise RecipeError(f"{recipe}: is a folder; give a recipe file, or the name of one of {', '.join(shipped)}.")
     near = difflib.get_close_matches(str(recipe), shipped, 1)
     guess = f"did you mean {near[0]}?" if near else "raceway recipes lists the names."
     raise RecipeError(f"{recipe}: neither a file nor one of the recipes {', '.join(shipped)}; {guess}")
@@ -126,7 +128,7 @@ def _sentences(error: ValidationError) -> list[str]:
         value = item["input"]
         shown = f"{value!r} " if isinstance(value, str | int | float | bool) or value is None else ""
         context = item.get("ctx", {})
-        text = item["msg"].removeprefix("Value error, ")
+        text = item["msg"].removeprefix("Value error, ").replace("Input should be", "it must be")
         match item["type"]:
             case "extra_forbidden":
                 sentence = f"{place}: no such key{_near(item['loc'])}"

@@ -23,7 +23,9 @@ from gen.physics.bearing import CATALOGUE, Bearing
 from gen.recipe import BallFault, Modes, RaceFault, Recipe, Section, split_unit
 from gen.scenarios.model import Background, Drawn, Mode, Operation, Purpose, Rig, Scenario, Specimen, Tone, stream
 
-_QUASI_RANDOM_DIMENSIONS = 64
+_DIMENSIONS = 64  # quasi-random values of an item; what it draws beyond them is plain random
+# dimensions of its own for each level: the same ones tied the first values of a specimen and its only record together (r up to 1)
+_FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
 
 
 class Draws:
@@ -100,15 +102,16 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
     if recipe.corpus.sampling == "random":
         return {number: np.empty(0) for number in range(first, stop)}
     engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
-    rng = stream(recipe.seed, 0, 0, 0, level)
-    engine = engine_type(_QUASI_RANDOM_DIMENSIONS, scramble=True, rng=rng)
+    rng = stream(recipe.seed, 0, 0, 0, Purpose.SAMPLING)
+    engine = engine_type(_FIRST_DIMENSION[level] + _DIMENSIONS, scramble=True, rng=rng)
     if first > 0:  # scipy's Sobol overflows on 0
         engine.fast_forward(first)
     with warnings.catch_warnings():
         warnings.filterwarnings(
             "ignore", "The balance properties", UserWarning
         )  # of the range; the whole sequence has them
-        return dict(zip(range(first, stop), engine.random(stop - first), strict=True))
+        points = engine.random(stop - first)[:, _FIRST_DIMENSION[level] :]
+    return dict(zip(range(first, stop), points, strict=True))
 
 
 def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:

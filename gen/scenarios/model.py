@@ -27,6 +27,7 @@ class Purpose(IntEnum):
     RECORD = 6
     MOTION = 7
     NOISE = 8
+    SAMPLING = 9
 
 
 @dataclass(frozen=True)

@@ -18,20 +18,19 @@ FLOAT = {"recording.converter": {"kind": "float32"}}
 QUIET = Background(0.0, 1e-6, (), (0.0, 0.0), (), (), None, None)
 
 
-def response(recipe, n_records, make):
-    """What ``make(channel, time)`` gives as the response of every record, shape (record, channel, time)."""
-    shape = n_records, len(recipe.recording.channels), lead_samples(recipe) + recipe.n_samples
-    signal = np.broadcast_to(make(np.arange(shape[1])[:, None], np.arange(shape[2]) / FS), shape)
+def response(recipe, n_records, wave):
+    """What ``wave(time)`` gives as the response of every record and channel."""
+    n = lead_samples(recipe) + recipe.n_samples
+    signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
     return Response(signal.copy(), np.full(n_records, 8), {})
 
 
 def silence(recipe, n_records):
-    return response(recipe, n_records, lambda channel, time: 0.0 * channel * time)
+    return response(recipe, n_records, np.zeros_like)
 
 
-def hiss(recipe, n_records, seed=0):
-    noise = np.random.default_rng(seed).standard_normal(lead_samples(recipe) + recipe.n_samples)
-    return response(recipe, n_records, lambda channel, time: (1 + channel) * noise)
+def hiss(recipe, n_records):
+    return response(recipe, n_records, lambda time: np.random.default_rng(0).standard_normal(len(time)))
 
 
 def rms(x):
@@ -108,7 +107,7 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
     adc = {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}}
     recipe, exact = recipe_with(adc), recipe_with(FLOAT)
     scenarios = draw_scenarios(recipe, 0, 3)
-    heard = response(recipe, 3, lambda channel, time: 40 * np.sin(2 * np.pi * 313 * time + channel))
+    heard = response(recipe, 3, lambda time: 40 * np.sin(2 * np.pi * 313 * time))
     counts, truth = measure(heard, scenarios, recipe), measure(heard, scenarios, exact)
     assert counts.counts_per_unit == pytest.approx(LARGEST_COUNT / full_scale)
     assert counts.signal.dtype == np.int16
@@ -122,9 +121,9 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
 
 
 def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
-    recipe = recipe_with(FLOAT | {"level": {"background_m_s2": 0.0}, "path.modes": None, "path.direct": 1.0})
-    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, gain=1.0)
-    heard = response(recipe, 1, lambda channel, time: 1e5 * np.cos(2 * np.pi * 500 * time))
+    recipe = recipe_with(FLOAT | {"path.modes": None, "path.direct": 1.0})
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, background_rms=0.0, gain=1.0)
+    heard = response(recipe, 1, lambda time: 1e5 * np.cos(2 * np.pi * 500 * time))
     measured = measure(heard, scenarios, recipe)
     assert measured.counts_per_unit is None
     assert measured.clipped.tolist() == [0]
@@ -136,7 +135,7 @@ def tone_through(recipe, scenarios, frequency):
     """Amplitude and phase of a tone of amplitude 1 behind the path, as a complex number."""
     n = lead_samples(recipe) + recipe.n_samples
     tone = round(frequency * n / FS) * FS / n  # whole cycles: the filter runs around the ends
-    heard = response(recipe, 1, lambda channel, time: np.cos(2 * np.pi * tone * time))
+    heard = response(recipe, 1, lambda time: np.cos(2 * np.pi * tone * time))
     seen = measure(heard, scenarios, recipe).signal[0, 0].astype(float)
     time = (lead_samples(recipe) + np.arange(recipe.n_samples)) / FS
     model = np.stack([np.cos(2 * np.pi * tone * time), -np.sin(2 * np.pi * tone * time)], axis=1)
@@ -153,14 +152,14 @@ def tone_through(recipe, scenarios, frequency):
 def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonances(
     recipe_with, frequency, direct, modes
 ):
-    recipe = recipe_with(FLOAT | {"level": {"background_m_s2": 0.0}})
+    recipe = recipe_with(FLOAT)
     scenarios = with_rig(
         draw_scenarios(recipe, 0, 1),
         direct=direct,
         modes=tuple(modes),
         modulation=(0.0, 0.0),
         gain=1.0,
-        background=QUIET,
+        background_rms=0.0,
     )
     tone, found = tone_through(recipe, scenarios, frequency)
     expected = complex(direct)
@@ -221,11 +220,9 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
 
 
 def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
-    recipe = recipe_with(
-        FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800, "level": {"background_m_s2": 0.0}}
-    )
-    plain = with_rig(draw_scenarios(recipe, 0, 1), direct=1.0, modes=(), background=QUIET, gain=1.0)
-    heard = response(recipe, 1, lambda channel, time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
+    recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800})
+    plain = with_rig(draw_scenarios(recipe, 0, 1), direct=1.0, modes=(), background=QUIET, background_rms=0.0, gain=1.0)
+    heard = response(recipe, 1, lambda time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
     signal = measure(heard, with_rig(plain, modulation=(0.6, 0.2)), recipe).signal[0, 0].astype(float)
     assert line(signal, 2000) == pytest.approx(1.0, abs=1e-3)
     for order, depth in ((1, 0.6), (2, 0.2)):

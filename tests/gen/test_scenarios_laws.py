@@ -92,6 +92,26 @@ def test_a_corpus_that_ends_early_is_the_beginning_of_the_whole(recipe_with, sam
     assert draw_scenarios(recipe_with({"corpus.sampling": sampling, "records": 9})) == whole[:9]
 
 
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+@pytest.mark.parametrize(("specimens", "records"), [(2, 1), (4, 1), (4, 3)])
+def test_what_was_drawn_for_a_rig_or_a_specimen_says_nothing_about_what_runs_on_it(
+    recipe_with, sampling, specimens, records
+):
+    size = {"corpus.rigs": 256, "corpus.specimens_per_rig": specimens, "corpus.records_per_specimen": records}
+    values = np.array(
+        [
+            (
+                np.log(scenario.rig.machine["shaft_mass"]),
+                scenario.specimen.properties["diametral_clearance"],
+                scenario.record.conditions["shaft"],
+            )
+            for scenario in draw_scenarios(recipe_with(size | {"corpus.sampling": sampling}))
+        ]
+    )
+    correlation = np.corrcoef(values.T)
+    assert np.abs(correlation - np.eye(3)).max() < 0.25  # 4 sigma of 256 independent rigs
+
+
 def test_another_seed_gives_other_rigs_specimens_and_records(recipe_with):
     one, other = (draw_scenarios(recipe_with({"seed": seed})) for seed in (1, 2))
     for here, there in zip(one, other, strict=True):

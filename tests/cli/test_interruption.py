@@ -1,0 +1,121 @@
+"""Whatever stops a command, what is finished stays, nothing half done stands under its name, and the same command goes on."""
+
+import os
+import re
+import signal
+import time
+
+import pytest
+
+from gen import generate
+from gen.corpus import validate_corpus
+
+N_PARTS = 24
+PATIENCE_S = 60
+
+
+@pytest.fixture(scope="module")
+def recipe(tiny_recipe, tmp_path_factory):
+    """The tiny recipe in many small parts, each of which takes as long as a large one."""
+    path = tmp_path_factory.mktemp("many") / "many.yaml"
+    path.write_text(tiny_recipe.read_text().replace("records_per_part: 12", "records_per_part: 2"))
+    return path
+
+
+@pytest.fixture(scope="module")
+def whole(recipe, tmp_path_factory):
+    """Bytes of the parts of an uninterrupted run."""
+    return part_bytes(generate(recipe, tmp_path_factory.mktemp("whole") / "corpus").directory)
+
+
+def part_bytes(folder):
+    return {path.name: path.read_bytes() for path in sorted((folder / "parts").iterdir())}
+
+
+def wait_for(folder, pattern):
+    """Return as soon as a file of that name is in the folder of parts."""
+    stop = time.monotonic() + PATIENCE_S
+    while time.monotonic() < stop:
+        if (folder / "parts").is_dir() and any(map(re.compile(pattern).fullmatch, os.listdir(folder / "parts"))):
+            return
+    pytest.fail(f"no {pattern} within {PATIENCE_S} s")
+
+
+@pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 2), (signal.SIGINT, 1)])
+def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_path, number, workers):
+    folder = tmp_path / "corpus"
+    process = start("generate", recipe, "-o", folder, "--workers", workers)
+    wait_for(folder, r"part-\d+\.nc")
+    os.killpg(process.pid, number)
+    output, errors = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, output) == (130, "")
+    said = re.fullmatch(
+        rf"interrupted; (\d+) of {N_PARTS} parts are kept in {re.escape(str(folder))}, and the same command goes on from there.\n",
+        errors,
+    )
+    assert said, errors
+    kept = {name: content for name, content in part_bytes(folder).items() if not name.startswith(".")}
+    assert 1 <= int(said[1]) <= len(kept) < N_PARTS
+    assert kept.items() <= whole.items()
+    assert generate(recipe, folder).kept == len(kept)
+    assert part_bytes(folder) == whole
+    assert validate_corpus(folder) == []
+
+
+def test_a_process_killed_while_it_writes_leaves_no_half_part(start, recipe, whole, tmp_path):
+    folder = tmp_path / "corpus"
+    process = start("generate", recipe, "-o", folder, "--workers", 1)
+    wait_for(folder, r"\.part-00003\.nc\.\d+\.tmp")
+    process.kill()
+    assert process.wait(PATIENCE_S) == -signal.SIGKILL
+    (folder / "parts" / ".part-00009.nc.1.tmp").write_bytes(b"half a part")
+    made = generate(recipe, folder)
+    assert made.kept >= 3
+    assert part_bytes(folder) == whole
+    assert validate_corpus(folder) == []
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_a_full_disk_gets_a_sentence_and_room_lets_the_command_go_on(start, recipe, whole, tmp_path, workers):
+    folder = tmp_path / "corpus"
+    largest_file = str(len(whole["part-00000.nc"]) // 2)
+    process = start("generate", recipe, "-o", folder, "--workers", workers, LARGEST_FILE=largest_file)
+    output, errors = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, output) == (2, "")
+    assert re.fullmatch(r".*part-\d+\.nc: could not be written \(.*\); free some space or choose another folder.\n", errors)
+    assert [path.name for path in (folder / "parts").glob("*.nc")] == []
+    generate(recipe, folder)
+    assert part_bytes(folder) == whole
+
+
+def test_an_interrupted_command_of_another_kind_leaves_nothing(start, tmp_path):
+    for number in range(4000):
+        (tmp_path / f"{number}.npy").write_bytes(b"no recording")
+    mapping = tmp_path / "mapping.yaml"
+    mapping.write_text(
+        "title: Pump\nbearing: '6205'\nunit: g\nsample_rate_hz: 2000\nshaft_rpm: 1480\n"
+        "files: [{path: '*.npy', fault: healthy, specimen: new}]\n"
+    )
+    process = start("import", "generic", mapping, "-o", tmp_path / "corpus")
+    stop = time.monotonic() + PATIENCE_S
+    while not list(tmp_path.glob(".corpus.*.tmp")):
+        assert time.monotonic() < stop
+    os.killpg(process.pid, signal.SIGINT)
+    output, errors = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, output) == (130, "")
+    assert errors == "interrupted; nothing is left half done, the same command starts again.\n"
+    assert not list(tmp_path.glob("*corpus*"))
+
+
+def test_a_reader_that_has_left_gets_no_traceback(start):
+    process = start("recipes")
+    process.stdout.close()
+    assert process.stderr.read() == ""
+    assert process.wait(PATIENCE_S) == 141
+
+
+def test_a_process_ends_with_the_code_of_its_command(start, tmp_path):
+    process = start("info", tmp_path / "nowhere")
+    output, errors = process.communicate(timeout=PATIENCE_S)
+    assert (process.returncode, output) == (2, "")
+    assert errors == f"{tmp_path}/nowhere: no such folder; give the folder of a corpus, the one that holds manifest.json.\n"

@@ -1,0 +1,38 @@
+"""A recipe so small that a corpus of it takes a second or two, and that corpus."""
+
+from pathlib import Path
+
+import pytest
+
+from gen import generate
+
+TINY = """\
+# Tiny: four classes on two machines, for tests.
+# Two kernels, which other tests use too.
+name: tiny
+title: Tiny corpus
+seed: 3
+corpus: {rigs: 2, specimens_per_rig: 8, records_per_specimen: 3, records_per_part: 12, split: {test: 0.25}}
+recording: {sample_rate_hz: 12000, duration_s: 0.1, settle_s: 0.05}
+bearing: {kind: catalogue, designations: ["6205"]}
+operation: {shaft_rpm: {kind: uniform, low: 4500, high: 6000}}
+faults:
+  - {kind: healthy}
+  - {kind: inner, width_mm: {kind: uniform, low: 0.5, high: 1}}
+  - {kind: outer, width_mm: {kind: uniform, low: 0.5, high: 1}}
+  - {kind: ball, width_mm: {kind: uniform, low: 0.5, high: 1}}
+"""
+
+
+@pytest.fixture(scope="session")
+def tiny_recipe(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """File of a recipe of 48 records of 0.1 s in four parts."""
+    path = tmp_path_factory.mktemp("recipe") / "tiny.yaml"
+    path.write_text(TINY, encoding="utf-8")
+    return path
+
+
+@pytest.fixture(scope="session")
+def tiny_corpus(tiny_recipe: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Folder of the corpus of ``tiny_recipe``; copy it before changing anything in it."""
+    return generate(tiny_recipe, tmp_path_factory.mktemp("tiny") / "corpus").directory

@@ -1,0 +1,203 @@
+"""Laws of the simulation of scenarios: what a record gives is its own, and fine enough, or it is refused."""
+
+import importlib
+import math
+
+import numpy as np
+import pytest
+
+from gen.errors import SimulationError
+from gen.physics.integrate import decimation_taps
+from gen.physics.rotor import fastest_swing
+from gen.scenarios import draw_scenarios
+from gen.simulate import FINE_STEP, lead_samples, physical_record, simulate, steps_per_sample, true_motion
+from tests.reference import march_lanes, slow_motion, waviness
+
+FS = 12_000.0
+MODULE = importlib.import_module("gen.simulate")  # the package gives the function under this name
+
+
+@pytest.fixture(scope="module")
+def simulated(recipe_with):
+    """The small recipe, its scenarios and their responses."""
+    recipe = recipe_with()
+    scenarios = draw_scenarios(recipe)
+    return recipe, scenarios, simulate(scenarios, recipe)
+
+
+def test_every_record_of_the_small_recipe_moves_and_none_diverges(simulated):
+    recipe, scenarios, response = simulated
+    assert response.acceleration.shape == (len(scenarios), 1, lead_samples(recipe) + recipe.n_samples)
+    assert np.isfinite(response.acceleration).all()
+    assert (response.acceleration.std(axis=2) > 1e-3).all()
+    assert response.failures == {}
+
+
+def test_a_record_gives_the_same_bits_alone_among_others_and_in_any_order(simulated):
+    recipe, scenarios, together = simulated
+    for place in (0, 5, 13, 23):
+        alone = simulate([scenarios[place]], recipe)
+        np.testing.assert_array_equal(alone.acceleration[0], together.acceleration[place])
+    backwards = simulate(scenarios[::-1], recipe)
+    np.testing.assert_array_equal(backwards.acceleration[::-1], together.acceleration)
+    np.testing.assert_array_equal(backwards.oversampling[::-1], together.oversampling)
+
+
+def test_a_record_does_not_depend_on_the_range_it_was_drawn_in(simulated):
+    recipe, _, together = simulated
+    some = simulate(draw_scenarios(recipe, 9, 17), recipe)
+    np.testing.assert_array_equal(some.acceleration, together.acceleration[9:17])
+
+
+def test_a_batch_larger_than_the_lanes_is_the_same_records_in_two_rounds(simulated):
+    recipe, scenarios, together = simulated
+    twice = simulate(scenarios + scenarios, recipe)
+    np.testing.assert_array_equal(twice.acceleration[: len(scenarios)], together.acceleration)
+    np.testing.assert_array_equal(twice.acceleration[len(scenarios) :], together.acceleration)
+
+
+def test_a_longer_settling_time_drops_more_and_changes_nothing_else(recipe_with):
+    short, long = (recipe_with({"recording.settle_s": settle, "recording.duration_s": 0.1}) for settle in (0.06, 0.11))
+    early = simulate(draw_scenarios(short, 0, 4), short).acceleration
+    late = simulate(draw_scenarios(long, 0, 4), long).acceleration
+    shift = round(0.05 * FS)
+    np.testing.assert_array_equal(late[..., :-shift], early[..., shift:])
+
+
+def test_a_response_is_the_decimated_motion_of_its_bodies_along_its_channels(recipe_with):
+    channels = [
+        {"name": "a", "body": "sensor", "angle_deg": 30},
+        {"name": "b", "body": "housing"},
+        {"name": "c", "body": "shaft", "angle_deg": 0},
+    ]
+    recipe = recipe_with({"recording.channels": channels, "faults": [{"kind": "healthy"}], "recording.oversampling": 8})
+    scenarios = draw_scenarios(recipe, 0, 3)
+    response = simulate(scenarios, recipe).acceleration
+    n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
+    taps = decimation_taps(8)
+    for trip, found in zip(
+        march_lanes(list(map(physical_record, scenarios)), n_knots, 8, 1 / FS), response, strict=True
+    ):
+        full_rate = trip.accelerations
+        tilted = math.cos(math.pi / 6) * full_rate[:, 4] + math.sin(math.pi / 6) * full_rate[:, 5]
+        for channel, signal in zip(found, (tilted, full_rate[:, 3], full_rate[:, 0]), strict=True):
+            decimated = np.convolve(signal, taps, mode="same")[::8]
+            inside = slice(100, recipe.n_samples)  # the whole filter within the march
+            expected = decimated[n_knots - found.shape[1] :][inside]
+            np.testing.assert_allclose(channel[inside], expected, rtol=0, atol=1e-9 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("factor", [2, 3, 8, 24])
+def test_decimation_passes_the_band_and_stops_what_would_fold_into_it(factor):
+    taps = decimation_taps(factor)
+    np.testing.assert_allclose(taps, taps[::-1], rtol=0, atol=1e-15)  # linear phase
+    cycles = np.arange(len(taps)) - len(taps) // 2
+    nyquist = np.linspace(0, factor, 40 * factor + 1)
+    gain = np.abs(np.exp(-1j * np.pi * np.outer(nyquist / factor, cycles)) @ taps)
+    np.testing.assert_allclose(gain[nyquist <= 0.75], 1, atol=2e-4)
+    assert (gain[nyquist >= 1.025] < 1.05e-4).all()
+
+
+def test_the_step_is_the_coarsest_that_is_fine_for_the_stiffest_mode(simulated):
+    recipe, scenarios, response = simulated
+    for scenario, factor in zip(scenarios, response.oversampling, strict=True):
+        record = physical_record(scenario)
+        swing = float(fastest_swing(record.machine, record.bearing.n_balls))
+        assert swing / (FS * factor) <= FINE_STEP
+        assert factor == steps_per_sample(record, scenario, recipe)
+
+
+def test_a_step_too_coarse_for_the_stiffest_mode_is_refused_before_it_runs(recipe_with, monkeypatch):
+    def never(*_args):
+        pytest.fail("the kernel ran")
+
+    monkeypatch.setattr(MODULE, "integrate", never)
+    recipe = recipe_with({"recording.oversampling": 1, "machine.resonator.frequency_hz": 3500})
+    need = r"is too fast for a step of 83\.3 us; raise recording\.oversampling to \d+ or leave it out\.$"
+    with pytest.raises(SimulationError, match=r"^record 0: its stiffest mode of \d+ Hz " + need):
+        simulate(draw_scenarios(recipe), recipe)
+
+
+def test_a_machine_too_stiff_for_any_step_is_refused(recipe_with):
+    recipe = recipe_with({"machine.resonator.frequency_hz": 50_000, "recording.sample_rate_hz": 8000})
+    scenarios = draw_scenarios(recipe, 0, 1)
+    with pytest.raises(SimulationError, match=r"needs more than 96 steps per sample at 8000 Hz; soften the machine"):
+        simulate(scenarios, recipe)
+
+
+def test_a_record_that_diverges_is_named_and_leaves_the_others_as_they_are(recipe_with, monkeypatch):
+    """Two rigs, one step per sample: a resonance at 5.9 kHz is beyond what Runge-Kutta holds (2.83 / dt), one at 1.5 kHz is not."""
+    monkeypatch.setattr(MODULE, "COARSEST_STEP", math.inf)
+    changes = {
+        "corpus.rigs": 2,
+        "recording.oversampling": 1,
+        "machine.resonator.frequency_hz": {"kind": "grid", "values": [1500, 5900]},
+    }
+    recipe = recipe_with(changes)
+    scenarios = draw_scenarios(recipe)
+    response = simulate(scenarios, recipe)
+    assert set(response.failures) == set(range(8, 16))
+    for place, sentence in response.failures.items():
+        assert sentence.startswith(f"record {place} diverged at t = 0.")
+        assert "with 1 steps per sample; raise recording.oversampling" in sentence
+    assert np.isnan(response.acceleration[8:]).all()
+    np.testing.assert_array_equal(response.acceleration[:8], simulate(scenarios[:8], recipe).acceleration)
+
+
+def test_half_the_step_gives_the_same_record_to_a_thousandth(recipe_with):
+    wandering = {"operation.slip_percent": 1, "operation.jitter_deg": 0.3, "operation.speed_wander_percent": 0.2}
+    coarse, fine = (recipe_with(wandering | {"recording.oversampling": steps}) for steps in (8, 16))
+    one, other = (simulate(draw_scenarios(recipe), recipe).acceleration[:, 0] for recipe in (coarse, fine))
+    difference = np.sqrt(np.mean((one - other) ** 2, axis=1) / np.mean(other**2, axis=1))
+    assert difference.max() < 1e-3
+
+
+def test_a_record_and_its_sound_twin_differ_by_the_fault_alone(simulated):
+    recipe, scenarios, response = simulated
+    sound = simulate([scenario.without_fault() for scenario in scenarios], recipe).acceleration
+    for place, scenario in enumerate(scenarios):
+        same = np.array_equal(sound[place], response.acceleration[place])
+        assert same == (scenario.specimen.fault == "healthy")
+    loud = response.acceleration.std(axis=2) / sound.std(axis=2)
+    assert np.median(loud[[scenario.specimen.fault == "inner" for scenario in scenarios]]) > 3
+
+
+def test_the_labels_hold_the_mean_rates_at_which_shaft_and_cage_really_turned(recipe_with):
+    wandering = {"operation.slip_percent": 2, "operation.speed_wander_percent": 1, "operation.mean_slip_percent": 1}
+    recipe = recipe_with(wandering)
+    start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
+    for scenario in draw_scenarios(recipe, 0, 6):
+        rate, found = true_motion(scenario, recipe)
+        angles = slow_motion(physical_record(scenario), 1 / FS, start + n).angles
+        shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
+        assert shaft * FS / n == pytest.approx(rate, rel=1e-4)
+        assert cage / shaft == pytest.approx(
+            found.ftf, rel=1e-3
+        )  # the mean of a product is not the product of the means
+        assert found.bpfo + found.bpfi == pytest.approx(9)
+
+
+def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_with_the_record(recipe_with):
+    scenarios = draw_scenarios(recipe_with({"specimen.waviness_nm": 25}), 0, 4)
+    turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
+    first, again, other = (physical_record(scenarios[place]) for place in (0, 1, 2))
+    np.testing.assert_array_equal(first.waves, again.waves)
+    assert not np.array_equal(first.waves, other.waves)
+    for record in (first, other):
+        both = waviness(record, turn, turn)
+        inner = waviness(record._replace(waves=record.waves * np.repeat([1, 0], len(record.waves) // 2)), turn, turn)
+        assert np.sqrt(np.mean(inner**2)) == pytest.approx(25e-9, rel=1e-6)
+        assert np.sqrt(np.mean((both - inner) ** 2)) == pytest.approx(25e-9, rel=1e-6)
+
+
+def test_outer_spalls_count_their_angle_from_the_load(recipe_with):
+    outer = [{"kind": "outer", "width_mm": 0.5, "angle_deg": 10}]
+    recipe = recipe_with({"faults": outer, "machine.load_angle_deg": -60})
+    spall = physical_record(draw_scenarios(recipe, 0, 1)[0]).spalls[0]
+    assert spall.angle == pytest.approx(math.radians(-50))
+
+
+def test_spalls_that_reach_under_more_balls_than_the_kernel_has_slots_are_refused(recipe_with):
+    wide = [{"kind": "inner", "width_mm": 14, "spalls": 2}]
+    with pytest.raises(SimulationError, match=r"^specimen 0: its spalls span more than 4 balls at a time"):
+        physical_record(draw_scenarios(recipe_with({"faults": wide}), 0, 1)[0])
