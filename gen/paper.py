@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks, get_window, hilbert
 
 from gen.physics.batch import Motion, Record, Spall, lay_out, n_terms, record_shape
-from gen.physics.bearing import CATALOGUE, orders
+from gen.physics.bearing import CATALOGUE
 from gen.physics.integrate import integrate
 from gen.physics.rotor import Machine
 

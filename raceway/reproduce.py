@@ -48,7 +48,10 @@ def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 
         show.as_json(table)
         return
     header = ("finding", "preset", "statement", "value", "accepted", "holds")
-    show.table(header, [(f.id, f.preset, f.finding, f"{f.value:.4g}", _span(f.accept), "yes" if f.holds else "NO") for f in found])
+    show.table(
+        header,
+        [(f.id, f.preset, f.finding, f"{f.value:.4g}", _span(f.accept), "yes" if f.holds else "NO") for f in found],
+    )
     show.text("", "Displacements in thousandths of a millimetre. What does not hold:")
     show.definitions({f"{f.preset} {f.id}": f.why for f in found if not f.holds})
     for name in PRESETS:

@@ -3,7 +3,6 @@
 A record is a :class:`Machine` in :class:`Motion` with its spalls. The last batch is padded with copies of its first record.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np

@@ -110,7 +110,8 @@ def ball_force(
         row = jitter_row(shape) + 2 * ball
         jitter = params[row * LANES + lane] + params[(row + 1) * LANES + lane] * half_step
         square = jitter * jitter
-        c, s = 1 - square * (0.5 - square * (1 / 24)), jitter * (1 - square * (1 / 6 - square * (1 / 120)))
+        c = 1 - square * (0.5 - square * (1 / 24 - square * (1 / 720)))
+        s = jitter * (1 - square * (1 / 6 - square * (1 / 120 - square * (1 / 5040))))
         ball_c, ball_s = ball_c * c - ball_s * s, ball_s * c + ball_c * s
     gap = params[GAP * LANES + lane]
     if len(shape.uneven):

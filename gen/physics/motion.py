@@ -13,8 +13,23 @@ import numpy as np
 from numba import njit
 
 from gen.physics.kernel import (
-    CAGE_C, CAGE_S, CAGE_TURN_C, CAGE_TURN_S, COS, FORCES, SHAFT_C, SHAFT_S, SHAFT_TURN_C, SHAFT_TURN_S, SIN, UNBALANCE_P, UNBALANCE_Q,
-    FloatArray, Shape, gap_row, jitter_row,
+    CAGE_C,
+    CAGE_S,
+    CAGE_TURN_C,
+    CAGE_TURN_S,
+    COS,
+    FORCES,
+    SHAFT_C,
+    SHAFT_S,
+    SHAFT_TURN_C,
+    SHAFT_TURN_S,
+    SIN,
+    UNBALANCE_P,
+    UNBALANCE_Q,
+    FloatArray,
+    Shape,
+    gap_row,
+    jitter_row,
 )  # fmt: skip
 from gen.physics.lanes import COMPILED, INLINE, LANES, cosine, sine
 from gen.physics.spall import TABLE, drop
