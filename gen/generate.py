@@ -233,7 +233,7 @@ def compile_kernels(recipe: Recipe) -> None:
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         done = set()
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
-            shape = record_shape(physical_record(scenario), scenario.specimen.profile)
+            shape = record_shape(physical_record(scenario))
             if shape not in done:
                 done.add(shape)
                 compile_kernel(shape, scenario)

@@ -129,7 +129,7 @@ def _batches(scenarios: list[Scenario], recipe: Recipe) -> Counter[tuple[Shape, 
     batches: Counter[tuple[Shape, int]] = Counter()
     for scenario in scenarios:
         record = physical_record(scenario)
-        batches[record_shape(record, scenario.specimen.profile), steps_per_sample(record, scenario, recipe)] += 1
+        batches[record_shape(record), steps_per_sample(record, scenario, recipe)] += 1
     return batches
 
 

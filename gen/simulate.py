@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 
 from gen.errors import SimulationError
 from gen.physics import motion
-from gen.physics.batch import Motion, Record, lay_out, n_terms, record_shape, slot_ranks
+from gen.physics.batch import Motion, Record, lay_out, n_terms, record_shape
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
 from gen.physics.hertz import load_deflection_factor
 from gen.physics.integrate import decimation_taps, integrate
-from gen.physics.kernel import MAX_SLOTS, Shape
+from gen.physics.kernel import Shape
 from gen.physics.lanes import LANES
 from gen.physics.rotor import Machine, fastest_swing, sensor_springs
 from gen.recipe import MAX_OVERSAMPLING, Recipe
@@ -72,8 +72,7 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
     factors = [steps_per_sample(record, scenario, recipe) for record, scenario in zip(records, scenarios, strict=True)]
     batches: dict[tuple[Shape, int], list[int]] = defaultdict(list)
     for place, record in enumerate(records):
-        shape = record_shape(record, scenarios[place].specimen.profile)
-        batches[shape, factors[place]].append(place)
+        batches[record_shape(record), factors[place]].append(place)
     acceleration = np.empty((len(records), len(recipe.recording.channels), lead + recipe.n_samples))
     failures: dict[int, str] = {}
     for (shape, factor), places in batches.items():
@@ -107,7 +106,7 @@ def lead_samples(recipe: Recipe) -> int:
 
 def kernel_shapes(scenarios: list[Scenario]) -> set[Shape]:
     """Shapes of all kernels that scenarios need."""
-    return {record_shape(physical_record(scenario), scenario.specimen.profile) for scenario in scenarios}
+    return {record_shape(physical_record(scenario)) for scenario in scenarios}
 
 
 def compile_kernel(shape: Shape, scenario: Scenario) -> None:
@@ -183,21 +182,9 @@ def physical_record(scenario: Scenario) -> Record:
     shift = rig.machine["load_angle"]
     spalls = tuple(s._replace(angle=s.angle + shift) if s.site == "outer" else s for s in specimen.spalls)
     frequencies, phases = _processes(specimen.bearing, conditions["shaft"], rng)
-    found = Record(
-        specimen.bearing,
-        _machine(scenario),
-        turning,
-        spalls,
-        frequencies,
-        phases,
-        pickups,
-        _waviness(scenario),
+    return Record(
+        specimen.bearing, _machine(scenario), turning, spalls, frequencies, phases, pickups, _waviness(scenario)
     )
-    if sum(len(slot_ranks(specimen.bearing, spall)) for spall in spalls) > MAX_SLOTS:
-        raise SimulationError(
-            f"specimen {specimen.number}: its spalls span more than {MAX_SLOTS} balls at a time; make them fewer or narrower."
-        )
-    return found
 
 
 def _machine(scenario: Scenario) -> Machine:

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 import click
 
-from raceway import corpora, importing, learning
+from raceway import corpora, importing, learning, reproduce
 from raceway.ending import NoReader, exit_code
 from raceway.signals import listen_for_signals
 
@@ -85,6 +85,7 @@ for command in (
     learning.evaluate,
     learning.benchmark,
     learning.bench,
+    reproduce.reproduce,
 ):
     cli.add_command(command)
 keep_examples(cli)

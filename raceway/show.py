@@ -14,7 +14,12 @@ from raceway.ending import printable
 
 def as_json(facts: Any) -> None:
     """Print a mapping or dataclass as one JSON object; NaN and infinity become null."""
-    click.echo(json.dumps(plain(facts), indent=1, allow_nan=False))
+    click.echo(json_text(facts), nl=False)
+
+
+def json_text(facts: Any) -> str:
+    """Text of a mapping or dataclass as one JSON object; NaN and infinity become null."""
+    return json.dumps(plain(facts), indent=1, allow_nan=False) + "\n"
 
 
 def plain(value: Any) -> Any:

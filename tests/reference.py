@@ -14,7 +14,7 @@ from numba import njit
 
 from gen.physics import kernel, lanes, motion, spall
 from gen.physics.batch import Record, lay_out, record_shape
-from gen.physics.kernel import ACCELERATION, AXES, CAGE_C, N_DYNAMIC, N_STATE, FloatArray, advance
+from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, PICKED, FloatArray, advance, param_rows
 from gen.physics.lanes import KERNEL, LANES
 from gen.physics.motion import ANGLE_ROWS, place_balls, to_next_knot
 
@@ -44,7 +44,7 @@ class Slow(NamedTuple):
     jitter: FloatArray
     """Of each ball in its pocket, shape (knot, ball) [rad]."""
     share: FloatArray
-    """Of its drop that a ball spall gives, shape (knot,) [1]."""
+    """Of its drop that a ball spall gives up to this knot, shape (knot,) [1]."""
 
 
 def process(record: Record, first: int, terms: int, times: FloatArray) -> FloatArray:
@@ -137,8 +137,7 @@ def contact_force(
     """Force of all balls on the housing, shape (axis,) [N]."""
     machine, n_balls = record.machine, record.bearing.n_balls
     places = angles[1] + 2 * np.pi * np.arange(n_balls) / n_balls
-    # the kernel turns a ball's direction by its jitter to first order
-    directions = np.stack([np.cos(places) - jitter * np.sin(places), np.sin(places) + jitter * np.cos(places)], axis=1)
+    directions = np.stack([np.cos(places + jitter), np.sin(places + jitter)], axis=1)
     cosine = machine.contact_cosine
     squeeze = cosine * directions @ (y[0:2] - y[2:4]) - gaps - drops(record, angles, places + jitter, share)
     touching = squeeze > 0
@@ -154,7 +153,8 @@ def right_hand_side(record: Record, slow: Slow, knot: float, at: int, tau: float
     MODEL.md section 4.2, term by term.
     """
     machine = record.machine
-    angles, gaps, jitter, share = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow)
+    angles, gaps, jitter = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow[:3])
+    share = slow.share[at + 1]
     force = contact_force(record, y, angles, gaps, jitter, share)
     (first, second, sensor), (u, v, w) = y[:6].reshape(3, 2), y[6:].reshape(3, 2)
     shaft_rate = (slow.angles[at + 1, 0] - slow.angles[at, 0]) / knot
@@ -200,6 +200,9 @@ def march_lanes(
     every = [record._replace(pickups=EVERY_ACCELERATION) for record in records]
     shape = record_shape(every[0])
     batch = lay_out(every, shape, knot)
+    params = np.zeros(param_rows(shape, n_steps) * LANES)
+    params[: batch.params.size] = batch.params
+    batch = batch._replace(params=params)
     if start is not None:
         batch.state.reshape(-1, LANES)[:N_DYNAMIC] = np.asarray(start)[:, None]
     states = np.empty((n_knots + 1, N_STATE, LANES))
@@ -208,7 +211,7 @@ def march_lanes(
     _march(shape, batch, knot / n_steps, n_steps, states, angles, history)
     accelerations = history.reshape(-1, AXES, LANES)
     return [
-        Trip(states[:, :N_DYNAMIC, i], accelerations[..., i], angles[..., i], states[:, CAGE_C:ACCELERATION, i])
+        Trip(states[:, :N_DYNAMIC, i], accelerations[..., i], angles[..., i], states[:, CAGE_C:PICKED, i])
         for i in range(len(records))
     ]
 
@@ -220,12 +223,13 @@ def _cached(sources: str):
     def march(shape, lanes, dt, n_steps, states, angles, history):
         _ = sources
         moves = np.empty(ANGLE_ROWS * LANES)
-        place_balls(shape, lanes, n_steps)
+        last, gaps = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
+        place_balls(shape, lanes, n_steps, moves, last)
         for knot in range(len(states)):
             states[knot] = lanes.state.reshape(N_STATE, LANES)
             angles[knot] = lanes.angles.reshape(ANGLE_ROWS, LANES)
             if knot + 1 < len(states):
-                to_next_knot(shape, lanes, n_steps, dt, moves)
+                to_next_knot(shape, lanes, knot, n_steps, dt, moves, last, gaps)
                 advance(shape, lanes.state, lanes.params, dt, n_steps, history, knot * n_steps * AXES)
 
     return march

@@ -3,7 +3,6 @@
 A record is a :class:`Machine` in :class:`Motion` with its spalls. The last batch is padded with copies of its first record.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -24,10 +23,13 @@ class Spall(NamedTuple):
     depth: float
     angle: float
     ball: int = 0
+    profile: str = "geometric"
+    table: tuple[float, ...] = ()
+    """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``."""
 
 
 class Motion(NamedTuple):
-    """How one record turns: rates, processes of unit rms with their rms, and the angles at the start [SI units]."""
+    """How one record turns and is pulled: rates, processes of unit rms with their rms, angles at the start, outer forces [SI units]."""
 
     shaft_rate: float
     speed_rms: float = 0.0
@@ -42,6 +44,17 @@ class Motion(NamedTuple):
     shaft_angle: float = 0.0
     cage_angle: float = 0.0
     spin_angle: float = 0.0
+    bow: float = 0.0
+    """Force that turns with the shaft whatever its speed: a bent shaft in its bearings [N]."""
+    twice_x: float = 0.0
+    twice_y: float = 0.0
+    """Forces at twice the shaft rate: misalignment [N]."""
+    knock: float = 0.0
+    knock_angle: float = 0.0
+    """Knock of the cage on the housing, once per turn of the cage when its first pocket is there [N, rad]."""
+    late_ball: int = -1
+    late_by: float = 0.0
+    """A ball that leads or lags its place in the cage [rad]."""
 
 
 class Record(NamedTuple):
@@ -59,6 +72,10 @@ class Record(NamedTuple):
     """Weights of the six accelerations in each channel, shape (channel, coordinate) [1]."""
     waves: FloatArray
     """Waviness amplitudes, shape (WAVE_ROWS,) [m], or empty."""
+    schedule: FloatArray = np.empty((0, 2))
+    """Factors of shaft rate and load, shape (knot, 2), or of shape (0, 2) if both are constant."""
+    displacement: bool = False
+    """Whether the channels give displacements [m] instead of accelerations [m s-2]."""
 
 
 def n_terms(n_balls: int) -> int:
@@ -72,27 +89,20 @@ def spall_reach(bearing: Bearing, spall: Spall) -> tuple[float, float]:
     return 0.5 * spall.width / arc, arc
 
 
-def slot_ranks(bearing: Bearing, spall: Spall) -> tuple[int, ...]:
-    """Which balls a spall needs a slot for, counted from the nearest: those that can be in it at the same time."""
-    if spall.site == "ball":
-        return (0,)
-    half, _ = spall_reach(bearing, spall)
-    pitch = 2 * math.pi / bearing.n_balls
-    beyond = max(0, math.ceil((half - 0.45 * pitch) / pitch))
-    return tuple(range(-beyond, beyond + 1))
-
-
-def record_shape(record: Record, profile: str = "geometric") -> Shape:
+def record_shape(record: Record) -> Shape:
     """Shape of the kernel that a record needs; it depends on nothing but the record."""
-    slots = sum(len(slot_ranks(record.bearing, spall)) for spall in record.spalls)
+    turning = record.motion
     return kernel.make_shape(
         record.bearing.n_balls,
-        slots,
         len(record.pickups),
-        PROFILES.index(profile),
+        displacement=record.displacement,
         resonator=record.machine.sensor_mass > 0,
         damped=record.machine.contact_damping > 0,
-        uneven=record.motion.jitter_rms > 0 or record.waves.size > 0,
+        uneven=bool(record.spalls) or record.waves.size > 0,
+        jittered=turning.jitter_rms > 0 or turning.late_by != 0,
+        forced=record.schedule.size > 0 or bool(turning.twice_x or turning.twice_y or turning.knock),
+        loose=record.machine.looseness > 0,
+        roller=record.bearing.roller_length is not None,
     )
 
 
@@ -116,38 +126,34 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
     waves = (
         np.concatenate([record.waves[:, None] for record in padded], axis=1) if records[0].waves.size else np.empty(0)
     )
+    spalls, tables = _spalls(padded)
     return motion.Lanes(
         state.ravel(),
         _params(padded, machines, shape).ravel(),
         _drive(padded, motions, machines, knot).ravel(),
         np.stack([motions.shaft_angle, motions.cage_angle, motions.spin_angle]).ravel(),
-        _spalls(padded, shape).ravel(),
+        spalls.ravel(),
         _phasors(padded, knot).ravel(),
         waves.ravel(),
+        _schedules(padded),
+        tables,
     )
 
 
 def _params(records: list[Record], machine: Machine, shape: Shape) -> FloatArray:
-    params = np.zeros((kernel.param_rows(shape), LANES))
+    params = np.zeros((kernel.jitter_row(shape), LANES))
     with np.errstate(divide="ignore"):
         sensor = np.where(np.asarray(machine.sensor_mass) > 0, 1 / np.asarray(machine.sensor_mass), 0.0)
     params[: kernel.N_CONSTANTS] = [
-        machine.load_deflection_factor, machine.contact_damping, machine.contact_cosine, machine.half_clearance, machine.ball_radius,
+        machine.load_deflection_factor, machine.contact_damping, machine.contact_cosine, machine.half_clearance,
         1 / np.asarray(machine.shaft_mass), 1 / np.asarray(machine.housing_mass), sensor, machine.ring_damping,
         machine.shaft_damping, machine.shaft_stiffness, machine.ring_stiffness_x, machine.ring_stiffness_y,
         machine.support_stiffness_x, machine.support_stiffness_y, machine.support_damping_x, machine.support_damping_y,
-        machine.sensor_stiffness_x, machine.sensor_stiffness_y, machine.sensor_damping, machine.load_x, machine.load_y,
+        machine.sensor_stiffness_x, machine.sensor_stiffness_y, machine.sensor_damping, machine.looseness,
     ]  # fmt: skip
+    params[kernel.FORCES], params[kernel.FORCES + 1] = machine.load_x, machine.load_y
     for lane, record in enumerate(records):
-        params[kernel.pickup_row(shape) :, lane] = record.pickups.ravel()
-        row = kernel.slot_row(shape)
-        for spall in record.spalls:
-            half, arc = spall_reach(record.bearing, spall)
-            race = record.bearing.inner_radius if spall.site != "outer" else -record.bearing.outer_radius
-            for _ in slot_ranks(record.bearing, spall):
-                columns = slice(row + kernel.HALF, row + kernel.SLOT_ROWS)
-                params[columns, lane] = half, arc, race, spall.depth
-                row += kernel.SLOT_ROWS
+        params[kernel.PICKUPS :, lane] = record.pickups.ravel()
     return params
 
 
@@ -158,19 +164,45 @@ def _drive(records: list[Record], motions: Motion, machine: Machine, knot: float
     return np.array([
         2 * np.pi * knot * np.asarray(motions.shaft_rate), 0.5 * (1 - gamma), 0.5 * size * (1 - gamma**2), motions.mean_slip,
         motions.speed_rms, motions.slip_rms, motions.spin_rms, motions.jitter_rms, motions.axis_offset, motions.axis_rms,
-        motions.axis_limit, motions.unbalance, machine.half_clearance, [bearing.inner_radius for bearing in bearings],
-        [bearing.outer_radius for bearing in bearings],
+        motions.axis_limit, motions.unbalance, machine.half_clearance, machine.ball_radius,
+        [bearing.inner_radius for bearing in bearings], [bearing.outer_radius for bearing in bearings],
+        machine.load_x, machine.load_y, motions.twice_x, motions.twice_y, motions.bow, motions.knock, motions.knock_angle,
+        motions.late_ball, motions.late_by,
     ])  # fmt: skip
 
 
-def _spalls(records: list[Record], shape: Shape) -> FloatArray:
+def _spalls(records: list[Record]) -> tuple[FloatArray, FloatArray]:
+    """Spalls, shape (spall, row, lane), and the tables of those that have one, shape (table, point)."""
     sites = {"inner": motion.INNER, "outer": motion.OUTER, "ball": motion.BALL_SITE}
-    spalls = np.zeros((len(shape.slots), motion.SPALL_ROWS, LANES))
+    spalls = np.zeros((max(len(record.spalls) for record in records), motion.SPALL_ROWS, LANES))
+    tables = [np.zeros(motion.TABLE_POINTS)]
     for lane, record in enumerate(records):
-        wanted = [(spall, rank) for spall in record.spalls for rank in slot_ranks(record.bearing, spall)]
-        for slot, (spall, rank) in enumerate(wanted):
-            spalls[slot, :, lane] = sites[spall.site], spall.angle, spall.ball, rank
-    return spalls
+        for place, spall in enumerate(record.spalls):
+            half, arc = spall_reach(record.bearing, spall)
+            profile = PROFILES.index(spall.profile)
+            spalls[place, :, lane] = (
+                sites[spall.site],
+                spall.angle,
+                spall.ball,
+                half,
+                arc,
+                spall.depth,
+                profile,
+                len(tables),
+            )
+            if spall.table:
+                points = np.linspace(0, len(spall.table) - 1, motion.TABLE_POINTS)
+                tables += [np.interp(points, np.arange(len(spall.table)), spall.table)] * 2
+    return spalls, np.stack(tables)
+
+
+def _schedules(records: list[Record]) -> FloatArray:
+    """Factors of shaft rate and load, shape (knot, 2, lane); 1 for records without a schedule of their own."""
+    length = max(len(record.schedule) for record in records)
+    schedules = np.ones((length, 2, LANES))
+    for lane, record in enumerate(records):
+        schedules[: len(record.schedule), :, lane] = record.schedule
+    return schedules
 
 
 def _phasors(records: list[Record], knot: float) -> FloatArray:

@@ -82,4 +82,3 @@ def slipping_orders(bearing: Bearing, slip: float) -> Orders:
     rolling = orders(bearing)
     ftf = rolling.ftf * (1 - slip)
     return Orders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), rolling.bsf)
-

@@ -171,7 +171,18 @@ more than one way.
 
 """
 
-_HEAD = ("designation", "elements", "number", "pitch", "diameter", "length", "angle", "bore x outside x width", "C", "C0")
+_HEAD = (
+    "designation",
+    "elements",
+    "number",
+    "pitch",
+    "diameter",
+    "length",
+    "angle",
+    "bore x outside x width",
+    "C",
+    "C0",
+)
 
 
 def catalogue_page() -> str:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.signal import firwin
 
 from gen.physics import kernel, lanes, motion, spall
-from gen.physics.kernel import N_DYNAMIC, FloatArray, Shape, advance
+from gen.physics.kernel import N_DYNAMIC, FloatArray, Shape, advance, param_rows
 from gen.physics.lanes import COMPILED, INLINE, KERNEL, LANES
 from gen.physics.motion import ANGLE_ROWS, Lanes, place_balls, to_next_knot
 
@@ -71,15 +71,12 @@ def integrate_lanes(
     shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
 ) -> tuple[FloatArray, NDArray[np.int64]]:
     """See :func:`integrate`."""
+    params = np.zeros(param_rows(shape, n_steps) * LANES)
+    params[: batch.params.size] = batch.params
     batch = Lanes(
-        batch.state.copy(),
-        batch.params.copy(),
-        batch.drive,
-        batch.angles.copy(),
-        batch.spalls,
-        batch.phasors.copy(),
-        batch.waves,
-    )
+        batch.state.copy(), params, batch.drive, batch.angles.copy(), batch.spalls, batch.phasors.copy(), batch.waves,
+        batch.schedule, batch.tables,
+    )  # fmt: skip
     n_channels, n_taps = len(shape.channels), taps.size
     width = n_channels * LANES
     lead = (n_taps - 1) // (2 * n_steps) + n_settle
@@ -88,10 +85,11 @@ def integrate_lanes(
     diverged = np.full(LANES, -1)
     moves = np.empty(ANGLE_ROWS * LANES)
     total = np.empty(width)
-    place_balls(shape, batch, n_steps)
+    last, gaps = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
+    place_balls(shape, batch, n_steps, moves, last)
     for first in range(0, lead + n_out, _BLOCK):
         for knot in range(_BLOCK):
-            to_next_knot(shape, batch, n_steps, dt, moves)
+            to_next_knot(shape, batch, first + knot, n_steps, dt, moves, last, gaps)
             advance(
                 shape,
                 batch.state,

@@ -17,32 +17,28 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gen.physics.lanes import INLINE, LANES
-from gen.physics.spall import drop
 
 FloatArray = NDArray[np.float64]
 
 MAX_BALLS = 24
-MAX_SLOTS = 4
 _COUNT = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None]
-COS = np.cos(
-    2 * np.pi * np.arange(MAX_BALLS) / _COUNT
-)  # (number of balls, ball): direction of each ball in the cage's frame
+COS = np.cos(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)  # (number of balls, ball): direction in the cage's frame
 SIN = np.sin(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)
 
 AXES = 6
-# Rows of ``state``: coordinates x1 y1 x2 y2 xr yr, their rates, the directions of cage and shaft, and the last accelerations.
+# Rows of ``state``: coordinates x1 y1 x2 y2 xr yr, their rates, the directions of cage and shaft, and what was last picked up.
 N_DYNAMIC = 2 * AXES
-CAGE_C, CAGE_S, SHAFT_C, SHAFT_S, ACCELERATION = range(N_DYNAMIC, N_DYNAMIC + 5)
-N_STATE = ACCELERATION + AXES
-# Rows of ``params``: constants of the record, then what holds until the next knot, then balls, slots and pickup weights.
+CAGE_C, CAGE_S, SHAFT_C, SHAFT_S, PICKED = range(N_DYNAMIC, N_DYNAMIC + 5)
+N_STATE = PICKED + AXES
+# Rows of ``params``: constants of the record, what holds until the next knot (forces with their slopes per half step), the weights of
+# the pickups, the jitter of each ball with its slope, and the gap under each ball at every half step.
 (
-    STIFFNESS, DAMPING, COSA, GAP, BALL, IM1, IM2, IMR, C1, C0, K0, K1X, K1Y, K2X, K2Y, C2X, C2Y, KRX, KRY, CR, WX, WY, N_CONSTANTS,
-) = range(23)  # fmt: skip
-CAGE_TURN_C, CAGE_TURN_S, SHAFT_TURN_C, SHAFT_TURN_S, UNBALANCE_P, UNBALANCE_Q, BALLS = range(
-    N_CONSTANTS, N_CONSTANTS + 7
-)
-GAP0, GAP1, JITTER0, JITTER1, BALL_ROWS = range(5)  # of each ball, from here to the next knot; slopes are per half step
-OFFSET0, OFFSET1, SHARE0, SHARE1, UNDER, HALF, ARC, RACE, DEPTH, SLOT_ROWS = range(10)  # of each slot, under ball UNDER
+    STIFFNESS, DAMPING, COSA, GAP, IM1, IM2, IMR, C1, C0, K0, K1X, K1Y, K2X, K2Y, C2X, C2Y, KRX, KRY, CR, LOOSENESS, N_CONSTANTS,
+) = range(21)  # fmt: skip
+(
+    CAGE_TURN_C, CAGE_TURN_S, SHAFT_TURN_C, SHAFT_TURN_S, UNBALANCE_P, UNBALANCE_Q, FORCES, N_HELD,
+) = (*range(N_CONSTANTS, N_CONSTANTS + 7), N_CONSTANTS + 6 + 8)  # fmt: skip
+PICKUPS = N_HELD
 
 Motion = tuple[float, float, float, float]
 
@@ -51,85 +47,78 @@ class Shape(NamedTuple):
     """What a compiled kernel contains, as lengths of tuples (see :mod:`gen.physics.lanes`); a record pays for nothing else."""
 
     balls: tuple[None, ...]
-    slots: tuple[None, ...]
     channels: tuple[None, ...]
-    profile: tuple[None, ...]
+    displacement: tuple[None, ...]
+    """Whether channels pick up displacements instead of accelerations."""
     resonator: tuple[None, ...]
     damped: tuple[None, ...]
     uneven: tuple[None, ...]
+    """Whether gaps differ from ball to ball and in time: spalls, waviness."""
+    jittered: tuple[None, ...]
+    """Whether balls leave their place in the cage."""
+    forced: tuple[None, ...]
+    """Whether forces change between knots: load profiles, misalignment, cage knocks."""
+    loose: tuple[None, ...]
+    roller: tuple[None, ...]
 
 
-def make_shape(
-    n_balls: int, n_slots: int, n_channels: int, profile: int, *, resonator: bool, damped: bool, uneven: bool
-) -> Shape:
-    """Shape of a kernel: 0, 1 or 4 spall slots; ``uneven`` if gaps and angles differ from ball to ball and in time."""
-    slots = n_slots if n_slots < 2 else MAX_SLOTS
-    counts = (n_balls, slots, n_channels, profile, resonator, damped, uneven)
-    return Shape(*((None,) * int(count) for count in counts))
-
-
-@njit(**INLINE)
-def slot_row(shape: Shape) -> int:
-    """First row of the slots in ``params``."""
-    return BALLS + len(shape.balls) * BALL_ROWS
-
-
-@njit(**INLINE)
-def pickup_row(shape: Shape) -> int:
-    """First row of the pickup weights in ``params``."""
-    return slot_row(shape) + len(shape.slots) * SLOT_ROWS
+def make_shape(n_balls: int, n_channels: int, **flags: bool) -> Shape:
+    """Shape of a kernel; every flag of :class:`Shape` that is not given is off."""
+    counts = {"balls": n_balls, "channels": n_channels, **flags}
+    return Shape(*((None,) * int(counts.get(field, 0)) for field in Shape._fields))
 
 
 @njit(**INLINE)
-def param_rows(shape: Shape) -> int:
+def jitter_row(shape: Shape) -> int:
+    """First row of the jitters in ``params``, two for each ball."""
+    return PICKUPS + len(shape.channels) * AXES
+
+
+@njit(**INLINE)
+def gap_row(shape: Shape) -> int:
+    """First row of the gaps in ``params``: half step after half step, every ball of each."""
+    return jitter_row(shape) + 2 * len(shape.balls)
+
+
+@njit(**INLINE)
+def param_rows(shape: Shape, n_steps: int) -> int:
     """Number of rows of ``params``."""
-    return pickup_row(shape) + len(shape.channels) * AXES
+    return gap_row(shape) + (2 * n_steps + 1) * len(shape.balls)
 
 
 @njit(**INLINE)
-def slot_drop(shape: Shape, slot: int, tau: float, lane: int, params: FloatArray) -> tuple[float, float]:
-    """Which ball sits over a slot, and how far it has dropped [m]."""
-    if slot >= len(shape.slots):
-        return -1.0, 0.0
-    row = slot_row(shape) + slot * SLOT_ROWS
-    offset = params[(row + OFFSET0) * LANES + lane] + params[(row + OFFSET1) * LANES + lane] * tau
-    share = params[(row + SHARE0) * LANES + lane] + params[(row + SHARE1) * LANES + lane] * tau
-    half, arc = params[(row + HALF) * LANES + lane], params[(row + ARC) * LANES + lane]
-    race, depth = params[(row + RACE) * LANES + lane], params[(row + DEPTH) * LANES + lane]
-    fall = drop(len(shape.profile), offset, half, arc, params[BALL * LANES + lane], race, depth)
-    return params[(row + UNDER) * LANES + lane], share * fall
+def ninth_root(x: float) -> float:
+    """Ninth root of a number that is not negative, to 1e-13: Halley's steps from the eighth root, which square roots give."""
+    y = math.sqrt(math.sqrt(math.sqrt(x))) + 1e-300
+    for _ in range(3):
+        cube = y * y * y
+        ninth = cube * cube * cube
+        y *= (8 * ninth + 10 * x) / (10 * ninth + 8 * x + 1e-300)
+    return y
 
 
 @njit(**INLINE)
 def ball_force(
-    shape: Shape,
-    ball: int,
-    motion: Motion,
-    drops: tuple[float, ...],
-    tau: float,
-    lane: int,
-    params: FloatArray,
+    shape: Shape, ball: int, motion: Motion, half_step: int, lane: int, params: FloatArray
 ) -> tuple[float, float]:
-    """Force of one ball on the inner ring's reaction, along the axes of the cage's frame [N]."""
+    """Force of one ball on the housing, along the axes of the cage's frame [N]."""
     if ball >= len(shape.balls):
         return 0.0, 0.0
     x, y, u, v = motion
     ball_c, ball_s = COS[len(shape.balls), ball], SIN[len(shape.balls), ball]
+    if len(shape.jittered):
+        row = jitter_row(shape) + 2 * ball
+        jitter = params[row * LANES + lane] + params[(row + 1) * LANES + lane] * half_step
+        square = jitter * jitter
+        c = 1 - square * (0.5 - square * (1 / 24 - square * (1 / 720)))
+        s = jitter * (1 - square * (1 / 6 - square * (1 / 120 - square * (1 / 5040))))
+        ball_c, ball_s = ball_c * c - ball_s * s, ball_s * c + ball_c * s
     gap = params[GAP * LANES + lane]
     if len(shape.uneven):
-        row = BALLS + ball * BALL_ROWS
-        gap = params[(row + GAP0) * LANES + lane] + params[(row + GAP1) * LANES + lane] * tau
-        jitter = params[(row + JITTER0) * LANES + lane] + params[(row + JITTER1) * LANES + lane] * tau
-        ball_c, ball_s = ball_c - jitter * ball_s, ball_s + jitter * ball_c
-    squeeze = x * ball_c + y * ball_s - gap
-    if len(shape.slots) > 0:
-        squeeze -= drops[1] if drops[0] == ball else 0.0
-    if len(shape.slots) > 1:
-        squeeze -= drops[3] if drops[2] == ball else 0.0
-        squeeze -= drops[5] if drops[4] == ball else 0.0
-        squeeze -= drops[7] if drops[6] == ball else 0.0
-    squeeze = max(squeeze, 0.0)
-    force = params[STIFFNESS * LANES + lane] * (squeeze * math.sqrt(squeeze))
+        gap = params[(gap_row(shape) + half_step * len(shape.balls) + ball) * LANES + lane]
+    squeeze = max(x * ball_c + y * ball_s - gap, 0.0)
+    power = ninth_root(squeeze) if len(shape.roller) else math.sqrt(squeeze)
+    force = params[STIFFNESS * LANES + lane] * (squeeze * power)
     if len(shape.damped):
         approach = u * ball_c + v * ball_s
         damped = max(force + params[DAMPING * LANES + lane] * approach, 0.0)
@@ -142,22 +131,21 @@ def four_balls(
     shape: Shape,
     first: int,
     motion: Motion,
-    drops: tuple[float, ...],
-    tau: float,
+    half_step: int,
     lane: int,
     params: FloatArray,
 ) -> tuple[float, float]:
     """Force of four balls; a loop over balls would not be unrolled before LLVM looks at the loop over lanes."""
-    ax, ay = ball_force(shape, first, motion, drops, tau, lane, params)
-    bx, by = ball_force(shape, first + 1, motion, drops, tau, lane, params)
-    cx, cy = ball_force(shape, first + 2, motion, drops, tau, lane, params)
-    dx, dy = ball_force(shape, first + 3, motion, drops, tau, lane, params)
+    ax, ay = ball_force(shape, first, motion, half_step, lane, params)
+    bx, by = ball_force(shape, first + 1, motion, half_step, lane, params)
+    cx, cy = ball_force(shape, first + 2, motion, half_step, lane, params)
+    dx, dy = ball_force(shape, first + 3, motion, half_step, lane, params)
     return (ax + bx) + (cx + dx), (ay + by) + (cy + dy)
 
 
 @njit(**INLINE)
 def contact_force(
-    shape: Shape, motion: Motion, c: float, s: float, tau: float, lane: int, params: FloatArray
+    shape: Shape, motion: Motion, c: float, s: float, half_step: int, lane: int, params: FloatArray
 ) -> tuple[float, float]:
     """Force that all balls together put on the housing, and its reaction on the shaft [N].
 
@@ -166,38 +154,53 @@ def contact_force(
     cosa = params[COSA * LANES + lane]
     x, y, u, v = motion
     seen = (cosa * (x * c + y * s), cosa * (y * c - x * s), cosa * (u * c + v * s), cosa * (v * c - u * s))
-    under0, drop0 = slot_drop(shape, 0, tau, lane, params)
-    under1, drop1 = slot_drop(shape, 1, tau, lane, params)
-    under2, drop2 = slot_drop(shape, 2, tau, lane, params)
-    under3, drop3 = slot_drop(shape, 3, tau, lane, params)
-    drops = (under0, drop0, under1, drop1, under2, drop2, under3, drop3)
-    ax, ay = four_balls(shape, 0, seen, drops, tau, lane, params)
-    bx, by = four_balls(shape, 4, seen, drops, tau, lane, params)
-    cx, cy = four_balls(shape, 8, seen, drops, tau, lane, params)
-    dx, dy = four_balls(shape, 12, seen, drops, tau, lane, params)
-    ex, ey = four_balls(shape, 16, seen, drops, tau, lane, params)
-    fx, fy = four_balls(shape, 20, seen, drops, tau, lane, params)
+    ax, ay = four_balls(shape, 0, seen, half_step, lane, params)
+    bx, by = four_balls(shape, 4, seen, half_step, lane, params)
+    cx, cy = four_balls(shape, 8, seen, half_step, lane, params)
+    dx, dy = four_balls(shape, 12, seen, half_step, lane, params)
+    ex, ey = four_balls(shape, 16, seen, half_step, lane, params)
+    fx, fy = four_balls(shape, 20, seen, half_step, lane, params)
     along, across = cosa * (ax + bx + cx + dx + ex + fx), cosa * (ay + by + cy + dy + ey + fy)
     return along * c - across * s, along * s + across * c
 
 
 @njit(**INLINE)
+def forces(shape: Shape, half_step: int, lane: int, params: FloatArray) -> tuple[float, float, float, float]:
+    """External forces on shaft and housing, x and y [N]."""
+    row = FORCES * LANES + lane
+    wx, wy = params[row], params[row + LANES]
+    if not len(shape.forced):
+        return wx, wy, 0.0, 0.0
+    return (
+        wx + params[row + 4 * LANES] * half_step,
+        wy + params[row + 5 * LANES] * half_step,
+        params[row + 2 * LANES] + params[row + 6 * LANES] * half_step,
+        params[row + 3 * LANES] + params[row + 7 * LANES] * half_step,
+    )
+
+
+@njit(**INLINE)
 def accelerations(
-    shape: Shape, q: tuple[float, ...], turn: Motion, tau: float, lane: int, params: FloatArray
+    shape: Shape, q: tuple[float, ...], turn: Motion, half_step: int, lane: int, params: FloatArray
 ) -> tuple[float, float, float, float, float, float]:
     """Accelerations of the three bodies [m s-2]; ``turn`` holds the directions of cage and shaft."""
     x1, y1, x2, y2, xr, yr, u1, v1, u2, v2, ur, vr = q
     c, s, shaft_c, shaft_s = turn
     dx, dy, du, dv = x1 - x2, y1 - y2, u1 - u2, v1 - v2
-    fx, fy = contact_force(shape, (dx, dy, du, dv), c, s, tau, lane, params)
+    fx, fy = contact_force(shape, (dx, dy, du, dv), c, s, half_step, lane, params)
     c1, c0, k0 = params[C1 * LANES + lane], params[C0 * LANES + lane], params[K0 * LANES + lane]
     jx = fx + c1 * du + params[K1X * LANES + lane] * dx
     jy = fy + c1 * dv + params[K1Y * LANES + lane] * dy
     p, q_ = params[UNBALANCE_P * LANES + lane], params[UNBALANCE_Q * LANES + lane]
-    f1x = params[WX * LANES + lane] + (p * shaft_c + q_ * shaft_s) - jx - c0 * u1 - k0 * x1
-    f1y = params[WY * LANES + lane] + (p * shaft_s - q_ * shaft_c) - jy - c0 * v1 - k0 * y1
-    f2x = jx - params[C2X * LANES + lane] * u2 - params[K2X * LANES + lane] * x2
-    f2y = jy - params[C2Y * LANES + lane] * v2 - params[K2Y * LANES + lane] * y2
+    wx, wy, hx, hy = forces(shape, half_step, lane, params)
+    f1x = wx + (p * shaft_c + q_ * shaft_s) - jx - c0 * u1 - k0 * x1
+    f1y = wy + (p * shaft_s - q_ * shaft_c) - jy - c0 * v1 - k0 * y1
+    sx, sy = x2, y2
+    if len(shape.loose):
+        play = params[LOOSENESS * LANES + lane]
+        sx, sy = x2 - min(max(x2, -play), play), y2 - min(max(y2, -play), play)
+    f2x = jx + hx - params[C2X * LANES + lane] * u2 - params[K2X * LANES + lane] * sx
+    f2y = jy + hy - params[C2Y * LANES + lane] * v2 - params[K2Y * LANES + lane] * sy
     arx = ary = 0.0
     if len(shape.resonator):
         cr, imr = params[CR * LANES + lane], params[IMR * LANES + lane]
@@ -255,14 +258,13 @@ def advance(
     n_steps : int
         Steps to the next knot.
     history : array, shape (step * channel * LANES + lane)
-        Receives, from row ``at`` on, the picked-up acceleration at the start of each step [m s-2].
+        Receives, from row ``at`` on, what is picked up at the start of each step [m s-2, or m].
     at : int
         First row of ``history`` to fill.
     """
-    pickup = pickup_row(shape)
     n_channels = len(shape.channels)
     for step in range(n_steps):
-        tau = 2.0 * step
+        half_step = 2 * step
         for lane in range(LANES):
             q = (
                 state[lane], state[LANES + lane], state[2 * LANES + lane], state[3 * LANES + lane],
@@ -273,27 +275,27 @@ def advance(
                 state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane],
                 state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane],
             )  # fmt: skip
-            a1 = accelerations(shape, q, turn, tau, lane, params)
+            a1 = accelerations(shape, q, turn, half_step, lane, params)
             turn = half_turn(turn, lane, params)
             q2 = moved(q, q[6:], a1, 0.5 * dt)
-            a2 = accelerations(shape, q2, turn, tau + 1.0, lane, params)
+            a2 = accelerations(shape, q2, turn, half_step + 1, lane, params)
             q3 = moved(q, q2[6:], a2, 0.5 * dt)
-            a3 = accelerations(shape, q3, turn, tau + 1.0, lane, params)
+            a3 = accelerations(shape, q3, turn, half_step + 1, lane, params)
             turn = half_turn(turn, lane, params)
             q4 = moved(q, q3[6:], a3, dt)
-            a4 = accelerations(shape, q4, turn, tau + 2.0, lane, params)
+            a4 = accelerations(shape, q4, turn, half_step + 2, lane, params)
             new = moved(q, simpson(q[6:], q2[6:], q3[6:], q4[6:]), simpson(a1, a2, a3, a4), dt)
             for row in range(N_DYNAMIC):
                 state[row * LANES + lane] = new[row]
             for row in range(4):
                 state[(CAGE_C + row) * LANES + lane] = turn[row]
             for axis in range(AXES):
-                state[(ACCELERATION + axis) * LANES + lane] = a1[axis]
+                state[(PICKED + axis) * LANES + lane] = q[axis] if len(shape.displacement) else a1[axis]
         for channel in range(n_channels):
             row = at + step * n_channels + channel
             for lane in range(LANES):
                 value = 0.0
                 for axis in range(AXES):
-                    weight = params[(pickup + channel * AXES + axis) * LANES + lane]
-                    value += weight * state[(ACCELERATION + axis) * LANES + lane]
+                    weight = params[(PICKUPS + channel * AXES + axis) * LANES + lane]
+                    value += weight * state[(PICKED + axis) * LANES + lane]
                 history[row * LANES + lane] = value

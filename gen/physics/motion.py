@@ -2,7 +2,8 @@
 
 Speed, slip, spin, jitter and spin-axis wander are sums of a few cosines with drawn frequencies and phases; each cosine is a phasor
 turned once per knot, so no process needs a table in memory and none depends on the step. Race waviness is a Fourier series too: the
-sum over orders is folded onto the balls, since ball ``i`` sees order ``n`` with the phase ``2 pi i n / n_balls``.
+sum over orders is folded onto the balls, since ball ``i`` sees order ``n`` with the phase ``2 pi i n / n_balls``. What a spall takes
+from under a ball is laid down for every half step, so that the kernel itself knows gaps alone.
 """
 
 import math
@@ -12,44 +13,35 @@ import numpy as np
 from numba import njit
 
 from gen.physics.kernel import (
-    BALL_ROWS,
-    BALLS,
     CAGE_C,
     CAGE_S,
     CAGE_TURN_C,
     CAGE_TURN_S,
     COS,
-    GAP0,
-    GAP1,
-    JITTER0,
-    JITTER1,
-    OFFSET0,
-    OFFSET1,
-    RACE,
+    FORCES,
     SHAFT_C,
     SHAFT_S,
     SHAFT_TURN_C,
     SHAFT_TURN_S,
-    SHARE0,
-    SHARE1,
     SIN,
-    SLOT_ROWS,
     UNBALANCE_P,
     UNBALANCE_Q,
-    UNDER,
     FloatArray,
     Shape,
-    slot_row,
+    gap_row,
+    jitter_row,
 )  # fmt: skip
 from gen.physics.lanes import COMPILED, INLINE, LANES, cosine, sine
+from gen.physics.spall import TABLE, drop
 
 # Rows of ``drive``: what a record's motion is made of.
 (
     SHAFT_STEP, CAGE_RATIO, SPIN_RATIO, MEAN_SLIP, SPEED_RMS, SLIP_RMS, SPIN_RMS, JITTER_RMS, AXIS_OFFSET, AXIS_RMS, AXIS_LIMIT,
-    UNBALANCE, CLEARANCE, INNER_RADIUS, OUTER_RADIUS, DRIVE_ROWS,
-) = range(16)  # fmt: skip
+    UNBALANCE, CLEARANCE, BALL, INNER_RADIUS, OUTER_RADIUS, LOAD_X, LOAD_Y, TWICE_X, TWICE_Y, BOW, KNOCK, KNOCK_ANGLE, LATE_BALL, LATE_BY,
+    DRIVE_ROWS,
+) = range(26)  # fmt: skip
 SHAFT, CAGE, SPIN, ANGLE_ROWS = range(4)  # rows of ``angles`` [rad]
-SITE, POSITION, CARRIER, RANK, SPALL_ROWS = range(5)  # rows of ``spalls``, per slot
+SITE, POSITION, CARRIER, HALF, ARC, DEPTH, PROFILE, TABLE_ROW, SPALL_ROWS = range(9)  # rows of ``spalls``, per spall
 NO_SITE, INNER, OUTER, BALL_SITE = range(4)
 
 # Rows of the phasors: each process has its own, the jitter has JITTER_TERMS per ball.
@@ -62,10 +54,12 @@ JITTER_FIRST = AXIS_FIRST + AXIS_TERMS
 LOWEST_ORDER, HIGHEST_ORDER = 2, 60  # waviness per turn of a race
 N_ORDERS = HIGHEST_ORDER - LOWEST_ORDER + 1
 WAVE_ROWS = 4 * N_ORDERS  # real and imaginary amplitude of each order, inner race then outer race
+TABLE_POINTS = 513  # of a tabulated spall, from edge to edge
+KNOCK_SECONDS = 3e-4  # a half sine
 
 
 class Lanes(NamedTuple):
-    """A batch of records, one per lane; every array is flat, ``row * LANES + lane``."""
+    """A batch of records, one per lane; arrays are flat, ``row * LANES + lane``, unless they say otherwise."""
 
     state: FloatArray
     params: FloatArray
@@ -76,6 +70,10 @@ class Lanes(NamedTuple):
     """Cosine, sine, and cosine and sine of the turn per knot, of every term: 4 blocks of rows."""
     waves: FloatArray
     """Waviness amplitudes [m], WAVE_ROWS rows, or empty."""
+    schedule: FloatArray
+    """Factors of shaft rate and load, shape (knot, 2, lane), or of shape (0, 2, lane) if both are constant."""
+    tables: FloatArray
+    """Drops of tabulated spalls, shape (table, point) [m]; a ball spall has two, for the inner and the outer race."""
 
 
 @njit(**INLINE)
@@ -105,12 +103,14 @@ def wrapped(angle: float) -> float:
 
 
 @njit(**INLINE)
-def turn_rings(lanes: Lanes, n_steps: int, dt: float, moves: FloatArray) -> None:
+def turn_rings(lanes: Lanes, knot: int, n_steps: int, dt: float, moves: FloatArray) -> None:
     """Set the turning rates to the next knot, and note how far shaft, cage and ball spin will move in ``moves``."""
     params, drive, phasors, state = lanes.params, lanes.drive, lanes.phasors, lanes.state
     for lane in range(LANES):
         speed = 1 + drive[SPEED_RMS * LANES + lane] * process(phasors, 0, SPEED_TERMS, lane)
         shaft = drive[SHAFT_STEP * LANES + lane] * speed
+        if knot < len(lanes.schedule):
+            shaft *= lanes.schedule[knot, 0, lane]
         slip = drive[MEAN_SLIP * LANES + lane] + drive[SLIP_RMS * LANES + lane] * process(
             phasors, SLIP_FIRST, SLIP_TERMS, lane
         )
@@ -129,7 +129,7 @@ def turn_rings(lanes: Lanes, n_steps: int, dt: float, moves: FloatArray) -> None
             sine(shaft * half),
         )
         omega = shaft / (n_steps * dt)
-        params[UNBALANCE_P * LANES + lane] = drive[UNBALANCE * LANES + lane] * omega * omega
+        params[UNBALANCE_P * LANES + lane] = drive[UNBALANCE * LANES + lane] * omega * omega + drive[BOW * LANES + lane]
         params[UNBALANCE_Q * LANES + lane] = 0.0
         for row in (
             CAGE_C,
@@ -185,12 +185,11 @@ def waviness(
 
 
 @njit(**INLINE)
-def move_balls(lanes: Lanes, n_balls: int, n_steps: int, moves: FloatArray) -> None:
-    """Set gap and jitter of every ball to run from where they are to their values at the next knot."""
-    params, drive, state = lanes.params, lanes.drive, lanes.state
-    cage_c, cage_s, in_c, in_s = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
-    w = np.zeros(n_balls * LANES)
+def ball_gaps(lanes: Lanes, n_balls: int, moves: FloatArray, gaps: FloatArray) -> None:
+    """Gap of every ball at the next knot, waviness included and spalls aside, into ``gaps`` (ball * LANES + lane) [m]."""
+    state = lanes.state
     if lanes.waves.size:
+        cage_c, cage_s, in_c, in_s = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
         for lane in range(LANES):
             c, s = state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane]
             dc, ds = cosine(moves[CAGE * LANES + lane]), sine(moves[CAGE * LANES + lane])
@@ -200,19 +199,41 @@ def move_balls(lanes: Lanes, n_balls: int, n_steps: int, moves: FloatArray) -> N
             p, q = p * dc - q * ds, q * dc + p * ds
             cage_c[lane], cage_s[lane] = c, s
             in_c[lane], in_s[lane] = c * p + s * q, s * p - c * q
-        waviness(lanes, n_balls, cage_c, cage_s, in_c, in_s, w)
+        waviness(lanes, n_balls, cage_c, cage_s, in_c, in_s, gaps)
+    else:
+        gaps[:] = 0.0
     for ball in range(n_balls):
-        row = BALLS + ball * BALL_ROWS
         for lane in range(LANES):
-            gap = drive[CLEARANCE * LANES + lane] - w[ball * LANES + lane]
+            gaps[ball * LANES + lane] = lanes.drive[CLEARANCE * LANES + lane] - gaps[ball * LANES + lane]
+
+
+@njit(**INLINE)
+def move_gaps(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, last: FloatArray, gaps: FloatArray) -> None:
+    """Lay down the gap of every ball at every half step: a straight line from ``last`` to its value at the next knot."""
+    n_balls = len(shape.balls)
+    ball_gaps(lanes, n_balls, moves, gaps)
+    row = gap_row(shape) * LANES
+    width = n_balls * LANES
+    for half_step in range(2 * n_steps + 1):
+        part = half_step / (2 * n_steps)
+        for i in range(width):
+            lanes.params[row + half_step * width + i] = last[i] + part * (gaps[i] - last[i])
+    last[:] = gaps
+
+
+@njit(**INLINE)
+def move_jitter(shape: Shape, lanes: Lanes, n_steps: int) -> None:
+    """Let the jitter of every ball run from where it is to its value at the next knot."""
+    params, drive = lanes.params, lanes.drive
+    for ball in range(len(shape.balls)):
+        row = jitter_row(shape) + 2 * ball
+        for lane in range(LANES):
             eta = process(lanes.phasors, JITTER_FIRST + ball * JITTER_TERMS, JITTER_TERMS, lane)
             jitter = drive[JITTER_RMS * LANES + lane] * eta
-            last_gap = params[(row + GAP0) * LANES + lane] + 2 * n_steps * params[(row + GAP1) * LANES + lane]
-            last_jitter = params[(row + JITTER0) * LANES + lane] + 2 * n_steps * params[(row + JITTER1) * LANES + lane]
-            params[(row + GAP0) * LANES + lane] = last_gap
-            params[(row + GAP1) * LANES + lane] = (gap - last_gap) / (2 * n_steps)
-            params[(row + JITTER0) * LANES + lane] = last_jitter
-            params[(row + JITTER1) * LANES + lane] = (jitter - last_jitter) / (2 * n_steps)
+            jitter += drive[LATE_BY * LANES + lane] if drive[LATE_BALL * LANES + lane] == ball else 0.0
+            start = params[row * LANES + lane] + 2 * n_steps * params[(row + 1) * LANES + lane]
+            params[row * LANES + lane] = start
+            params[(row + 1) * LANES + lane] = (jitter - start) / (2 * n_steps)
 
 
 @njit(**INLINE)
@@ -227,81 +248,182 @@ def share_on_track(lanes: Lanes, lane: int) -> float:
 
 
 @njit(**INLINE)
-def move_slots(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray) -> None:
-    """Put each spall under the ball nearest to it half way to the next knot, and set how it passes below."""
-    n_balls = len(shape.balls)
-    pitch = 2 * math.pi / n_balls
-    params, angles, spalls = lanes.params, lanes.angles, lanes.spalls
-    for slot in range(len(shape.slots)):
-        row = slot_row(shape) + slot * SLOT_ROWS
-        for lane in range(LANES):
-            site = spalls[(slot * SPALL_ROWS + SITE) * LANES + lane]
-            place = spalls[(slot * SPALL_ROWS + POSITION) * LANES + lane]
-            ball = -1.0
-            start = slope = 0.0
-            if site == BALL_SITE:
-                ball = spalls[(slot * SPALL_ROWS + CARRIER) * LANES + lane]
-                slope = moves[SPIN * LANES + lane]
-                start = angles[SPIN * LANES + lane] + place
-                middle = wrapped(start + 0.5 * slope)
-                inner = abs(middle) < 0.5 * math.pi
-                params[(row + RACE) * LANES + lane] = (
-                    lanes.drive[INNER_RADIUS * LANES + lane] if inner else -lanes.drive[OUTER_RADIUS * LANES + lane]
-                )
-                start = (middle if inner else wrapped(middle - math.pi)) - 0.5 * slope
-                share = params[(row + SHARE0) * LANES + lane] + 2 * n_steps * params[(row + SHARE1) * LANES + lane]
-                params[(row + SHARE0) * LANES + lane] = share
-                params[(row + SHARE1) * LANES + lane] = (share_on_track(lanes, lane) - share) / (2 * n_steps)
-            elif site != NO_SITE:
-                start = place - angles[CAGE * LANES + lane]
-                slope = -moves[CAGE * LANES + lane]
-                if site == INNER:
-                    start += angles[SHAFT * LANES + lane]
-                    slope += moves[SHAFT * LANES + lane]
-                nearest = np.rint((start + 0.5 * slope) / pitch) + spalls[(slot * SPALL_ROWS + RANK) * LANES + lane]
-                start, slope = nearest * pitch - start, -slope
-                ball = nearest - n_balls * np.floor(nearest / n_balls)
-                if len(shape.uneven):
-                    source = BALLS + int(ball) * BALL_ROWS
-                    start += params[(source + JITTER0) * LANES + lane]
-                    slope += 2 * n_steps * params[(source + JITTER1) * LANES + lane]
-            params[(row + UNDER) * LANES + lane] = ball
-            params[(row + OFFSET0) * LANES + lane] = start
-            params[(row + OFFSET1) * LANES + lane] = slope / (2 * n_steps)
+def tabulated(tables: FloatArray, row: int, offset: float, half: float) -> float:
+    """Drop read from a table that runs from edge to edge of the spall, linear between its points [m]."""
+    if abs(offset) >= half:
+        return 0.0
+    place = (offset / half + 1) * 0.5 * (TABLE_POINTS - 1)
+    point = min(int(place), TABLE_POINTS - 2)
+    part = place - point
+    return (1 - part) * tables[row, point] + part * tables[row, point + 1]
+
+
+@njit(**COMPILED)
+def pass_spall(
+    lanes: Lanes,
+    spall: int,
+    lane: int,
+    gap: int,
+    stride: int,
+    start: float,
+    slope: float,
+    share: float,
+    race: float,
+    n_steps: int,
+) -> None:
+    """Widen a gap while a ball passes a spall, from offset ``start`` at ``slope`` per half step, at every half step."""
+    spalls = lanes.spalls
+    row = spall * SPALL_ROWS
+    half = spalls[(row + HALF) * LANES + lane]
+    end = start + 2 * n_steps * slope
+    if min(start, end) >= half or max(start, end) <= -half:
+        return
+    arc, depth = spalls[(row + ARC) * LANES + lane], spalls[(row + DEPTH) * LANES + lane]
+    profile = int(spalls[(row + PROFILE) * LANES + lane])
+    table = int(spalls[(row + TABLE_ROW) * LANES + lane])
+    if spalls[(row + SITE) * LANES + lane] == BALL_SITE and race < 0.0:
+        table += 1
+    ball = lanes.drive[BALL * LANES + lane]
+    for half_step in range(2 * n_steps + 1):
+        offset = start + slope * half_step
+        if profile == TABLE:
+            fall = tabulated(lanes.tables, table, offset, half)
+        else:
+            fall = drop(profile, offset, half, arc, ball, race, depth)
+        lanes.params[gap + half_step * stride] += share * fall
 
 
 @njit(**INLINE)
-def to_next_knot(shape: Shape, lanes: Lanes, n_steps: int, dt: float, moves: FloatArray) -> None:
-    """Prepare ``lanes.params`` for the steps up to the next knot, and move the angles there."""
-    turn_rings(lanes, n_steps, dt, moves)
+def move_spalls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray) -> None:
+    """Widen the gaps over every spall that a ball meets before the next knot."""
+    n_balls = len(shape.balls)
+    pitch = 2 * math.pi / n_balls
+    params, angles, spalls = lanes.params, lanes.angles, lanes.spalls
+    stride = n_balls * LANES
+    for spall in range(spalls.size // (SPALL_ROWS * LANES)):
+        row = spall * SPALL_ROWS
+        for lane in range(LANES):
+            site = spalls[(row + SITE) * LANES + lane]
+            place = spalls[(row + POSITION) * LANES + lane]
+            if site == BALL_SITE:
+                ball = int(spalls[(row + CARRIER) * LANES + lane])
+                slope = moves[SPIN * LANES + lane]
+                middle = wrapped(angles[SPIN * LANES + lane] + place + 0.5 * slope)
+                inner = abs(middle) < 0.5 * math.pi
+                race = lanes.drive[INNER_RADIUS * LANES + lane] if inner else -lanes.drive[OUTER_RADIUS * LANES + lane]
+                start = (middle if inner else wrapped(middle - math.pi)) - 0.5 * slope
+                gap = (gap_row(shape) + ball) * LANES + lane
+                share = share_on_track(lanes, lane)
+                pass_spall(lanes, spall, lane, gap, stride, start, slope / (2 * n_steps), share, race, n_steps)
+            elif site != NO_SITE:
+                start, slope = place - angles[CAGE * LANES + lane], -moves[CAGE * LANES + lane]
+                race = -lanes.drive[OUTER_RADIUS * LANES + lane]
+                if site == INNER:
+                    start += angles[SHAFT * LANES + lane]
+                    slope += moves[SHAFT * LANES + lane]
+                    race = lanes.drive[INNER_RADIUS * LANES + lane]
+                nearest = np.rint((start + 0.5 * slope) / pitch)
+                around = int(np.ceil(spalls[(row + HALF) * LANES + lane] / pitch + 0.2))  # 0.2: jitter and late balls
+                for rank in range(-around, around + 1):
+                    ball = int((nearest + rank) % n_balls)
+                    offset, rate = (nearest + rank) * pitch - start, -slope / (2 * n_steps)
+                    if len(shape.jittered):
+                        source = jitter_row(shape) + 2 * ball
+                        offset += params[source * LANES + lane]
+                        rate += params[(source + 1) * LANES + lane]
+                    gap = (gap_row(shape) + ball) * LANES + lane
+                    pass_spall(lanes, spall, lane, gap, stride, offset, rate, 1.0, race, n_steps)
+
+
+@njit(**INLINE)
+def knock(lanes: Lanes, knot_seconds: float, ahead: float, lane: int, moves: FloatArray) -> float:
+    """Force of the cage's knock on the housing, ``ahead`` knots from now: a half sine once per turn of the cage [N].
+
+    Its strength scatters from turn to turn by a factor between 0.5 and 2 that follows from the number of the turn.
+    """
+    strength = lanes.drive[KNOCK * LANES + lane]
+    if strength == 0.0:
+        return 0.0
+    rate = moves[CAGE * LANES + lane] / knot_seconds
+    turned = (
+        lanes.angles[CAGE * LANES + lane] + ahead * moves[CAGE * LANES + lane] - lanes.drive[KNOCK_ANGLE * LANES + lane]
+    )
+    turns = math.floor(turned / (2 * math.pi))
+    since = (turned - 2 * math.pi * turns) / rate
+    if since >= KNOCK_SECONDS:
+        return 0.0
+    scatter = (turns * 0.6180339887498949) % 1.0  # golden ratio: even over few turns
+    return strength * 2.0 ** (2 * scatter - 1) * math.sin(math.pi * since / KNOCK_SECONDS)
+
+
+@njit(**INLINE)
+def outer_forces(
+    lanes: Lanes, knot: int, knot_seconds: float, ahead: float, lane: int, moves: FloatArray, force: FloatArray
+) -> None:
+    """Forces on shaft and housing ``ahead`` knots from now, into ``force`` (x and y of the shaft, then of the housing) [N]."""
+    drive = lanes.drive
+    load = 1.0
+    if len(lanes.schedule):
+        load = lanes.schedule[min(knot + int(ahead), len(lanes.schedule) - 1), 1, lane]
+    turn = 2 * (lanes.angles[SHAFT * LANES + lane] + ahead * moves[SHAFT * LANES + lane])
+    c, s = math.cos(turn), math.sin(turn)
+    hit, place = knock(lanes, knot_seconds, ahead, lane, moves), drive[KNOCK_ANGLE * LANES + lane]
+    force[0] = load * drive[LOAD_X * LANES + lane] + drive[TWICE_X * LANES + lane] * c
+    force[1] = load * drive[LOAD_Y * LANES + lane] + drive[TWICE_Y * LANES + lane] * s
+    force[2], force[3] = hit * math.cos(place), hit * math.sin(place)
+
+
+@njit(**INLINE)
+def move_forces(lanes: Lanes, knot: int, n_steps: int, dt: float, moves: FloatArray) -> None:
+    """Let the outer forces run from now to their values at the next knot."""
+    params = lanes.params
+    now, then = np.empty(4), np.empty(4)
+    for lane in range(LANES):
+        outer_forces(lanes, knot, n_steps * dt, 0.0, lane, moves, now)
+        outer_forces(lanes, knot, n_steps * dt, 1.0, lane, moves, then)
+        for row in range(4):
+            params[(FORCES + row) * LANES + lane] = now[row]
+            params[(FORCES + 4 + row) * LANES + lane] = (then[row] - now[row]) / (2 * n_steps)
+
+
+@njit(**INLINE)
+def to_next_knot(
+    shape: Shape,
+    lanes: Lanes,
+    knot: int,
+    n_steps: int,
+    dt: float,
+    moves: FloatArray,
+    last: FloatArray,
+    gaps: FloatArray,
+) -> None:
+    """Prepare ``lanes.params`` for the steps up to the next knot, and move the angles there.
+
+    ``last`` holds the gaps at this knot and receives those at the next; ``moves`` and ``gaps`` are work arrays.
+    """
+    turn_rings(lanes, knot, n_steps, dt, moves)
     turn_phasors(lanes.phasors, JITTER_FIRST + len(shape.balls) * JITTER_TERMS)
+    if len(shape.forced):
+        move_forces(lanes, knot, n_steps, dt, moves)
+    if len(shape.jittered):
+        move_jitter(shape, lanes, n_steps)
     if len(shape.uneven):
-        move_balls(lanes, len(shape.balls), n_steps, moves)
-    move_slots(shape, lanes, n_steps, moves)
+        move_gaps(shape, lanes, n_steps, moves, last, gaps)
+        move_spalls(shape, lanes, n_steps, moves)
     for i in range(ANGLE_ROWS * LANES):
         lanes.angles[i] += moves[i]
 
 
-@njit(**COMPILED)
-def place_balls(shape: Shape, lanes: Lanes, n_steps: int) -> None:
-    """Let gaps, jitter and shares start at their values at the first knot instead of running there from zero."""
-    moves = np.zeros(ANGLE_ROWS * LANES)
-    for lane in range(LANES):
-        for slot in range(len(shape.slots)):
-            row = slot_row(shape) + slot * SLOT_ROWS
-            lanes.params[(row + SHARE1) * LANES + lane] = 0.0
-            lanes.params[(row + SHARE0) * LANES + lane] = (
-                share_on_track(lanes, lane)
-                if lanes.spalls[(slot * SPALL_ROWS + SITE) * LANES + lane] == BALL_SITE
-                else 1.0
-            )
+@njit(**INLINE)
+def place_balls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, last: FloatArray) -> None:
+    """Gaps into ``last`` and jitter at the first knot."""
+    moves[:] = 0.0
     if len(shape.uneven):
-        move_balls(lanes, len(shape.balls), n_steps, moves)
+        ball_gaps(lanes, len(shape.balls), moves, last)
+    if len(shape.jittered):
+        move_jitter(shape, lanes, n_steps)
         for ball in range(len(shape.balls)):
-            row = BALLS + ball * BALL_ROWS
-            for value, slope in ((GAP0, GAP1), (JITTER0, JITTER1)):
-                for lane in range(LANES):
-                    lanes.params[(row + value) * LANES + lane] += (
-                        2 * n_steps * lanes.params[(row + slope) * LANES + lane]
-                    )
-                    lanes.params[(row + slope) * LANES + lane] = 0.0
+            row = jitter_row(shape) + 2 * ball
+            for lane in range(LANES):
+                lanes.params[row * LANES + lane] += 2 * n_steps * lanes.params[(row + 1) * LANES + lane]
+                lanes.params[(row + 1) * LANES + lane] = 0.0

@@ -41,6 +41,8 @@ class Machine(NamedTuple):
     sensor_damping: float
     load_x: float
     load_y: float
+    looseness: float = 0.0
+    """Half the play of the housing in its support [m]."""
 
 
 def as_columns(machines: list[Machine]) -> Machine:

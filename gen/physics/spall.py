@@ -11,8 +11,8 @@ from numba import njit
 
 from gen.physics.lanes import INLINE, cosine, sine
 
-PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular")
-GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR = range(4)
+PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular", "table")
+GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR, TABLE = range(5)
 RAISED_EDGE = 0.25  # share of the half width taken by each cosine flank
 
 
@@ -49,7 +49,7 @@ def drop(profile: int, offset: float, half: float, arc: float, ball: float, race
         chord = arc * sine(inside)
         value = min(sagitta(chord, ball) + sagitta(chord, race), depth)
     elif profile == HALF_SINE:
-        value = depth * cosine(0.5 * math.pi * min(abs(offset) / half, 1.0))
+        value = depth * max(cosine(0.5 * math.pi * min(abs(offset) / half, 1.0)), 0.0)
     elif profile == RAISED_COSINE:
         flank = cosine(0.5 * math.pi * min(inside / (RAISED_EDGE * half), 1.0))
         value = depth * (1 - flank * flank)

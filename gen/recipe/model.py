@@ -22,7 +22,7 @@ from pydantic import (
 from gen.corpus import Codec
 from gen.distributions import Distribution, Number, check_bounds, within
 from gen.physics.catalogue import BALL_BEARINGS
-from gen.physics.kernel import MAX_BALLS, MAX_SLOTS
+from gen.physics.kernel import MAX_BALLS
 
 _UNITS = {
     "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "rpm": 1 / 60, "deg": math.pi / 180, "percent": 1e-2, "mm_s": 1e-3,
@@ -30,6 +30,7 @@ _UNITS = {
 }  # fmt: skip
 
 MAX_OVERSAMPLING = 96
+MAX_SPALLS = 16
 Weight = Annotated[Number, Field(ge=0)]
 Count = Annotated[StrictInt, Field(ge=1)]
 Name = Annotated[str, StringConstraints(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
@@ -295,7 +296,7 @@ class RaceFault(Section):
 
     kind: Literal["inner", "outer"]
     weight: Weight = 1.0
-    spalls: Distribution = within(1, MAX_SLOTS, default=1)
+    spalls: Distribution = within(1, MAX_SPALLS, default=1)
     width_mm: Distribution = within(0, 20, open_low=True)
     depth_um: Distribution = within(0, 5000, open_low=True, default=280.0)
     angle_deg: Distribution = within(-360, 360, default=0.0)
@@ -307,7 +308,7 @@ class BallFault(Section):
 
     kind: Literal["ball"]
     weight: Weight = 1.0
-    spalls: Distribution = within(1, MAX_SLOTS, default=1)
+    spalls: Distribution = within(1, MAX_SPALLS, default=1)
     width_mm: Distribution = within(0, 20, open_low=True)
     depth_um: Distribution = within(0, 5000, open_low=True, default=280.0)
     angle_deg: Distribution = within(-360, 360, default=0.0)

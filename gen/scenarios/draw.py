@@ -205,11 +205,11 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
     split = _draw_split(recipe, rig.number, place)
     if not isinstance(entry, RaceFault | BallFault):
-        return Specimen(number, bearing, properties, fault, (), "geometric", {}, split)
+        return Specimen(number, bearing, properties, fault, (), {}, split)
     spalls = _draw_spalls(draws, entry, bearing, number)
     axis = draws.section(entry) if isinstance(entry, BallFault) else {}
     axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander", "spin_wander") if name in axis}
-    return Specimen(number, bearing, properties, fault, spalls, entry.profile, axis, split)
+    return Specimen(number, bearing, properties, fault, spalls, axis, split)
 
 
 def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int) -> tuple[Spall, ...]:
@@ -217,7 +217,9 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
     spalls = []
     for _ in range(round(draws.value(entry.spalls))):
         width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
-        spalls.append(Spall(entry.kind, width, depth, math.radians(draws.value(entry.angle_deg)), carrier))
+        spalls.append(
+            Spall(entry.kind, width, depth, math.radians(draws.value(entry.angle_deg)), carrier, entry.profile)
+        )
         radius = {
             "inner": bearing.inner_radius,
             "outer": bearing.outer_radius,

@@ -90,7 +90,6 @@ class Specimen:
     fault: str
     spalls: tuple[Spall, ...]
     """Outer race angles count from the load direction."""
-    profile: str
     axis: Drawn
     split: str
 

@@ -35,7 +35,9 @@ def model(tiny_corpus, tmp_path_factory):
     return path
 
 
-@pytest.mark.parametrize(("path", "command"), list(leaves(cli)), ids=lambda value: " ".join(value) if isinstance(value, tuple) else "")
+@pytest.mark.parametrize(
+    ("path", "command"), list(leaves(cli)), ids=lambda value: " ".join(value) if isinstance(value, tuple) else ""
+)
 def test_help_shows_how_a_command_is_called(run, path, command):
     result = run(*path[1:], "--help")
     assert result.exit_code == 0
@@ -71,7 +73,18 @@ def test_recipes_are_listed_with_what_they_are_for(run, told):
 
 def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
     planned, found = told("plan", tiny_recipe), told("info", tiny_corpus)
-    same = ("records", "specimens", "rigs", "parts", "classes", "splits", "channels", "sample_rate", "duration", "title")
+    same = (
+        "records",
+        "specimens",
+        "rigs",
+        "parts",
+        "classes",
+        "splits",
+        "channels",
+        "sample_rate",
+        "duration",
+        "title",
+    )
     assert {name: planned[name] for name in same} == {name: found[name] for name in same}
     assert planned["bytes"] == pytest.approx(found["bytes"], rel=0.5)
     assert planned["estimated_seconds"] > 0
@@ -178,6 +191,7 @@ def test_benchmark_writes_a_report_and_results(run, told, tiny_corpus, tmp_path,
     assert results["baselines"].keys() == ESTIMATORS.keys()
     assert json.loads((tmp_path / "report" / "results.json").read_text())["baselines"] == results["baselines"]
     assert "Tiny corpus" in (tmp_path / "report" / "report.html").read_text()
+    monkeypatch.setattr("features.report.write_report", lambda *_: tmp_path / "report.html")  # for speed
     shown = run("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 3).stdout
     assert "null labels" in shown
     assert "envelope_rule" in shown
@@ -207,7 +221,9 @@ def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):
     monkeypatch.setattr("raceway.bench.REPEATS", 1)
     found = told("bench", tiny_recipe, "--records", 6)
     assert set(found["stage_seconds"]) == {"draw", "simulate", "integrate", "measure", "write", "features"}
-    assert found["kernel_record_steps_per_second"] == pytest.approx(found["record_steps"] / found["stage_seconds"]["integrate"])
+    assert found["kernel_record_steps_per_second"] == pytest.approx(
+        found["record_steps"] / found["stage_seconds"]["integrate"]
+    )
     assert found["record_steps"] % 6 == 0
     assert found["records_per_second"] > 0
     assert "million record-steps/s" in run("bench", tiny_recipe, "--records", 6).stdout

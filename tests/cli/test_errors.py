@@ -2,10 +2,8 @@
 
 import json
 import shutil
-from pathlib import Path
 
 import h5py
-import numpy as np
 import pytest
 
 from features.baselines import save_model, train
@@ -157,7 +155,9 @@ def test_bad_usage_or_input_gets_a_sentence_and_exit_code_2(run, places, line, s
     assert not [path for path in places["new"].parent.iterdir() if path.name.startswith((".", "new"))]
 
 
-@pytest.mark.parametrize("damage", [name for name in DAMAGES if name not in ("other_recipe", "no_recipe", "unfinished")])
+@pytest.mark.parametrize(
+    "damage", [name for name in DAMAGES if name not in ("other_recipe", "no_recipe", "unfinished")]
+)
 def test_validate_finds_a_damaged_corpus_wanting(run, places, damage):
     result = run("validate", places[damage], "--json")
     found = json.loads(result.stdout)

@@ -87,7 +87,9 @@ def test_a_full_disk_gets_a_sentence_and_room_lets_the_command_go_on(start, reci
     process = start("generate", recipe, "-o", folder, "--workers", 1, LARGEST_FILE=largest_file)
     output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, output) == (2, "")
-    assert re.fullmatch(r".*part-\d+\.nc: could not be written \(.*\); free some space or choose another folder.\n", errors)
+    assert re.fullmatch(
+        r".*part-\d+\.nc: could not be written \(.*\); free some space or choose another folder.\n", errors
+    )
     assert [path.name for path in (folder / "parts").glob("*.nc")] == []
     generate(recipe, folder)
     assert part_bytes(folder) == whole
@@ -121,4 +123,7 @@ def test_a_process_ends_with_the_code_of_its_command(start, tmp_path):
     process = start("info", tmp_path / "nowhere")
     output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, output) == (2, "")
-    assert errors == f"{tmp_path}/nowhere: no such folder; give the folder of a corpus, the one that holds manifest.json.\n"
+    assert (
+        errors
+        == f"{tmp_path}/nowhere: no such folder; give the folder of a corpus, the one that holds manifest.json.\n"
+    )

@@ -42,7 +42,9 @@ def state_matrix(p, repairs):
     """Matrix A of z' = A z with z = (x1, x2, x1', x2'), shape (..., 4, 4), with the ``repairs`` of docs/errata.md."""
     first = p.ring_stiffness + p.contact_stiffness
     support = p.support_stiffness if "E1" in repairs else -p.support_stiffness
-    reaction = first if "E3" in repairs else p.contact_stiffness  # the contact has its reaction even as printed, k1 has not
+    reaction = (
+        first if "E3" in repairs else p.contact_stiffness
+    )  # the contact has its reaction even as printed, k1 has not
     shaft_row = (p.ring_damping, -p.ring_damping if "E4" in repairs else 0 * p.ring_damping)
     both = p.ring_damping + p.support_damping
     housing_row = (-p.ring_damping, both) if "E2" in repairs else (both + p.ring_damping, 0 * both)
@@ -132,7 +134,12 @@ def test_the_missing_reaction_of_k1_takes_its_force_from_the_support():
 
 def test_the_printed_stiffness_is_a_force_and_a_billionth_of_the_contact():
     """Dimensions as powers of kg, m and s; beta is not defined in the paper, 0 to 5 spans what a contact ellipse has."""
-    density, gravity, radius, modulus = np.array([1, -3, 0]), np.array([0, 1, -2]), np.array([0, 1, 0]), np.array([1, -1, -2])
+    density, gravity, radius, modulus = (
+        np.array([1, -3, 0]),
+        np.array([0, 1, -2]),
+        np.array([0, 1, 0]),
+        np.array([1, -1, -2]),
+    )
     printed = density + gravity + 3 * radius - modulus + modulus  # [rho g r^3 / E * G]
     assert list(printed) == [1, 1, -2], "newtons"
     assert list(printed) != [1, -0.5, -2], "not newtons per metre to the power 3/2"

@@ -100,9 +100,7 @@ def test_the_loads_of_one_fault_are_one_specimen_and_another_fault_is_another(so
 
 def test_specimens_have_the_same_number_in_both_subsets(tmp_path, source):
     published(source, 234)
-    numbers = [
-        imported(source, tmp_path / subset, subset=subset)[1].specimen.values[0] for subset in ("all", "wang")
-    ]
+    numbers = [imported(source, tmp_path / subset, subset=subset)[1].specimen.values[0] for subset in ("all", "wang")]
     assert numbers[0] == numbers[1]
 
 
@@ -170,9 +168,7 @@ def test_a_healthy_recording_at_48_khz_is_resampled_as_the_12_khz_copies_were(so
     expected = scipy.signal.resample_poly(noise(240_000, 97)[:, 0] * G, 1, 4)
     np.testing.assert_array_equal(corpus.acceleration.values[0, 0], expected[:6000].astype(np.float32))
     assert np.bincount(corpus.recording)[[97, 98]].tolist() == [10, 20]
-    assert any(
-        "97_0.mat: its 240000 samples are taken as recorded at 48 kHz" in text for text in done.warnings
-    )
+    assert any("97_0.mat: its 240000 samples are taken as recorded at 48 kHz" in text for text in done.warnings)
     assert any("98_0.mat: its 121000 samples are taken as resampled" in text for text in done.warnings)
 
 
@@ -266,9 +262,7 @@ def test_files_that_are_no_drive_end_recordings_or_come_twice_are_named(source, 
 
 def test_if_no_file_can_be_used_nothing_is_left_behind(source, output):
     published(source, 105, samples=100)
-    with pytest.raises(
-        CorpusError, match=r"no recording can be used; the first of 1 skipped: 105_0\.mat: holds"
-    ):
+    with pytest.raises(CorpusError, match=r"no recording can be used; the first of 1 skipped: 105_0\.mat: holds"):
         import_cwru(source, output)
     assert [path.name for path in output.parent.iterdir()] == ["set"]
 

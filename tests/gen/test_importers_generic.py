@@ -175,8 +175,7 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
     (tmp_path / "half.mat").write_bytes((tmp_path / "whole.mat").read_bytes()[:900])
     done, _ = imported(
         tmp_path,
-        COMMON
-        + "variable: x\nfiles: [{path: good.npy, variable: null}, {path: half.mat}, {path: whole.mat}]\n",
+        COMMON + "variable: x\nfiles: [{path: good.npy, variable: null}, {path: half.mat}, {path: whole.mat}]\n",
     )
     assert "half.mat:x: is no readable MATLAB 7.3 file" in done.skipped[0]
     assert done.skipped[1] == "whole.mat:x: holds vibration, not x; skipped."
@@ -251,9 +250,7 @@ def test_a_mapping_that_cannot_be_meant_is_refused_with_a_sentence(tmp_path, map
 
 def test_a_missing_mapping_and_a_folder_in_its_place_are_refused(tmp_path):
     for source in (tmp_path / "none.yaml", tmp_path):
-        with pytest.raises(
-            CorpusError, match="no such file; give the YAML file that describes the recordings"
-        ):
+        with pytest.raises(CorpusError, match="no such file; give the YAML file that describes the recordings"):
             import_generic(source, tmp_path / "corpus")
 
 

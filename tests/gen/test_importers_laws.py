@@ -59,9 +59,7 @@ def test_the_windows_put_together_are_the_recording_without_its_incomplete_end(s
     assert len(records) == size // length
     together = np.concatenate([record.signal for record in records]) if records else np.zeros(0)
     np.testing.assert_array_equal(together, signal[: len(records) * length].astype(np.float32))
-    assert [record.columns["source"] for record in records] == [
-        f"a.mat#{length * n}" for n in range(len(records))
-    ]
+    assert [record.columns["source"] for record in records] == [f"a.mat#{length * n}" for n in range(len(records))]
 
 
 @settings(deadline=None, max_examples=10)

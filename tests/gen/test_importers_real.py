@@ -60,13 +60,7 @@ def test_the_cwru_copies_give_64_recordings_of_16_bearings(cwru):
     assert validate_corpus(done.directory) == []
     assert len(set(corpus.specimen.values.tolist())) == 16
     assert (
-        len(
-            {
-                (number, fault)
-                for number, fault in zip(corpus.recording.values, corpus.fault.values, strict=True)
-            }
-        )
-        == 64
+        len({(number, fault) for number, fault in zip(corpus.recording.values, corpus.fault.values, strict=True)}) == 64
     )
     assert done.records == 1270
     assert np.bincount(corpus.recording)[[97, 98, 105]].tolist() == [10, 20, 20]
@@ -130,9 +124,7 @@ def test_every_real_file_reads_as_scipy_reads_it(name):
             if value.dtype.names is None:
                 np.testing.assert_array_equal(read_matlab(path, variable), value, str(path))
             else:
-                np.testing.assert_array_equal(
-                    read_matlab(path, f"{variable}.gs"), value["gs"].item(), str(path)
-                )
+                np.testing.assert_array_equal(read_matlab(path, f"{variable}.gs"), value["gs"].item(), str(path))
 
 
 def test_damaged_copies_of_real_files_are_named_and_the_rest_is_imported(tmp_path):

@@ -24,7 +24,9 @@ ROLLERS = CATALOGUE["NU206"]
 @law
 @given(lengths, st.floats(1.1, 5.0))
 def test_a_longer_roller_is_stiffer_by_the_power_eight_ninths(length, ratio):
-    assert line_contact_factor(ratio * length) == pytest.approx(ratio ** (8 / 9) * line_contact_factor(length), rel=1e-12)
+    assert line_contact_factor(ratio * length) == pytest.approx(
+        ratio ** (8 / 9) * line_contact_factor(length), rel=1e-12
+    )
 
 
 @law
@@ -49,7 +51,9 @@ def test_the_exponent_follows_the_rolling_element():
 
 
 def test_rollers_of_unknown_length_are_refused_with_a_sentence():
-    with pytest.raises(ValueError, match=r"bearing NU206: the length of its rollers is not known; give roller_length\."):
+    with pytest.raises(
+        ValueError, match=r"bearing NU206: the length of its rollers is not known; give roller_length\."
+    ):
         load_deflection_factor(replace(ROLLERS, roller_length=None))
 
 

@@ -195,9 +195,3 @@ def test_outer_spalls_count_their_angle_from_the_load(recipe_with):
     recipe = recipe_with({"faults": outer, "machine.load_angle_deg": -60})
     spall = physical_record(draw_scenarios(recipe, 0, 1)[0]).spalls[0]
     assert spall.angle == pytest.approx(math.radians(-50))
-
-
-def test_spalls_that_reach_under_more_balls_than_the_kernel_has_slots_are_refused(recipe_with):
-    wide = [{"kind": "inner", "width_mm": 14, "spalls": 2}]
-    with pytest.raises(SimulationError, match=r"^specimen 0: its spalls span more than 4 balls at a time"):
-        physical_record(draw_scenarios(recipe_with({"faults": wide}), 0, 1)[0])
