@@ -17,7 +17,7 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.integrate import integrate
 from gen.physics.rotor import Machine
 
-FloatArray = NDArray[np.float64]
+FloatArray = NDArray[np.floating]
 
 FS = 40_000  # Hz, and the step of the integration; 320 kHz changes no value by 0.4 %
 SECONDS = 1.0

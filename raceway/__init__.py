@@ -13,6 +13,7 @@ bench     how fast this machine is, stage by stage
 corpora   commands that make corpora and look at them
 importing commands that bring real recordings into the format
 learning  commands from a corpus to features, models and a report
+reproduce the seed paper run again
 cli       the group of all commands, and the entry point
 ========= =====================================================================
 

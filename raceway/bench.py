@@ -103,7 +103,7 @@ def _batches(scenarios: list[Scenario], recipe: Recipe) -> list[Batch]:
     for scenario in scenarios:
         record = physical_record(scenario)
         factor = steps_per_sample(record, scenario, recipe)
-        groups[record_shape(record, scenario.specimen.profile), factor].append(record)
+        groups[record_shape(record), factor].append(record)
     knot = 1 / recipe.recording.sample_rate_hz
     return [
         (shape, lay_out(some, shape, knot), factor, len(some))

@@ -286,10 +286,11 @@ def pass_spall(
     ball = lanes.drive[BALL * LANES + lane]
     for half_step in range(2 * n_steps + 1):
         offset = start + slope * half_step
-        if profile == TABLE:
-            fall = tabulated(lanes.tables, table, offset, half)
-        else:
-            fall = drop(profile, offset, half, arc, ball, race, depth)
+        fall = (
+            tabulated(lanes.tables, table, offset, half)
+            if profile == TABLE
+            else drop(profile, offset, half, arc, ball, race, depth)
+        )
         lanes.params[gap + half_step * stride] += share * fall
 
 

@@ -212,7 +212,7 @@ REFUSED = {
     "not_a_number": (COMMON + "files: [{path: a.npy, load_n: .nan}]", "files[0].load_n: nan is not allowed"),
     "bearing": (
         COMMON + "files: [{path: a.npy, bearing: 6295}]",
-        "files[0].bearing 6295 is not in the catalogue (6205,",
+        "files[0].bearing 6295 is not in the catalogue (",
     ),
     "geometry": (
         COMMON + "files: [{path: a.npy, bearing: {n_balls: 8, pitch_diameter_mm: 40}}]",
