@@ -16,6 +16,7 @@ simulate      scenarios to accelerations
 measure       accelerations to what a data-acquisition card stores
 labels        what is written beside each record
 generate      a corpus, part by part, with dask
+paper         the seed paper, run and held against what it says
 replay        any record again, bit for bit
 ============= ==================================================================
 

@@ -5,6 +5,7 @@ whatever a recipe asks for, so that one value never moves another.
 """
 
 import math
+import reprlib
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -156,9 +157,9 @@ def weighted_index(weights: tuple[float, ...], u: float) -> int:
 
 
 def _from_number(value: Any) -> Any:
-    if isinstance(value, bool):
-        raise ValueError(  # noqa: TRY004 - pydantic makes sentences of ValueError only
-            f"{value} is neither a number nor a distribution; write 1.5 or {{kind: uniform, low: 1, high: 2}}."
+    if isinstance(value, bool | str | list) or value is None:
+        raise ValueError(
+            f"{reprlib.repr(value)} is neither a number nor a distribution; write 1.5 or {{kind: uniform, low: 1, high: 2}}."
         )
     return {"kind": "constant", "value": value} if isinstance(value, int | float) else value
 

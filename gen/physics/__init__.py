@@ -3,8 +3,9 @@
 ========= ================================================================
 module    responsibility
 ========= ================================================================
-bearing   geometry, catalogue, fault frequencies in orders of the shaft
-hertz     point contact: curvature to load-deflection factor
+bearing   geometry, fault frequencies in orders of the shaft
+catalogue bearings by designation, with ratings and sources
+hertz     point and line contact: geometry to load-deflection factor
 lanes     how kernels are compiled: one record per lane
 spall     how far a ball drops as it rolls over a defect
 rotor     machine constants, static rest, fastest swing

@@ -209,4 +209,4 @@ def _cells(bearing: Bearing) -> list[str]:
 
 
 def _shown(value: float | None, factor: float) -> str:
-    return "-" if value is None else f"{value * factor:.5g}"
+    return "-" if value is None else f"{value * factor:.6g}"

@@ -6,6 +6,7 @@ A recipe is given as a path or by the name of one that ships with Raceway. YAML 
 import difflib
 import hashlib
 import json
+import reprlib
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -121,36 +122,55 @@ def _load(path: Path) -> dict[str, Any]:
 
 
 def _sentences(error: ValidationError) -> list[str]:
-    """One sentence per thing that is wrong; an error inside one branch of a union names only that branch."""
-    sentences = []
-    for item in error.errors():
-        place = _place(item["loc"])
-        value = item["input"]
-        shown = f"{value!r} " if isinstance(value, str | int | float | bool) or value is None else ""
-        context = item.get("ctx", {})
-        text = item["msg"].removeprefix("Value error, ").replace("Input should be", "it must be")
-        match item["type"]:
-            case "extra_forbidden":
-                sentence = f"{place}: no such key{_near(item['loc'])}"
-            case "missing":
-                sentence = f"{place}: is missing; give it."
-            case "union_tag_invalid":
-                expected = context["expected_tags"].replace("'", "")
-                sentence = f"{place}.kind: {context['tag']!r} is not one of {expected}."
-            case "union_tag_not_found":
-                sentence = f"{place}: {shown or 'this '}needs a kind, such as kind: {_first_kind(item)}."
-            case "value_error":
-                sentence = f"{place}: {text}" if place else text
-            case "too_short" if value:
-                continue
-            case "too_short":
-                sentence = f"{place}: is empty; give at least one."
-            case _:
-                sentence = f"{place}: {shown}is not allowed here; {text[0].lower()}{text[1:]}."
-        if place.endswith("width_mm") and "is not in" in sentence:
-            sentence = sentence.removesuffix(".") + "; for a bearing without a fault use kind: healthy."
-        sentences.append(sentence)
-    return list(dict.fromkeys(sentences))
+    """One sentence per thing that is wrong; a key that is missing because it is misspelt is one thing."""
+    items = error.errors()
+    meant = {(*item["loc"][:-1], _guess(item["loc"])) for item in items if item["type"] == "extra_forbidden"}
+    sentences = [_sentence(item) for item in items if item["loc"] not in meant]
+    return list(dict.fromkeys(sentence for sentence in sentences if sentence))
+
+
+def _sentence(item: Any) -> str | None:
+    """Sentence about one thing; None if others say more about it."""
+    place, value, kind, context = _place(item["loc"]), item["input"], item["type"], item.get("ctx", {})
+    shown = reprlib.repr(value) if isinstance(value, str | int | float) or value is None else "this"
+    match kind:
+        case "extra_forbidden":
+            guess, allowed = _guess(item["loc"]), ", ".join(_siblings(item["loc"]))
+            return f"{place}: no such key; " + (f"did you mean {guess}?" if guess else f"allowed are {allowed}.")
+        case "invalid_key":
+            return (
+                f"{_place(item['loc'][:-1])}: {value!r} is no key; keys are words, and decimals have a point, no comma."
+            )
+        case "missing":
+            return f"{place}: is missing; give it."
+        case "union_tag_invalid":
+            expected = context["expected_tags"].replace("'", "")
+            return f"{place}.kind: {context['tag']!r} is not one of {expected}."
+        case "union_tag_not_found":
+            return f"{place}: {shown} needs a kind, such as kind: {_first_kind(item)}."
+        case "value_error":
+            text = item["msg"].removeprefix("Value error, ")
+            if place.endswith("width_mm") and "is not in" in text:
+                text = text.removesuffix(".") + "; for a bearing without a fault use kind: healthy."
+            return f"{place}: {text}" if place else text
+        case "too_short":
+            return None if value else f"{place}: is empty; give at least one."
+        case _:
+            allowed = _ALLOWED.get(kind) or item["msg"].replace("Input should be ", "")
+            return f"{place}: {shown} is not allowed here; it must be {allowed}."
+
+
+_ALLOWED = {
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "float_type": "a number",
+    "string_type": "text",
+    "string_pattern_mismatch": "1 to 64 letters, digits, dots, dashes or underscores",
+    "tuple_type": "a list",
+    "model_type": "a section with keys of its own",
+    "model_attributes_type": "a section with keys of its own",
+    "dict_type": "a section with keys of its own",
+}
 
 
 def _first_kind(item: Any) -> str:
@@ -164,7 +184,8 @@ def _place(location: tuple[int | str, ...]) -> str:
         if isinstance(step, int):
             place += f"[{step}]"
         elif node.knows(step) or step not in _BRANCHES:
-            place += f".{step}" if place else step
+            shown = step if step.isprintable() else repr(step)
+            place += f".{shown}" if place else shown
             node = node.into(step)
     return place
 
@@ -201,10 +222,16 @@ def _sections(annotations: list[Any]) -> list[type[BaseModel]]:
     return sections
 
 
-def _near(location: tuple[int | str, ...]) -> str:
+def _siblings(location: tuple[int | str, ...]) -> list[str]:
+    """Keys that are allowed where ``location`` ends."""
     node = _Cursor(Recipe)
     for step in location[:-1]:
         if isinstance(step, str) and node.knows(step):
             node = node.into(step)
-    near = difflib.get_close_matches(str(location[-1]), node.keys(), 1)
-    return f"; did you mean {near[0]}?" if near else f"; allowed are {', '.join(node.keys())}."
+    return node.keys()
+
+
+def _guess(location: tuple[int | str, ...]) -> str | None:
+    """The allowed key most like the last of ``location``, if one is."""
+    near = difflib.get_close_matches(str(location[-1]), _siblings(location), 1)
+    return near[0] if near else None

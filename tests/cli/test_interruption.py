@@ -44,7 +44,7 @@ def wait_for(found, process):
 def a_file(folder, pattern):
     """Whether a file of that name is in the folder of parts, to be asked often."""
     matches = re.compile(pattern).fullmatch
-    return lambda: (folder / "parts").is_dir() and any(map(matches, os.listdir(folder / "parts")))
+    return lambda: any(matches(path.name) for path in folder.glob("parts/*"))
 
 
 @pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 1)])

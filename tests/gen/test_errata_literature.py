@@ -31,8 +31,8 @@ class Parameters(NamedTuple):
 
 
 PLAUSIBLE = Parameters(5.5, 5.0, 1e6, 1e8, 4e7, 300.0, 1000.0)
-LOWEST = Parameters(2.0, 2.0, 1e6, 1e7, 1e6, 50.0, 50.0)
-HIGHEST = Parameters(8.0, 8.0, 3e8, 3e8, 3e8, 2000.0, 2000.0)
+LOWEST = Parameters(2.0, 2.0, 1e6, 5e6, 1e6, 50.0, 50.0)
+HIGHEST = Parameters(9.0, 9.0, 3e8, 3e8, 3e8, 2000.0, 2000.0)
 
 PRINTED: frozenset[str] = frozenset()
 REPAIRED = frozenset({"E1", "E2", "E3", "E4"})
@@ -111,8 +111,8 @@ def test_without_contact_the_housing_falls_off_its_own_support():
     ("repairs", "at_least", "at_most"),
     [
         (PRINTED, 1.0, 1.0),
-        ({"E1"}, 0.93, 0.99),
-        ({"E1", "E2"}, 0.005, 0.04),
+        ({"E1"}, 0.95, 0.985),
+        ({"E1", "E2"}, 0.01, 0.025),
         (REPAIRED - {"E4"}, 0.0, 0.0),
         (REPAIRED, 0.0, 0.0),
     ],

@@ -1,10 +1,11 @@
 """Broken recipes, each with the sentence it gets: where, what was found, what is allowed or what to do."""
 
-import re
+import io
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from ruamel.yaml import YAML
 
 from gen.errors import RacewayError, RecipeError
 from gen.plan import plan
@@ -38,18 +39,19 @@ TABLE = [
     # values
     ("0.5}", "0.0}", "faults[1].width_mm: 0 is not in (0, 20]; for a bearing without a fault use kind: healthy."),
     ("0.5}", "-1}", "faults[1].width_mm: -1 is not in (0, 20]"),
-    ("0.5}", "wide}", "faults[1].width_mm: 'wide' needs a kind, such as kind: uniform."),
-    ("0.5}", "yes}", "faults[1].width_mm: 'yes' needs a kind"),
+    ("0.5}", "wide}", "faults[1].width_mm: 'wide' is neither a number nor a distribution; write 1.5 or {kind: uniform"),
+    ("0.5}", "1,5}", "faults[1]: 5 is no key; keys are words, and decimals have a point, no comma."),
     ("0.5}", "true}", "faults[1].width_mm: True is neither a number nor a distribution; write 1.5 or {kind: uniform"),
-    ("0.5}", "[1, 2]}", "faults[1].width_mm: this needs a kind, such as kind: uniform."),
+    ("0.5}", "[1, 2]}", "faults[1].width_mm: [1, 2] is neither a number nor a distribution;"),
+    ("0.5}", "{low: 1, high: 2}}", "faults[1].width_mm: this needs a kind, such as kind: uniform."),
     ("0.5}", ".nan}", "faults[1].width_mm.value: nan is not allowed here; it must be a finite number."),
     ("rigs: 2", "rigs: 0", "corpus.rigs: 0 is not allowed here; it must be greater than or equal to 1."),
-    ("rigs: 2", "rigs: 2.5", "corpus.rigs: 2.5 is not allowed here; it must be a valid integer"),
-    ("rigs: 2", "rigs: '2'", "corpus.rigs: '2' is not allowed here; it must be a valid integer."),
+    ("rigs: 2", "rigs: 2.5", "corpus.rigs: 2.5 is not allowed here; it must be a whole number."),
+    ("rigs: 2", "rigs: '2'", "corpus.rigs: '2' is not allowed here; it must be a whole number."),
     ("12000", "900", "recording.sample_rate_hz: 900 is not allowed here; it must be greater than or equal to 1000."),
-    ("12000", "12 kHz", "recording.sample_rate_hz: '12 kHz' is not allowed here; it must be a valid number."),
+    ("12000", "12 kHz", "recording.sample_rate_hz: '12 kHz' is not allowed here; it must be a number."),
     ("test: 0.25", "test: 1.0", "corpus.split.test: 1.0 is not allowed here; it must be less than 1."),
-    ("name: whole", "name: a/b", "name: 'a/b' is not allowed here;"),
+    ("name: whole", "name: a/b", "name: 'a/b' is not allowed here; it must be 1 to 64 letters, digits, dots, dashes or underscores."),
     ("angle_deg: 90", "angle_deg: 400", "recording.channels[0].angle_deg: 400 is not in [-360, 360]."),
     # distributions
     ("low: 1500, high: 1800", "low: 1800, high: 1500", "operation.shaft_rpm: low 1800.0 is above high 1500.0; swap them."),
@@ -64,7 +66,7 @@ TABLE = [
     ("low: 1500", "low: 0", "operation.shaft_rpm: 0 is not in [1, 100000]."),
     # choices
     ("kind: outer", "kind: cage", "faults[1].kind: 'cage' is not one of healthy, inner, outer, ball."),
-    ('["6205"]', '["6299"]', "bearing.designations[0]: '6299' is not allowed here; it must be '6205'"),
+    ('["6205"]', '["6299"]', "bearing.designations[0]: '6299' is not allowed here; it must be '608', "),
     ('["6205"]', "[]", "bearing.designations: is empty; give at least one."),
     ("{name: sensor,", "{name: sensor, body: table,", "recording.channels[0].body.table: "),
     # what does not go together
@@ -75,8 +77,10 @@ TABLE = [
     ("duration_s: 0.1", "duration_s: 0.001", "recording.duration_s: 12 samples are too few; use at least 16."),
     ("angle_deg: 90}", "angle_deg: 90}, {name: sensor}", "recording.channels: two channels have one name; give each its own."),
     # what turns out when it is drawn
-    ("0.5}", "18}", "a spall of 18 mm does not fit a outer radius of 2"),
-    ("12000", "1000", "needs more than 96 steps per sample at 1000 Hz; soften the machine or raise recording.sample_rate_hz."),
+    ("kind: outer, width_mm: 0.5", "kind: ball, width_mm: 12", "does not fit a ball radius of 3.97 mm; keep width_mm below 5.56."),
+    ("shaft_mass_kg: 5", "shaft_mass_kg: 1.0e-4", "steps per sample at 12000 Hz; soften the machine or raise recording.sample_rate_hz."),
+    ("machine: {shaft_mass_kg: 5}", "machine: 5", "machine: 5 is not allowed here; it must be a section with keys of its own."),
+    ("[{name: sensor, angle_deg: 90}]", "3", "recording.channels: 3 is not allowed here; it must be a list."),
     ("12000", "12000\n  oversampling: 1", "is too fast for a step of 83.3 us; raise recording.oversampling to "),
     # what is no recipe
     ("name: whole", "name: [whole", "is not valid YAML ("),
@@ -153,14 +157,13 @@ def test_a_recipe_of_a_megabyte_is_refused(tmp_path):
     )
 )
 def test_whatever_a_recipe_holds_it_is_refused_in_sentences(tmp_path_factory, data):
-    import io
-
-    from ruamel.yaml import YAML
-
     stream = io.StringIO()
     YAML(typ="safe", pure=True).dump(data, stream)
     path = tmp_path_factory.mktemp("odd") / "odd.yaml"
     path.write_text(stream.getvalue(), encoding="utf-8")
     with pytest.raises(RecipeError) as caught:
         read_recipe(path)
-    assert all(re.fullmatch(r".*odd\.yaml: .+[.?]", line, re.DOTALL) for line in str(caught.value).split(f"\n{path}"))
+    for line in str(caught.value).splitlines():
+        assert line.startswith(f"{path}: ")
+        assert line.endswith((".", "?"))
+        assert len(line) < 2000
