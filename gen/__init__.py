@@ -18,6 +18,7 @@ labels        what is written beside each record
 generate      a corpus, part by part, with dask
 paper         the seed paper, run and held against what it says
 replay        any record again, bit for bit
+plan          what a recipe would make, without making it
 ============= ==================================================================
 
 Data flows down this list; a module imports only modules above it.

@@ -157,9 +157,10 @@ def weighted_index(weights: tuple[float, ...], u: float) -> int:
 
 
 def _from_number(value: Any) -> Any:
-    if isinstance(value, bool | str | list) or value is None:
+    if value is None or isinstance(value, bool | str | list):
+        shown = reprlib.repr(value)  # pyright: ignore[reportUnknownArgumentType]
         raise ValueError(
-            f"{reprlib.repr(value)} is neither a number nor a distribution; write 1.5 or {{kind: uniform, low: 1, high: 2}}."
+            f"{shown} is neither a number nor a distribution; write 1.5 or {{kind: uniform, low: 1, high: 2}}."
         )
     return {"kind": "constant", "value": value} if isinstance(value, int | float) else value
 

@@ -242,8 +242,8 @@ def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:
 def bench(recipe: str, records: int | None, as_json: bool) -> None:
     """Time this machine from RECIPE to features.
 
-    One worker draws, simulates, measures and writes the first part of the corpus several times; the medians are given and nothing is
-    kept. Steps are those of real records, settling included.
+    One worker makes the first part of the corpus several times, stage by stage; the medians are given and nothing is kept. Steps are
+    those of real records, settling included.
 
       raceway bench quickstart
     """

@@ -25,10 +25,11 @@ _CHANNELS = ("shaft, x1", "shaft, y1", "housing, x2", "housing, y2")
 @folder_option("OUT", "Folder for the figures and findings.json.")
 @json_option
 def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 - there is one paper so far
-    """Run the seed paper again: draw its figures, and measure what it states.
+    """Run the seed paper again.
 
-    Two parameter sets: paper fits the statements best, paper-hertz keeps the contact stiffness that follows from the geometry and the
-    weight of the rotor as load. Where a statement does not hold, the table says why; docs/errata.md has the reasons at length.
+    Its figures are drawn, and what it states is measured. Two parameter sets: paper fits the statements best, paper-hertz keeps the
+    contact stiffness that follows from the geometry and the weight of the rotor as load. Where a statement does not hold, the table
+    says why; docs/errata.md has the reasons at length.
 
       raceway reproduce ophel2025 -o ophel
     """

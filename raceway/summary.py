@@ -44,7 +44,8 @@ def _labels(directory: Path, manifest: dict[str, Any]) -> xr.Dataset:
     for row in manifest["parts"]:
         with open_part(directory / "parts" / row.name) as part:
             found.append(part.drop_vars(SIGNAL).load())
-    return xr.concat(found, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
+    whole: Any = xr.concat(found, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
+    return whole
 
 
 def _content(labels: xr.Dataset) -> dict[str, Any]:

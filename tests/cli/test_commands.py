@@ -187,12 +187,12 @@ def test_evaluate_gives_the_figures_over_the_classes_present(run, told, tiny_cor
 def test_benchmark_writes_a_report_and_results(run, told, tiny_corpus, tmp_path, monkeypatch):
     for name in ("svm", "random_forest", "extra_trees", "gradient_boosting", "ensemble"):
         monkeypatch.setitem(ESTIMATORS, name, ESTIMATORS["logistic_regression"])  # for speed
-    results = told("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 3)
+    results = told("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2)
     assert results["baselines"].keys() == ESTIMATORS.keys()
     assert json.loads((tmp_path / "report" / "results.json").read_text())["baselines"] == results["baselines"]
     assert "Tiny corpus" in (tmp_path / "report" / "report.html").read_text()
     monkeypatch.setattr("features.report.write_report", lambda *_: tmp_path / "report.html")  # for speed
-    shown = run("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 3).stdout
+    shown = run("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2).stdout
     assert "null labels" in shown
     assert "envelope_rule" in shown
 
@@ -220,7 +220,7 @@ def test_recordings_are_imported_and_counted(run, told, tmp_path):
 def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):
     monkeypatch.setattr("raceway.bench.REPEATS", 1)
     found = told("bench", tiny_recipe, "--records", 6)
-    assert set(found["stage_seconds"]) == {"draw", "simulate", "integrate", "measure", "write", "features"}
+    assert set(found["stage_seconds"]) == {"draw", "lay_out", "integrate", "measure", "write", "features"}
     assert found["kernel_record_steps_per_second"] == pytest.approx(
         found["record_steps"] / found["stage_seconds"]["integrate"]
     )
