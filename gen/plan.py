@@ -5,8 +5,10 @@ Records are drawn and checked as :func:`gen.generate` would, so that what it ref
 
 import math
 from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from gen.corpus import FAULTS, SPLITS
 from gen.physics.batch import record_shape
@@ -72,41 +74,42 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         If the recipe asks for what cannot be.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
-    ranges = _some_ranges(checked)
-    scenarios = [draw_scenarios(checked, first, stop) for first, stop in ranges]
-    scale = checked.n_records / sum(len(part) for part in scenarios)
-    factors, lane_steps, kernels = Counter[int](), 0, set[Shape]()
-    for part in scenarios:
-        batches = _batches(part, checked)
-        kernels |= {shape for shape, _ in batches}
-        for (_, factor), count in batches.items():
-            factors[factor] += count
-            lane_steps += factor * math.ceil(count / LANES) * LANES * samples_integrated(checked)
-    specimens_drawn = [scenario.specimen for part in scenarios for scenario in part]
-    classes = Counter(specimen.fault for specimen in specimens_drawn)
-    splits = Counter(specimen.split for specimen in specimens_drawn)
-    samples = checked.n_records * checked.n_samples * len(checked.recording.channels)
-    corpus = checked.corpus
-    specimens = math.ceil(checked.n_records / corpus.records_per_specimen)
+    parts = [draw_scenarios(checked, first, stop) for first, stop in some_ranges(checked)]
+    batches = [_batches(part, checked) for part in parts]
+    drawn = [scenario.specimen for part in parts for scenario in part]
+    scale = checked.n_records / len(drawn)
+
+    def scaled(counts: Counter[Any], order: Iterable[Any]) -> dict[Any, int]:
+        return {key: round(counts[key] * scale) for key in order if counts[key]}
+
+    factors: Counter[int] = Counter()
+    for (_, factor), count in (item for part in batches for item in part.items()):
+        factors[factor] += count
+    lanes = sum(factor * math.ceil(count / LANES) * LANES for part in batches for (_, factor), count in part.items())
+    kernels = {shape for part in batches for shape, _ in part}
+    recording = checked.recording
+    samples = checked.n_records * checked.n_samples * len(recording.channels)
+    specimens = math.ceil(checked.n_records / checked.corpus.records_per_specimen)
     return Plan(
         recipe=checked.name,
         title=checked.title,
         seed=checked.seed,
-        rigs=math.ceil(specimens / corpus.specimens_per_rig),
+        rigs=math.ceil(specimens / checked.corpus.specimens_per_rig),
         specimens=specimens,
         records=checked.n_records,
         parts=checked.n_parts,
-        sample_rate=checked.recording.sample_rate_hz,
-        duration=checked.recording.duration_s,
-        channels=tuple(channel.name for channel in checked.recording.channels),
-        classes={fault: round(classes[fault] * scale) for fault in FAULTS if classes[fault]},
-        splits={split: round(splits[split] * scale) for split in SPLITS if splits[split]},
-        steps_per_sample={factor: round(factors[factor] * scale) for factor in sorted(factors)},
+        sample_rate=recording.sample_rate_hz,
+        duration=recording.duration_s,
+        channels=tuple(channel.name for channel in recording.channels),
+        classes=scaled(Counter(specimen.fault for specimen in drawn), FAULTS),
+        splits=scaled(Counter(specimen.split for specimen in drawn), SPLITS),
+        steps_per_sample=scaled(factors, sorted(factors)),
         kernels=len(kernels),
         bytes=round(samples * _bytes_per_sample(checked) + checked.n_records * BYTES_PER_RECORD),
-        estimated_seconds=lane_steps * scale / LANE_STEPS_PER_SECOND + samples * SECONDS_PER_SAMPLE,
+        estimated_seconds=lanes * scale * samples_integrated(checked) / LANE_STEPS_PER_SECOND
+        + samples * SECONDS_PER_SAMPLE,
         compile_seconds=len(kernels) * COMPILE_SECONDS,
-        drawn=len(specimens_drawn),
+        drawn=len(drawn),
     )
 
 
@@ -116,8 +119,8 @@ def samples_integrated(recipe: Recipe) -> int:
     return settling + recipe.n_samples
 
 
-def _some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
-    """Records of every part, or of as many parts as ``MOST_DRAWN`` records make, spread over the corpus."""
+def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
+    """First and last but one record of every part, or of as many parts as ``MOST_DRAWN`` records make, spread over the corpus."""
     size = recipe.corpus.records_per_part
     parts = min(recipe.n_parts, max(1, MOST_DRAWN // size))
     firsts = [place * recipe.n_parts // parts * size for place in range(parts)]

@@ -30,6 +30,7 @@ from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulate import lead_samples, physical_record, simulate, steps_per_sample
 
+STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5
 BUDGET_S = 15.0  # no further repeat after that
 
@@ -61,7 +62,7 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     wanted = min(records or checked.corpus.records_per_part, checked.n_records)
     scenarios = draw_scenarios(checked, 0, wanted)
     response = simulate(scenarios, checked)  # compiles what is not compiled yet
-    seconds: dict[str, list[float]] = defaultdict(list)
+    seconds: dict[str, list[float]] = {stage: [] for stage in STAGES}
 
     def timed(stage: str, work: Callable[..., Any], *given: Any) -> Any:
         start = time.perf_counter()
@@ -81,7 +82,7 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
             timed("features", part_features, path)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
     steps = samples_integrated(checked) * int(response.oversampling.sum())
-    making = sum(time for stage, time in stages.items() if stage != "features")
+    making = sum(stages.values()) - stages["features"]
     return Bench(
         recipe=checked.name,
         records=wanted,

@@ -163,17 +163,16 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
 
 def _show_scores(scores: "Scores") -> None:
     low, high = scores.interval
-    show.facts(
-        {
-            "balanced accuracy": f"{scores.balanced_accuracy:.3f} (95 % interval {low:.3f} to {high:.3f})",
-            "macro F1": f"{scores.macro_f1:.3f}",
-            "accuracy": f"{scores.accuracy:.3f}",
-            "records": f"{scores.records:,}",
-        }
-    )
+    found = {
+        "balanced accuracy": f"{scores.balanced_accuracy:.3f} (95 % interval {low:.3f} to {high:.3f})",
+        "macro F1": f"{scores.macro_f1:.3f}",
+        "accuracy": f"{scores.accuracy:.3f}",
+        "records": f"{scores.records:,}",
+    }
     whole = scores.by_recording
     if whole is not None and whole.records < scores.records:
-        show.text(f"by recording: balanced accuracy {whole.balanced_accuracy:.3f} of {whole.records:,}")
+        found["by recording"] = f"balanced accuracy {whole.balanced_accuracy:.3f} of {whole.records:,}"
+    show.facts(found)
     show.text("")
     show.table(
         ("true \\ named", *scores.model_classes), zip(scores.classes, *zip(*scores.confusion, strict=True), strict=True)

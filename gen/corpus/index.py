@@ -261,7 +261,6 @@ def _part_content_problems(part: xr.Dataset, index: xr.Dataset) -> list[str]:
     for record in np.flatnonzero(~np.isfinite(signal).all(axis=(1, 2))):
         problems.append(f"record {record} of the part has samples that are not finite.")
     for name in part.variables:
-        same = part[name].values, index[name].values
-        if not np.array_equal(*same, equal_nan=same[0].dtype.kind == "f"):
+        if not part.variables[name].identical(index.variables[name]):
             problems.append(f"{name} differs from corpus.nc; make or copy the corpus again.")
     return problems

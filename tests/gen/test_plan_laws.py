@@ -1,0 +1,55 @@
+"""Laws of a plan: it counts a small corpus exactly, and a large one from parts spread over it."""
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.generate import generate
+from gen.plan import MOST_DRAWN, plan, some_ranges
+from gen.recipe import read_recipe
+
+
+@settings(deadline=None)
+@given(per_part=st.integers(1, 20_000), rigs=st.integers(1, 5000))
+def test_the_parts_a_plan_looks_at_are_in_the_corpus_and_do_not_overlap(recipe_with, per_part, rigs):
+    recipe = recipe_with({"corpus.records_per_part": per_part, "corpus.rigs": rigs})
+    ranges = some_ranges(recipe)
+    assert all(0 <= first < stop <= recipe.n_records for first, stop in ranges)
+    assert all(stop <= following for (_, stop), (following, _) in pairwise(ranges))
+    drawn = sum(stop - first for first, stop in ranges)
+    assert drawn == recipe.n_records or 0 < drawn <= MOST_DRAWN
+
+
+def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
+    path = write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500, "corpus.records_per_part": 250})
+    planned = plan(path)
+    assert (planned.records, planned.rigs, planned.specimens, planned.drawn) == (20_000, 2500, 10_000, 5000)
+    assert sum(planned.splits.values()) == pytest.approx(20_000, abs=3)
+    assert planned.classes == pytest.approx(dict.fromkeys(("healthy", "inner", "outer", "ball"), 5000), rel=0.02)
+
+
+@pytest.mark.parametrize(("key", "factor"), [("corpus.rigs", 3), ("recording.duration_s", 1)])
+def test_more_records_take_more_time_and_room(write_recipe, tmp_path, key, factor):
+    small = plan(write_recipe(tmp_path / "small.yaml"))
+    large = plan(write_recipe(tmp_path / "large.yaml", {key: 9 if factor == 3 else 0.3}))
+    assert large.records == factor * small.records
+    assert large.bytes > 1.3 * small.bytes
+    assert large.estimated_seconds > 1.3 * small.estimated_seconds
+
+
+def test_what_a_plan_refuses_generate_refuses_with_the_same_sentence(write_recipe, tmp_path):
+    path = write_recipe(tmp_path / "stiff.yaml", {"recording.oversampling": 1})
+    sentences = []
+    for make in (plan, lambda recipe: generate(recipe, tmp_path / "corpus")):
+        with pytest.raises(Exception, match="too fast for a step") as caught:
+            make(path)
+        sentences.append(str(caught.value))
+    assert sentences[0] == sentences[1]
+
+
+def test_a_plan_follows_seed_and_number_of_records(write_recipe, tmp_path):
+    path = write_recipe(tmp_path / "small.yaml")
+    assert plan(path, seed=8, records=5).records == 5
+    assert plan(path, seed=8).seed == read_recipe(path, seed=8).seed == 8
