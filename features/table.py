@@ -118,7 +118,7 @@ def _client(scheduler: Client | str | None, stack: ExitStack) -> AbstractContext
         return nullcontext(scheduler)
     if scheduler is not None:
         return Client(scheduler)
-    cluster = LocalCluster(threads_per_worker=1, dashboard_address=":0")
+    cluster = LocalCluster(threads_per_worker=1, dashboard_address="127.0.0.1:0")
     return Client(stack.enter_context(cluster))
 
 

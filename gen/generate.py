@@ -189,7 +189,7 @@ def _map(workers: int, scheduler: str | None, recipe: Recipe) -> Iterator[Run]:
     if scheduler is None:
         compile_kernels(recipe)
         with (
-            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0") as cluster,
+            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
             Client(cluster) as client,
         ):
             yield lambda parts, directory, known: _on_cluster(client, recipe, parts, directory, known)

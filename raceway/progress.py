@@ -6,8 +6,6 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import click
-
 from raceway import show
 
 Progress = Callable[[int, int], None]
@@ -74,8 +72,8 @@ def _pace(unit: str) -> Callable[[int, int], str]:
 
 
 def notice(sentence: str) -> None:
-    """Print a sentence on standard error."""
-    click.echo(show.printable(sentence), err=True)
+    """Print a sentence on standard error, above the bar if there is one."""
+    sys.stderr.write(show.printable(sentence) + "\n")
 
 
 @contextmanager

@@ -32,13 +32,13 @@ def part_bytes(folder):
     return {path.name: path.read_bytes() for path in sorted((folder / "parts").iterdir())}
 
 
-def wait_for(found, process):
+def wait_for(found, process, pause=5e-3):
     """Return as soon as ``found()`` is true; the process must be at work until then."""
     stop = time.monotonic() + PATIENCE_S
     while not found():
         if process.poll() is not None or time.monotonic() > stop:
             pytest.fail(f"came to an end ({process.poll()}) before there was anything to interrupt")
-        time.sleep(2e-4)
+        time.sleep(pause)
 
 
 def a_file(folder, pattern):
@@ -71,7 +71,7 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
 def test_a_process_killed_while_it_writes_leaves_no_half_part(start, recipe, whole, tmp_path):
     folder = tmp_path / "corpus"
     process = start("generate", recipe, "-o", folder, "--workers", 1)
-    wait_for(a_file(folder, r"\.part-00003\.nc\.\d+\.tmp"), process)
+    wait_for(a_file(folder, r"\.part-00003\.nc\.\d+\.tmp"), process, pause=1e-4)
     process.kill()
     assert process.wait(PATIENCE_S) == -signal.SIGKILL
     (folder / "parts" / ".part-00009.nc.1.tmp").write_bytes(b"half a part")
@@ -96,7 +96,7 @@ def test_a_full_disk_gets_a_sentence_and_room_lets_the_command_go_on(start, reci
 
 
 def test_an_interrupted_command_of_another_kind_leaves_nothing(start, tmp_path):
-    for number in range(4000):
+    for number in range(2000):
         (tmp_path / f"{number}.npy").write_bytes(b"no recording")
     mapping = tmp_path / "mapping.yaml"
     mapping.write_text(

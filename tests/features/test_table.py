@@ -110,7 +110,7 @@ def test_another_channel_has_other_features(corpus, table):
 
 def test_two_workers_and_this_process_give_the_same_numbers(corpus, table):
     done = []
-    with Client(n_workers=2, threads_per_worker=1, dashboard_address=None) as client:
+    with Client(n_workers=2, threads_per_worker=1, dashboard_address=":0") as client:
         parallel = feature_table(corpus, scheduler=client, progress=lambda *counts: done.append(counts))
         xr.testing.assert_identical(feature_table(corpus, scheduler=client.scheduler.address), table)
     xr.testing.assert_identical(parallel, table)
