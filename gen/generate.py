@@ -202,6 +202,12 @@ def _map(workers: int, scheduler: str | None, recipe: Recipe) -> Iterator[Run]:
             f"scheduler {scheduler}: does not answer ({reason}); give the address dask scheduler printed."
         ) from None
     with client:
+        try:
+            client.wait_for_workers(1, timeout=10)
+        except TimeoutError:
+            raise RecipeError(
+                f"scheduler {scheduler}: has no workers; start some with dask worker {scheduler}."
+            ) from None
         yield lambda parts, directory, known: _on_cluster(client, recipe, parts, directory.resolve(), known)
 
 

@@ -323,11 +323,14 @@ def move_spalls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray) -> 
                     start += angles[SHAFT * LANES + lane]
                     slope += moves[SHAFT * LANES + lane]
                     race = lanes.drive[INNER_RADIUS * LANES + lane]
+                half = spalls[(row + HALF) * LANES + lane]
                 nearest = np.rint((start + 0.5 * slope) / pitch)
-                around = int(np.ceil(spalls[(row + HALF) * LANES + lane] / pitch + 0.2))  # 0.2: jitter and late balls
+                around = int(half / pitch + 0.7)  # 0.2 more than it takes, for jitter and a late ball
                 for rank in range(-around, around + 1):
-                    ball = int((nearest + rank) % n_balls)
                     offset, rate = (nearest + rank) * pitch - start, -slope / (2 * n_steps)
+                    if abs(offset - 0.5 * slope) > half + 0.5 * abs(slope) + 0.2 * pitch:
+                        continue
+                    ball = int((nearest + rank) % n_balls)
                     if len(shape.jittered):
                         source = jitter_row(shape) + 2 * ball
                         offset += params[source * LANES + lane]
