@@ -12,11 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from gen.physics import kernel, lanes, motion, spall
+from gen.physics import gaps, kernel, lanes, motion, spall
 from gen.physics.batch import Record, lay_out, record_shape
+from gen.physics.integrate import place_balls, to_next_knot
 from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, PICKED, FloatArray, advance, param_rows
 from gen.physics.lanes import KERNEL, LANES
-from gen.physics.motion import ANGLE_ROWS, place_balls, to_next_knot
+from gen.physics.motion import ANGLE_ROWS
 
 EVERY_ACCELERATION = np.eye(AXES)
 
@@ -223,16 +224,16 @@ def _cached(sources: str):
     def march(shape, lanes, dt, n_steps, states, angles, history):
         _ = sources
         moves = np.empty(ANGLE_ROWS * LANES)
-        last, gaps = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
+        last, widths = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
         place_balls(shape, lanes, n_steps, moves, last)
         for knot in range(len(states)):
             states[knot] = lanes.state.reshape(N_STATE, LANES)
             angles[knot] = lanes.angles.reshape(ANGLE_ROWS, LANES)
             if knot + 1 < len(states):
-                to_next_knot(shape, lanes, knot, n_steps, dt, moves, last, gaps)
+                to_next_knot(shape, lanes, knot, n_steps, dt, moves, last, widths)
                 advance(shape, lanes.state, lanes.params, dt, n_steps, history, knot * n_steps * AXES)
 
     return march
 
 
-_march = _cached(sha256("".join(map(getsource, (lanes, spall, kernel, motion))).encode()).hexdigest())
+_march = _cached(sha256("".join(map(getsource, (lanes, spall, kernel, motion, gaps))).encode()).hexdigest())

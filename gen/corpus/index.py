@@ -5,9 +5,7 @@ reader sees one file. HDF5 reads a missing part as fill values without an error;
 """
 
 import json
-import os
 import re
-from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal
 
@@ -16,7 +14,7 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from gen.corpus.part import PartRow, open_part, replace_durably, sha256, write_text_durably
+from gen.corpus.part import PartRow, open_part, sha256, whole_or_not_at_all, write_text_durably
 from gen.corpus.schema import FORMAT, MISSING_COUNT, SIGNAL, schema_problems
 from gen.errors import CorpusError
 
@@ -147,19 +145,9 @@ def write_index(directory: Path, rows: list[PartRow]) -> None:
     CorpusError
         If the disk refuses the file, with the reason it gives.
     """
-    path = directory / "corpus.nc"
-    temporary = directory / f".corpus.nc.{os.getpid()}.tmp"
-    try:
+    with whole_or_not_at_all(directory / "corpus.nc") as temporary:
         _write_variables(directory, rows, temporary)
         _write_virtual_signal(directory, rows, temporary)
-        replace_durably(temporary, path)
-    except (OSError, RuntimeError) as error:
-        raise CorpusError(
-            f"{path}: could not be written ({error}); free some space or choose another folder."
-        ) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
 
 
 def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:

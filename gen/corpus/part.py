@@ -5,7 +5,8 @@ A part is written to a temporary name, flushed to disk and renamed, so that a ki
 
 import hashlib
 import os
-from contextlib import suppress
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -85,17 +86,8 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
     """
     encoding = {str(name): _encoding(str(name), variable) for name, variable in dataset.variables.items()}
     encoding[SIGNAL] = {"chunksizes": (1, 1, dataset.sizes["elapsed_time"]), **_CODECS[codec]}
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
+    with whole_or_not_at_all(path) as temporary:
         dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
-        replace_durably(temporary, path)
-    except (OSError, RuntimeError) as error:
-        raise CorpusError(
-            f"{path}: could not be written ({error}); free some space or choose another folder."
-        ) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
     return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path))
 
 
@@ -106,28 +98,36 @@ def _encoding(name: str, variable: xr.Variable) -> dict[str, Any]:
     return {"_FillValue": None}
 
 
-def replace_durably(temporary: Path, path: Path) -> None:
-    """Flush ``temporary`` to disk and let it take the place of ``path`` in one step."""
-    with temporary.open("rb+") as stream:
-        os.fsync(stream.fileno())
-    temporary.replace(path)
-    folder = os.open(path.parent, os.O_RDONLY)
-    try:
-        os.fsync(folder)
-    finally:
-        os.close(folder)
+@contextmanager
+def whole_or_not_at_all(path: Path) -> Iterator[Path]:
+    """Temporary path to write to; flushed to disk it takes the place of ``path`` in one step, or is removed if anything fails.
 
-
-def write_text_durably(text: str, path: Path) -> None:
-    """Write a text file, whole or not at all."""
+    Raises
+    ------
+    CorpusError
+        If the disk refuses the file, with the reason it gives.
+    """
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        temporary.write_text(text, encoding="utf-8")
-        replace_durably(temporary, path)
-    except OSError as error:
+        yield temporary
+        with temporary.open("rb+") as stream:
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+        folder = os.open(path.parent, os.O_RDONLY)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)
+    except (OSError, RuntimeError) as error:
         raise CorpusError(
             f"{path}: could not be written ({error}); free some space or choose another folder."
         ) from error
     finally:
         with suppress(OSError):
             temporary.unlink()
+
+
+def write_text_durably(text: str, path: Path) -> None:
+    """Write a text file, whole or not at all."""
+    with whole_or_not_at_all(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

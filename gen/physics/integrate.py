@@ -12,10 +12,20 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.signal import firwin
 
-from gen.physics import kernel, lanes, motion, spall
-from gen.physics.kernel import N_DYNAMIC, FloatArray, Shape, advance, param_rows
+from gen.physics import gaps, kernel, lanes, motion, spall
+from gen.physics.gaps import ball_gaps, move_gaps, move_spalls
+from gen.physics.kernel import N_DYNAMIC, FloatArray, Shape, advance, jitter_row, param_rows
 from gen.physics.lanes import COMPILED, INLINE, KERNEL, LANES
-from gen.physics.motion import ANGLE_ROWS, Lanes, place_balls, to_next_knot
+from gen.physics.motion import (
+    ANGLE_ROWS,
+    JITTER_FIRST,
+    JITTER_TERMS,
+    Lanes,
+    move_forces,
+    move_jitter,
+    turn_phasors,
+    turn_rings,
+)
 
 HALF_TAPS = 34  # per output sample; with beta 8 at least 80 dB from 1.025 Nyquist on
 FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
@@ -35,6 +45,49 @@ def decimation_taps(factor: int) -> FloatArray:
 def lead_knots(factor: int) -> int:
     """Knots by which an output of the filter lags its newest input."""
     return 0 if factor == 1 else HALF_TAPS
+
+
+@njit(**INLINE)
+def to_next_knot(
+    shape: Shape,
+    lanes: Lanes,
+    knot: int,
+    n_steps: int,
+    dt: float,
+    moves: FloatArray,
+    last: FloatArray,
+    widths: FloatArray,
+) -> None:
+    """Prepare ``lanes.params`` for the steps up to the next knot, and move the angles there.
+
+    ``last`` holds the gaps at this knot and receives those at the next; ``moves`` and ``widths`` are work arrays.
+    """
+    turn_rings(lanes, knot, n_steps, dt, moves)
+    turn_phasors(lanes.phasors, JITTER_FIRST + len(shape.balls) * JITTER_TERMS)
+    if len(shape.forced):
+        move_forces(lanes, knot, n_steps, dt, moves)
+    if len(shape.jittered):
+        move_jitter(shape, lanes, n_steps)
+    if len(shape.uneven):
+        move_gaps(shape, lanes, n_steps, moves, last, widths)
+        move_spalls(shape, lanes, n_steps, moves)
+    for i in range(ANGLE_ROWS * LANES):
+        lanes.angles[i] += moves[i]
+
+
+@njit(**INLINE)
+def place_balls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, last: FloatArray) -> None:
+    """Gaps into ``last`` and jitter at the first knot."""
+    moves[:] = 0.0
+    if len(shape.uneven):
+        ball_gaps(lanes, len(shape.balls), moves, last)
+    if len(shape.jittered):
+        move_jitter(shape, lanes, n_steps)
+        for ball in range(len(shape.balls)):
+            row = jitter_row(shape) + 2 * ball
+            for lane in range(LANES):
+                lanes.params[row * LANES + lane] += 2 * n_steps * lanes.params[(row + 1) * LANES + lane]
+                lanes.params[(row + 1) * LANES + lane] = 0.0
 
 
 @njit(**INLINE)
@@ -85,11 +138,11 @@ def integrate_lanes(
     diverged = np.full(LANES, -1)
     moves = np.empty(ANGLE_ROWS * LANES)
     total = np.empty(width)
-    last, gaps = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
+    last, widths = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
     place_balls(shape, batch, n_steps, moves, last)
     for first in range(0, lead + n_out, _BLOCK):
         for knot in range(_BLOCK):
-            to_next_knot(shape, batch, first + knot, n_steps, dt, moves, last, gaps)
+            to_next_knot(shape, batch, first + knot, n_steps, dt, moves, last, widths)
             advance(
                 shape,
                 batch.state,
@@ -130,7 +183,7 @@ def _cached(sources: str) -> Callable[..., tuple[FloatArray, NDArray[np.int64]]]
 
 
 _compiled = _cached(
-    sha256("".join(getsource(module) for module in (lanes, spall, kernel, motion)).encode()).hexdigest()
+    sha256("".join(getsource(module) for module in (lanes, spall, kernel, motion, gaps)).encode()).hexdigest()
 )
 
 
