@@ -47,8 +47,8 @@ def feature_table(
     channel
         Number of the channel to look at.
     scheduler
-        A dask client, the address of a dask scheduler, or ``"synchronous"`` for this process; by default this
-        process for a small corpus and a local cluster of one process per core for a large one.
+        A dask client, the address of a dask scheduler, or ``"local"`` for a cluster of one process per core
+        unless the corpus is small; by default this process.
     progress
         Called after each part with the number of parts done and of all parts.
 
@@ -77,7 +77,7 @@ def feature_table(
     small = len(paths) == 1 or table.sizes["record"] <= INLINE_RECORDS
     blocks: list[FloatArray] = [np.empty((0, len(names)))] * len(paths)
     compute = partial(part_features, groups=tuple(groups), channel=channel)
-    runs = _run(compute, paths, "synchronous" if scheduler is None and small else scheduler)
+    runs = _run(compute, paths, None if scheduler == "local" and small else scheduler)
     for done, (number, block) in enumerate(runs, start=1):
         blocks[number] = block
         if progress is not None:
@@ -103,7 +103,7 @@ def _run(
     compute: Callable[[Path], FloatArray], paths: list[Path], scheduler: Client | str | None
 ) -> Iterator[tuple[int, FloatArray]]:
     """Yield number and features of each part as they come."""
-    if scheduler == "synchronous":
+    if scheduler is None:
         yield from enumerate(map(compute, paths))
         return
     with ExitStack() as stack:
@@ -116,7 +116,7 @@ def _run(
 def _client(scheduler: Client | str | None, stack: ExitStack) -> AbstractContextManager[Client]:
     if isinstance(scheduler, Client):
         return nullcontext(scheduler)
-    if scheduler is not None:
+    if scheduler != "local":
         return Client(scheduler)
     cluster = LocalCluster(threads_per_worker=1, dashboard_address="127.0.0.1:0")
     return Client(stack.enter_context(cluster))

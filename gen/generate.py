@@ -141,8 +141,8 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     try:
         if directory.exists() and not directory.is_dir():
             raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
+        manifest = read_manifest(directory) if begun else {}
         if begun and any((directory / "parts").glob("*.nc")):
-            manifest = read_manifest(directory)
             if manifest.get("recipe_sha256") != facts["recipe_sha256"]:
                 raise CorpusError(
                     f"{directory}: holds a corpus of another recipe, seed or size; choose another folder."
@@ -154,6 +154,8 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
             directory.mkdir(parents=True, exist_ok=True)
             write_manifest(directory, [], complete=False, **facts)
             shutil.copyfile(recipe_path, directory / "recipe.yaml")
+        if not (directory / "recipe.yaml").exists():
+            shutil.copyfile(recipe_path, directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
         for left_behind in (directory / "parts").glob(".*.tmp"):  # by a process that was killed while it wrote
             left_behind.unlink()
@@ -162,14 +164,18 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     return known
 
 
+def _versions() -> dict[str, str]:
+    """Versions of what the bytes of a part depend on."""
+    return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
+
+
 def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, Any]:
-    versions = {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
     return {
         "title": recipe.title,
         "recipe": recipe.name,
         "recipe_sha256": recipe_hash(recipe),
         "overrides": {"seed": seed, "records": records},
-        "versions": versions,
+        "versions": _versions(),
     }
 
 
@@ -260,7 +266,11 @@ def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = No
     if not fine:
         return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
     dataset = part_dataset(measured, scenarios, recipe, response.oversampling).isel(record=fine)
-    dataset.attrs |= {"recipe_sha256": recipe_hash(recipe), "failures": json.dumps(failures)}
+    dataset.attrs |= {
+        "recipe_sha256": recipe_hash(recipe),
+        "versions": json.dumps(_versions()),
+        "failures": json.dumps(failures),
+    }
     return Outcome(write_part(dataset, path, recipe.corpus.codec), kept=False, failures=failures)
 
 
@@ -270,6 +280,8 @@ def _whole_part(path: Path, recipe: Recipe, known: str | None) -> Outcome | None
     try:
         with open_part(path) as dataset:
             if dataset.attrs.get("recipe_sha256") != recipe_hash(recipe):
+                return None
+            if dataset.attrs.get("versions") != json.dumps(_versions()):
                 return None
             failures = tuple(json.loads(dataset.attrs["failures"]))
         return Outcome(describe_part(path), kept=True, failures=failures)

@@ -75,7 +75,11 @@ def _columns(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         if widest.site == "ball":
             race = specimen.bearing.inner_radius
         arc = spall_reach(specimen.bearing, widest)[1]
-        drop = largest_drop(widest.width, arc, specimen.bearing.ball_diameter / 2, race, widest.depth)
+        drop = (
+            widest.depth
+            if widest.profile != "geometric"
+            else largest_drop(widest.width, arc, specimen.bearing.ball_diameter / 2, race, widest.depth)
+        )
     return {
         "shaft_rate": conditions["shaft"] * (1 + conditions["label_error"]),
         "sample_rate": recipe.recording.sample_rate_hz,
@@ -86,7 +90,9 @@ def _columns(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         "n_spalls": len(specimen.spalls),
         "width": 0.0 if widest is None else widest.width,
         "depth": 0.0 if widest is None else widest.depth,
-        "angle": np.nan if widest is None else widest.angle,
+        "angle": np.nan
+        if widest is None
+        else widest.angle + (rig.machine["load_angle"] if widest.site == "outer" else 0.0),
         "rig": rig.number,
         "specimen": specimen.number,
         "recording": scenario.record.number,

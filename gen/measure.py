@@ -150,7 +150,7 @@ def _ringing(hits: FloatArray, level: float, filters: _RigFilters) -> FloatArray
 
 
 def _filtered(x: FloatArray, spectrum: ComplexArray | FloatArray) -> FloatArray:
-    """``x`` times a spectrum, around the ends: the lead takes up what wraps."""
+    """``x`` times a spectrum, around the ends; the lead takes up what has died away within it."""
     return np.fft.irfft(np.fft.rfft(x) * spectrum, x.shape[-1])
 
 

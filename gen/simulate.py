@@ -264,4 +264,6 @@ def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
 
     rate = conditions["shaft"] * (1 + conditions["speed_wander"] * mean(0, motion.SPEED_TERMS))
     slip = conditions["mean_slip"] + conditions["slip"] * mean(motion.SLIP_FIRST, motion.SLIP_TERMS)
-    return rate, slipping_orders(scenario.specimen.bearing, slip)
+    found = slipping_orders(scenario.specimen.bearing, slip)
+    wander = scenario.specimen.axis.get("spin_wander", 0.0) * mean(motion.SPIN_FIRST, motion.SPIN_TERMS)
+    return rate, found._replace(bsf=found.bsf * (1 + wander))

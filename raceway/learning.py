@@ -83,7 +83,7 @@ def _table(corpus: Path) -> "xr.Dataset":
     from features import feature_table
 
     with progress("computing features", "parts") as report:
-        return feature_table(corpus, progress=report)
+        return feature_table(corpus, scheduler="local", progress=report)
 
 
 @click.command()

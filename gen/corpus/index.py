@@ -48,7 +48,10 @@ def read_manifest(directory: Path) -> dict[str, Any]:
         )
     try:
         manifest = json.loads(path.read_text(encoding="utf-8"))
-        rows = [PartRow(**row) for row in manifest["parts"]]
+        rows = [
+            PartRow(row["name"], int(row["records"]), int(row["bytes"]), str(row["sha256"]))
+            for row in manifest["parts"]
+        ]
     except FileNotFoundError:
         raise CorpusError(
             f"{directory}: holds no manifest.json, so it is no corpus; make one with raceway generate."

@@ -58,7 +58,7 @@ SCHEMA = (
         "f8",
         "rad",
         "label",
-        "angle of the widest spall on its race or ball, NaN if healthy or unknown",
+        "angle of the widest spall on its race or ball, outer race counter-clockwise from x, NaN if healthy or unknown",
     ),
     Variable("rig", "i4", "1", "provenance", "number of the machine"),
     Variable("specimen", "i4", "1", "provenance", "number of the physical bearing"),

@@ -123,8 +123,10 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
         state[4:6] = state[2:4]
     state[kernel.CAGE_C], state[kernel.CAGE_S] = np.cos(cage), np.sin(cage)
     state[kernel.SHAFT_C], state[kernel.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
+    smooth = np.zeros(motion.WAVE_ROWS)
+    wavy = any(record.waves.size for record in padded)
     waves = (
-        np.concatenate([record.waves[:, None] for record in padded], axis=1) if records[0].waves.size else np.empty(0)
+        np.stack([record.waves if record.waves.size else smooth for record in padded], axis=1) if wavy else smooth[:0]
     )
     spalls, tables = _spalls(padded)
     return motion.Lanes(

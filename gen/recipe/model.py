@@ -373,6 +373,13 @@ class Recipe(Section):
             )
         if self.machine.resonator is None and any("sensor" in channel.body for channel in self.recording.channels):
             raise ValueError("recording.channels: body sensor needs machine.resonator; give one, or use body: housing.")
+        silent = self.path.direct.support()[1] == 0 and (
+            self.path.modes is None or self.path.modes.count.support()[0] < 1
+        )
+        if silent:
+            raise ValueError(
+                "path.direct: 0 without modes lets nothing through; give path.modes or a direct part above 0."
+            )
         if self.n_samples < 16:
             raise ValueError(f"recording.duration_s: {self.n_samples} samples are too few; use at least 16.")
         if len({channel.name for channel in self.recording.channels}) < len(self.recording.channels):

@@ -189,7 +189,7 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     draws = Draws(
         stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN),
         point,
-        number % recipe.corpus.specimens_per_rig,
+        number,
     )
     properties = draws.section(recipe.specimen)
     bearing = replace(
@@ -200,7 +200,7 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     )
     place = number % recipe.corpus.specimens_per_rig
     fault = fault_of_each_specimen(recipe, rig.number)[place]
-    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), place)
+    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
     wanted = [entry for entry in recipe.faults if entry.kind == fault]
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
     split = _draw_split(recipe, rig.number, place)
@@ -262,7 +262,7 @@ def _draw_split(recipe: Recipe, rig: int, place: int) -> str:
     split, corpus = recipe.corpus.split, recipe.corpus
     if split.by == "rig":
         rank = stream(recipe.seed, 0, 0, 0, Purpose.SPLIT).permutation(corpus.rigs)[rig]
-        u = (rank + 0.5) / corpus.rigs
+        u = rank / corpus.rigs if corpus.rigs > 1 else 1.0  # the first of two or more is set aside if any is
     else:
         rank = stream(recipe.seed, rig, 0, 0, Purpose.SPLIT).permutation(corpus.specimens_per_rig)[place]
         u = (rank + (rig * 0.6180339887 + 0.5) % 1) / corpus.specimens_per_rig  # golden ratio: even over rigs too
@@ -272,8 +272,7 @@ def _draw_split(recipe: Recipe, rig: int, place: int) -> str:
 
 def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray[np.float64]) -> Operation:
     rig = specimen.number // recipe.corpus.specimens_per_rig
-    turn = number % recipe.corpus.records_per_specimen
-    draws = Draws(stream(recipe.seed, rig, specimen.number, number, Purpose.RECORD), point, turn)
+    draws = Draws(stream(recipe.seed, rig, specimen.number, number, Purpose.RECORD), point, number)
     conditions = draws.section(recipe.operation)
     level = recipe.level
     if level.kind == "physical":

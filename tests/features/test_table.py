@@ -119,7 +119,7 @@ def test_two_workers_and_this_process_give_the_same_numbers(corpus, table):
 
 def test_a_large_corpus_gets_a_cluster_of_its_own_and_the_same_numbers(corpus, table, monkeypatch):
     monkeypatch.setattr("features.table.INLINE_RECORDS", 0)
-    xr.testing.assert_identical(feature_table(corpus), table)
+    xr.testing.assert_identical(feature_table(corpus, scheduler="local"), table)
 
 
 def test_features_do_not_change_when_labels_latents_and_provenance_are_shuffled(tmp_path, table):
