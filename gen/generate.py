@@ -201,13 +201,14 @@ def _map(workers: int, scheduler: str | None, recipe: Recipe) -> Iterator[Run]:
             yield lambda parts, directory, known: _on_cluster(client, recipe, parts, directory, known)
         return
     try:
-        client = Client(scheduler, timeout="10s")
+        # asked by a client that is not the default one: if nobody answers, that would stay, and xarray ask it for locks
+        Client(scheduler, timeout="10s", set_as_default=False).close()
     except (OSError, ValueError, TimeoutError) as error:
         reason = " ".join(str(error).split())
         raise RecipeError(
             f"scheduler {scheduler}: does not answer ({reason}); give the address dask scheduler printed."
         ) from None
-    with client:
+    with Client(scheduler) as client:
         try:
             client.wait_for_workers(1, timeout=10)
         except TimeoutError:
