@@ -206,7 +206,11 @@ def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch)
 @pytest.mark.parametrize(
     ("error", "code", "sentence"),
     [
-        (PermissionError(13, "Permission denied", "/root/x"), 2, "/root/x: Permission denied; choose another place"),
+        (
+            PermissionError(13, "Permission denied", "/locked/x"),
+            2,
+            "/locked/x: Permission denied; choose another place",
+        ),
         (RuntimeError("NetCDF: HDF error"), 2, "a file of the corpus cannot be read (NetCDF: HDF error)"),
         (type("KilledWorker", (Exception,), {})("part-3"), 2, "the workers of the cluster died again and again"),
         (KeyboardInterrupt(), 130, "interrupted."),
