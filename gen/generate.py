@@ -243,8 +243,8 @@ def _numbered_part(recipe: Recipe, part: int, directory: Path, known: str | None
 
 def compile_kernels(recipe: Recipe) -> None:
     """Compile every kernel a recipe needs into numba's cache on disk, before several processes would do it at once."""
+    done = set()
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
-        done = set()
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
             shape = record_shape(physical_record(scenario))
             if shape not in done:

@@ -104,11 +104,6 @@ def lead_samples(recipe: Recipe) -> int:
     return round(LEAD_S * recipe.recording.sample_rate_hz)
 
 
-def kernel_shapes(scenarios: list[Scenario]) -> set[Shape]:
-    """Shapes of all kernels that scenarios need."""
-    return {record_shape(physical_record(scenario)) for scenario in scenarios}
-
-
 def compile_kernel(shape: Shape, scenario: Scenario) -> None:
     """Compile the kernel of a shape, or fetch it from numba's cache on disk; ``scenario`` is any that needs it."""
     lanes = lay_out([physical_record(scenario)], shape, 1e-4)

@@ -1,0 +1,36 @@
+"""Things that once went wrong and no other test would have told."""
+
+import json
+
+import numpy as np
+import pytest
+
+from gen import CorpusError, draw_scenarios, generate, simulate
+from gen.simulate import physical_record
+
+
+def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe_with):
+    recipe = recipe_with(
+        {
+            "faults": [{"kind": "inner", "width_mm": 0.5}],
+            "specimen.waviness_nm": {"kind": "choice", "values": [0, 500]},
+        }
+    )
+    scenarios = draw_scenarios(recipe)
+    assert len({physical_record(scenario).waves.size for scenario in scenarios}) == 2
+    together = simulate(scenarios, recipe).acceleration
+    for place in (0, len(scenarios) - 1):
+        np.testing.assert_array_equal(simulate(scenarios[place : place + 1], recipe).acceleration[0], together[place])
+
+
+def test_a_folder_with_somebody_elses_manifest_is_left_alone(tmp_path):
+    (tmp_path / "manifest.json").write_text(json.dumps({"name": "an app"}))
+    (tmp_path / "README.md").write_text("mine")
+    with pytest.raises(CorpusError, match=r"manifest\.json"):
+        generate("quickstart", tmp_path, records=8)
+    assert (tmp_path / "README.md").read_text() == "mine"
+
+
+def test_a_path_that_lets_nothing_through_is_refused(recipe_with):
+    with pytest.raises(ValueError, match=r"path\.direct: 0 without modes"):
+        recipe_with({"path": {"direct": 0}})
