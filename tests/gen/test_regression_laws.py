@@ -34,3 +34,17 @@ def test_a_folder_with_somebody_elses_manifest_is_left_alone(tmp_path):
 def test_a_path_that_lets_nothing_through_is_refused(recipe_with):
     with pytest.raises(ValueError, match=r"path\.direct: 0 without modes"):
         recipe_with({"path": {"direct": 0}})
+
+
+def test_a_grid_goes_on_from_specimen_to_specimen(recipe_with):
+    speeds = [600, 900, 1200, 1500]
+    recipe = recipe_with({"operation.shaft_rpm": {"kind": "grid", "values": speeds}})
+    found = [60 * scenario.record.conditions["shaft"] for scenario in draw_scenarios(recipe)]
+    assert found == pytest.approx([speeds[number % 4] for number in range(len(found))])
+
+
+def test_two_rigs_are_enough_to_set_one_aside(recipe_with):
+    split = {"by": "rig", "test": 0.2, "validation": 0}
+    recipe = recipe_with({"corpus.rigs": 2, "corpus.split": split})
+    by_rig = {scenario.rig.number: scenario.specimen.split for scenario in draw_scenarios(recipe)}
+    assert sorted(by_rig.values()) == ["test", "train"]
