@@ -37,7 +37,7 @@ from gen.measure import measure
 from gen.physics.batch import record_shape
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
-from gen.simulate import compile_kernel, physical_record, simulate
+from gen.simulate import compile_kernel, kernel_record, simulate, step_errors
 
 Progress = Callable[[int, int], None]
 
@@ -246,10 +246,10 @@ def compile_kernels(recipe: Recipe) -> None:
     done = set()
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
-            shape = record_shape(physical_record(scenario))
-            if shape not in done:
-                done.add(shape)
-                compile_kernel(shape, scenario)
+            record = kernel_record(scenario, recipe)
+            if record_shape(record) not in done:
+                done.add(record_shape(record))
+                compile_kernel(record)
 
 
 def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = None) -> Outcome:
@@ -266,7 +266,8 @@ def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = No
     failures = tuple(response.failures[place] for place in sorted(response.failures))
     if not fine:
         return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
-    dataset = part_dataset(measured, scenarios, recipe, response.oversampling).isel(record=fine)
+    errors = step_errors(scenarios, recipe, response, part)
+    dataset = part_dataset(measured, scenarios, recipe, response, errors).isel(record=fine)
     dataset.attrs |= {
         "recipe_sha256": recipe_hash(recipe),
         "versions": json.dumps(_versions()),

@@ -1,54 +1,62 @@
 """What is written beside each record: what an analyst knows, the labels, and the truth of the simulation."""
 
 import json
+import math
 from importlib.metadata import version
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from numpy.typing import ArrayLike
+from numpy.typing import NDArray
 
 from gen.corpus import FAULTS, SPLITS, Variable, make_dataset
+from gen.machinery import deepest, true_motion
 from gen.measure import Measured
-from gen.physics.batch import spall_reach
 from gen.physics.bearing import orders
-from gen.physics.spall import largest_drop
+from gen.physics.course import mean_share, share_at
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
-from gen.simulate import true_motion
+from gen.simulate import Response
 
 EXTRA = (
-    Variable("largest_drop", "f8", "m", "label", "largest drop of a ball over the widest spall, 0 if healthy"),
+    Variable("axial_load", "f8", "N", "operating", "axial load"),
+    Variable("temperature", "f8", "degC", "operating", "temperature of the oil in the contacts"),
+    Variable("parts", "str", "1", "label", "parts that are damaged, joined by +, empty if healthy"),
+    Variable("largest_drop", "f8", "m", "label", "largest drop of a ball over the widest spall, 0 without a spall"),
+    Variable("width_share", "f8", "1", "label", "width of the widest spall over that from ball to ball, or round a ball; 0 without"),
+    Variable("wear", "f8", "m", "label", "rms waviness of a worn race, 0 if none is"),
+    Variable("pitch_error", "f8", "rad", "label", "angle by which a ball is out of its place in a broken cage"),
+    Variable("knock", "f8", "N", "label", "typical knock of a broken cage on the housing"),
     Variable("true_shaft_rate", "f8", "Hz", "latent", "mean shaft rate of the record"),
+    Variable("first_shaft_rate", "f8", "Hz", "latent", "shaft rate at the start of the record, wander aside"),
+    Variable("last_shaft_rate", "f8", "Hz", "latent", "shaft rate at the end of the record, wander aside"),
     Variable("true_ftf", "f8", "1", "latent", "mean fundamental train frequency in shaft orders, slip included"),
-    Variable(
-        "true_bpfo",
-        "f8",
-        "1",
-        "latent",
-        "mean ball pass frequency of the outer race in shaft orders, slip included",
-    ),
-    Variable(
-        "true_bpfi",
-        "f8",
-        "1",
-        "latent",
-        "mean ball pass frequency of the inner race in shaft orders, slip included",
-    ),
+    Variable("true_bpfo", "f8", "1", "latent", "mean ball pass frequency of the outer race in shaft orders, slip included"),
+    Variable("true_bpfi", "f8", "1", "latent", "mean ball pass frequency of the inner race in shaft orders, slip included"),
     Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders"),
     Variable("snr", "f8", "dB", "latent", "bearing over background"),
-    Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance, negative if preloaded"),
+    Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),
     Variable("clipped", "i4", "1", "latent", "samples at the limits of the converter"),
     Variable("oversampling", "i4", "1", "provenance", "integration steps per sample"),
+    Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
+    Variable("step_error", "f8", "1", "provenance", "relative rms change of the bodies' motion at half the step, NaN if not tried"),
     Variable("draws", "str", "1", "provenance", "every drawn value of the record, as JSON"),
-)
+)  # fmt: skip
 
 
-def part_dataset(measured: Measured, scenarios: list[Scenario], recipe: Recipe, oversampling: ArrayLike) -> xr.Dataset:
-    """Measured records with their labels, in the layout of the corpus."""
+def part_dataset(
+    measured: Measured,
+    scenarios: list[Scenario],
+    recipe: Recipe,
+    response: Response,
+    step_error: NDArray[np.float64] | None = None,
+) -> xr.Dataset:
+    """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
     rows = [_columns(scenario, recipe) for scenario in scenarios]
     columns = {name: [row[name] for row in rows] for name in rows[0]}
-    columns |= {"clipped": measured.clipped, "snr": measured.snr, "oversampling": oversampling}
+    columns |= {"clipped": measured.clipped, "snr": measured.snr}
+    columns |= {"oversampling": response.oversampling, "step_phase": response.step_phase}
+    columns["step_error"] = np.full(len(rows), np.nan) if step_error is None else step_error
     return make_dataset(
         measured.signal,
         recipe.recording.sample_rate_hz,
@@ -66,41 +74,54 @@ def part_dataset(measured: Measured, scenarios: list[Scenario], recipe: Recipe, 
 
 def _columns(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
     """Everything that is known of a record before it is measured."""
-    rig, specimen, conditions = scenario.rig, scenario.specimen, scenario.record.conditions
+    rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
+    conditions, duration = record.conditions, recipe.recording.duration_s
     nominal, (true_rate, true_orders) = orders(rig.bearing), true_motion(scenario, recipe)
-    widest = max(specimen.spalls, key=lambda spall: spall.width, default=None)
-    drop = 0.0
-    if widest is not None:
-        race = specimen.bearing.inner_radius if widest.site == "inner" else -specimen.bearing.outer_radius
-        if widest.site == "ball":
-            race = specimen.bearing.inner_radius
-        arc = spall_reach(specimen.bearing, widest)[1]
-        drop = (
-            widest.depth
-            if widest.profile != "geometric"
-            else largest_drop(widest.width, arc, specimen.bearing.ball_diameter / 2, race, widest.depth)
-        )
+    speeds = [1.0, 1.0] if record.speed_course is None else share_at(record.speed_course, np.array([0.0, duration]))
     return {
-        "shaft_rate": conditions["shaft"] * (1 + conditions["label_error"]),
+        "shaft_rate": conditions["shaft"] * mean_share(record.speed_course, duration) * (1 + conditions["label_error"]),
         "sample_rate": recipe.recording.sample_rate_hz,
-        "load": conditions["load"],
+        "load": conditions["load"] * mean_share(record.load_course, duration),
+        "axial_load": conditions["axial_load"],
+        "temperature": conditions["temperature"],
         **nominal._asdict(),
         "bearing": rig.bearing.designation,
-        "fault": FAULTS.index(specimen.fault),
-        "n_spalls": len(specimen.spalls),
-        "width": 0.0 if widest is None else widest.width,
-        "depth": 0.0 if widest is None else widest.depth,
-        "angle": np.nan
-        if widest is None
-        else widest.angle + (rig.machine["load_angle"] if widest.site == "outer" else 0.0),
+        **_fault_labels(scenario),
         "rig": rig.number,
         "specimen": specimen.number,
-        "recording": scenario.record.number,
+        "recording": record.number,
         "split": SPLITS.index(specimen.split),
-        "source": f"{recipe.name}/{scenario.record.number}",
-        "largest_drop": drop,
+        "source": f"{recipe.name}/{record.number}",
         "true_shaft_rate": true_rate,
+        "first_shaft_rate": conditions["shaft"] * speeds[0],
+        "last_shaft_rate": conditions["shaft"] * speeds[1],
         **{f"true_{name}": value for name, value in true_orders._asdict().items()},
         "diametral_clearance": specimen.properties["diametral_clearance"],
         "draws": json.dumps(scenario.as_dict()),
+    }
+
+
+def _fault_labels(scenario: Scenario) -> dict[str, Any]:
+    specimen = scenario.specimen
+    bearing, widest = specimen.bearing, max(specimen.spalls, key=lambda spall: spall.width, default=None)
+    worn = [] if specimen.wear is None else [specimen.wear.site]
+    parts = [*worn, *dict.fromkeys(spall.site for spall in specimen.spalls), *(["cage"] if specimen.cage else [])]
+    labels: dict[str, Any] = {
+        "fault": FAULTS.index(specimen.fault),
+        "parts": "+".join(parts),
+        "n_spalls": len(specimen.spalls),
+        "wear": 0.0 if specimen.wear is None else specimen.wear.waviness,
+        "pitch_error": specimen.cage.get("pitch_error", 0.0),
+        "knock": specimen.cage.get("knock", 0.0),
+    }
+    if widest is None:
+        return labels | {"width": 0.0, "depth": 0.0, "angle": np.nan, "largest_drop": 0.0, "width_share": 0.0}
+    arc = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[widest.site]
+    passed = math.pi * bearing.ball_diameter if widest.site == "ball" else 2 * math.pi * arc / bearing.n_balls
+    return labels | {
+        "width": widest.width,
+        "depth": widest.depth,
+        "angle": widest.angle + (scenario.rig.machine["load_angle"] if widest.site == "outer" else 0.0),
+        "largest_drop": deepest(scenario, specimen.spalls.index(widest)),
+        "width_share": widest.width / passed,
     }

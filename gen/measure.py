@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.physics.course import turned
 from gen.recipe import Recipe
 from gen.scenarios import Background, Mode, Purpose, Rig, Scenario
-from gen.simulate import Response, lead_samples
+from gen.simulate import LEAD_S, Response, lead_samples
 
 FloatArray = NDArray[np.floating]
 ComplexArray = NDArray[np.complex128]
@@ -54,7 +55,7 @@ def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Me
             rigs[rig.number] = _RigFilters.of(rig, response.acceleration.shape[2], fs)
         rng = scenario.rng(Purpose.NOISE)
         turn = _shaft_angle(scenario, response.acceleration.shape[2], fs, rng)
-        seen = _filtered(response.acceleration[row], rigs[rig.number].path) * modulation(rig.modulation, turn, rng)
+        seen = _filtered(response.acceleration[row], rigs[rig.number].paths) * _shaft_modulation(rig, turn, rng)
         noise = machine_background(scenario, rigs[rig.number], turn, fs, len(seen), rng)
         bearing[row], background[row] = seen[:, lead:], noise[:, lead:]
     mixed, snr = _mix(bearing, background, scenarios)
@@ -68,14 +69,17 @@ def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Me
 
 @dataclass(frozen=True)
 class _RigFilters:
-    path: ComplexArray
+    paths: ComplexArray
+    """Path of each channel, shape (channel, frequency)."""
     colour: FloatArray
     """Amplitude spectrum of the noise, scaled to unit rms, shape (frequency,)."""
 
     @staticmethod
     def of(rig: Rig, n: int, fs: float) -> "_RigFilters":
         frequency = np.fft.rfftfreq(n, 1 / fs).astype(np.float64)
-        return _RigFilters(rig.direct + base_excited(rig.modes, frequency), noise_colour(rig.background, frequency))
+        paths = [own or rig.path for own in rig.own_paths]
+        spectra = np.stack([path.direct + base_excited(path.modes, frequency) for path in paths])
+        return _RigFilters(spectra, noise_colour(rig.background, frequency))
 
 
 def base_excited(modes: tuple[Mode, ...], frequency: FloatArray) -> ComplexArray:
@@ -111,6 +115,12 @@ def modulation(depths: tuple[float, float], turn: FloatArray, rng: np.random.Gen
     return 1 + depths[0] * np.cos(turn + first) + depths[1] * np.cos(2 * turn + second)
 
 
+def _shaft_modulation(rig: Rig, turn: FloatArray, rng: np.random.Generator) -> FloatArray:
+    """Gain of each channel's path, shape (channel, time) [1]."""
+    common = modulation(rig.path.modulation, turn, rng)
+    return np.stack([common if own is None else modulation(own.modulation, turn, rng) for own in rig.own_paths])
+
+
 def machine_background(
     scenario: Scenario,
     filters: _RigFilters,
@@ -123,7 +133,7 @@ def machine_background(
     background, n = scenario.rig.background, len(turn)
     noise = _filtered(rng.standard_normal((n_channels, n)), filters.colour)
     total = noise * modulation(background.modulation, turn, rng)
-    lines = np.zeros(n)
+    lines = np.zeros((n_channels, n))
     time = np.arange(n) / fs
     for harmonic in background.harmonics:
         lines += np.sqrt(2) * harmonic.level * np.cos(harmonic.frequency * turn + rng.uniform(0, 2 * np.pi))
@@ -142,11 +152,11 @@ def machine_background(
 
 
 def _ringing(hits: FloatArray, level: float, filters: _RigFilters) -> FloatArray:
-    """Impulses sent down the path, the peak of a unit impulse at ``level``, shape (time,)."""
+    """Impulses sent down the paths, the peak of a unit impulse at ``level``, shape (channel, time)."""
     unit = np.zeros(len(hits))
     unit[0] = 1.0
-    peak = np.abs(_filtered(unit, filters.path)).max()
-    return _filtered(hits, filters.path) * (level / peak)
+    peaks = np.abs(_filtered(unit, filters.paths)).max(axis=-1, keepdims=True)
+    return _filtered(hits, filters.paths) * (level / peaks)
 
 
 def _filtered(x: FloatArray, spectrum: ComplexArray | FloatArray) -> FloatArray:
@@ -155,8 +165,10 @@ def _filtered(x: FloatArray, spectrum: ComplexArray | FloatArray) -> FloatArray:
 
 
 def _shaft_angle(scenario: Scenario, n: int, fs: float, rng: np.random.Generator) -> FloatArray:
-    """Shaft angle at the mean rate from a random start, shape (time,) [rad]."""
-    return 2 * np.pi * (scenario.record.conditions["shaft"] * np.arange(n) / fs + rng.random())
+    """Shaft angle at the mean rate, or along its course, from a random start, shape (time,) [rad]."""
+    times = np.arange(n) / fs
+    run = turned(scenario.record.speed_course, times - LEAD_S)
+    return 2 * np.pi * (scenario.record.conditions["shaft"] * run + rng.random())
 
 
 def _mix(bearing: FloatArray, background: FloatArray, scenarios: list[Scenario]) -> tuple[FloatArray, FloatArray]:

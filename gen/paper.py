@@ -80,8 +80,8 @@ def run(preset: Preset, fs: int = FS) -> Run:
         record = Record(bearing, machine, motion, spalls, still, still, pickups, np.empty(0), displacement=True)
         shape = record_shape(record)
         lanes = lay_out([record], shape, 1 / fs, at_rest=False)
-        response, _ = integrate(shape, lanes, 1 / fs, 1, np.ones(1), 0, round(SECONDS * fs))
-        found.append(response[:: fs // FS, :, 0].T * 1e6)
+        made = integrate(shape, lanes, 1 / fs, 1, np.ones(1), 0, round(SECONDS * fs))
+        found.append(made.response[:: fs // FS, :, 0].T * 1e6)
     return Run(found[0], found[1], preset.shaft_rate)
 
 

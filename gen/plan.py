@@ -16,7 +16,7 @@ from gen.physics.kernel import Shape
 from gen.physics.lanes import LANES
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulate import lead_samples, physical_record, steps_per_sample
+from gen.simulate import kernel_record, lead_samples, steps_per_sample
 
 MOST_DRAWN = 5000  # records, about 1 s; of a larger corpus as many parts, spread over it
 
@@ -131,7 +131,7 @@ def _batches(scenarios: list[Scenario], recipe: Recipe) -> Counter[tuple[Shape, 
     """Number of records of a part for each kernel and number of steps per sample."""
     batches: Counter[tuple[Shape, int]] = Counter()
     for scenario in scenarios:
-        record = physical_record(scenario)
+        record = kernel_record(scenario, recipe)
         batches[record_shape(record), steps_per_sample(record, scenario, recipe)] += 1
     return batches
 

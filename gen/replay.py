@@ -63,7 +63,7 @@ def replay(directory: Path | str, record: int) -> Replayed:
     scenarios = draw_scenarios(recipe, number, number + 1)
     response = simulate(scenarios, recipe)
     measured = measure(response, scenarios, recipe)
-    dataset = part_dataset(measured, scenarios, recipe, response.oversampling)
+    dataset = part_dataset(measured, scenarios, recipe, response)
     with xr.open_dataset(directory / "corpus.nc", mask_and_scale=False, decode_times=False, engine="netcdf4") as raw:
         stored = raw[SIGNAL][record].values
     return Replayed(dataset, bool(np.array_equal(stored, measured.signal[0], equal_nan=stored.dtype.kind == "f")))

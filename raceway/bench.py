@@ -19,6 +19,7 @@ from typing import Any
 from features.table import part_features
 from gen.corpus import write_part
 from gen.labels import part_dataset
+from gen.machinery import physical_record
 from gen.measure import measure
 from gen.physics.batch import lay_out, record_shape
 from gen.physics.integrate import decimation_taps, integrate
@@ -28,7 +29,7 @@ from gen.physics.motion import Lanes
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulate import lead_samples, physical_record, simulate, steps_per_sample
+from gen.simulate import lead_samples, simulate, steps_per_sample
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5
@@ -104,7 +105,7 @@ def _batches(scenarios: list[Scenario], recipe: Recipe) -> list[Batch]:
     """The batches :func:`gen.simulate` makes of scenarios."""
     groups = defaultdict(list)
     for scenario in scenarios:
-        record = physical_record(scenario)
+        record = physical_record(scenario, recipe)
         factor = steps_per_sample(record, scenario, recipe)
         groups[record_shape(record), factor].append(record)
     knot = 1 / recipe.recording.sample_rate_hz

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from gen.errors import CorpusError
 
 FORMAT = 1
-FAULTS = ("healthy", "inner", "outer", "ball")
+FAULTS = ("healthy", "inner", "outer", "ball", "cage", "compound")
 SPLITS = ("train", "validation", "test")
 ROLES = ("operating", "label", "latent", "provenance")
 SIGNAL = "acceleration"

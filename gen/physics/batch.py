@@ -24,8 +24,8 @@ class Spall(NamedTuple):
     angle: float
     ball: int = 0
     profile: str = "geometric"
-    table: tuple[float, ...] = ()
-    """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``."""
+    table: tuple[tuple[float, ...], ...] = ()
+    """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``: on the race, or for a ball on either race."""
 
 
 class Motion(NamedTuple):
@@ -71,9 +71,9 @@ class Record(NamedTuple):
     pickups: FloatArray
     """Weights of the six accelerations in each channel, shape (channel, coordinate) [1]."""
     waves: FloatArray
-    """Waviness amplitudes, shape (WAVE_ROWS,) [m], or empty."""
+    """Waviness amplitudes [m], shape (WAVE_ROWS,), with ``2 * BALL_ORDERS * n_balls`` more if the balls have some, or empty."""
     schedule: FloatArray = np.empty((0, 2))
-    """Factors of shaft rate and load, shape (knot, 2), or of shape (0, 2) if both are constant."""
+    """Factors of shaft rate (over the knot) and load (at its start), shape (knot, 2); (0, 2) if both are constant."""
     displacement: bool = False
     """Whether the channels give displacements [m] instead of accelerations [m s-2]."""
 
@@ -123,11 +123,9 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
         state[4:6] = state[2:4]
     state[kernel.CAGE_C], state[kernel.CAGE_S] = np.cos(cage), np.sin(cage)
     state[kernel.SHAFT_C], state[kernel.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
-    smooth = np.zeros(motion.WAVE_ROWS)
-    wavy = any(record.waves.size for record in padded)
-    waves = (
-        np.stack([record.waves if record.waves.size else smooth for record in padded], axis=1) if wavy else smooth[:0]
-    )
+    waves = np.zeros((max(record.waves.size for record in padded), LANES))
+    for lane, record in enumerate(padded):
+        waves[: record.waves.size, lane] = record.waves
     spalls, tables = _spalls(padded)
     return motion.Lanes(
         state.ravel(),
@@ -192,18 +190,19 @@ def _spalls(records: list[Record]) -> tuple[FloatArray, FloatArray]:
                 profile,
                 len(tables),
             )
-            if spall.table:
-                points = np.linspace(0, len(spall.table) - 1, motion.TABLE_POINTS)
-                tables += [np.interp(points, np.arange(len(spall.table)), spall.table)] * 2
+            for drops in spall.table:
+                points = np.linspace(0, len(drops) - 1, motion.TABLE_POINTS)
+                tables.append(np.interp(points, np.arange(len(drops)), drops))
     return spalls, np.stack(tables)
 
 
 def _schedules(records: list[Record]) -> FloatArray:
-    """Factors of shaft rate and load, shape (knot, 2, lane); 1 for records without a schedule of their own."""
+    """Factors of shaft rate and load, shape (knot, 2, lane): the last ones hold, and 1 where there is no schedule."""
     length = max(len(record.schedule) for record in records)
     schedules = np.ones((length, 2, LANES))
     for lane, record in enumerate(records):
-        schedules[: len(record.schedule), :, lane] = record.schedule
+        if len(record.schedule):
+            schedules[:, :, lane] = record.schedule[np.minimum(np.arange(length), len(record.schedule) - 1)]
     return schedules
 
 

@@ -1,7 +1,8 @@
 """The gap under every ball at every half step: clearance, waviness of the races, and what spalls take away.
 
 Race waviness is a Fourier series; the sum over its orders is folded onto the balls, since ball ``i`` sees order ``n`` with the phase
-``2 pi i n / n_balls``. A spall widens the gap of each ball that passes it; a ball over several spalls drops by all of them.
+``2 pi i n / n_balls``. Each ball has even orders of its own. A spall widens the gap of each ball that passes it; a ball over several
+spalls drops by all of them.
 """
 
 import math
@@ -19,6 +20,7 @@ from gen.physics.motion import (
     AXIS_RMS,
     AXIS_TERMS,
     BALL,
+    BALL_ORDERS,
     BALL_SITE,
     CAGE,
     CARRIER,
@@ -39,6 +41,7 @@ from gen.physics.motion import (
     SPIN,
     TABLE_POINTS,
     TABLE_ROW,
+    WAVE_ROWS,
     Lanes,
     process,
     wrapped,
@@ -91,6 +94,27 @@ def waviness(
 
 
 @njit(**INLINE)
+def add_ball_waviness(lanes: Lanes, n_balls: int, moves: FloatArray, w: FloatArray) -> None:
+    """Add what the balls' own waviness gives at both their contacts at the next knot; all balls spin alike [m]."""
+    waves = lanes.waves
+    c, s = np.empty(LANES), np.empty(LANES)
+    for lane in range(LANES):
+        twice = 2 * (lanes.angles[SPIN * LANES + lane] + moves[SPIN * LANES + lane])
+        c[lane], s[lane] = math.cos(twice), math.sin(twice)
+    zc, zs = c.copy(), s.copy()
+    width = n_balls * LANES
+    for order in range(BALL_ORDERS):
+        row = WAVE_ROWS * LANES + 2 * order * width
+        for ball in range(n_balls):
+            for lane in range(LANES):
+                i = ball * LANES + lane
+                w[i] += waves[row + i] * zc[lane] - waves[row + width + i] * zs[lane]
+        for lane in range(LANES):
+            zr, zi = zc[lane], zs[lane]
+            zc[lane], zs[lane] = zr * c[lane] - zi * s[lane], zi * c[lane] + zr * s[lane]
+
+
+@njit(**INLINE)
 def ball_gaps(lanes: Lanes, n_balls: int, moves: FloatArray, gaps: FloatArray) -> None:
     """Gap of every ball at the next knot, waviness included and spalls aside, into ``gaps`` (ball * LANES + lane) [m]."""
     state = lanes.state
@@ -106,6 +130,8 @@ def ball_gaps(lanes: Lanes, n_balls: int, moves: FloatArray, gaps: FloatArray) -
             cage_c[lane], cage_s[lane] = c, s
             in_c[lane], in_s[lane] = c * p + s * q, s * p - c * q
         waviness(lanes, n_balls, cage_c, cage_s, in_c, in_s, gaps)
+        if lanes.waves.size > WAVE_ROWS * LANES:
+            add_ball_waviness(lanes, n_balls, moves, gaps)
     else:
         gaps[:] = 0.0
     for ball in range(n_balls):

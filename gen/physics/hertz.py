@@ -25,6 +25,19 @@ def effective_modulus(youngs_modulus: float, poisson_ratio: float) -> float:
     return youngs_modulus / (1 - poisson_ratio**2)
 
 
+def ellipticity(rolling_curvature: float, transverse_curvature: float) -> float:
+    """Long semi-axis of the contact ellipse over the short one [1], from the curvatures of ``contact_factor``."""
+    radius = 1 / (rolling_curvature + transverse_curvature)
+    difference = radius * (rolling_curvature - transverse_curvature)
+
+    def mismatch(ratio: float) -> float:
+        m = 1 - ratio**-2
+        return ((ratio**2 + 1) * ellipe(m) - 2 * ellipk(m)) / ((ratio**2 - 1) * ellipe(m)) - difference
+
+    # a nearly round contact: the quotient loses its digits and its limit at ratio 1 is the sphere
+    return brentq(mismatch, 1 + 1e-5, 1e4, xtol=1e-14, rtol=1e-14) if difference > 1e-4 else 1.0
+
+
 def contact_factor(rolling_curvature: float, transverse_curvature: float, modulus: float) -> float:
     """Load-deflection factor of an elliptical contact [N m^-3/2].
 
@@ -36,14 +49,7 @@ def contact_factor(rolling_curvature: float, transverse_curvature: float, modulu
         Effective modulus [Pa].
     """
     radius = 1 / (rolling_curvature + transverse_curvature)
-    difference = radius * (rolling_curvature - transverse_curvature)
-
-    def mismatch(ratio: float) -> float:
-        m = 1 - ratio**-2
-        return ((ratio**2 + 1) * ellipe(m) - 2 * ellipk(m)) / ((ratio**2 - 1) * ellipe(m)) - difference
-
-    # a nearly round contact: the quotient loses its digits and its limit at ratio 1 is the sphere
-    ratio = brentq(mismatch, 1 + 1e-5, 1e4, xtol=1e-14, rtol=1e-14) if difference > 1e-4 else 1.0
+    ratio = ellipticity(rolling_curvature, transverse_curvature)
     m = 1 - ratio**-2
     return math.pi * ratio * modulus * math.sqrt(radius * ellipe(m) / (4.5 * ellipk(m) ** 3))
 
@@ -69,27 +75,33 @@ def series_factor(inner: float, outer: float, exponent: float = POINT_EXPONENT) 
     return (inner ** (-1 / exponent) + outer ** (-1 / exponent)) ** -exponent
 
 
-def race_factors(bearing: Bearing) -> tuple[float, float]:
-    """Load-deflection factors of the inner and the outer contact of a ball [N m^-3/2]."""
+def race_curvatures(bearing: Bearing) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Curvatures along and across the rolling direction of a ball on the inner and on the outer race [1/m]."""
     cosine = math.cos(bearing.contact_angle)
     ball = 2 / bearing.ball_diameter
-    modulus = effective_modulus(bearing.youngs_modulus, bearing.poisson_ratio)
-    inner = contact_factor(
-        ball + cosine / bearing.inner_radius,
-        ball - 1 / (bearing.inner_conformity * bearing.ball_diameter),
-        modulus,
-    )
-    outer = contact_factor(
-        ball - cosine / bearing.outer_radius,
-        ball - 1 / (bearing.outer_conformity * bearing.ball_diameter),
-        modulus,
-    )
+    inner = ball + cosine / bearing.inner_radius, ball - 1 / (bearing.inner_conformity * bearing.ball_diameter)
+    outer = ball - cosine / bearing.outer_radius, ball - 1 / (bearing.outer_conformity * bearing.ball_diameter)
     return inner, outer
+
+
+def race_factors(bearing: Bearing) -> tuple[float, float]:
+    """Load-deflection factors of the inner and the outer contact of a ball [N m^-3/2]."""
+    modulus = effective_modulus(bearing.youngs_modulus, bearing.poisson_ratio)
+    inner, outer = race_curvatures(bearing)
+    return contact_factor(*inner, modulus), contact_factor(*outer, modulus)
 
 
 def contact_exponent(bearing: Bearing) -> float:
     """Exponent of the load-deflection law: 3/2 for balls, 10/9 for rollers."""
     return POINT_EXPONENT if bearing.rolling_element == "ball" else LINE_EXPONENT
+
+
+def known_roller_length(bearing: Bearing) -> float:
+    """Length of a roller that touches its raceways [m]; ValueError if it is not known."""
+    if bearing.roller_length is None:
+        message = f"bearing {bearing.designation}: the length of its rollers is not known; give roller_length."
+        raise ValueError(message)
+    return bearing.roller_length
 
 
 def load_deflection_factor(bearing: Bearing) -> float:
@@ -102,8 +114,24 @@ def load_deflection_factor(bearing: Bearing) -> float:
     """
     if bearing.rolling_element == "ball":
         return series_factor(*race_factors(bearing))
-    if bearing.roller_length is None:
-        message = f"bearing {bearing.designation}: the length of its rollers is not known; give roller_length."
-        raise ValueError(message)
-    contact = line_contact_factor(bearing.roller_length)
+    contact = line_contact_factor(known_roller_length(bearing))
     return series_factor(contact, contact, LINE_EXPONENT)
+
+
+def footprints(bearing: Bearing, ball_load: float) -> tuple[float, float]:
+    """Half the width of the inner and of the outer contact along the rolling direction under ``ball_load`` [m]."""
+    modulus = effective_modulus(bearing.youngs_modulus, bearing.poisson_ratio)
+    if bearing.rolling_element == "roller":
+        per_length = ball_load / known_roller_length(bearing)
+        inner, outer = (
+            math.sqrt(8 * per_length / (math.pi * modulus * along)) for along, _ in race_curvatures(bearing)
+        )
+        return inner, outer
+    inner, outer = (_half_width(along, across, ball_load, modulus) for along, across in race_curvatures(bearing))
+    return inner, outer
+
+
+def _half_width(along: float, across: float, load: float, modulus: float) -> float:
+    ratio = ellipticity(along, across)
+    shape = 6 * ratio**2 * float(ellipe(1 - ratio**-2)) / (math.pi * modulus * (along + across))
+    return (shape * load) ** (1 / 3) / ratio

@@ -6,6 +6,7 @@ The full-rate history is kept for a few knots only: long enough for the anti-ali
 from collections.abc import Callable
 from hashlib import sha256
 from inspect import getsource
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -14,7 +15,7 @@ from scipy.signal import firwin
 
 from gen.physics import gaps, kernel, lanes, motion, spall
 from gen.physics.gaps import ball_gaps, move_gaps, move_spalls
-from gen.physics.kernel import N_DYNAMIC, FloatArray, Shape, advance, jitter_row, param_rows
+from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, advance, jitter_row, param_rows
 from gen.physics.lanes import COMPILED, INLINE, KERNEL, LANES
 from gen.physics.motion import (
     ANGLE_ROWS,
@@ -30,6 +31,17 @@ from gen.physics.motion import (
 HALF_TAPS = 34  # per output sample; with beta 8 at least 80 dB from 1.025 Nyquist on
 FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
 _BLOCK = 32  # knots between two runs of the filter
+
+
+class Integral(NamedTuple):
+    """What comes out of a batch."""
+
+    response: FloatArray
+    """What the pickups give at the knots, shape (knot, channel, lane) [m s-2, or m]."""
+    diverged: NDArray[np.int64]
+    """Knot at which a record left the finite range, -1 if it never did, shape (lane,)."""
+    steepest: FloatArray
+    """Largest contact stiffness at any step, summed over the balls: a bound for every direction, shape (lane,) [N/m]."""
 
 
 def decimation_taps(factor: int) -> FloatArray:
@@ -122,7 +134,7 @@ def filter_knot(taps: FloatArray, history: FloatArray, first: int, width: int, t
 @njit(**COMPILED)
 def integrate_lanes(
     shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
-) -> tuple[FloatArray, NDArray[np.int64]]:
+) -> Integral:
     """See :func:`integrate`."""
     params = np.zeros(param_rows(shape, n_steps) * LANES)
     params[: batch.params.size] = batch.params
@@ -166,16 +178,21 @@ def integrate_lanes(
                     response[out, i // LANES, i % LANES] = total[i]
         for i in range((n_taps - 1) * width):
             history[i] = history[_BLOCK * n_steps * width + i]
-    return response, diverged
+    steepest = batch.state[STEEPEST * LANES : (STEEPEST + 1) * LANES].copy()
+    for lane in range(LANES):
+        exponent = 10 / 9 if len(shape.roller) else 1.5
+        squared = batch.params[COSA * LANES + lane] ** 2
+        steepest[lane] *= exponent * squared * batch.params[STIFFNESS * LANES + lane]
+    return Integral(response, diverged, steepest)
 
 
-def _cached(sources: str) -> Callable[..., tuple[FloatArray, NDArray[np.int64]]]:
+def _cached(sources: str) -> Callable[..., Integral]:
     """Compile and cache; numba looks for changes in this file alone, but what a function closes over is part of its key."""
 
     @njit(**KERNEL)
     def cached(
         shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
-    ) -> tuple[FloatArray, NDArray[np.int64]]:
+    ) -> Integral:
         _ = sources
         return integrate_lanes(shape, batch, dt, n_steps, taps, n_settle, n_out)
 
@@ -189,8 +206,8 @@ _compiled = _cached(
 
 def integrate(
     shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
-) -> tuple[FloatArray, NDArray[np.int64]]:
-    """Integrate a batch and return what its pickups give at the knots.
+) -> Integral:
+    """Integrate a batch.
 
     Parameters
     ----------
@@ -206,12 +223,5 @@ def integrate(
         Anti-alias filter at the full rate.
     n_settle, n_out : int
         Knots dropped before the first output, and outputs.
-
-    Returns
-    -------
-    response : array, shape (knot, channel, lane)
-        Accelerations picked up [m s-2].
-    diverged : array, shape (lane,)
-        Knot at which a record left the finite range, -1 if it never did.
     """
     return _compiled(shape, batch, dt, n_steps, taps, n_settle, n_out)

@@ -46,6 +46,9 @@ JITTER_FIRST = AXIS_FIRST + AXIS_TERMS
 LOWEST_ORDER, HIGHEST_ORDER = 2, 60  # waviness per turn of a race
 N_ORDERS = HIGHEST_ORDER - LOWEST_ORDER + 1
 WAVE_ROWS = 4 * N_ORDERS  # real and imaginary amplitude of each order, inner race then outer race
+BALL_ORDERS = (
+    10  # waviness per turn of a ball, even orders from 2 on: it has two contacts, and in the odd ones they cancel
+)
 TABLE_POINTS = 513  # of a tabulated spall, from edge to edge
 KNOCK_SECONDS = 3e-4  # a half sine
 
@@ -61,7 +64,7 @@ class Lanes(NamedTuple):
     phasors: FloatArray
     """Cosine, sine, and cosine and sine of the turn per knot, of every term: 4 blocks of rows."""
     waves: FloatArray
-    """Waviness amplitudes [m], WAVE_ROWS rows, or empty."""
+    """Waviness amplitudes [m], WAVE_ROWS rows and then those of the balls, ball after ball in each order; or empty."""
     schedule: FloatArray
     """Factors of shaft rate and load, shape (knot, 2, lane), or of shape (0, 2, lane) if both are constant."""
     tables: FloatArray
@@ -101,13 +104,14 @@ def turn_rings(lanes: Lanes, knot: int, n_steps: int, dt: float, moves: FloatArr
     for lane in range(LANES):
         speed = 1 + drive[SPEED_RMS * LANES + lane] * process(phasors, 0, SPEED_TERMS, lane)
         shaft = drive[SHAFT_STEP * LANES + lane] * speed
-        if knot < len(lanes.schedule):
-            shaft *= lanes.schedule[knot, 0, lane]
+        if len(lanes.schedule):
+            shaft *= lanes.schedule[min(knot, len(lanes.schedule) - 1), 0, lane]
         slip = drive[MEAN_SLIP * LANES + lane] + drive[SLIP_RMS * LANES + lane] * process(
             phasors, SLIP_FIRST, SLIP_TERMS, lane
         )
         cage = drive[CAGE_RATIO * LANES + lane] * shaft * (1 - slip)
         wander = 1 + drive[SPIN_RMS * LANES + lane] * process(phasors, SPIN_FIRST, SPIN_TERMS, lane)
+        quickening = shaft - moves[SHAFT * LANES + lane] if knot > 0 else 0.0
         moves[SHAFT * LANES + lane] = shaft
         moves[CAGE * LANES + lane] = cage
         moves[SPIN * LANES + lane] = drive[SPIN_RATIO * LANES + lane] * shaft * wander
@@ -120,9 +124,9 @@ def turn_rings(lanes: Lanes, knot: int, n_steps: int, dt: float, moves: FloatArr
             cosine(shaft * half),
             sine(shaft * half),
         )
-        omega = shaft / (n_steps * dt)
-        params[UNBALANCE_P * LANES + lane] = drive[UNBALANCE * LANES + lane] * omega * omega + drive[BOW * LANES + lane]
-        params[UNBALANCE_Q * LANES + lane] = 0.0
+        per_knot = drive[UNBALANCE * LANES + lane] / (n_steps * dt) ** 2
+        params[UNBALANCE_P * LANES + lane] = per_knot * shaft * shaft + drive[BOW * LANES + lane]
+        params[UNBALANCE_Q * LANES + lane] = per_knot * quickening
         for row in (
             CAGE_C,
             SHAFT_C,
@@ -148,24 +152,33 @@ def move_jitter(shape: Shape, lanes: Lanes, n_steps: int) -> None:
 
 
 @njit(**INLINE)
+def pushed(since: float) -> float:
+    """How far the half sine of a knock of unit strength has pushed a unit mass ``since`` its start [s2]."""
+    if since <= 0.0:
+        return 0.0
+    phase = math.pi * since / KNOCK_SECONDS
+    if phase >= math.pi:
+        return (KNOCK_SECONDS / math.pi) ** 2 * (2 * phase - math.pi)
+    return (KNOCK_SECONDS / math.pi) ** 2 * (phase - math.sin(phase))
+
+
+@njit(**INLINE)
 def knock(lanes: Lanes, knot_seconds: float, ahead: float, lane: int, moves: FloatArray) -> float:
     """Force of the cage's knock on the housing, ``ahead`` knots from now: a half sine once per turn of the cage [N].
 
-    Its strength scatters from turn to turn by a factor between 0.5 and 2 that follows from the number of the turn.
+    The force runs straight from knot to knot and gives the momentum of the half sine however far apart the knots are. Its
+    strength scatters from turn to turn by a factor between 0.5 and 2 that follows from the number of the turn.
     """
     strength = lanes.drive[KNOCK * LANES + lane]
-    if strength == 0.0:
+    if strength == 0.0 or moves[CAGE * LANES + lane] == 0.0:
         return 0.0
-    rate = moves[CAGE * LANES + lane] / knot_seconds
-    turned = (
-        lanes.angles[CAGE * LANES + lane] + ahead * moves[CAGE * LANES + lane] - lanes.drive[KNOCK_ANGLE * LANES + lane]
-    )
-    turns = math.floor(turned / (2 * math.pi))
-    since = (turned - 2 * math.pi * turns) / rate
-    if since >= KNOCK_SECONDS:
-        return 0.0
+    turned = lanes.angles[CAGE * LANES + lane] - lanes.drive[KNOCK_ANGLE * LANES + lane]
+    turned += ahead * moves[CAGE * LANES + lane]
+    turns = math.floor(turned / (2 * math.pi) + 0.5)
+    since = (turned - 2 * math.pi * turns) * knot_seconds / moves[CAGE * LANES + lane]
     scatter = (turns * 0.6180339887498949) % 1.0  # golden ratio: even over few turns
-    return strength * 2.0 ** (2 * scatter - 1) * math.sin(math.pi * since / KNOCK_SECONDS)
+    there = pushed(since + knot_seconds) - 2 * pushed(since) + pushed(since - knot_seconds)
+    return strength * 2.0 ** (2 * scatter - 1) * there / knot_seconds**2
 
 
 @njit(**INLINE)

@@ -43,6 +43,7 @@ class Machine(NamedTuple):
     load_y: float
     looseness: float = 0.0
     """Half the play of the housing in its support [m]."""
+    contact_exponent: float = 1.5
 
 
 def as_columns(machines: list[Machine]) -> Machine:
@@ -50,25 +51,42 @@ def as_columns(machines: list[Machine]) -> Machine:
     return Machine(*np.asarray(machines, dtype=float).T)
 
 
-def fastest_swing(machine: Machine, n_balls: int) -> FloatArray | float:
-    """Upper bound of the angular eigenfrequencies under load [rad/s]; fields may be arrays of shape (record,).
+def likely_stiffness(machine: Machine, n_balls: int) -> FloatArray | float:
+    """Contact stiffness that a record will hardly exceed [N/m]; fields may be arrays of shape (record,).
 
-    The sum of the squared eigenfrequencies per direction bounds the largest; ball loads are taken as ``DYNAMIC_FACTOR`` times
-    the static Stribeck load on three balls, and the preload on all.
+    Ball loads are taken as ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, and the preload on all.
     """
-    load = np.hypot(machine.load_x, machine.load_y)
-    factor = machine.load_deflection_factor
+    load, n = np.hypot(machine.load_x, machine.load_y), np.asarray(machine.contact_exponent)
+    factor = np.asarray(machine.load_deflection_factor)
     ball_load = DYNAMIC_FACTOR * STRIBECK * load / n_balls
     squeeze = np.maximum(-np.asarray(machine.half_clearance), 0.0)
-    contact = 1.5 * factor ** (2 / 3) * LOADED_BALLS * ball_load ** (1 / 3) + 1.5 * factor * n_balls * np.sqrt(squeeze)
+    loaded = n * factor ** (1 / n) * LOADED_BALLS * ball_load ** (1 - 1 / n)
+    return loaded + n * factor * n_balls * squeeze ** (n - 1)
+
+
+def fastest_swing(machine: Machine, contact_stiffness: FloatArray | float) -> FloatArray | float:
+    """Upper bound of the angular eigenfrequencies at a contact stiffness [N/m]; fields may be arrays of shape (record,) [rad/s].
+
+    The sum of the squared eigenfrequencies per direction bounds the largest.
+    """
     ring = np.maximum(machine.ring_stiffness_x, machine.ring_stiffness_y)
     support = np.maximum(machine.support_stiffness_x, machine.support_stiffness_y)
-    square = (contact + ring) * (1 / machine.shaft_mass + 1 / machine.housing_mass)
+    square = (contact_stiffness + ring) * (1 / machine.shaft_mass + 1 / machine.housing_mass)
     square = square + machine.shaft_stiffness / machine.shaft_mass + support / machine.housing_mass
     sensor = np.maximum(machine.sensor_stiffness_x, machine.sensor_stiffness_y)
     sensor_mass = np.where(np.asarray(machine.sensor_mass) > 0, machine.sensor_mass, np.inf)
     square = square + np.where(np.isfinite(sensor_mass), sensor * (1 / sensor_mass + 1 / machine.housing_mass), 0.0)
     return np.sqrt(square)
+
+
+def fastest_decay(machine: Machine) -> float:
+    """Upper bound of the damping rates [1/s]."""
+    inverse = 1 / machine.shaft_mass + 1 / machine.housing_mass
+    rate = (machine.ring_damping + 3 * machine.contact_damping) * inverse + machine.shaft_damping / machine.shaft_mass
+    rate += max(machine.support_damping_x, machine.support_damping_y) / machine.housing_mass
+    if machine.sensor_mass > 0:
+        rate += machine.sensor_damping * (1 / machine.sensor_mass + 1 / machine.housing_mass)
+    return rate
 
 
 def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -91,12 +109,13 @@ def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) 
     along = displacement[:, :1] * np.cos(angles) + displacement[:, 1:] * np.sin(angles)
     cosine = np.asarray(machine.contact_cosine)[:, None]
     squeeze = np.maximum(along * cosine - np.asarray(machine.half_clearance)[:, None], 0.0)
-    factor = np.asarray(machine.load_deflection_factor)[:, None]
-    return factor * squeeze**1.5 * cosine, 1.5 * factor * np.sqrt(squeeze) * cosine**2
+    factor, n = np.asarray(machine.load_deflection_factor)[:, None], np.asarray(machine.contact_exponent)[:, None]
+    power = squeeze ** (n - 1)
+    return factor * squeeze * power * cosine, n * factor * power * cosine**2
 
 
 def rest(machine: Machine, angles: FloatArray) -> FloatArray:
-    """Static equilibrium under the load, spalls aside, by damped Newton steps.
+    """Static equilibrium under the load, spalls aside, by damped Newton steps; a loose housing lies at one end of its play.
 
     Parameters
     ----------
@@ -115,17 +134,18 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     support = np.stack([machine.support_stiffness_x, machine.support_stiffness_y], axis=1)
     ring = np.stack([machine.ring_stiffness_x, machine.ring_stiffness_y], axis=1)
     ground = np.broadcast_to(np.asarray(machine.shaft_stiffness)[:, None], support.shape)
+    play = np.broadcast_to(np.asarray(machine.looseness)[:, None], support.shape)
     reach = np.maximum(machine.half_clearance, 0) / machine.contact_cosine
-    reach = reach + 2 * (weight / machine.load_deflection_factor) ** (2 / 3)
-    housing = load / (support + ground)
+    reach = reach + 2 * (weight / machine.load_deflection_factor) ** (1 / np.asarray(machine.contact_exponent))
+    housing = load / (support + ground) + play * np.sign(load)
     q = np.concatenate([housing + load / weight[:, None] * reach[:, None], housing], axis=1)
     for _ in range(200):
-        residual, jacobian = _balance(machine, q, angles, load, support, ring, ground)
+        residual, jacobian = _balance(machine, q, angles, load, support, ring, ground, play)
         moving = np.abs(residual).max(axis=1) >= 1e-9 * weight
         if not moving.any():
             break
         # a lone ball holds nothing sideways: a soft spring keeps the step finite and vanishes with the residual
-        soft = 1e-3 * np.abs(residual).max(axis=1) / 1e-6
+        soft = 1e-3 * np.abs(residual).max(axis=1) / 1e-6 + 1e-3
         step = np.linalg.solve(jacobian + soft[:, None, None] * np.eye(4), residual[..., None])[..., 0]
         longest = np.abs(step).max(axis=1, keepdims=True)
         step *= np.minimum(1.0, 2e-6 / np.maximum(longest, 1e-30))
@@ -141,18 +161,21 @@ def _balance(
     support: FloatArray,
     ring: FloatArray,
     ground: FloatArray,
+    play: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
     """Unbalanced force on each coordinate, shape (record, 4), and its negative derivative, shape (record, 4, 4)."""
     relative = q[:, :2] - q[:, 2:]
     force, stiffness = ball_forces(machine, relative, angles)
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=2)
     pushed = np.einsum("rb,rba->ra", force, directions) + ring * relative
-    residual = np.concatenate([load - pushed - ground * q[:, :2], pushed - support * q[:, 2:]], axis=1)
+    stretch = q[:, 2:] - np.clip(q[:, 2:], -play, play)
+    held = np.where((stretch != 0) | (play == 0), support, 0.0)
+    residual = np.concatenate([load - pushed - ground * q[:, :2], pushed - support * stretch], axis=1)
     contact = np.einsum("rb,rba,rbc->rac", stiffness, directions, directions) + ring[:, :, None] * np.eye(2)
     jacobian = np.empty((len(q), 4, 4))
     jacobian[:, :2, :2] = contact + ground[:, :, None] * np.eye(2)
     jacobian[:, :2, 2:] = jacobian[:, 2:, :2] = -contact
-    jacobian[:, 2:, 2:] = contact + support[:, :, None] * np.eye(2)
+    jacobian[:, 2:, 2:] = contact + held[:, :, None] * np.eye(2)
     return residual, jacobian
 
 

@@ -3,34 +3,43 @@
 ========= ========================================================
 module    responsibility
 ========= ========================================================
-model     sections, keys, bounds and units of a recipe
+section   what every part shares: units, bounds, known keys
+machine   bearing, machine, lubricant, specimen
+faults    spalls, worn races, broken cages, several at once
+operation speed and load with their course, slip, temperature
+sensing   sensors, path, background, level, converter
+model     the recipe as a whole
 reading   files, names, error sentences, hash and JSON schema
 reference ``recipes/README.md`` and ``recipes/schema.json``
 ========= ========================================================
 """
 
-from gen.recipe.model import (
-    MAX_OVERSAMPLING,
-    BallFault,
-    Channel,
-    Modes,
-    Modulation,
-    RaceFault,
-    Recipe,
-    Section,
-    split_unit,
-)
+from gen.recipe.faults import BallFault, CageFault, CompoundFault, Fault, Healthy, RaceFault, WornFault, fault_class
+from gen.recipe.machine import CatalogueBearing
+from gen.recipe.model import Recipe
+from gen.recipe.operation import Course
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
+from gen.recipe.section import Section, split_unit
+from gen.recipe.sensing import MAX_OVERSAMPLING, Channel, Modes, Modulation, Path
 
 __all__ = [
     "MAX_OVERSAMPLING",
     "BallFault",
+    "CageFault",
+    "CatalogueBearing",
     "Channel",
+    "CompoundFault",
+    "Course",
+    "Fault",
+    "Healthy",
     "Modes",
     "Modulation",
+    "Path",
     "RaceFault",
     "Recipe",
     "Section",
+    "WornFault",
+    "fault_class",
     "find_recipe",
     "read_recipe",
     "recipe_hash",

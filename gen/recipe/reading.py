@@ -152,7 +152,9 @@ def _sentence(item: Any) -> str | None:
             text = item["msg"].removeprefix("Value error, ")
             if place.endswith("width_mm") and "is not in" in text:
                 text = text.removesuffix(".") + "; for a bearing without a fault use kind: healthy."
-            return f"{place}: {text}" if place else text
+            if not place:
+                return text
+            return f"{place}{'.' if text.partition(':')[0] in _siblings((*item['loc'], '')) else ': '}{text}"
         case "too_short":
             return None if value else f"{place}: is empty; give at least one."
         case _:
@@ -174,7 +176,10 @@ _ALLOWED = {
 
 
 def _first_kind(item: Any) -> str:
-    return "catalogue" if item["loc"] == ("bearing",) else "uniform"
+    known = {"bearing": "catalogue", "faults": "inner", "speed_course": "run_up", "load_course": "ramp"}
+    place = [step for step in item["loc"] if isinstance(step, str)]
+    whole = isinstance(item["loc"][-1], int) or item["loc"][-1] in known
+    return known.get(place[-1], "uniform") if whole else "uniform"
 
 
 def _place(location: tuple[int | str, ...]) -> str:
@@ -183,7 +188,7 @@ def _place(location: tuple[int | str, ...]) -> str:
     for step in location:
         if isinstance(step, int):
             place += f"[{step}]"
-        elif node.knows(step) or step not in _BRANCHES:
+        elif node.knows(step) or (step != "[key]" and not node.models) or step not in _BRANCHES:
             shown = step if step.isprintable() else repr(step)
             place += f".{shown}" if place else shown
             node = node.into(step)
@@ -192,7 +197,7 @@ def _place(location: tuple[int | str, ...]) -> str:
 
 _BRANCHES = {
     "constant", "uniform", "loguniform", "normal", "choice", "grid", "catalogue", "geometry", "adc", "float32", "physical", "snr",
-    "healthy", "inner", "outer", "ball", "[key]",
+    "healthy", "inner", "outer", "ball", "cage", "worn", "compound", "ramp", "run_up", "steps", "table", "[key]",
 }  # fmt: skip
 
 

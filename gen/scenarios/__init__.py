@@ -9,17 +9,33 @@ draw   how each is drawn, level by level
 """
 
 from gen.scenarios.draw import draw_scenarios, fault_of_each_specimen
-from gen.scenarios.model import Background, Mode, Operation, Purpose, Rig, Scenario, Specimen, Tone, stream
+from gen.scenarios.model import (
+    Background,
+    Mode,
+    Operation,
+    Path,
+    Purpose,
+    Rig,
+    Scenario,
+    Spall,
+    Specimen,
+    Tone,
+    Wear,
+    stream,
+)
 
 __all__ = [
     "Background",
     "Mode",
     "Operation",
+    "Path",
     "Purpose",
     "Rig",
     "Scenario",
+    "Spall",
     "Specimen",
     "Tone",
+    "Wear",
     "draw_scenarios",
     "fault_of_each_specimen",
     "stream",

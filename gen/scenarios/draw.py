@@ -8,6 +8,7 @@ the fault do not know the fault: a record with and without it differ in the faul
 import math
 import warnings
 from dataclasses import replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,11 +19,39 @@ from scipy.stats import qmc
 from gen.corpus import FAULTS, SPLITS
 from gen.distributions import Grid, weighted_index
 from gen.errors import RecipeError
-from gen.physics.batch import Spall
 from gen.physics.bearing import Bearing
-from gen.physics.catalogue import CATALOGUE
-from gen.recipe import BallFault, Modes, RaceFault, Recipe, Section, split_unit
-from gen.scenarios.model import Background, Drawn, Mode, Operation, Purpose, Rig, Scenario, Specimen, Tone, stream
+from gen.physics.course import Course
+from gen.recipe import (
+    BallFault,
+    CageFault,
+    CatalogueBearing,
+    CompoundFault,
+    Healthy,
+    Modes,
+    RaceFault,
+    Recipe,
+    Section,
+    WornFault,
+    fault_class,
+    split_unit,
+)
+from gen.recipe import Course as WantedCourse
+from gen.recipe import Path as WantedPath
+from gen.scenarios.model import (
+    Background,
+    Drawn,
+    Mode,
+    Operation,
+    Path,
+    Purpose,
+    Rig,
+    Scenario,
+    Spall,
+    Specimen,
+    Tone,
+    Wear,
+    stream,
+)
 
 _DIMENSIONS = 64  # quasi-random values of an item; what it draws beyond them is plain random
 # dimensions of its own for each level: the same ones tied the first values of a specimen and its only record together (r up to 1)
@@ -125,27 +154,38 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
     for channel in recipe.recording.channels:
         body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
         channels.append((body, draws.section(channel)["angle"]))
-    modulation = _draw_modulation(draws, recipe.path.modulation)
-    direct = draws.section(recipe.path)["direct"]
-    modes = _draw_modes(draws, recipe.path.modes)
+    path = _draw_path(draws, recipe.path)
     background = _draw_background(recipe, draws)
+    own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
+    oil = recipe.contact.lubricant
     return Rig(
-        number, bearing, machine, resonator, tuple(channels), direct, modes, modulation, background,
+        number, bearing, machine, resonator, tuple(channels), path, own_paths, background,
         level.get("gain", 1.0), level.get("background", 1.0),
+        lubricant=None if oil is None else draws.section(oil), footprint=recipe.contact.footprint == "hertz",
     )  # fmt: skip
 
 
 def _draw_bearing(recipe: Recipe, draws: Draws, rig: int) -> Bearing:
     chosen = recipe.bearing
-    if chosen.kind == "catalogue":
-        return CATALOGUE[chosen.designations[int(draws.u() * len(chosen.designations))]]
+    if isinstance(chosen, CatalogueBearing):
+        return chosen.bearing(chosen.designations[int(draws.u() * len(chosen.designations))])
     drawn = draws.section(chosen)
     n_balls, ball = round(drawn["n_balls"]), drawn["ball_share"] * drawn["pitch"]
     # neighbours must not touch: 0.85 leaves the cage its bars
     largest = 0.85 * math.pi * drawn["pitch"] / n_balls
     if drawn["ball_share"] > 0.6 or ball <= 0:
         raise RecipeError(f"rig {rig}: ball_share {drawn['ball_share']:g} gives no bearing; keep it below 0.45.")
-    return Bearing(chosen.designation, n_balls, drawn["pitch"], min(ball, largest), drawn["contact_angle"])
+    rollers = drawn["roller_length"]
+    return Bearing(
+        chosen.designation, n_balls, drawn["pitch"], min(ball, largest), drawn["contact_angle"],
+        rolling_element="roller" if rollers > 0 else "ball", roller_length=rollers or None,
+    )  # fmt: skip
+
+
+def _draw_path(draws: Draws, path: WantedPath) -> Path:
+    modulation = _draw_modulation(draws, path.modulation)
+    direct = draws.value(path.direct)
+    return Path(direct, _draw_modes(draws, path.modes), modulation)
 
 
 def _draw_modes(draws: Draws, modes: Modes | None) -> tuple[Mode, ...]:
@@ -201,30 +241,43 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     place = number % recipe.corpus.specimens_per_rig
     fault = fault_of_each_specimen(recipe, rig.number)[place]
     draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
-    wanted = [entry for entry in recipe.faults if entry.kind == fault]
+    wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
-    split = _draw_split(recipe, rig.number, place)
-    if not isinstance(entry, RaceFault | BallFault):
-        return Specimen(number, bearing, properties, fault, (), {}, split)
-    spalls = _draw_spalls(draws, entry, bearing, number)
-    axis = draws.section(entry) if isinstance(entry, BallFault) else {}
-    axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander", "spin_wander") if name in axis}
-    return Specimen(number, bearing, properties, fault, spalls, axis, split)
+    specimen = Specimen(number, bearing, properties, fault, (), {}, _draw_split(recipe, rig.number, place))
+    if isinstance(entry, Healthy):
+        return specimen
+    if isinstance(entry, WornFault):
+        wear = Wear(entry.site, draws.value(entry.waviness_um) * 1e-6, entry.order)
+        return replace(specimen, wear=wear)
+    for part in entry.parts if isinstance(entry, CompoundFault) else (entry,):
+        specimen = _with_part(draws, part, specimen)
+    return specimen
+
+
+def _with_part(draws: Draws, part: RaceFault | BallFault | CageFault, specimen: Specimen) -> Specimen:
+    if isinstance(part, CageFault):
+        return replace(specimen, cage=draws.section(part))
+    spalls = specimen.spalls + _draw_spalls(draws, part, specimen.bearing, specimen.number)
+    if isinstance(part, RaceFault):
+        return replace(specimen, spalls=spalls)
+    axis = draws.section(part)
+    axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander", "spin_wander")}
+    return replace(specimen, spalls=spalls, axis=axis)
 
 
 def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int) -> tuple[Spall, ...]:
     carrier = int(draws.u() * bearing.n_balls)
+    radius = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[
+        entry.kind
+    ]
+    trace = tuple(depth * 1e-6 for depth in entry.trace_um or ())
     spalls = []
     for _ in range(round(draws.value(entry.spalls))):
         width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
+        angle, roughness = math.radians(draws.value(entry.angle_deg)), draws.value(entry.roughness_um) * 1e-6
         spalls.append(
-            Spall(entry.kind, width, depth, math.radians(draws.value(entry.angle_deg)), carrier, entry.profile)
+            Spall(entry.kind, width, max(trace, default=depth), angle, carrier, entry.profile, trace, roughness)
         )
-        radius = {
-            "inner": bearing.inner_radius,
-            "outer": bearing.outer_radius,
-            "ball": bearing.ball_diameter / 2,
-        }[entry.kind]
         if width > 1.4 * radius:
             raise RecipeError(
                 f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit a {entry.kind} radius of {radius * 1e3:.3g} mm; "
@@ -235,9 +288,9 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
 
 def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     """Fault classes of the specimens of a rig: by weight, but never all healthy or all faulty if the recipe has both."""
-    weights = dict.fromkeys(FAULTS, 0.0)
+    weights: dict[str, float] = dict.fromkeys(FAULTS, 0.0)
     for entry in recipe.faults:
-        weights[entry.kind] += entry.weight
+        weights[fault_class(entry)] += entry.weight
     total, count = sum(weights.values()), recipe.corpus.specimens_per_rig
     rng = stream(recipe.seed, rig, 0, 0, Purpose.CLASSES)
     shares = {kind: weight / total * count for kind, weight in weights.items() if weight > 0}
@@ -275,8 +328,28 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
     draws = Draws(stream(recipe.seed, rig, specimen.number, number, Purpose.RECORD), point, number)
     conditions = draws.section(recipe.operation)
     level = recipe.level
-    if level.kind == "physical":
-        return Operation(number, conditions, None, None)
-    u = draws.u()
-    snr = (level.healthy_db if specimen.fault == "healthy" else level.faulty_db).draw(u)
-    return Operation(number, conditions, snr, draws.value(level.rms_m_s2))
+    snr = rms = None
+    if level.kind == "snr":
+        u = draws.u()
+        snr = (level.healthy_db if specimen.fault == "healthy" else level.faulty_db).draw(u)
+        rms = draws.value(level.rms_m_s2)
+    courses = [
+        None if course is None else _draw_course(draws, course, recipe.recording.duration_s)
+        for course in (recipe.operation.speed_course, recipe.operation.load_course)
+    ]
+    return Operation(number, conditions, snr, rms, *courses)
+
+
+def _draw_course(draws: Draws, course: WantedCourse, duration: float) -> Course:
+    if course.kind == "table":
+        return Course(course.times_s, tuple(share / 100 for share in course.percent))
+    if course.kind == "steps":
+        levels = tuple(level / 100 for level in course.levels_percent)
+        changes = [duration * place / len(levels) for place in range(1, len(levels))]
+        times = [time + side * course.step_s / 2 for time in changes for side in (-1, 1)]
+        shares = [level for pair in pairwise(levels) for level in pair]
+        return Course(tuple(times), tuple(shares), smooth=True)
+    drawn = draws.section(course)
+    if course.kind == "ramp":
+        return Course((0.0, duration), (drawn["from"], drawn["to"]))
+    return Course((drawn["start"], drawn["start"] + drawn["lasting"]), (drawn["from"], drawn["to"]), smooth=True)

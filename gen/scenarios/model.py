@@ -3,14 +3,14 @@
 Every value is plain and in SI units, so that a scenario can be stored beside its record and made again from it.
 """
 
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from enum import IntEnum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from gen.physics.batch import Spall
 from gen.physics.bearing import Bearing
+from gen.physics.course import Course
 
 Drawn = dict[str, float]
 
@@ -28,6 +28,33 @@ class Purpose(IntEnum):
     MOTION = 7
     NOISE = 8
     SAMPLING = 9
+    ROUGHNESS = 10
+    WEAR = 11
+    COURSE = 12
+
+
+class Spall(NamedTuple):
+    """One spall as it was drawn; ``ball`` says which ball carries it if ``site`` is ``ball``."""
+
+    site: str
+    width: float
+    depth: float
+    angle: float
+    ball: int = 0
+    profile: str = "geometric"
+    trace: tuple[float, ...] = ()
+    """Depths of a measured surface from edge to edge [m]."""
+    roughness: float = 0.0
+    """Of its floor, rms [m]."""
+
+
+@dataclass(frozen=True)
+class Wear:
+    """Waviness of a worn race: rms [m], all of it at one ``order`` per turn, or falling as 1/order."""
+
+    site: str
+    waviness: float
+    order: int | None
 
 
 @dataclass(frozen=True)
@@ -46,6 +73,15 @@ class Tone:
     frequency: float
     level: float
     modulation: float = 0.0
+
+
+@dataclass(frozen=True)
+class Path:
+    """The way from bearing to sensor: a direct part, resonances, and modulation once and twice per turn of the shaft."""
+
+    direct: float
+    modes: tuple[Mode, ...]
+    modulation: tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -72,12 +108,15 @@ class Rig:
     resonator: Drawn | None
     channels: tuple[tuple[str, float], ...]
     """Body and direction [rad] of each channel."""
-    direct: float
-    modes: tuple[Mode, ...]
-    modulation: tuple[float, float]
+    path: Path
+    own_paths: tuple[Path | None, ...]
+    """Path of each channel that does not take the common one."""
     background: Background
     gain: float
     background_rms: float
+    lubricant: Drawn | None = None
+    footprint: bool = False
+    """Whether contacts are as wide as Hertz says, or points."""
 
 
 @dataclass(frozen=True)
@@ -92,6 +131,9 @@ class Specimen:
     """Outer race angles count from the load direction."""
     axis: Drawn
     split: str
+    cage: Drawn = field(default_factory=dict)
+    """Pitch error [rad] and knock [N] of a broken cage."""
+    wear: Wear | None = None
 
 
 @dataclass(frozen=True)
@@ -102,6 +144,8 @@ class Operation:
     conditions: Drawn
     snr: float | None
     rms: float | None
+    speed_course: Course | None = None
+    load_course: Course | None = None
 
 
 @dataclass(frozen=True)
@@ -123,7 +167,7 @@ class Scenario:
 
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""
-        return replace(self, specimen=replace(self.specimen, fault="healthy", spalls=()))
+        return replace(self, specimen=replace(self.specimen, fault="healthy", spalls=(), cage={}, wear=None))
 
 
 def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:

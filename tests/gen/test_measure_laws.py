@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.signal import welch
 
 from gen.measure import LARGEST_COUNT, base_excited, measure
-from gen.scenarios import Background, Mode, Tone, draw_scenarios
+from gen.scenarios import Background, Mode, Path, Tone, draw_scenarios
 from gen.simulate import Response, lead_samples
 
 law = settings(deadline=None, max_examples=25)
@@ -22,7 +22,7 @@ def response(recipe, n_records, wave):
     """What ``wave(time)`` gives as the response of every record and channel."""
     n = lead_samples(recipe) + recipe.n_samples
     signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
-    return Response(signal.copy(), np.full(n_records, 8), {})
+    return Response(signal.copy(), np.full(n_records, 8), np.full(n_records, 0.2), {})
 
 
 def silence(recipe, n_records):
@@ -96,7 +96,7 @@ def test_a_record_is_measured_alike_alone_and_among_others(recipe_with):
     together = measure(heard, scenarios, recipe)
     for place in (0, 7, 23):
         alone = measure(
-            Response(heard.acceleration[place : place + 1], heard.oversampling, {}), [scenarios[place]], recipe
+            Response(heard.acceleration[place : place + 1], heard.oversampling, heard.step_phase, {}), [scenarios[place]], recipe
         )
         np.testing.assert_array_equal(alone.signal[0], together.signal[place])
 
@@ -155,9 +155,7 @@ def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonanc
     recipe = recipe_with(FLOAT)
     scenarios = with_rig(
         draw_scenarios(recipe, 0, 1),
-        direct=direct,
-        modes=tuple(modes),
-        modulation=(0.0, 0.0),
+        path=Path(direct, tuple(modes), (0.0, 0.0)),
         gain=1.0,
         background_rms=0.0,
     )
@@ -221,9 +219,9 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
 
 def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800})
-    plain = with_rig(draw_scenarios(recipe, 0, 1), direct=1.0, modes=(), background=QUIET, background_rms=0.0, gain=1.0)
+    plain = with_rig(draw_scenarios(recipe, 0, 1), path=Path(1.0, (), (0.0, 0.0)), background=QUIET, background_rms=0.0, gain=1.0)
     heard = response(recipe, 1, lambda time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
-    signal = measure(heard, with_rig(plain, modulation=(0.6, 0.2)), recipe).signal[0, 0].astype(float)
+    signal = measure(heard, with_rig(plain, path=Path(1.0, (), (0.6, 0.2))), recipe).signal[0, 0].astype(float)
     assert line(signal, 2000) == pytest.approx(1.0, abs=1e-3)
     for order, depth in ((1, 0.6), (2, 0.2)):
         assert line(signal, 2000 + 30 * order) == pytest.approx(depth / 2, abs=1e-3)
@@ -248,3 +246,25 @@ def test_a_record_that_diverged_leaves_the_others_as_they_are(recipe_with):
     broken.acceleration[2] = np.nan
     whole, rest = measure(fine, scenarios, recipe), measure(broken, scenarios, recipe)
     np.testing.assert_array_equal(rest.signal[[0, 1, 3]], whole.signal[[0, 1, 3]])
+
+
+def test_a_channel_with_a_path_of_its_own_hears_the_bearing_through_it(recipe_with):
+    channels = [{"name": "drive_end", "body": "housing"}, {"name": "fan_end", "body": "housing", "path": {"direct": 0.25}}]
+    recipe = recipe_with(FLOAT | {"recording.channels": channels, "path.modes": None, "path.direct": 1.0})
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, background_rms=0.0, gain=1.0)
+    near, far = measure(hiss(recipe, 1), scenarios, recipe).signal[0].astype(float)
+    np.testing.assert_allclose(far, near / 4, atol=1e-6)
+
+
+def test_shaft_harmonics_follow_the_course_of_the_speed(recipe_with):
+    course = {"kind": "run_up", "from_percent": 50, "to_percent": 150, "lasting_s": 2}
+    recipe = recipe_with(
+        FLOAT | {"recording.duration_s": 2.0, "operation.shaft_rpm": 1800, "operation.speed_course": course}
+    )
+    sound = replace(QUIET, harmonics=(Tone(10.0, 1.0),))
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=sound, background_rms=1.0, gain=1.0)
+    signal = measure(silence(recipe, 1), scenarios, recipe).signal[0, 0].astype(float)
+    for start, rate in ((0.0, 150.0), (0.9, 300.0), (1.8, 450.0)):
+        piece = signal[round(start * FS) : round((start + 0.2) * FS)]
+        strongest = np.argmax(np.abs(np.fft.rfft(piece * np.hanning(len(piece))))) * FS / len(piece)
+        assert strongest == pytest.approx(rate, abs=6)

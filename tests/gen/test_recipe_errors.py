@@ -37,8 +37,8 @@ TABLE = [
     (", width_mm: 0.5", "", "faults[1].width_mm: is missing; give it."),
     ("low: 1500, ", "", "operation.shaft_rpm.low: is missing; give it."),
     # values
-    ("0.5}", "0.0}", "faults[1].width_mm: 0 is not in (0, 20]; for a bearing without a fault use kind: healthy."),
-    ("0.5}", "-1}", "faults[1].width_mm: -1 is not in (0, 20]"),
+    ("0.5}", "0.0}", "faults[1].width_mm: 0 is not in (0, 60]; for a bearing without a fault use kind: healthy."),
+    ("0.5}", "-1}", "faults[1].width_mm: -1 is not in (0, 60]"),
     ("0.5}", "wide}", "faults[1].width_mm: 'wide' is neither a number nor a distribution; write 1.5 or {kind: uniform"),
     ("0.5}", "1,5}", "faults[1]: 5 is no key; keys are words, and decimals have a point, no comma."),
     ("0.5}", "true}", "faults[1].width_mm: True is neither a number nor a distribution; write 1.5 or {kind: uniform"),
@@ -65,8 +65,8 @@ TABLE = [
     ),
     ("low: 1500", "low: 0", "operation.shaft_rpm: 0 is not in [1, 100000]."),
     # choices
-    ("kind: outer", "kind: cage", "faults[1].kind: 'cage' is not one of healthy, inner, outer, ball."),
-    ('["6205"]', '["6299"]', "bearing.designations[0]: '6299' is not allowed here; it must be '608', "),
+    ("kind: outer", "kind: gear", "faults[1].kind: 'gear' is not one of healthy, inner, outer, ball, cage, worn, compound."),
+    ('["6205"]', '["6299"]', "bearing.designations: '6299' is neither in the catalogue nor in entries; did you mean "),
     ('["6205"]', "[]", "bearing.designations: is empty; give at least one."),
     ("{name: sensor,", "{name: sensor, body: table,", "recording.channels[0].body.table: "),
     # what does not go together

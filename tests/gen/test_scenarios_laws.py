@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from gen.errors import RecipeError
 from gen.scenarios import Purpose, draw_scenarios, fault_of_each_specimen, stream
-from gen.simulate import physical_record
+from gen.machinery import physical_record
 
 law = settings(deadline=None, max_examples=25)
 SAMPLINGS = ("random", "sobol", "halton")
@@ -192,11 +192,12 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
 
 
 def test_a_record_without_its_fault_is_the_same_record(recipe_with):
-    for scenario in draw_scenarios(recipe_with()):
+    recipe = recipe_with()
+    for scenario in draw_scenarios(recipe):
         twin = scenario.without_fault()
         assert (twin.rig, twin.record, twin.seed) == (scenario.rig, scenario.record, scenario.seed)
         assert (twin.specimen.fault, twin.specimen.spalls) == ("healthy", ())
-        damaged, sound = physical_record(scenario), physical_record(twin)
+        damaged, sound = physical_record(scenario, recipe), physical_record(twin, recipe)
         assert bool(damaged.spalls) == (scenario.specimen.fault != "healthy")
         assert sound.machine == damaged.machine
         assert sound.motion == damaged.motion

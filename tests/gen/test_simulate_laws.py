@@ -8,9 +8,10 @@ import pytest
 
 from gen.errors import SimulationError
 from gen.physics.integrate import decimation_taps
-from gen.physics.rotor import fastest_swing
+from gen.physics.rotor import fastest_swing, likely_stiffness
 from gen.scenarios import draw_scenarios
-from gen.simulate import FINE_STEP, lead_samples, physical_record, simulate, steps_per_sample, true_motion
+from gen.machinery import physical_record, true_motion
+from gen.simulate import FINE_STEP, lead_samples, simulate, steps_per_sample
 from tests.reference import march_lanes, slow_motion, waviness
 
 FS = 12_000.0
@@ -76,7 +77,9 @@ def test_a_response_is_the_decimated_motion_of_its_bodies_along_its_channels(rec
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     taps = decimation_taps(8)
     for trip, found in zip(
-        march_lanes(list(map(physical_record, scenarios)), n_knots, 8, 1 / FS), response, strict=True
+        march_lanes([physical_record(scenario, recipe) for scenario in scenarios], n_knots, 8, 1 / FS),
+        response,
+        strict=True,
     ):
         full_rate = trip.accelerations
         tilted = math.cos(math.pi / 6) * full_rate[:, 4] + math.sin(math.pi / 6) * full_rate[:, 5]
@@ -101,8 +104,8 @@ def test_decimation_passes_the_band_and_stops_what_would_fold_into_it(factor):
 def test_the_step_is_the_coarsest_that_is_fine_for_the_stiffest_mode(simulated):
     recipe, scenarios, response = simulated
     for scenario, factor in zip(scenarios, response.oversampling, strict=True):
-        record = physical_record(scenario)
-        swing = float(fastest_swing(record.machine, record.bearing.n_balls))
+        record = physical_record(scenario, recipe)
+        swing = float(fastest_swing(record.machine, likely_stiffness(record.machine, record.bearing.n_balls)))
         assert swing / (FS * factor) <= FINE_STEP
         assert factor == steps_per_sample(record, scenario, recipe)
 
@@ -168,7 +171,7 @@ def test_the_labels_hold_the_mean_rates_at_which_shaft_and_cage_really_turned(re
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 6):
         rate, found = true_motion(scenario, recipe)
-        angles = slow_motion(physical_record(scenario), 1 / FS, start + n).angles
+        angles = slow_motion(physical_record(scenario, recipe), 1 / FS, start + n).angles
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
         assert shaft * FS / n == pytest.approx(rate, rel=1e-4)
         assert cage / shaft == pytest.approx(
@@ -178,9 +181,10 @@ def test_the_labels_hold_the_mean_rates_at_which_shaft_and_cage_really_turned(re
 
 
 def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_with_the_record(recipe_with):
-    scenarios = draw_scenarios(recipe_with({"specimen.waviness_nm": 25}), 0, 4)
+    recipe = recipe_with({"specimen.waviness_nm": 25})
+    scenarios = draw_scenarios(recipe, 0, 4)
     turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
-    first, again, other = (physical_record(scenarios[place]) for place in (0, 1, 2))
+    first, again, other = (physical_record(scenarios[place], recipe) for place in (0, 1, 2))
     np.testing.assert_array_equal(first.waves, again.waves)
     assert not np.array_equal(first.waves, other.waves)
     for record in (first, other):
@@ -193,5 +197,5 @@ def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_wi
 def test_outer_spalls_count_their_angle_from_the_load(recipe_with):
     outer = [{"kind": "outer", "width_mm": 0.5, "angle_deg": 10}]
     recipe = recipe_with({"faults": outer, "machine.load_angle_deg": -60})
-    spall = physical_record(draw_scenarios(recipe, 0, 1)[0]).spalls[0]
+    spall = physical_record(draw_scenarios(recipe, 0, 1)[0], recipe).spalls[0]
     assert spall.angle == pytest.approx(math.radians(-50))

@@ -1,0 +1,52 @@
+"""How a quantity runs over time: through given points, straight or without a jerk.
+
+Without a jerk means the polynomial of degree five whose first two derivatives vanish at both ends, so that a speed that runs up keeps a
+continuous acceleration.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+class Course(NamedTuple):
+    """Shares of a nominal value at rising times; constant before the first point and after the last."""
+
+    times: tuple[float, ...]
+    """From the start of the record [s]."""
+    shares: tuple[float, ...]
+    smooth: bool = False
+    """Whether it runs without a jerk between points."""
+
+
+def share_at(course: Course, times: NDArray[np.floating]) -> FloatArray:
+    """Share at ``times`` [s], of their shape [1].
+
+    >>> [float(share) for share in share_at(Course((0.0, 2.0), (1.0, 3.0), smooth=True), np.array([-1.0, 1.0, 5.0]))]
+    [1.0, 2.0, 3.0]
+    """
+    knots, shares = np.asarray(course.times), np.asarray(course.shares)
+    if not course.smooth or len(knots) < 2:
+        return np.asarray(np.interp(times, knots, shares))
+    place = np.interp(times, knots, np.arange(len(knots)))
+    at = np.minimum(place.astype(int), len(knots) - 2)
+    part = place - at
+    return shares[at] + (shares[at + 1] - shares[at]) * part**3 * (10 - 15 * part + 6 * part**2)
+
+
+def mean_share(course: Course | None, duration: float) -> float:
+    """Mean share over the record, 1 without a course [1]."""
+    if course is None:
+        return 1.0
+    return float(share_at(course, (np.arange(4096) + 0.5) * (duration / 4096)).mean())
+
+
+def turned(course: Course | None, times: FloatArray) -> FloatArray:
+    """Integral of the share from the first of evenly spaced ``times`` on, of their shape [s]."""
+    if course is None:
+        return times - times[0]
+    step = times[1] - times[0]
+    return np.concatenate([[0.0], np.cumsum(share_at(course, times[:-1] + step / 2))]) * step
