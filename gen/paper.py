@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from scipy.signal import find_peaks, get_window, hilbert
 
 from gen.physics.batch import Motion, Record, Spall, lay_out, n_terms, record_shape
+from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.integrate import integrate
+from gen.physics.lanes import LANES
 from gen.physics.rotor import Machine
 
 FloatArray = NDArray[np.floating]
@@ -67,22 +69,37 @@ class Run(NamedTuple):
 
 def run(preset: Preset, fs: int = FS) -> Run:
     """Run the healthy and the cracked system of a preset for ``SECONDS``."""
+    return run_many([preset], fs)[0]
+
+
+def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
+    """Run several presets at once."""
     bearing = CATALOGUE["6205-paper"]
-    machine = Machine(
+    still, pickups = np.zeros(n_terms(bearing.n_balls)), np.eye(6)[:4]
+    found: dict[int, list[FloatArray]] = {0: [], 1: []}
+    for cracked, spalls in enumerate(((), (CRACK,))):
+        records = [
+            Record(
+                bearing, _machine(preset, bearing), Motion(preset.shaft_rate, unbalance=preset.unbalance), spalls, still, still,
+                pickups, np.empty(0), displacement=True,
+            )
+            for preset in presets
+        ]  # fmt: skip
+        shape = record_shape(records[0])
+        for first in range(0, len(records), LANES):
+            some = records[first : first + LANES]
+            lanes = lay_out(some, shape, 1 / fs, at_rest=False)
+            made = integrate(shape, lanes, 1 / fs, 1, np.ones(1), 0, round(SECONDS * fs))
+            found[cracked] += list(made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)] * 1e6)
+    return [Run(*pair, preset.shaft_rate) for pair, preset in zip(zip(*found.values(), strict=True), presets, strict=True)]
+
+
+def _machine(preset: Preset, bearing: Bearing) -> Machine:
+    return Machine(
         preset.load_deflection_factor, 0.0, 1.0, preset.half_clearance, bearing.ball_diameter / 2, 5.5, preset.housing_mass, 0.0,
         preset.ring_damping, 0.0, 0.0, preset.ring_stiffness, preset.ring_stiffness, preset.support_stiffness_x,
         preset.support_stiffness_y, preset.support_damping_x, preset.support_damping_y, 0.0, 0.0, 0.0, preset.load_x, preset.load_y,
     )  # fmt: skip
-    still, pickups = np.zeros(n_terms(bearing.n_balls)), np.eye(6)[:4]
-    motion = Motion(preset.shaft_rate, unbalance=preset.unbalance)
-    found = []
-    for spalls in ((), (CRACK,)):
-        record = Record(bearing, machine, motion, spalls, still, still, pickups, np.empty(0), displacement=True)
-        shape = record_shape(record)
-        lanes = lay_out([record], shape, 1 / fs, at_rest=False)
-        made = integrate(shape, lanes, 1 / fs, 1, np.ones(1), 0, round(SECONDS * fs))
-        found.append(made.response[:: fs // FS, :, 0].T * 1e6)
-    return Run(found[0], found[1], preset.shaft_rate)
 
 
 class Finding(NamedTuple):
