@@ -11,7 +11,15 @@ from typing import Any
 import numpy as np
 from scipy.stats import kurtosis
 
-from benchmarks.visibility import LINES, SECONDS, TURNING, FloatArray, recorded, reference_recipe, squared_envelope_spectrum
+from benchmarks.visibility import (
+    LINES,
+    SECONDS,
+    TURNING,
+    FloatArray,
+    recorded,
+    reference_recipe,
+    squared_envelope_spectrum,
+)
 
 Changes = dict[str, Any]
 

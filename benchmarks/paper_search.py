@@ -67,7 +67,11 @@ def main() -> None:
     def report(intermediate_result) -> None:
         best = findings("search", run_many([preset(intermediate_result.x)])[0])
         failing = ", ".join(f"{f.id}={f.value:.4g}" for f in best if not f.holds)
-        print(f"{intermediate_result.fun:.3f}: {sum(f.holds for f in best)} of {len(best)}; not {failing}", file=sys.stderr, flush=True)
+        print(
+            f"{intermediate_result.fun:.3f}: {sum(f.holds for f in best)} of {len(best)}; not {failing}",
+            file=sys.stderr,
+            flush=True,
+        )
 
     found = differential_evolution(
         cost, [(0, 1)] * len(NAMES), vectorized=True, updating="deferred", popsize=1, rng=options.seed,

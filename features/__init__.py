@@ -15,6 +15,7 @@ transformer  the same as a scikit-learn transformer
 table        corpus -> feature table (record, feature), part by part; reading and writing
 baselines    classifiers on a feature table, scored by specimen or rig beside their controls
 pictures     records, corpora and scores as figures
+envelopes    envelope spectra in pictures of many: faults side by side, run-ups
 report       one page of all that, and the picture of a record
 ============ =================================================================================
 """

@@ -32,7 +32,9 @@ from gen.corpus import FAULTS
 
 PictureFormat = Literal["png", "svg", "pdf"]
 
-COLOURS: dict[str, str] = dict(zip(FAULTS, ("#009E73", "#D55E00", "#0072B2", "#CC79A7"), strict=True))
+COLOURS: dict[str, str] = dict(
+    zip(FAULTS, ("#009E73", "#D55E00", "#0072B2", "#CC79A7", "#E69F00", "#56B4E9"), strict=True)
+)
 INK, FAINT = "#222222", "#8a8a8a"
 STYLE: Any = {
     "figure.facecolor": "white",
@@ -62,7 +64,9 @@ HARMONICS = {
     "outer": ("BPFO", "2 BPFO", "3 BPFO"),
     "inner": ("BPFI", "2 BPFI", "3 BPFI"),
     "ball": ("2 BSF", "4 BSF", "6 BSF"),
+    "cage": ("FTF", "2 FTF", "3 FTF"),
 }
+FIRST = tuple(names[0] for names in HARMONICS.values())
 TOLERANCE = 0.02  # of an order, shaded around the lines of the fault itself
 
 
@@ -142,7 +146,8 @@ def _draw_density(axes: Axes, shown: Shown) -> None:
 def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
     order, spectrum = squared_envelope(shown)
     own, others = fault_lines(shown.orders, shown.fault)
-    top = 3.15 * max(*others.values(), min(own.values(), default=0.0))
+    # the lines of a cage are close together, and the first lines of the other faults are enough beside them
+    top = (1.1 if shown.fault == "cage" else 3.15) * max(line for name, line in (own | others).items() if name in FIRST)
     visible = order <= top
     colour = COLOURS[shown.fault]
     for line in own.values():
@@ -167,21 +172,26 @@ def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
 
 
 def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str, float]]:
-    """Orders at which a fault shows, three harmonics of its line, and the other lines to compare with, by name."""
-    first = {"outer": float(orders.bpfo), "inner": float(orders.bpfi), "ball": 2 * float(orders.bsf)}
-    own = {name: n * first[fault] for n, name in enumerate(HARMONICS.get(fault, ()), start=1)}
-    others = {HARMONICS[other][0]: line for other, line in first.items() if other != fault}
-    return own, others | {"shaft": 1.0, "FTF": float(orders.ftf)}
+    """Orders at which a fault shows, three harmonics of its line, and the other lines to compare with, by name.
+
+    A compound fault may show at the first line of any: its label does not say which parts it is on.
+    """
+    ftf, bpfo, bpfi, bsf = (float(order) for order in orders)
+    order = {"outer": bpfo, "inner": bpfi, "ball": 2 * bsf, "cage": ftf}
+    first = dict(zip(FIRST, order.values(), strict=True))
+    own = {name: n * order[fault] for n, name in enumerate(HARMONICS.get(fault, ()), start=1)}
+    own = first if fault == "compound" else own
+    return own, {name: line for name, line in ({"shaft": 1.0} | first).items() if name not in own}
 
 
 def _name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
-    """Write the name of each line above the axes, in the lowest of two rows that has room for it."""
+    """Write the name of each line above the axes, in the lower of two rows if it has room for it."""
     ends = [-np.inf, -np.inf]
     per_letter = top / 78
     named = [(line, name, colour) for name, line in own.items()] + [(line, name, INK) for name, line in others.items()]
     for line, name, ink in sorted(named):
         half = (len(name) + 1) / 2 * per_letter
-        row = 0 if line - half > ends[0] else 1
+        row = 0 if line - half > ends[0] else int(np.argmin(ends))
         ends[row] = line + half
         weight = "normal" if ink == INK else "bold"
         axes.annotate(

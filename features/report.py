@@ -18,7 +18,7 @@ import xarray as xr
 
 from features.baselines import DEFAULT_ESTIMATOR, Results
 from features.baselines.benchmark import write_results
-from features.baselines.estimators import COMBS, UNTRAINED
+from features.baselines.estimators import CAGE_LINES, COMBS, UNTRAINED
 from features.indicators import Orders, feature_names, indicators
 from features.pictures import (
     COLOURS,
@@ -195,10 +195,11 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
 
 
 def _of_faults(name: str, corpus: xr.Dataset) -> np.ndarray:
-    """Values of a variable, those of healthy records left out where they describe a fault."""
+    """Values of a variable, those of records without a spall left out where they describe one."""
     values = corpus[name].values.astype(float)
-    describes_fault = corpus[name].attrs.get("role") == "label"
-    return np.where((corpus["fault"].values == 0) & describes_fault, np.nan, values)
+    describes_spall = corpus[name].attrs.get("role") == "label"
+    spalled = (corpus["fault"].values != FAULTS.index("healthy")) & (corpus["width"].values != 0)
+    return np.where(spalled | (not describes_spall), values, np.nan)
 
 
 def _example(corpus: xr.Dataset, fault: str) -> Example:
@@ -241,12 +242,16 @@ def _can_be_drawn(shown: Shown) -> bool:
 
 
 def _level(shown: Shown) -> float:
-    """Level of the comb of the fault, of a healthy record the highest comb; -inf if it cannot be told."""
+    """Level of the comb of the fault, of a cage its highest line, of a healthy or compound record the highest comb.
+
+    -inf if it cannot be told.
+    """
     names = feature_names(("lines",))
     orders = Orders(*(order.reshape(1) for order in shown.orders))
     values, _ = indicators(shown.signal[None], shown.fs, np.array([shown.shaft_rate]), orders, ("lines",))
-    combs = [COMBS[shown.fault]] if shown.fault in COMBS else list(COMBS.values())
-    return float(np.nan_to_num(values[0, [names.index(comb) for comb in combs]], nan=-np.inf).max())
+    told = {fault: (comb,) for fault, comb in COMBS.items()} | {"cage": CAGE_LINES}
+    columns = [names.index(name) for name in told.get(shown.fault, COMBS.values())]
+    return float(np.nan_to_num(values[0, columns], nan=-np.inf).max())
 
 
 def _scores(results: Results) -> dict[str, Any]:

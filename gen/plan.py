@@ -27,7 +27,7 @@ COMPILE_SECONDS = 7.0  # per kernel
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
 COMPRESSED = {"zlib": 0.73, "zstd": 0.75, "none": 1.0}  # of vibration that uses a part of the converter's range
-BYTES_PER_RECORD = 4000  # labels and drawn values
+BYTES_PER_RECORD, BYTES_PER_FILE = 700, 80_000  # labels and drawn values; what a part or the index takes for itself
 
 
 @dataclass(frozen=True)
@@ -105,7 +105,8 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         splits=scaled(Counter(specimen.split for specimen in drawn), SPLITS),
         steps_per_sample=scaled(factors, sorted(factors)),
         kernels=len(kernels),
-        bytes=round(samples * _bytes_per_sample(checked) + checked.n_records * BYTES_PER_RECORD),
+        bytes=round(samples * _bytes_per_sample(checked) + checked.n_records * BYTES_PER_RECORD)
+        + (checked.n_parts + 1) * BYTES_PER_FILE,
         estimated_seconds=lanes * scale * samples_integrated(checked) / LANE_STEPS_PER_SECOND
         + samples * SECONDS_PER_SAMPLE,
         compile_seconds=len(kernels) * COMPILE_SECONDS,

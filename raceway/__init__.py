@@ -14,6 +14,7 @@ corpora   commands that make corpora and look at them
 importing commands that bring real recordings into the format
 learning  commands from a corpus to features, models and a report
 reproduce the seed paper run again
+gallery   a page of pictures of what the model makes
 cli       the group of all commands, and the entry point
 ========= =====================================================================
 

@@ -29,7 +29,7 @@ from gen.physics.motion import Lanes
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulate import lead_samples, simulate, steps_per_sample
+from gen.simulate import Response, lead_samples, simulate, steps_per_sample
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5
@@ -79,7 +79,7 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
             batches = timed("lay_out", _batches, scenarios, checked)
             timed("integrate", _integrate, batches, checked)
             measured = timed("measure", measure, response, scenarios, checked)
-            timed("write", _write, measured, scenarios, checked, response.oversampling, path)
+            timed("write", _write, measured, scenarios, checked, response, path)
             timed("features", part_features, path)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
     steps = samples_integrated(checked) * int(response.oversampling.sum())
@@ -124,8 +124,8 @@ def _integrate(batches: list[Batch], recipe: Recipe) -> None:
         integrate(shape, lanes, 1 / (fs * factor), factor, taps, samples_integrated(recipe) - n_out, n_out)
 
 
-def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, oversampling: Any, path: Path) -> None:
-    write_part(part_dataset(measured, scenarios, recipe, oversampling), path, recipe.corpus.codec)
+def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, response: Response, path: Path) -> None:
+    write_part(part_dataset(measured, scenarios, recipe, response), path, recipe.corpus.codec)
 
 
 def _machine() -> dict[str, Any]:

@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 import click
 
-from raceway import corpora, importing, learning, reproduce
+from raceway import corpora, gallery, importing, learning, reproduce
 from raceway.ending import NoReader, exit_code
 from raceway.signals import listen_for_signals
 
@@ -86,6 +86,7 @@ for command in (
     learning.benchmark,
     learning.bench,
     reproduce.reproduce,
+    gallery.gallery,
 ):
     cli.add_command(command)
 keep_examples(cli)

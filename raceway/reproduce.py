@@ -11,7 +11,7 @@ from raceway.options import folder_option, json_option
 if TYPE_CHECKING:
     from gen.paper import Run
 
-_FIGURES = (
+FIGURES = (
     ("figure3", "Healthy: displacements", "healthy", False),
     ("figure4", "Healthy: power spectra", "healthy", True),
     ("figure5", "Cracked inner race: displacements", "cracked", False),
@@ -41,8 +41,10 @@ def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 
     for name, preset in PRESETS.items():
         made = run(preset)
         found += findings(name, made)
-        for figure, title, state, spectral in _FIGURES:
-            _draw(made, state, spectral, f"{title}, preset {name}").savefig(output / f"{name}-{figure}.png", dpi=110)
+        for figure, title, state, spectral in FIGURES:
+            draw_figure(made, state, spectral, f"{title}, preset {name}").savefig(
+                output / f"{name}-{figure}.png", dpi=110
+            )
     table = {"findings": [finding._asdict() for finding in found]}
     write_text_durably(show.json_text(table), output / "findings.json")
     if as_json:
@@ -51,7 +53,7 @@ def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 
     header = ("finding", "preset", "statement", "value", "accepted", "holds")
     show.table(
         header,
-        [(f.id, f.preset, f.finding, f"{f.value:.4g}", _span(f.accept), "yes" if f.holds else "NO") for f in found],
+        [(f.id, f.preset, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else "NO") for f in found],
     )
     show.text("", "Displacements in thousandths of a millimetre. What does not hold:")
     show.definitions({f"{f.preset} {f.id}": f.why for f in found if not f.holds})
@@ -60,12 +62,13 @@ def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 
         show.text(f"{name}: {sum(f.holds for f in mine)} of {len(mine)} statements hold.")
 
 
-def _span(accept: tuple[float, float]) -> str:
+def span(accept: tuple[float, float]) -> str:
+    """Accepted range, in words."""
     low, high = accept
     return f"over {low:g}" if high == float("inf") else f"{low:g} to {high:g}"
 
 
-def _draw(made: "Run", state: str, spectral: bool, title: str) -> Any:
+def draw_figure(made: "Run", state: str, spectral: bool, title: str) -> Any:
     """One figure of the paper: four channels, over time or over frequency."""
     import numpy as np
     from matplotlib.figure import Figure

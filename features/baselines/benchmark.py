@@ -23,7 +23,7 @@ from features.baselines.records import (
     labelled_records,
 )
 from features.baselines.scores import Scores
-from features.baselines.splits import Grouping, check_groups, grouped_splits, score_splits
+from features.baselines.splits import Grouping, check_groups, check_taught, grouped_splits, score_splits
 from gen.corpus import FAULTS, write_text_durably
 from gen.errors import CorpusError
 
@@ -115,6 +115,8 @@ def benchmark(
     group = getattr(records, by)
     splits = grouped_splits(records.fault, group, folds, seed)
     leaking = grouped_splits(records.fault, np.arange(len(group)), folds, seed)
+    for found in (splits, leaking):
+        check_taught(records.fault, found)
     permuted = permuted_labels(records, seed)
     null = grouped_splits(permuted, group, folds, seed)
     baselines: dict[str, Baseline] = {}

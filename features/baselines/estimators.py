@@ -34,6 +34,8 @@ Estimator = Any  # a scikit-learn classifier of indices into FAULTS; its stubs a
 
 TREES = 200
 COMBS = {"inner": "whitened_bpfi_comb", "outer": "whitened_bpfo_comb", "ball": "whitened_2bsf_comb"}
+CAGE_LINES = ("whitened_ftf", "whitened_2ftf")
+RIVAL_SHARE = 0.5  # of the highest series: below that a second one may be its sidebands or some of its harmonics
 
 
 class EnvelopeRule(ClassifierMixin, BaseEstimator):
@@ -42,6 +44,9 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
     A comb is the mean logarithm of three harmonics of a fault line over the floor of the whitened envelope
     spectrum. Of white noise, fewer than one record in a hundred has one above 1.0: three harmonics that are,
     on average, e times the floor.
+
+    It names healthy, inner, outer and ball always, cage and compound only if the records it is fitted to hold
+    them: see `rule_levels`.
 
     Parameters
     ----------
@@ -52,30 +57,28 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
     def __init__(self, threshold: float = 1.0) -> None:
         self.threshold = threshold
 
-    def fit(self, X: "DataFrame", y: object = None) -> Self:  # noqa: ARG002
-        """Take note of the columns of a data frame; there is nothing to learn.
+    def fit(self, X: "DataFrame", y: IntArray) -> Self:
+        """Take note of the columns of a data frame and of the classes there are; there is nothing to learn.
 
         Raises
         ------
         ValueError
-            If a comb is not among the columns.
+            If a line is not among the columns.
         """
-        missing = set(COMBS.values()) - set(getattr(X, "columns", ()))
+        missing = {*COMBS.values(), *CAGE_LINES} - set(getattr(X, "columns", ()))
         if missing:
             message = f"envelope rule: no column {min(missing)!r}; give a data frame with the lines features."
             raise ValueError(message)
         self._columns(X, reset=True)
-        self.classes_ = np.arange(len(FAULTS))
+        self.classes_ = np.union1d([FAULTS.index(fault) for fault in ("healthy", *COMBS)], y)
         return self
 
     def predict_proba(self, X: "DataFrame") -> FloatArray:
-        """Softmax of threshold and comb levels, shape (record, class); a missing level counts as none."""
+        """Softmax of the levels of `rule_levels`, shape (record, class)."""
         check_is_fitted(self)
         self._columns(X, reset=False)
-        levels = np.full((len(X), len(FAULTS)), self.threshold)
-        for fault, column in COMBS.items():
-            levels[:, FAULTS.index(fault)] = np.nan_to_num(X[column].to_numpy(), nan=-np.inf)
-        return softmax(levels, axis=1)
+        levels = rule_levels(X, self.threshold)
+        return softmax(np.stack([levels[FAULTS[c]] for c in self.classes_], axis=1), axis=1)
 
     def predict(self, X: "DataFrame") -> IntArray:
         """Index into ``gen.corpus.FAULTS``, shape (record,)."""
@@ -84,6 +87,39 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
     def _columns(self, X: Any, *, reset: bool) -> None:
         """Take note of the names of the columns, or compare them with those."""
         validate_data(self, X, skip_check_array=True, reset=reset)
+
+
+def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray]:
+    """What speaks for each class, shape (record,); the highest is the answer, and a missing feature speaks for none.
+
+    - A spall: its comb.
+    - Healthy: the threshold.
+    - Cage: the mean of the first two lines of FTF, unless they are those of a spalled ball, which passes through the
+      load once a turn of the cage. They are not where 2 BSF has less than half of them, or where BPFO, a multiple of
+      FTF, stands between the two: a knock once a turn of the cage has lines at all its multiples.
+    - Compound: the sum of the two highest combs less a bar, so that it exceeds the first where the second exceeds the
+      bar: the threshold, half of the first, or the lines of the cage, whichever is highest. The comb of 2 BSF counts
+      here only as far as the lines of FTF: shaft sidebands of BPFI can fall on it.
+    """
+    inner, outer, ball = (_known(features, column) for column in COMBS.values())
+    series = np.mean([_known(features, column) for column in CAGE_LINES], axis=0)
+    knocked = (ball < RIVAL_SHARE * series) | ((ball < outer) & (outer < series))
+    cage = np.where(knocked, series, -np.inf)
+    _, second, first = np.sort([inner, outer, np.minimum(ball, series)], axis=0)
+    bar = np.maximum.reduce([np.full_like(cage, threshold), cage, RIVAL_SHARE * first])
+    return {
+        "healthy": np.full_like(cage, threshold),
+        "inner": inner,
+        "outer": outer,
+        "ball": ball,
+        "cage": cage,
+        "compound": first + second - bar,
+    }
+
+
+def _known(features: "DataFrame", column: str) -> FloatArray:
+    """Values of a feature, the missing ones lowest, shape (record,)."""
+    return np.nan_to_num(features[column].to_numpy(), nan=-np.inf)
 
 
 def _majority(seed: int) -> DummyClassifier:

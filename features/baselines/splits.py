@@ -66,6 +66,7 @@ def cross_validate(
     records = labelled_records(table, features_of(table, groups))
     check_groups(records, by, folds)
     splits = grouped_splits(records.fault, getattr(records, by), folds, seed)
+    check_taught(records.fault, splits)
     return score_splits(records, records.fault, estimator, splits, seed)
 
 
@@ -102,23 +103,28 @@ def check_groups(records: Records, by: Grouping, folds: int) -> None:
 
 
 def grouped_splits(fault: IntArray, group: IntArray, folds: int, seed: int) -> list[Split]:
-    """Training and test records of each fold, classes spread as evenly as the groups allow.
-
-    Raises
-    ------
-    CorpusError
-        If a fold leaves a class without a training record.
-    """
+    """Training and test records of each fold, classes spread as evenly as the groups allow."""
     splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
     splits: list[Any] = list(splitter.split(np.zeros((len(fault), 1)), fault, group))
     for train, test in splits:
         check_disjoint(group, train, test)
+    return splits
+
+
+def check_taught(fault: IntArray, splits: Sequence[Split]) -> None:
+    """Refuse splits of which one leaves a class without a training record.
+
+    Raises
+    ------
+    CorpusError
+        Naming the first such class.
+    """
+    for train, _ in splits:
         untaught = np.setdiff1d(fault, fault[train])
         if len(untaught):
             name = FAULTS[untaught[0]]
             message = f"cross-validation: a fold leaves no {name} record to train on; use fewer folds."
             raise CorpusError(message)
-    return splits
 
 
 def check_disjoint(group: IntArray, train: IntArray, test: IntArray) -> None:

@@ -95,7 +95,8 @@ def _encoding(name: str, variable: xr.Variable) -> dict[str, Any]:
     """Text as fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed."""
     if variable.dtype.kind in "OU":
         return {"dtype": "S1", "char_dim_name": f"{name}_length", "zlib": True, "complevel": 1}
-    return {"_FillValue": None}
+    compressed = {"zlib": True, "complevel": 1, "shuffle": True} if name == "elapsed_time" else {}
+    return {"_FillValue": None, **compressed}
 
 
 @contextmanager

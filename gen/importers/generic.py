@@ -106,8 +106,8 @@ def _name(path: str, entry: Entry) -> str:
 
 
 def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Recording:
-    faulty = entry.fault != "healthy"
-    unknown = math.nan if faulty else 0.0
+    spalled = entry.fault not in ("healthy", "cage")
+    unknown = math.nan if spalled else 0.0
     return Recording(
         number=number,
         rig=rig,
@@ -117,7 +117,7 @@ def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Rec
         fault=entry.fault,
         signal=_column(path, entry) * _METRES_PER_SECOND_SQUARED[entry.unit],
         load=math.nan if entry.load_n is None else entry.load_n,
-        n_spalls=entry.n_spalls or int(faulty),
+        n_spalls=entry.n_spalls or (2 if entry.fault == "compound" else int(spalled)),
         width=unknown if entry.width_mm is None else entry.width_mm * 1e-3,
         depth=unknown if entry.depth_mm is None else entry.depth_mm * 1e-3,
         angle=math.nan if entry.angle_deg is None else math.radians(entry.angle_deg),

@@ -25,7 +25,7 @@ from gen.errors import CorpusError
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 
-Fault = Literal["healthy", "inner", "outer", "ball"]
+Fault = Literal["healthy", "inner", "outer", "ball", "cage", "compound"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
 Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 Name = Annotated[str, BeforeValidator(lambda value: str(value) if type(value) is int else value), Field(min_length=1)]
@@ -84,10 +84,10 @@ class Entry(BaseModel):
         return self
 
     @model_validator(mode="after")
-    def _healthy_has_no_spall(self) -> Self:
+    def _spall_keys_need_a_spall(self) -> Self:
         spall = [key for key in ("width_mm", "depth_mm", "angle_deg", "n_spalls") if getattr(self, key) is not None]
-        if self.fault == "healthy" and spall:
-            message = f"{spall[0]} describes a spall, and fault is healthy; remove one of the two"
+        if self.fault in ("healthy", "cage") and spall:
+            message = f"{spall[0]} describes a spall, and fault is {self.fault}; remove one of the two"
             raise ValueError(message)
         return self
 

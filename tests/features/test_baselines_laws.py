@@ -23,15 +23,20 @@ from features.baselines import (
     train,
 )
 from features.baselines.benchmark import permuted_labels, write_results
-from features.baselines.estimators import COMBS, class_probabilities
+from features.baselines.estimators import CAGE_LINES, COMBS, class_probabilities
 from features.baselines.models import TRUSTED
 from features.baselines.records import features_of, labelled_records
-from features.baselines.splits import check_disjoint, grouped_splits
+from features.baselines.splits import check_disjoint, check_taught, grouped_splits, score_splits
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
-NAMES = (*COMBS.values(), *(f"whitened_line_{n}" for n in range(5)), "raw_kurtosis", "raw_crest_factor")
+NAMES = (*COMBS.values(), *CAGE_LINES, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")
 GROUPS = ("lines",) * 8 + ("shape",) * 2
+TELLING = {fault: (comb,) for fault, comb in COMBS.items()} | {
+    "cage": CAGE_LINES,
+    "compound": (COMBS["inner"], COMBS["outer"]),
+}
+FOUR = FAULTS[:4]  # the classes of corpora made before there were six
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -53,7 +58,7 @@ def make_table(
     rigs: int = 5,
     seed: int = 0,
 ) -> xr.Dataset:
-    """A feature table whose combs tell the fault by ``told`` and whose other features tell the specimen by ``signature``.
+    """A feature table whose lines tell the fault by ``told`` and whose other features tell the specimen by ``signature``.
 
     Each recording is cut into ``windows`` records.
     """
@@ -61,17 +66,18 @@ def make_table(
     specimen = np.repeat(np.arange(specimens), records)
     fault = (specimen % classes).astype(np.int8)
     features = 0.5 + 0.3 * rng.standard_normal((len(specimen), len(NAMES)))
-    for name, column in COMBS.items():
-        features[:, NAMES.index(column)] += told * (fault == FAULTS.index(name))
+    for name, columns in TELLING.items():
+        for column in columns:
+            features[:, NAMES.index(column)] += told * (fault == FAULTS.index(name))
     features[:, 3:] += signature * rng.standard_normal((specimens, len(NAMES) - 3))[specimen]
-    columns = {
+    known = {
         "fault": fault,
         "rig": specimen // classes % rigs,
         "specimen": specimen,
         "recording": np.arange(len(specimen)) // windows,
     }
     return xr.Dataset(
-        {"features": (("record", "feature"), features), **{key: ("record", value) for key, value in columns.items()}},
+        {"features": (("record", "feature"), features), **{key: ("record", value) for key, value in known.items()}},
         {"feature": np.array(NAMES, dtype=object), "group": ("feature", np.array(GROUPS, dtype=object))},
         {"title": "a made-up corpus"},
     )
@@ -134,7 +140,46 @@ def test_a_benchmark_holds_every_baseline_with_its_controls(results):
         assert found.null.balanced_accuracy < 0.6
         assert found.test.by_recording.records == 16
         assert found.test.seen == 0
-    assert results.corpus.classes == dict.fromkeys(FAULTS, 18)
+    assert results.corpus.classes == dict.fromkeys(FOUR, 18)
+
+
+def test_a_benchmark_of_all_six_classes_tells_them_apart_and_tests_on_corpora_with_fewer(few_trees):  # noqa: ARG001
+    results = benchmark(make_table(24, 3, classes=6), make_table(8, 4, seed=1), folds=3)
+    assert results.corpus.classes == dict.fromkeys(FAULTS, 12)
+    for name, found in results.baselines.items():
+        low, high = (0.0, 0.17) if name == "majority" else (0.9, 1.0)
+        assert low <= found.grouped.balanced_accuracy <= high
+        assert found.grouped.classes == found.grouped.model_classes == FAULTS
+        assert found.test.classes == FOUR
+        assert found.test.model_classes == FAULTS
+        assert np.shape(found.test.confusion) == (4, 6)
+
+
+@pytest.mark.parametrize("extra", ["cage", "compound"])
+def test_a_corpus_may_lack_any_class(extra):
+    table = make_table(24, 3, classes=6)
+    lacking = table.isel(record=table.fault.values != FAULTS.index(extra))
+    kept = tuple(fault for fault in FAULTS if fault != extra)
+    for name in ("envelope_rule", "logistic_regression"):
+        found = cross_validate(lacking, name, folds=3)
+        assert found.classes == found.model_classes == kept
+        assert found.balanced_accuracy > 0.9
+
+
+def test_permuted_labels_of_a_rare_class_are_scored_where_a_fold_teaches_none_of_it():
+    table = make_table(40, 5, classes=5, rigs=8)
+    rare = np.where(np.isin(table.specimen, [0, 20]), FAULTS.index("compound"), table.fault)
+    records = records_of(table.assign(fault=("record", rare)))
+    untaught = 0
+    for seed in range(40):
+        labels = permuted_labels(records, seed)
+        splits = grouped_splits(labels, records.rig, 5, seed)
+        if any(FAULTS.index("compound") not in labels[known] for known, _ in splits):
+            untaught += 1
+            with pytest.raises(CorpusError, match="a fold leaves no compound record to train on"):
+                check_taught(labels, splits)
+            assert score_splits(records, labels, "envelope_rule", splits, seed).classes == FAULTS
+    assert untaught > 0
 
 
 def test_a_benchmark_gives_the_same_numbers_again(results):
@@ -172,7 +217,7 @@ def test_a_baseline_survives_its_file_and_missing_features(name, tmp_path):
             class_probabilities(again.estimator, frame), class_probabilities(model.estimator, frame)
         )
         assert (again.name, again.classes, again.features, again.groups, again.corpus, again.records, again.seed) == (
-            name, FAULTS, NAMES, ("lines", "shape"), "a made-up corpus", 48, 3
+            name, FOUR, NAMES, ("lines", "shape"), "a made-up corpus", 48, 3
         )  # fmt: skip
         assert evaluate(holed, again) == evaluate(holed, tmp_path / "model.skops")
     assert not list(tmp_path.glob(".*"))
@@ -180,7 +225,7 @@ def test_a_baseline_survives_its_file_and_missing_features(name, tmp_path):
 
 @pytest.mark.parametrize("name", list(ESTIMATORS))
 def test_probabilities_sum_to_one_and_their_largest_is_the_prediction(name):
-    for classes in (2, 4):
+    for classes in (2, 4, 6):
         table = make_table(12, 4, told=0.3, classes=classes)
         model = train(table, name)
         frame = records_of(table).features
@@ -205,7 +250,7 @@ def test_records_seen_in_training_are_counted():
 
 def test_a_class_the_model_does_not_know_is_an_error_of_its_own():
     found = evaluate(make_table(classes=4), train(make_table(classes=2), "logistic_regression"))
-    assert found.classes == FAULTS
+    assert found.classes == FOUR
     assert found.model_classes == ("healthy", "inner")
     assert found.balanced_accuracy <= 0.5
     assert np.shape(found.confusion) == (4, 2)
@@ -293,7 +338,7 @@ def without(table: xr.Dataset, name: str) -> xr.Dataset:
         (make_table(8, 2).isel(record=[]), "holds no record"),
         (without(make_table(), "specimen"), "lacks 'specimen'; make it again with raceway features"),
         (make_table().isel(feature=slice(0, 8)), "lacks 'shape'"),
-        (make_table().assign(fault=("record", np.full(80, 9))), "values outside 0..3"),
+        (make_table().assign(fault=("record", np.full(80, 9))), "values outside 0..5"),
     ],
 )
 def test_what_cannot_be_cross_validated_is_refused_in_one_sentence(table, sentence):

@@ -7,12 +7,14 @@ import os
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from features.baselines import cross_validate, evaluate, train
 from features.baselines.estimators import COMBS, EnvelopeRule
 from features.indicators import Orders, feature_names, indicators
 from features.table import feature_table
+from gen.corpus import FAULTS
 from gen.errors import CorpusError
 from gen.importers import import_cwru, import_mfpt
 
@@ -42,8 +44,9 @@ def test_white_noise_passes_the_threshold_of_the_rule_in_fewer_than_one_record_i
     orders = Orders(*(np.full(records, order) for order in (0.3983, 3.5848, 5.4152, 2.3567)))
     x, shaft_rate = rng.standard_normal((records, samples)), rng.uniform(15, 50, records)
     values, _ = indicators(x, fs, shaft_rate, orders, ("lines",))
-    columns = [feature_names(("lines",)).index(column) for column in COMBS.values()]
-    assert np.mean(values[:, columns].max(axis=1) > EnvelopeRule().threshold) < 0.01
+    frame = pd.DataFrame(values, columns=list(feature_names(("lines",))))
+    assert np.mean(frame[list(COMBS.values())].max(axis=1) > EnvelopeRule().threshold) < 0.01
+    assert np.mean(EnvelopeRule().fit(frame, np.arange(len(FAULTS))).predict(frame) > 0) < 0.01
 
 
 def test_the_rule_scores_on_cwru_what_such_rules_score(cwru):

@@ -82,6 +82,14 @@ def test_every_record_has_a_row_of_named_finite_features(table):
     assert table.attrs["records_with_missing_features"] == 0
 
 
+def test_a_corpus_whose_classes_end_at_ball_gives_the_same_features(table, tmp_path):
+    def aged(dataset):
+        dataset["fault"].attrs |= {"flag_values": np.arange(4, dtype="i1"), "flag_meanings": "healthy inner outer ball"}
+        return dataset
+
+    xr.testing.assert_equal(feature_table(make_corpus(tmp_path / "old", change=aged)), table)
+
+
 def test_everything_known_of_a_record_is_carried_along_with_its_attributes(corpus, table):
     with open_corpus(corpus) as source:
         for variable in (*SCHEMA, SNR):
@@ -172,7 +180,7 @@ def test_a_table_survives_netcdf(tmp_path, table):
     again = read_table(path)
     xr.testing.assert_equal(again, table)
     assert again["fault"].dtype == np.int8
-    assert again["fault"].attrs["flag_meanings"] == "healthy inner outer ball"
+    assert again["fault"].attrs["flag_meanings"] == "healthy inner outer ball cage compound"
     assert again.attrs == table.attrs
     assert [file.name for file in tmp_path.iterdir()] == ["table.nc"]
 

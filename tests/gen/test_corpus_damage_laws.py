@@ -171,7 +171,7 @@ def with_attribute(name, key, value):
 
 
 FOUND_IN_PARTS = {
-    "a class that does not exist": (with_values("fault", 9), "fault has values outside 0..3"),
+    "a class that does not exist": (with_values("fault", 9), "fault has values outside 0..5"),
     "a split that does not exist": (with_values("split", -1), "split has values outside 0..2"),
     "a missing variable": (lambda part: part.drop_vars("bpfo"), "bpfo"),
     "a wrong unit": (with_attribute("load", "units", "lbf"), "load is in 'lbf', not 'N'"),

@@ -202,8 +202,8 @@ REFUSED = {
     "column": (COMMON + "files: [{path: a.npy, column: [1]}]", "files[0].column: [1] is not allowed"),
     "bearing_list": (COMMON + "files: [{path: a.npy, bearing: [1]}]", "files[0].bearing: [1] is not allowed"),
     "fault": (
-        COMMON + "files: [{path: a.npy, fault: cage}]",
-        "files[0].fault: 'cage' is not allowed; input should be 'healthy'",
+        COMMON + "files: [{path: a.npy, fault: gear}]",
+        "files[0].fault: 'gear' is not allowed; input should be 'healthy'",
     ),
     "speed": (
         COMMON + "files: [{path: a.npy, shaft_rpm: 0}]",

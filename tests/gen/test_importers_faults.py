@@ -1,0 +1,31 @@
+"""A mapping file may name every fault class, and describes a spall only where there is one."""
+
+import pytest
+
+from gen.corpus import FAULTS
+from gen.errors import CorpusError
+from gen.importers.mapping import read_mapping
+
+TOP = "bearing: '6205'\nunit: g\nsample_rate_hz: 12000\nshaft_rpm: 1800\nspecimen: a\nfiles:\n"
+
+
+def mapping(folder, *files):
+    path = folder / "mapping.yaml"
+    path.write_text(TOP + "".join(f"  - {{path: x.npy, {file}}}\n" for file in files))
+    return path
+
+
+def test_a_mapping_may_name_every_fault_class(tmp_path):
+    found = read_mapping(mapping(tmp_path, *(f"fault: {fault}" for fault in FAULTS)))
+    assert tuple(entry.fault for entry in found.entries) == FAULTS
+
+
+@pytest.mark.parametrize("key", ["width_mm: 1", "depth_mm: 0.1", "angle_deg: 0", "n_spalls: 1"])
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_spall_is_described_only_where_there_is_one(tmp_path, fault, key):
+    path = mapping(tmp_path, f"fault: {fault}, {key}")
+    if fault in ("healthy", "cage"):
+        with pytest.raises(CorpusError, match=f"{key.split(':')[0]} describes a spall, and fault is {fault}"):
+            read_mapping(path)
+    else:
+        assert read_mapping(path).entries[0].fault == fault
