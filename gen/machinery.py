@@ -269,15 +269,24 @@ def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
     rng = scenario.rng(Purpose.MOTION)
     rng.uniform(0, 2 * np.pi, 3)
     frequencies, phases = _processes(scenario.specimen.bearing, conditions["shaft"], rng)
-    start, duration = recipe.recording.settle_s, recipe.recording.duration_s
+    start, duration, course = recipe.recording.settle_s, recipe.recording.duration_s, scenario.record.speed_course
 
     def mean(first: int, terms: int) -> float:
+        """Over the turns of the shaft, which are even in time without a course."""
         turn = 2 * np.pi * frequencies[first : first + terms]
         phase = phases[first : first + terms]
+        if course is not None:
+            points = int(
+                np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17)
+            )  # ten to a cycle of the fastest process
+            times = (np.arange(points) + 0.5) * (duration / points)
+            share = share_at(course, times)
+            waves = np.cos(np.outer(start + times, turn) + phase).sum(axis=1)
+            return float(share @ waves / share.sum() * math.sqrt(2 / terms))
         swing = np.sin(turn * (start + duration) + phase) - np.sin(turn * start + phase)
         return float(np.sum(swing / (turn * duration)) * math.sqrt(2 / terms))
 
-    rate = conditions["shaft"] * mean_share(scenario.record.speed_course, duration)
+    rate = conditions["shaft"] * mean_share(course, duration)
     rate *= 1 + conditions["speed_wander"] * mean(0, motion.SPEED_TERMS)
     slip = conditions["mean_slip"] + conditions["slip"] * mean(motion.SLIP_FIRST, motion.SLIP_TERMS)
     found = slipping_orders(scenario.specimen.bearing, slip)

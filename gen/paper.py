@@ -91,7 +91,10 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
             lanes = lay_out(some, shape, 1 / fs, at_rest=False)
             made = integrate(shape, lanes, 1 / fs, 1, np.ones(1), 0, round(SECONDS * fs))
             found[cracked] += list(made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)] * 1e6)
-    return [Run(*pair, preset.shaft_rate) for pair, preset in zip(zip(*found.values(), strict=True), presets, strict=True)]
+    return [
+        Run(healthy, cracked, preset.shaft_rate)
+        for healthy, cracked, preset in zip(found[0], found[1], presets, strict=True)
+    ]
 
 
 def _machine(preset: Preset, bearing: Bearing) -> Machine:

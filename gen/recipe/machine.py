@@ -64,7 +64,7 @@ class CatalogueBearing(Section):
         for name in self.designations:
             if name not in self.entries and name not in _KNOWN:
                 near = difflib.get_close_matches(name, [*self.entries, *_KNOWN], 3)
-                guess = f"did you mean {' or '.join(near)}?" if near else "raceway recipes --bearings lists them."
+                guess = f"did you mean {' or '.join(near)}?" if near else "docs/catalogue.md lists them."
                 raise ValueError(f"designations: {name!r} is neither in the catalogue nor in entries; {guess}")
         return self
 
