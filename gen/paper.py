@@ -1,8 +1,10 @@
 """The seed paper, run and held against what it says: Ophel et al., inner-race crack in a coupled shaft-bearing system.
 
-Two parameter sets, both found by search because the paper leaves most of its constants open: ``paper`` fits what it reports best,
-``paper-hertz`` keeps the contact stiffness that follows from the geometry and the weight of the rotor as load. The paper's figures are
-read in millimetres (docs/errata.md, E15). Displacements are in micrometres here, the thousandths of a millimetre of the figures.
+Three parameter sets, found by search because the paper leaves most of its constants open: ``paper`` is the first that was found,
+``paper-hertz`` keeps the contact stiffness that follows from the geometry and the weight of the rotor as load, and ``paper-refit`` is
+what ``python -m benchmarks.paper_search --seed 1`` found later: more statements hold, under a load that is the rotor's weight to 4 %
+and pulls the way the figures show, but with less than half of the contact stiffness of the geometry. The paper's figures are read in
+millimetres (docs/errata.md, E15). Displacements are in micrometres here, the thousandths of a millimetre of the figures.
 """
 
 import math
@@ -55,6 +57,11 @@ PRESETS = {
     "paper-hertz": Preset(
         11.940489787243106, 1000.0, 381.2243104923242, 11684188.140637236, 34731318.32009893, 1007.8663482557035, 5648.144625327418,
         9291800000.0, -7.116667803620017e-06, 50.53774378183503, -18.911920472496043, 1.5034348054805507e-07, 44.79141019175874,
+    ),
+    "paper-refit": Preset(
+        12.667261334346824, 94248.11305081839, 74.13415169105608, 10964385.49626987, 35030112.43459604, 2018.397503316135,
+        4956.444157130628, 4007575010.541488, -8.989247741324837e-06, 51.91296425972102, 21.793575547997957, 2.759292558466339e-08,
+        46.337923698995155,
     ),
 }  # fmt: skip
 
@@ -150,8 +157,8 @@ _WHY = {
     "C6": "with the rotor's weight alone the swing across the load is smaller",
     "C8": "with the rotor's weight alone the housing swings less",
     "C10": "fewer lines of the contact mode stand out",
-    "C12.y1": "the strongest line is 3 BPFI + fr; 3 BPFI, near 740 Hz, is there but far weaker",
-    "C12.y2": "the strongest line is 3 BPFI + fr; 3 BPFI, near 740 Hz, is there but far weaker",
+    "C12.y1": "the strongest line stands one turn of the shaft beside 3 BPFI, which is there, near 740 Hz, but weaker",
+    "C12.y2": "the strongest line stands one turn of the shaft beside 3 BPFI, which is there, near 740 Hz, but weaker",
     "C13.300": "BPFI + fr lies 14 Hz below 300 Hz at the shaft rate that fits the rest",
     "C14": "the load along x leaves y2 fewer harmonics",
 }  # fmt: skip

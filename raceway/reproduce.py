@@ -27,9 +27,9 @@ _CHANNELS = ("shaft, x1", "shaft, y1", "housing, x2", "housing, y2")
 def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 - there is one paper so far
     """Run the seed paper again.
 
-    Its figures are drawn, and what it states is measured. Two parameter sets: paper fits the statements best, paper-hertz keeps the
-    contact stiffness that follows from the geometry and the weight of the rotor as load. Where a statement does not hold, the table
-    says why; docs/errata.md has the reasons at length.
+    Its figures are drawn, and what it states is measured. Three parameter sets: paper is the first that was found;
+    paper-hertz keeps the contact stiffness that follows from the geometry and the weight of the rotor as load; paper-refit is what a
+    longer search found, and lets most statements hold. Where one does not, the table says why; docs/errata.md has the reasons at length.
 
       raceway reproduce ophel2025 -o ophel
     """

@@ -25,11 +25,18 @@ def test_the_statements_have_the_values_they_had(runs, preset, values):
     assert {key: found[key] for key in values} == pytest.approx(values, rel=0.02)
 
 
-@pytest.mark.parametrize(("preset", "count"), [("paper", 33), ("paper-hertz", 28)])
+@pytest.mark.parametrize(("preset", "count"), [("paper", 33), ("paper-hertz", 28), ("paper-refit", 36)])
 def test_at_least_as_many_statements_hold_as_did(runs, preset, count):
     found = findings(preset, runs[preset])
     assert len(found) == 38
     assert sum(finding.holds for finding in found) >= count
+
+
+def test_the_refit_is_loaded_by_the_weight_of_the_rotor_the_way_the_figures_show():
+    preset = PRESETS["paper-refit"]
+    assert math.hypot(preset.load_x, preset.load_y) == pytest.approx(5.5 * 9.81, rel=0.05)
+    assert preset.load_x > 0
+    assert preset.load_y > 0
 
 
 def test_whatever_does_not_hold_says_why(runs):
