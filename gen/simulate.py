@@ -157,6 +157,16 @@ def lead_samples(recipe: Recipe) -> int:
     return round(LEAD_S * recipe.recording.sample_rate_hz)
 
 
+def largest_pull(record: Record) -> float:
+    """What may pull at the shaft beside its steady load: unbalance, a bent shaft, misalignment, the course of the load [N]."""
+    turning = record.motion
+    speeds, loads = record.schedule.T if record.schedule.size else (np.ones(1), np.ones(1))
+    unbalance = turning.unbalance * (2 * math.pi * turning.shaft_rate * float(speeds.max())) ** 2
+    steady = math.hypot(record.machine.load_x, record.machine.load_y)
+    further = steady * (float(loads.max()) - 1)
+    return max(unbalance + turning.bow + math.hypot(turning.twice_x, turning.twice_y) + further, 0.0)
+
+
 def compile_kernel(record: Record) -> None:
     """Compile the kernel that a record needs, or fetch it from numba's cache on disk."""
     shape = record_shape(record)
@@ -174,7 +184,7 @@ def steps_per_sample(record: Record, scenario: Scenario, recipe: Recipe) -> int:
     """
     fs = recipe.recording.sample_rate_hz
     machine = record.machine
-    stiffness = likely_stiffness(machine, record.bearing.n_balls)
+    stiffness = likely_stiffness(machine, record.bearing.n_balls, largest_pull(record))
     rate = max(float(fastest_swing(machine, stiffness)), fastest_decay(machine) / 2.5)
     asked = recipe.recording.oversampling
     if asked is not None:

@@ -51,12 +51,13 @@ def as_columns(machines: list[Machine]) -> Machine:
     return Machine(*np.asarray(machines, dtype=float).T)
 
 
-def likely_stiffness(machine: Machine, n_balls: int) -> FloatArray | float:
+def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> FloatArray | float:
     """Contact stiffness that a record will hardly exceed [N/m]; fields may be arrays of shape (record,).
 
-    Ball loads are taken as ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, and the preload on all.
+    Ball loads are taken as ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, and the preload on all. ``pull`` is what
+    else may pull at the shaft, beside the load [N].
     """
-    load, n = np.hypot(machine.load_x, machine.load_y), np.asarray(machine.contact_exponent)
+    load, n = np.hypot(machine.load_x, machine.load_y) + pull, np.asarray(machine.contact_exponent)
     factor = np.asarray(machine.load_deflection_factor)
     ball_load = DYNAMIC_FACTOR * STRIBECK * load / n_balls
     squeeze = np.maximum(-np.asarray(machine.half_clearance), 0.0)

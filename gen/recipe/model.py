@@ -91,7 +91,7 @@ class Recipe(Section):
             raise ValueError("recording.channels: body sensor needs machine.resonator; give one, or use body: housing.")
         for place, path in [
             ("path", self.path),
-            *((f"recording.channels: {c.name}", c.path) for c in self.recording.channels),
+            *((f"recording.channels[{n}].path", c.path) for n, c in enumerate(self.recording.channels)),
         ]:
             if path is not None and path.silent():
                 raise ValueError(

@@ -9,7 +9,7 @@ import json
 import reprlib
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 from ruamel.yaml import YAML
@@ -156,7 +156,14 @@ def _sentence(item: Any) -> str | None:
                 return text
             return f"{place}{'.' if text.partition(':')[0] in _siblings((*item['loc'], '')) else ': '}{text}"
         case "too_short":
-            return None if value else f"{place}: is empty; give at least one."
+            least = context["min_length"]
+            size = len(item["input"])
+            if size >= least:  # those that are wrong do not count, and are told on their own
+                return None
+            found = f"{size} is too few" if size else "is empty"
+            return f"{place}: {found}; give at least {'one' if least == 1 else least}."
+        case "too_long":
+            return f"{place}: {len(item['input'])} is too many; give at most {context['max_length']}."
         case _:
             allowed = _ALLOWED.get(kind) or item["msg"].replace("Input should be ", "")
             return f"{place}: {shown} is not allowed here; it must be {allowed}."
@@ -176,7 +183,9 @@ _ALLOWED = {
 
 
 def _first_kind(item: Any) -> str:
-    known = {"bearing": "catalogue", "faults": "inner", "speed_course": "run_up", "load_course": "ramp"}
+    known = {
+        "bearing": "catalogue", "faults": "inner", "parts": "inner", "speed_course": "run_up", "load_course": "ramp"
+    }  # fmt: skip
     place = [step for step in item["loc"] if isinstance(step, str)]
     whole = isinstance(item["loc"][-1], int) or item["loc"][-1] in known
     return known.get(place[-1], "uniform") if whole else "uniform"
@@ -214,6 +223,12 @@ class _Cursor:
         found = [model.model_fields[key].annotation for model in self.models if key in model.model_fields]
         return _Cursor(*_sections(found))
 
+    def of_kind(self, kind: str) -> "_Cursor":
+        found = [
+            m for m in self.models if "kind" in m.model_fields and kind in get_args(m.model_fields["kind"].annotation)
+        ]
+        return _Cursor(*found) if found else self
+
     def keys(self) -> list[str]:
         return sorted({name for model in self.models for name in model.model_fields})
 
@@ -231,8 +246,8 @@ def _siblings(location: tuple[int | str, ...]) -> list[str]:
     """Keys that are allowed where ``location`` ends."""
     node = _Cursor(Recipe)
     for step in location[:-1]:
-        if isinstance(step, str) and node.knows(step):
-            node = node.into(step)
+        if isinstance(step, str):
+            node = node.into(step) if node.knows(step) else node.of_kind(step)
     return node.keys()
 
 

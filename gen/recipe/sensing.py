@@ -2,7 +2,7 @@
 
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field, StrictInt
+from pydantic import AfterValidator, BeforeValidator, Field, StrictInt
 
 from gen.distributions import Distribution, Number, within
 from gen.recipe.section import Name, Section, Weight
@@ -16,7 +16,17 @@ def _certain(value: Any) -> Any:
     return {value: 1.0} if isinstance(value, str) else value
 
 
-Bodies = Annotated[dict[Body, Weight], BeforeValidator(_certain, json_schema_input_type=Body | dict[Body, Weight])]
+def _possible(weights: dict[Any, float]) -> dict[Any, float]:
+    if sum(weights.values()) <= 0:
+        raise ValueError("no body has a weight above 0; give one, such as body: sensor.")
+    return weights
+
+
+Bodies = Annotated[
+    dict[Body, Weight],
+    BeforeValidator(_certain, json_schema_input_type=Body | dict[Body, Weight]),
+    AfterValidator(_possible),
+]
 
 
 class Converter(Section):

@@ -157,11 +157,16 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
     path = _draw_path(draws, recipe.path)
     background = _draw_background(recipe, draws)
     own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
-    oil = recipe.contact.lubricant
+    oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)
+    if oil is not None and oil["viscosity_100"] >= oil["viscosity_40"]:
+        raise RecipeError(
+            f"rig {number}: oil of {oil['viscosity_40'] * 1e6:.3g} mm2/s at 40 C is thicker at 100 C; "
+            f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
+        )
     return Rig(
         number, bearing, machine, resonator, tuple(channels), path, own_paths, background,
         level.get("gain", 1.0), level.get("background", 1.0),
-        lubricant=None if oil is None else draws.section(oil), footprint=recipe.contact.footprint == "hertz",
+        lubricant=oil, footprint=recipe.contact.footprint == "hertz",
     )  # fmt: skip
 
 
@@ -280,7 +285,7 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
         )
         if width > 1.4 * radius:
             raise RecipeError(
-                f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit a {entry.kind} radius of {radius * 1e3:.3g} mm; "
+                f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit the {entry.kind} radius of {radius * 1e3:.3g} mm; "
                 f"keep width_mm below {1.4 * radius * 1e3:.3g}."
             )
     return tuple(spalls)

@@ -23,6 +23,8 @@ def places(tiny_recipe, tiny_corpus, tmp_path_factory):
     save_model(train(table, "majority"), here / "model.skops")
     whole = (here / "model.skops").read_bytes()
     (here / "cut.skops").write_bytes(whole[: len(whole) // 2])
+    for name, (whole, broken) in RECIPES.items():
+        (here / f"{name}.yaml").write_text(tiny_recipe.read_text().replace(whole, broken))
     for damage, change in DAMAGES.items():
         folder = shutil.copytree(tiny_corpus, here / damage)
         change(folder)
@@ -74,6 +76,17 @@ DAMAGES = {
     "no_recipe": lambda folder: (folder / "recipe.yaml").unlink(),
 }
 
+RECIPES = {
+    "unknown_bearing": ('"6205"', "NU205"),
+    "crowded": ('["6205"]', "[mine], entries: {mine: {n_balls: 20, pitch_mm: 50, ball_mm: 9}}"),
+    "untraced": ("{kind: outer,", "{kind: outer, profile: trace,"),
+    "hasty": ("operation: {", "operation: {load_course: {kind: steps, levels_percent: [50, 99]}, "),
+    "twice": ("{kind: healthy}", "{kind: compound, parts: [{kind: cage}, {kind: cage}]}"),
+    "straight": ("operation: {", "operation: {axial_load_n: 100, "),
+    "coming_loose": ("operation: {", "specimen: {contact_angle_deg: 10}\noperation: {axial_load_n: 10, "),
+    "wide": ("{kind: healthy}", "{kind: ball, width_mm: 6}"),
+}
+
 TABLE = [
     # usage
     ("frob", "raceway: No such command 'frob'; see raceway --help."),
@@ -108,6 +121,15 @@ TABLE = [
     ("plan {recipe} --seed -1", "tiny.yaml: seed: -1 is not allowed here; it must be greater than or equal to 0."),
     ("generate {recipe} -o {new} --records 0", "records: 0 is not allowed here; it must be greater than or equal to 1."),
     ("generate {recipe} -o {begun} --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
+    ("plan {unknown_bearing}", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
+    ("plan {crowded}", "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_mm below 7.461."),
+    ("plan {untraced}", "faults[2].profile: trace and trace_um belong together; give both or neither."),
+    ("generate {hasty} -o {new}", "operation.load_course.step_s: 0.1 s leaves the levels no time; keep it below 0.05."),
+    ("generate {twice} -o {new}", "faults[0].parts: cage, cage are not all different; several spalls of one part need no compound."),
+    ("plan {straight}", "record 0: an axial load of 100 N needs a contact angle above 0."),
+    ("generate {straight} -o {begun}", "record 0: an axial load of 100 N needs a contact angle above 0."),
+    ("generate {coming_loose} -o {begun}", "record 0: an axial load of 10 N is too small to hold its rings together; at least 66.1 N do."),
+    ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
     ("info {nowhere}", "nowhere: no such folder; give the folder of a corpus"),
     ("info {file}", "file.txt: no such folder; give the folder of a corpus"),

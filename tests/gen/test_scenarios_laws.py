@@ -239,6 +239,6 @@ def test_values_are_in_si_units(recipe_with):
 def test_a_spall_that_does_not_fit_its_ball_is_refused_by_name(recipe_with):
     wide = [{"kind": "healthy"}, {"kind": "ball", "width_mm": 9.0}]
     with pytest.raises(
-        RecipeError, match=r"^specimen \d+: a spall of 9 mm does not fit a ball radius .* keep width_mm below 5\.56"
+        RecipeError, match=r"^specimen \d+: a spall of 9 mm does not fit the ball radius .* keep width_mm below 5\.56"
     ):
         draw_scenarios(recipe_with({"faults": wide}))

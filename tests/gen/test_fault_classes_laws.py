@@ -1,0 +1,182 @@
+"""Laws of the classes of fault: their labels, their healthy twins and their shares; and of a corpus with everything in it."""
+
+import json
+import math
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from gen.corpus import FAULTS, SIGNAL, open_corpus, read_manifest, validate_corpus
+from gen.generate import generate
+from gen.machinery import deepest, physical_record
+from gen.physics.batch import record_shape
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.kernel import make_shape
+from gen.recipe import read_recipe
+from gen.replay import replay
+from gen.scenarios import draw_scenarios, fault_of_each_specimen
+from gen.simulate import simulate
+from tests.recipes import EVERYTHING
+
+BEARING = CATALOGUE["6205"]
+KNOWN = ("fault", "parts", "n_spalls", "wear", "pitch_error", "knock", "width_share")
+
+
+@pytest.fixture(scope="module")
+def recipe_file(write_recipe, tmp_path_factory):
+    return write_recipe(tmp_path_factory.mktemp("recipe") / "everything.yaml", EVERYTHING)
+
+
+@pytest.fixture(scope="module")
+def whole(recipe_file, tmp_path_factory):
+    """A corpus of 28 records in two parts, with everything in it."""
+    return generate(recipe_file, tmp_path_factory.mktemp("everything") / "corpus")
+
+
+@pytest.fixture(scope="module")
+def drawn(recipe_file):
+    recipe = read_recipe(recipe_file)
+    return recipe, draw_scenarios(recipe)
+
+
+def kind_of(specimen):
+    """Class of a specimen, or where it is worn."""
+    return specimen.fault if specimen.wear is None else f"worn {specimen.wear.site}"
+
+
+# parts, number of spalls, wear [m], pitch error [rad], knock [N], width of the widest spall [m] and what passes it [m]
+LABELS = {
+    "healthy": ("", 0, 0, 0, 0, 0, 1),
+    "inner": ("inner", 1, 0, 0, 0, 0.5e-3, 2 * math.pi * BEARING.inner_radius / 9),
+    "outer": ("outer", 2, 0, 0, 0, 3e-3, 2 * math.pi * BEARING.outer_radius / 9),
+    "ball": ("ball", 1, 0, 0, 0, 0.5e-3, math.pi * BEARING.ball_diameter),
+    "cage": ("cage", 0, 0, math.radians(3), 20, 0, 1),
+    "worn inner": ("inner", 0, 0.3e-6, 0, 0, 0, 1),
+    "worn outer": ("outer", 0, 0.3e-6, 0, 0, 0, 1),
+    "compound": ("inner+outer+cage", 2, 0, math.radians(3), 30, 0.8e-3, 2 * math.pi * BEARING.outer_radius / 9),
+}
+
+
+def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
+    _, scenarios = drawn
+    assert whole.failures == ()
+    assert {kind_of(scenario.specimen) for scenario in scenarios} == set(LABELS)
+    with open_corpus(whole.directory) as corpus:
+        found = {name: corpus[name].values for name in (*KNOWN, "width", "largest_drop", "angle")}
+    for place, scenario in enumerate(scenarios):
+        kind = kind_of(scenario.specimen)
+        parts, n_spalls, wear, pitch_error, knock, width, passed = LABELS[kind]
+        label = {name: values[place] for name, values in found.items()}
+        assert (FAULTS[label["fault"]], label["parts"], label["n_spalls"]) == (kind.split()[-1], parts, n_spalls)
+        assert (label["wear"], label["pitch_error"], label["knock"]) == pytest.approx((wear, pitch_error, knock))
+        assert label["width"] == pytest.approx(width)
+        assert label["width_share"] == pytest.approx(width / passed, rel=0.01)  # less slanted than the specimen
+        assert math.isnan(label["angle"]) == (n_spalls == 0)
+        assert (label["largest_drop"] > 0) == (n_spalls > 0)
+
+
+def test_the_largest_drop_is_that_over_the_widest_spall(whole, drawn):
+    """A traced one 0.8 mm wide: the ball bridges its deepest points; a half sine is as deep as it says."""
+    _, scenarios = drawn
+    with open_corpus(whole.directory) as corpus:
+        found = corpus["largest_drop"].values
+    for place, scenario in enumerate(scenarios):
+        if scenario.specimen.fault == "compound":
+            assert found[place] == deepest(scenario, 1) < 12e-6
+        elif kind_of(scenario.specimen) == "outer":
+            assert found[place] == pytest.approx(15e-6, rel=1e-4)
+
+
+def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_recipe, drawn, tmp_path):
+    """Machine, motion, waves and all, bit for bit; the spin axis of a damaged ball goes on wandering, unseen."""
+    recipe, scenarios = drawn
+    healthy = read_recipe(write_recipe(tmp_path / "h.yaml", EVERYTHING | {"faults": [{"kind": "healthy"}]}))
+    for scenario, sound in zip(scenarios, draw_scenarios(healthy), strict=True):
+        twin = physical_record(scenario.without_fault(), recipe)
+        expected = physical_record(sound, healthy)
+        axis = {name: getattr(twin.motion, name) for name in ("spin_rms", "axis_offset", "axis_rms", "axis_limit")}
+        assert any(axis.values()) == (scenario.specimen.fault == "ball")
+        assert twin.machine == expected.machine
+        assert twin.motion == expected.motion._replace(**axis)
+        assert twin.spalls == ()
+        for field in ("frequencies", "phases", "pickups", "waves", "schedule"):
+            np.testing.assert_array_equal(getattr(twin, field), getattr(expected, field))
+
+
+def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
+    recipe, scenarios = drawn
+    some = list({kind_of(scenario.specimen): scenario for scenario in scenarios}.values())
+    damaged, sound = (
+        simulate(batch, recipe).acceleration for batch in (some, [scenario.without_fault() for scenario in some])
+    )
+    for scenario, one, other in zip(some, damaged, sound, strict=True):
+        assert np.array_equal(one, other) == (scenario.specimen.fault == "healthy")
+
+
+def test_everything_at_once_needs_one_kernel_for_healthy_and_damaged(drawn):
+    recipe, scenarios = drawn
+    shapes = {record_shape(physical_record(scenario, recipe)) for scenario in scenarios}
+    every = make_shape(9, 1, resonator=True, damped=True, uneven=True, jittered=True, forced=True, loose=True)
+    assert shapes == {every}
+
+
+def test_a_broken_cage_displaces_one_ball_and_knocks_and_wear_is_on_its_race_alone(drawn):
+    recipe, scenarios = drawn
+    for scenario in scenarios:
+        damaged, twin = (physical_record(one, recipe) for one in (scenario, scenario.without_fault()))
+        if scenario.specimen.cage:
+            assert damaged.motion.late_by == pytest.approx(math.radians(3))
+            assert damaged.motion.late_ball == 0
+            assert damaged.motion.knock > 0 == twin.motion.knock
+        grown = (damaged.waves - twin.waves)[: 4 * 59].reshape(2, 2, 59)
+        rms = np.sqrt(np.sum(grown**2, axis=(1, 2)) / 2)
+        worn = scenario.specimen.wear
+        expected = [0.3e-6 * (worn is not None and worn.site == site) for site in ("inner", "outer")]
+        assert rms == pytest.approx(expected, rel=1e-9, abs=1e-18)
+        if worn is not None and worn.order == 10:
+            assert np.flatnonzero(np.abs(grown[0, 0]) > 1e-12).tolist() == [8]  # orders start at 2
+
+
+def test_classes_come_by_weight_and_wear_counts_as_its_site(recipe_with):
+    faults = [
+        {"kind": "healthy", "weight": 2},
+        {"kind": "inner", "width_mm": 0.5},
+        {"kind": "cage", "weight": 2},
+        {"kind": "worn", "site": "inner", "weight": 3},
+        {"kind": "compound", "parts": [{"kind": "inner", "width_mm": 0.5}, {"kind": "cage"}], "weight": 0.5},
+    ]
+    recipe = recipe_with({"corpus.specimens_per_rig": 17, "corpus.rigs": 40, "faults": faults})
+    counts = Counter(fault for rig in range(40) for fault in fault_of_each_specimen(recipe, rig))
+    assert counts == {"healthy": 160, "inner": 320, "cage": 160, "compound": 40}
+    inner = [s for s in draw_scenarios(recipe) if s.specimen.fault == "inner" and s.record.number % 2 == 0]
+    worn = [scenario for scenario in inner if scenario.specimen.wear is not None]
+    assert all(not scenario.specimen.spalls for scenario in worn)
+    assert len(worn) / len(inner) == pytest.approx(3 / 4, abs=0.08)  # 3 sigma of 320 coins
+
+
+def test_the_draws_of_every_class_are_stored_whole(whole, drawn):
+    with open_corpus(whole.directory) as corpus:
+        for text, scenario in zip(corpus["draws"].values, drawn[1], strict=True):
+            stored = json.loads(str(text))
+            assert stored == json.loads(json.dumps(scenario.as_dict()))
+            assert stored["specimen"]["cage"] == scenario.specimen.cage
+            assert (stored["specimen"]["wear"] is None) == (scenario.specimen.wear is None)
+            assert stored["record"]["speed_course"] == [[0, 0.1], [0.5, 1.2], True]
+            assert stored["rig"]["lubricant"] == scenario.rig.lubricant
+
+
+def test_records_of_every_class_replay_bit_for_bit(whole, drawn):
+    numbers = {kind_of(scenario.specimen): scenario.record.number for scenario in drawn[1]}
+    for number in numbers.values():
+        assert replay(whole.directory, number).identical
+
+
+def test_two_workers_make_the_same_corpus_of_everything(recipe_file, whole, tmp_path):
+    generate(recipe_file, tmp_path / "two", workers=2)
+    assert validate_corpus(tmp_path / "two") == []
+    one, two = (read_manifest(folder)["parts"] for folder in (whole.directory, tmp_path / "two"))
+    assert [row.sha256 for row in one] == [row.sha256 for row in two]
+    with open_corpus(whole.directory) as corpus, open_corpus(tmp_path / "two") as other:
+        np.testing.assert_array_equal(corpus[SIGNAL].values, other[SIGNAL].values)
+        np.testing.assert_array_equal(corpus["step_error"].values, other["step_error"].values)

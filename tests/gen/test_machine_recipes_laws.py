@@ -1,0 +1,126 @@
+"""Laws of what a machine does that a recipe bends, misaligns, loosens, runs up or hears from afar."""
+
+import numpy as np
+import pytest
+
+from gen.machinery import true_motion
+from gen.measure import measure
+from gen.scenarios import draw_scenarios
+from gen.simulate import Response, lead_samples, simulate
+from tests.recipes import EVERYTHING
+
+FS = 12_000.0
+RATE, MASS = 30.0, 10.0  # of the shaft [Hz], of shaft and housing [kg]
+# a steady machine in the one kernel of ``EVERYTHING``: a support as stiff as in no resonance, oil, a load that hardly wanders
+STEADY = {
+    "corpus": {"rigs": 1, "specimens_per_rig": 2, "records_per_specimen": 1},
+    "recording.duration_s": 1.0,
+    "recording.settle_s": 0.3,
+    "recording.channels": [{"name": "housing", "body": "housing", "angle_deg": 0}],
+    "machine.shaft_mass_kg": 5,
+    "machine.housing_mass_kg": 5,
+    "machine.support_frequency_hz": 400,
+    "machine.balance_mm_s": 0,
+    "machine.looseness_um": 1e-4,
+    "contact.lubricant": {},
+    "specimen.waviness_nm": 1e-3,
+    "specimen.ball_waviness_nm": 1e-3,
+    "specimen.diametral_clearance_um": -4,
+    "operation.shaft_rpm": 60 * RATE,
+    "operation.load_n": 300,
+    "operation.load_wander_percent": 1e-3,
+    "operation.speed_wander_percent": 0,
+    "operation.slip_percent": 0,
+    "operation.jitter_deg": 1e-3,
+    "faults": [{"kind": "healthy"}],
+}
+
+
+@pytest.fixture
+def signal_of(recipe_with):
+    """Acceleration of the housing along x of the first record of the steady machine with some values replaced [m s-2]."""
+
+    def made(changes):
+        recipe = recipe_with(STEADY | changes)
+        response = simulate(draw_scenarios(recipe, 0, 1), recipe)
+        assert response.failures == {}
+        return response.acceleration[0, 0, lead_samples(recipe) :]
+
+    return made
+
+
+def line(signal, order):
+    """Amplitude of a line at an order of the shaft, over whole turns [m s-2]."""
+    turn = 2 * np.pi * order * RATE * np.arange(len(signal)) / FS
+    return 2 * abs(np.mean(signal * np.exp(-1j * turn)))
+
+
+def shaken(force, order):
+    """Amplitude of the housing's acceleration by a force on its support, shaft and housing as one body [m s-2]."""
+    omega, resonance = 2 * np.pi * order * RATE, 2 * np.pi * 400
+    return force * omega**2 / (MASS * (resonance**2 - omega**2))
+
+
+@pytest.mark.parametrize(("key", "order"), [("machine.bow_n", 1), ("machine.misalignment_n", 2)])
+def test_a_bent_or_misaligned_shaft_shakes_the_housing_at_its_own_order(signal_of, key, order):
+    """At 100 N, by what the support lets it; ring and bearing between shaft and housing add a few percent."""
+    straight, crooked = signal_of({}), signal_of({key: 100})
+    assert line(crooked, order) == pytest.approx(shaken(100, order), rel=0.05)
+    for other in (1, 2):
+        assert line(straight, other) < 0.02 * line(crooked, order)
+    assert line(crooked, 3 - order) < 0.05 * line(crooked, order)
+
+
+def test_a_misaligned_shaft_shakes_along_its_own_direction(signal_of):
+    along, across = (signal_of({"machine.misalignment_n": 100, "machine.misalignment_angle_deg": a}) for a in (0, 90))
+    assert line(across, 2) < 0.05 * line(along, 2)
+
+
+def test_a_loose_housing_rattles_at_orders_that_a_fast_one_has_not(signal_of):
+    bent = {"machine.bow_n": 500, "operation.load_n": 100}
+    fast, loose = signal_of(bent), signal_of(bent | {"machine.looseness_um": 5})
+    assert loose.std() > 2 * fast.std()
+    assert line(loose, 2) + line(loose, 3) > 5 * (line(fast, 2) + line(fast, 3))
+
+
+def test_a_run_up_sweeps_the_line_of_a_bent_shaft(signal_of):
+    """Half the rate in the first fifth, the whole in the last; the acceleration grows with the square."""
+    course = {"kind": "run_up", "from_percent": 50, "to_percent": 100, "start_s": 0.2, "lasting_s": 0.6}
+    signal = signal_of({"machine.bow_n": 100, "operation.speed_course": course})
+    first, last = signal[: round(0.2 * FS)], signal[-round(0.2 * FS) :]
+    assert line(first, 0.5) == pytest.approx(shaken(100, 0.5), rel=0.08)
+    assert line(last, 1.0) == pytest.approx(shaken(100, 1.0), rel=0.08)
+    assert line(first, 1.0) < 0.3 * line(last, 1.0)
+
+
+def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):
+    """The bodies of all four channels move alike; without a background the paths alone tell them apart."""
+    modes = {"count": 1, "frequency_hz": 1000, "damping_percent": 3}
+    paths = [None, {"direct": 0.25}, {"direct": 0.25, "modes": modes}, {"direct": 2.0}]
+    recipe = recipe_with(
+        {
+            "recording.channels": [{"name": f"c{n}", "path": path} for n, path in enumerate(paths)],
+            "recording.converter": {"kind": "float32"},
+            "path": {"direct": 0.5},
+            "level": {"kind": "physical", "background_m_s2": 0},
+        }
+    )
+    scenarios = draw_scenarios(recipe, 0, 2)
+    moved = np.random.default_rng(1).normal(size=(2, 1, lead_samples(recipe) + recipe.n_samples))
+    response = Response(np.repeat(moved, 4, axis=1), np.ones(2, int), np.zeros(2), {})
+    heard = measure(response, scenarios, recipe).signal
+    np.testing.assert_allclose(heard[:, 1], 0.5 * heard[:, 0], atol=1e-5)
+    np.testing.assert_allclose(heard[:, 3], 4 * heard[:, 0], atol=1e-5)
+    assert heard[:, 2].std() > 1.2 * heard[:, 1].std()
+
+
+def test_everything_at_once_moves_and_stays_within_its_step(recipe_with):
+    recipe = recipe_with(EVERYTHING)
+    scenarios = draw_scenarios(recipe)
+    response = simulate(scenarios, recipe)
+    assert response.failures == {}
+    assert np.isfinite(response.acceleration).all()
+    assert (response.acceleration.std(axis=2) > 1e-3).all()
+    assert (response.step_phase < 0.5).all()
+    rates = [true_motion(scenario, recipe)[0] / scenario.record.conditions["shaft"] for scenario in scenarios]
+    assert rates == pytest.approx([0.85] * len(rates), rel=0.01)

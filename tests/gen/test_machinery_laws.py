@@ -1,0 +1,200 @@
+"""Laws of what the kernel is given: heat, oil, bearings and courses of a recipe reach it, and the labels follow."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gen.labels import part_dataset
+from gen.machinery import heaviest_ball_load, physical_record, true_motion
+from gen.measure import measure
+from gen.physics.batch import record_shape
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor
+from gen.physics.lubricant import STEEL_EXPANSION
+from gen.scenarios import draw_scenarios
+from gen.simulate import Response, lead_samples
+from tests.reference import slow_motion
+
+FS = 12_000.0
+OIL = {"contact.lubricant": {}}
+RUN_UP = {"kind": "run_up", "from_percent": 40, "to_percent": 130, "start_s": 0.02, "lasting_s": 0.06}
+STEPS = {"kind": "steps", "levels_percent": [50, 100, 30], "step_s": 0.01}
+TABLE = {"kind": "table", "times_s": [0, 0.05, 0.1], "percent": [100, 60, 80]}
+RAMP = {"kind": "ramp", "from_percent": 80, "to_percent": 120}
+MEANS = [(RAMP, 1.0), (TABLE, 0.75), (STEPS, 0.6), (RUN_UP, 0.2 * 0.4 + 0.6 * 0.85 + 0.2 * 1.3)]
+means = pytest.mark.parametrize(("course", "mean"), MEANS, ids=[course["kind"] for course, _ in MEANS])
+
+
+@pytest.fixture
+def record_of(recipe_with):
+    """First record of the small recipe with some values replaced, as the kernel gets it."""
+
+    def made(changes):
+        recipe = recipe_with(changes)
+        return physical_record(draw_scenarios(recipe, 0, 1)[0], recipe)
+
+    return made
+
+
+def labels(recipe):
+    """Labels of a corpus whose bodies do not move, for they do not depend on it."""
+    scenarios = draw_scenarios(recipe)
+    n = len(scenarios)
+    still = np.zeros((n, 1, lead_samples(recipe) + recipe.n_samples))
+    response = Response(still, np.ones(n, int), np.zeros(n), {})
+    return part_dataset(measure(response, scenarios, recipe), scenarios, recipe, response)
+
+
+def test_a_hotter_inner_ring_takes_up_clearance_as_steel_expands(record_of):
+    cold, warm = (record_of({"operation.inner_ring_hotter_k": hotter}) for hotter in (0, 20))
+    taken = cold.machine.half_clearance - warm.machine.half_clearance
+    assert taken == pytest.approx(20 * STEEL_EXPANSION * cold.bearing.outer_radius, rel=1e-9)
+    assert warm.machine._replace(half_clearance=cold.machine.half_clearance) == cold.machine
+
+
+def test_an_oil_film_takes_up_clearance_yields_and_damps(record_of):
+    dry, oiled = record_of({}).machine, record_of(OIL).machine
+    assert 1e-8 < dry.half_clearance - oiled.half_clearance < 3e-6
+    assert 0.5 * dry.load_deflection_factor < oiled.load_deflection_factor < dry.load_deflection_factor
+    assert dry.contact_damping == 0 < oiled.contact_damping
+    more = record_of(OIL | {"machine.contact_damping_n_s_m": 50}).machine
+    assert more.contact_damping == pytest.approx(oiled.contact_damping + 50)
+
+
+def test_warm_oil_leaves_a_thinner_film(record_of):
+    gaps = [
+        record_of(OIL | {"operation.temperature_celsius": celsius}).machine.half_clearance for celsius in (20, 60, 100)
+    ]
+    assert gaps == sorted(gaps)
+    assert gaps[-1] < record_of({}).machine.half_clearance
+    assert len({record_of({"operation.temperature_celsius": celsius}).machine for celsius in (20, 100)}) == 1
+
+
+def test_an_axial_load_takes_up_clearance_and_leaves_the_rest_of_the_machine(record_of):
+    slanted = {"specimen.contact_angle_deg": 10, "operation.load_n": 300}
+    free, pressed = (record_of(slanted | {"operation.axial_load_n": load}).machine for load in (0, 400))
+    assert pressed.half_clearance < min(free.half_clearance, 0)
+    assert pressed._replace(half_clearance=free.half_clearance) == free
+    assert free.contact_cosine == pytest.approx(math.cos(math.radians(10)))
+
+
+def test_a_bearing_of_ones_own_stands_in_for_one_of_the_catalogue(record_of):
+    mine = {"n_balls": 11, "pitch_mm": 50, "ball_mm": 9, "contact_angle_deg": 15}
+    catalogue = {"kind": "catalogue", "designations": ["6205"], "entries": {"6205": mine}}
+    found = record_of({"bearing": catalogue})
+    assert found.bearing.n_balls == 11
+    assert (found.bearing.pitch_diameter, found.bearing.ball_diameter) == pytest.approx((0.05, 0.009))
+    assert found.machine.ball_radius == pytest.approx(0.0045)
+    assert found.machine.contact_cosine == pytest.approx(math.cos(math.radians(15)))
+    assert found.machine.contact_exponent == POINT_EXPONENT
+    assert len(record_shape(found).balls) == 11
+
+
+ROLLERS = {
+    "catalogue": {"kind": "catalogue", "designations": ["NU206"]},
+    "own": {
+        "kind": "catalogue",
+        "designations": ["mine"],
+        "entries": {"mine": {"n_balls": 13, "pitch_mm": 46.5, "ball_mm": 9, "roller_length_mm": 10}},
+    },
+    "geometry": {"kind": "geometry", "n_balls": 13, "pitch_mm": 46.5, "ball_share": 9 / 46.5, "roller_length_mm": 10},
+}
+
+
+@pytest.mark.parametrize("kind", ROLLERS)
+def test_rollers_push_back_by_the_power_ten_ninths(record_of, kind):
+    machine, shape = record_of({"bearing": ROLLERS[kind]}).machine, record_shape(record_of({"bearing": ROLLERS[kind]}))
+    assert machine.contact_exponent == LINE_EXPONENT
+    assert machine.load_deflection_factor == pytest.approx(load_deflection_factor(CATALOGUE["NU206"]), rel=1e-9)
+    assert len(shape.roller) == 1
+    assert len(shape.balls) == 13
+
+
+@pytest.mark.parametrize("kind", ROLLERS)
+def test_oil_films_and_wide_contacts_do_for_rollers_too(record_of, kind):
+    oiled = OIL | {"contact.footprint": "hertz", "faults": [{"kind": "outer", "width_mm": 0.5}]}
+    dry, found = record_of({"bearing": ROLLERS[kind]}), record_of({"bearing": ROLLERS[kind]} | oiled)
+    assert found.machine.half_clearance < dry.machine.half_clearance
+    assert found.spalls[0].profile == "table"
+
+
+@pytest.mark.parametrize("site", ["inner", "outer", "ball"])
+@pytest.mark.parametrize("footprint", ["point", "hertz"])
+def test_outer_spalls_alone_count_from_the_load_in_the_kernel_and_in_the_labels(recipe_with, site, footprint):
+    changes = {
+        "faults": [{"kind": site, "width_mm": 0.5, "angle_deg": 10}],
+        "machine.load_angle_deg": -60,
+        "contact.footprint": footprint,
+    }
+    recipe = recipe_with(changes)
+    expected = math.radians(-50 if site == "outer" else 10)
+    assert physical_record(draw_scenarios(recipe, 0, 1)[0], recipe).spalls[0].angle == pytest.approx(expected)
+    assert labels(recipe)["angle"].values == pytest.approx(expected)
+
+
+def test_a_wide_contact_feels_a_spall_from_further_off_and_less_of_it(record_of):
+    changes = {"faults": [{"kind": "inner", "width_mm": 0.5}], "operation.load_n": 800}
+    wide = record_of(changes | {"contact.footprint": "hertz"}).spalls[0]
+    narrow = record_of(changes | {"faults": [{"kind": "inner", "width_mm": 0.5, "roughness_um": 1e-6}]}).spalls[0]
+    assert narrow.width == 0.5e-3 < wide.width < 1.0e-3
+    assert (wide.profile, narrow.profile) == ("table", "table")
+    assert 0 < max(wide.table[0]) < max(narrow.table[0])
+
+
+def test_the_heaviest_ball_carries_five_times_its_even_share(recipe_with):
+    scenario = draw_scenarios(recipe_with({"operation.load_n": 900}), 0, 1)[0]
+    assert heaviest_ball_load(scenario) == pytest.approx(500)
+
+
+@means
+def test_labels_of_load_and_shaft_rate_follow_the_mean_of_their_course(recipe_with, course, mean):
+    steady = {"operation.shaft_rpm": 1800, "operation.load_n": 400}
+    found = labels(recipe_with(steady | {"operation.speed_course": course, "operation.load_course": course}))
+    assert found["shaft_rate"].values == pytest.approx(30 * mean, rel=1e-4)
+    assert found["load"].values == pytest.approx(400 * mean, rel=1e-4)
+
+
+def test_the_rates_at_both_ends_of_a_run_up_are_labelled(recipe_with):
+    found = labels(recipe_with({"operation.shaft_rpm": 1800, "operation.speed_course": RUN_UP}))
+    assert found["first_shaft_rate"].values == pytest.approx(12)
+    assert found["last_shaft_rate"].values == pytest.approx(39)
+
+
+@means
+def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, course, mean):
+    """A speed that wanders while it runs up: the mean of a product is not the product of the means."""
+    changes = {"operation.speed_wander_percent": 1, "operation.slip_percent": 2, "operation.shaft_rpm": 1800}
+    recipe = recipe_with(changes | {"operation.speed_course": course})
+    start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
+    for scenario in draw_scenarios(recipe, 0, 3):
+        rate, orders = true_motion(scenario, recipe)
+        angles = slow_motion(physical_record(scenario, recipe), 1 / FS, start + n).angles
+        shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
+        assert shaft * FS / n == pytest.approx(rate, rel=2e-5)
+        assert rate == pytest.approx(30 * mean, rel=0.05)
+        assert cage / shaft == pytest.approx(orders.ftf, rel=2e-4)
+
+
+def test_a_course_starts_with_the_record_and_not_with_its_settling(record_of):
+    record = record_of({"operation.load_course": STEPS, "operation.speed_course": RUN_UP})
+    start = round(0.06 * FS)
+    assert (record.schedule[: start + 1, 1] == 0.5).all()
+    assert record.schedule[start + round(0.05 * FS), 1] == 1.0
+    assert record.schedule[-1] == pytest.approx([1.3, 0.3])
+    assert (np.diff(record.schedule[:, 0]) >= 0).all()
+    assert record.schedule[start + round(0.05 * FS), 0] == pytest.approx(0.85, abs=0.01)
+
+
+def test_a_wandering_load_has_its_rms_and_never_pulls_the_other_way(record_of):
+    gentle, wild = (
+        record_of({"operation.load_wander_percent": wander, "recording.duration_s": 60}).schedule[:, 1]
+        for wander in (5, 50)
+    )
+    assert gentle.mean() == pytest.approx(1, abs=2e-3)
+    assert gentle.std() == pytest.approx(0.05, rel=0.05)  # 8 cosines over a hundred of their slowest turns
+    assert wild.min() == 0
+
+
+def test_steady_records_have_no_schedule(record_of):
+    assert record_of({}).schedule.shape == (0, 2)

@@ -1,0 +1,122 @@
+"""Laws of the check of the step: some records are made again at half of it, all are held against their stiffest contacts."""
+
+import numpy as np
+import pytest
+
+from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
+from gen.generate import generate
+from gen.machinery import physical_record
+from gen.physics.rotor import fastest_swing
+from gen.scenarios import draw_scenarios
+from gen.simulate import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, simulate, step_errors
+from tests.reference import contact_stiffness, contacts, march_lanes, slow_motion
+
+FS = 12_000.0
+# the races of the second rig are so rough that they squeeze the balls far harder than the load that the step is chosen by
+ROUGH = {
+    "recording.oversampling": 1,
+    "recording.sample_rate_hz": 24000,
+    "machine.shaft_mass_kg": 2,
+    "specimen.waviness_nm": {"kind": "grid", "values": [10] * 4 + [10_000] * 4 + [10] * 4},
+    "operation.load_n": 20,
+}
+
+
+@pytest.fixture(scope="module")
+def checked(recipe_with):
+    """The small recipe, its scenarios, their responses and step errors."""
+    recipe = recipe_with()
+    scenarios = draw_scenarios(recipe)
+    response = simulate(scenarios, recipe)
+    return recipe, scenarios, response, step_errors(scenarios, recipe, response, 0)
+
+
+def test_the_first_record_of_every_class_is_tried_at_half_the_step(checked):
+    _, scenarios, _, errors = checked
+    faults = [scenario.specimen.fault for scenario in scenarios]
+    assert errors.shape == (len(scenarios),)
+    assert np.isfinite(errors[[faults.index(fault) for fault in FAULTS if fault in faults]]).all()
+
+
+def test_at_half_the_step_ordinary_records_change_by_less_than_a_thousandth(checked):
+    errors = checked[3]
+    tried = errors[np.isfinite(errors)]
+    assert (tried > 0).all()
+    assert tried.max() < 1e-3
+
+
+@pytest.mark.parametrize("part", [1, CHECKED_PARTS - 1, CHECKED_PARTS, CHECKED_PARTS + 1])
+def test_one_part_in_so_many_is_tried(recipe_with, part):
+    recipe = recipe_with()
+    scenarios = draw_scenarios(recipe, 0, 2)
+    errors = step_errors(scenarios, recipe, simulate(scenarios, recipe), part)
+    assert np.isfinite(errors).any() == (part == CHECKED_PARTS)
+
+
+def test_a_coarser_step_changes_more_when_it_is_halved(recipe_with):
+    """At least to half: the order is 4, but 2 where a ball swaps edges."""
+    errors = []
+    for steps in (2, 4, 8):
+        recipe = recipe_with({"recording.oversampling": steps})
+        scenarios = draw_scenarios(recipe, 0, 8)
+        errors.append(step_errors(scenarios, recipe, simulate(scenarios, recipe), 0))
+    tried = np.isfinite(errors[0])
+    assert (errors[0] > 2 * errors[1])[tried].all()
+    assert (errors[1] > 2 * errors[2])[tried].all()
+
+
+def test_chosen_steps_follow_the_stiffest_contacts_and_no_finer_than_they_need(checked):
+    _, _, response, _ = checked
+    assert (response.step_phase < FINE_STEP).all()
+    assert (response.step_phase > FINE_STEP / 8).all()
+
+
+def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
+    """At every knot of the march the contacts are looked at again; between two knots they get little stiffer."""
+    recipe, scenarios, response, _ = checked
+    some = [0, 3]
+    records = [physical_record(scenarios[place], recipe) for place in some]
+    n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
+    for place, record in zip(some, records, strict=True):
+        factor = int(response.oversampling[place])
+        (trip,) = march_lanes([record], n_knots, factor, 1 / FS)
+        slow = slow_motion(record, 1 / FS, n_knots)
+        stiffest = max(
+            contact_stiffness(record.machine, contacts(record, slow, at, 0.0, trip.states[at]).squeeze)
+            for at in range(n_knots)
+        )
+        phase = float(fastest_swing(record.machine, stiffest)) / (FS * factor)
+        assert phase * (1 - 1e-9) <= response.step_phase[place] < 1.02 * phase
+
+
+def test_records_whose_contacts_outgrow_the_step_are_left_out_with_a_sentence(write_recipe, tmp_path):
+    made = generate(write_recipe(tmp_path / "r.yaml", ROUGH), tmp_path / "c")
+    assert [sentence.partition(":")[0] for sentence in made.failures] == [f"record {number}" for number in range(8, 16)]
+    grown = "its contacts became stiffer than 1 steps per sample can follow; set recording.oversampling to "
+    for sentence in made.failures:
+        assert grown in sentence
+        assert int(sentence.rstrip(".").split()[-1]) > 1 / FINE_STEP
+    assert read_manifest(made.directory)["failures"] == list(made.failures)
+    assert validate_corpus(made.directory) == []
+    with open_corpus(made.directory) as corpus:
+        assert corpus["recording"].values.tolist() == [*range(8), *range(16, 24)]
+        assert (corpus["step_phase"].values < COARSEST_STEP).all()
+
+
+def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):
+    recipe = recipe_with(ROUGH)
+    coarse = simulate(draw_scenarios(recipe, 8, 10), recipe)
+    assert np.isnan(coarse.acceleration).all()
+    asked = [int(sentence.rstrip(".").split()[-1]) for sentence in coarse.failures.values()]
+    finer = recipe_with(ROUGH | {"recording.oversampling": max(asked)})
+    response = simulate(draw_scenarios(finer, 8, 10), finer)
+    assert response.failures == {}
+    assert (response.step_phase < 1.1 * FINE_STEP).all()
+
+
+def test_records_left_out_are_not_tried(recipe_with):
+    recipe = recipe_with(ROUGH)
+    scenarios = draw_scenarios(recipe, 4, 12)
+    errors = step_errors(scenarios, recipe, simulate(scenarios, recipe), 0)
+    assert np.isfinite(errors[:4]).any()
+    assert np.isnan(errors[4:]).all()

@@ -1,0 +1,38 @@
+"""Changes to the small recipe of ``tests/gen/conftest.py`` that bring in everything a recipe can ask for, in one kernel."""
+
+EVERY_FAULT = [
+    {"kind": "healthy"},
+    {"kind": "inner", "width_mm": 0.5, "roughness_um": 1},
+    {"kind": "outer", "width_mm": 3, "depth_um": 15, "spalls": 2, "profile": "half_sine"},
+    {"kind": "ball", "width_mm": 0.5, "axis_wander_deg": 4, "spin_wander_percent": 0.5},
+    {"kind": "cage"},
+    {"kind": "worn", "site": "inner", "waviness_um": 0.3, "order": 10},
+    {"kind": "worn", "site": "outer", "waviness_um": 0.3},
+    {
+        "kind": "compound",
+        "parts": [
+            {"kind": "inner", "width_mm": 0.4},
+            {"kind": "outer", "width_mm": 0.8, "profile": "trace", "trace_um": [0, 3, 10, 12, 8, 0]},
+            {"kind": "cage", "knock_n": 30},
+        ],
+    },
+]
+
+# every record, healthy ones too, has waves, jitter, a schedule, oil, play and a resonance: one shape of the kernel
+EVERYTHING = {
+    "corpus": {"rigs": 1, "specimens_per_rig": 14, "records_per_specimen": 2, "records_per_part": 14},
+    "recording.channels": [{"name": "fan_end", "body": "sensor", "path": {"direct": 0.1}}],
+    "machine.bow_n": 30,
+    "machine.misalignment_n": 20,
+    "machine.looseness_um": 2,
+    "contact": {"footprint": "hertz", "lubricant": {}},
+    "specimen.ball_waviness_nm": 2,
+    "specimen.contact_angle_deg": 10,
+    "operation.axial_load_n": 300,
+    "operation.load_wander_percent": 5,
+    "operation.temperature_celsius": {"kind": "uniform", "low": 20, "high": 90},
+    "operation.inner_ring_hotter_k": 5,
+    "operation.speed_course": {"kind": "run_up", "from_percent": 50, "to_percent": 120, "lasting_s": 0.1},
+    "operation.load_course": {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.02},
+    "faults": EVERY_FAULT,
+}
