@@ -13,11 +13,12 @@ import numpy as np
 from numba import njit
 
 from gen.physics import gaps, kernel, lanes, motion, spall
-from gen.physics.batch import Record, lay_out, record_shape
+from gen.physics.batch import Motion, Record, Spall, lay_out, record_shape
 from gen.physics.integrate import place_balls, to_next_knot
-from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, PICKED, FloatArray, advance, param_rows
+from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, STEEPEST, FloatArray, advance, param_rows
 from gen.physics.lanes import KERNEL, LANES
 from gen.physics.motion import ANGLE_ROWS
+from gen.physics.rotor import Machine
 
 EVERY_ACCELERATION = np.eye(AXES)
 
@@ -44,6 +45,10 @@ class Slow(NamedTuple):
     """Under each ball, waviness taken off, shape (knot, ball) [m]."""
     jitter: FloatArray
     """Of each ball in its pocket, shape (knot, ball) [rad]."""
+    rates: FloatArray
+    """Of shaft, cage and ball spin up to the next knot, shape (knot, angle) [rad/s]."""
+    forces: FloatArray
+    """Outer forces on shaft and housing, x and y, now and just before the next knot, shape (knot, 2, 4) [N]."""
     share: FloatArray
     """Of its drop that a ball spall gives up to this knot, shape (knot,) [1]."""
 
@@ -59,22 +64,71 @@ def slow_motion(record: Record, knot: float, n_knots: int) -> Slow:
     """Slow quantities at the knots, ``knot`` seconds apart; rates hold from one knot to the next."""
     bearing, drawn = record.bearing, record.motion
     gamma, size = bearing.gamma, bearing.pitch_diameter / bearing.ball_diameter
-    times = knot * np.arange(n_knots + 1)
+    times = np.linspace(0, knot * n_knots, n_knots + 1)
     shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * process(record, 0, motion.SPEED_TERMS, times))
+    shaft = shaft * scheduled(record, n_knots + 1)[:, 0]
     slip = drawn.mean_slip + drawn.slip_rms * process(record, motion.SLIP_FIRST, motion.SLIP_TERMS, times)
     wander = 1 + drawn.spin_rms * process(record, motion.SPIN_FIRST, motion.SPIN_TERMS, times)
     rates = np.stack([shaft, shaft * (1 - gamma) / 2 * (1 - slip), shaft * size / 2 * (1 - gamma**2) * wander], axis=1)
     start = np.array([drawn.shaft_angle, drawn.cage_angle, drawn.spin_angle])
     angles = start + np.concatenate([np.zeros((1, 3)), np.cumsum(knot * rates[:-1], axis=0)])
+    balls = range(bearing.n_balls)
     jitter = [
         drawn.jitter_rms * process(record, motion.JITTER_FIRST + ball * motion.JITTER_TERMS, motion.JITTER_TERMS, times)
-        for ball in range(bearing.n_balls)
+        + (drawn.late_by if ball == drawn.late_ball else 0.0)
+        for ball in balls
     ]
-    places = angles[:, 1:2] + 2 * np.pi * np.arange(bearing.n_balls) / bearing.n_balls
-    gaps = record.machine.half_clearance - waviness(record, places - angles[:, :1], places)
+    places = angles[:, 1:2] + 2 * np.pi * np.array(balls) / bearing.n_balls
+    height = waviness(record, places - angles[:, :1], places) + ball_waviness(record, angles[:, 2])
+    gaps = record.machine.half_clearance - height
     tilt = drawn.axis_offset + drawn.axis_rms * process(record, motion.AXIS_FIRST, motion.AXIS_TERMS, times)
     share = np.maximum(0.0, 1 - (tilt / drawn.axis_limit) ** 2) if drawn.axis_limit > 0 else np.ones(n_knots + 1)
-    return Slow(angles, gaps, np.stack(jitter, axis=1), share)
+    return Slow(angles, gaps, np.stack(jitter, axis=1), rates, outer_forces(record, knot, angles, rates), share)
+
+
+def scheduled(record: Record, n_knots: int) -> FloatArray:
+    """Factors of shaft rate and load, the last ones held, shape (knot, 2) [1]."""
+    if len(record.schedule) == 0:
+        return np.ones((n_knots, 2))
+    return record.schedule[np.minimum(np.arange(n_knots), len(record.schedule) - 1)]
+
+
+def outer_forces(record: Record, knot: float, angles: FloatArray, rates: FloatArray) -> FloatArray:
+    """See :class:`Slow`."""
+    drawn, n_knots = record.motion, len(angles)
+    load = scheduled(record, n_knots + 1)[:, 1]
+    out = np.array([math.cos(drawn.knock_angle), math.sin(drawn.knock_angle)])
+    forces = np.empty((n_knots, 2, 4))
+    for at, end in np.ndindex(n_knots, 2):
+        shaft, cage, _ = angles[at] + end * knot * rates[at]
+        mark, misaligned = np.array([math.cos(shaft), math.sin(shaft)]), np.array([drawn.twice_x, drawn.twice_y])
+        size = max(np.hypot(*misaligned), 1e-300)
+        pull = load[at + end] * np.array([record.machine.load_x, record.machine.load_y])
+        pull += misaligned * (2 * (mark @ misaligned / size) ** 2 - 1)
+        forces[at, end] = *pull, *(knock(drawn, cage, rates[at, 1], knot) * out)
+    return forces
+
+
+def knock(drawn: Motion, cage: float, rate: float, knot: float) -> float:
+    """Mean of all knocks over the hat that is 1 at this knot and 0 at its neighbours [N]."""
+    if drawn.knock == 0:
+        return 0.0
+    past = cage - drawn.knock_angle
+    total = 0.0
+    for turn in range(math.floor(past / (2 * math.pi)) - 1, math.floor(past / (2 * math.pi)) + 3):
+        since = (past - 2 * math.pi * turn) / rate
+        strength = drawn.knock * 2 ** (2 * (turn * (math.sqrt(5) - 1) / 2 % 1) - 1)
+        total += strength * (half_sine_under_slope(since, -knot) + half_sine_under_slope(since, knot)) / knot
+    return total
+
+
+def half_sine_under_slope(since: float, reach: float) -> float:
+    """Integral of the unit half sine that began ``since`` seconds ago, under a line from 1 now to 0 at ``reach`` from now [s]."""
+    low, high = np.clip(sorted((since, since + reach)), 0.0, motion.KNOCK_SECONDS)
+    nodes, weights = np.polynomial.legendre.leggauss(24)
+    at = (low + high) / 2 + (high - low) / 2 * nodes
+    line = 1 - (at - since) / reach
+    return float((high - low) / 2 * weights @ (np.sin(np.pi * at / motion.KNOCK_SECONDS) * line))
 
 
 def waviness(record: Record, on_inner: FloatArray, on_outer: FloatArray) -> FloatArray:
@@ -82,11 +136,22 @@ def waviness(record: Record, on_inner: FloatArray, on_outer: FloatArray) -> Floa
     if record.waves.size == 0:
         return np.zeros_like(on_outer)
     orders = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1)
-    amplitudes = record.waves.reshape(2, 2, -1)
+    amplitudes = record.waves[: motion.WAVE_ROWS].reshape(2, 2, -1)
     height = np.zeros_like(on_outer)
     for (real, imaginary), angles in zip(amplitudes, (on_inner, on_outer), strict=True):
         turns = angles[..., None] * orders
         height += (real * np.cos(turns) - imaginary * np.sin(turns)).sum(axis=-1)
+    return height
+
+
+def ball_waviness(record: Record, spin: FloatArray) -> FloatArray:
+    """Height of every ball over both its contacts at the spin angles ``spin``, shape (time, ball) [m]."""
+    orders = 2 * np.arange(1, motion.BALL_ORDERS + 1)
+    height = np.zeros((len(spin), record.bearing.n_balls))
+    if record.waves.size > motion.WAVE_ROWS:
+        real, imaginary = record.waves[motion.WAVE_ROWS :].reshape(len(orders), 2, -1).transpose(1, 0, 2)
+        turns = np.outer(spin, orders)
+        height += np.cos(turns) @ real - np.sin(turns) @ imaginary
     return height
 
 
@@ -111,6 +176,24 @@ def rigid_path(offset: float, half: float, arc: float, ball: float, race: float,
     return min(lens + math.copysign(bend, race), depth)
 
 
+def fall(fault: Spall, offset: float, arc: float, ball: float, race: float) -> float:
+    """Drop of a ball whose contact is ``offset`` [rad] from the centre of a spall, MODEL.md section 5.1 [m]."""
+    half = fault.width / 2 / arc
+    inside = half - abs(offset)
+    if inside <= 0:
+        return 0.0
+    if fault.profile == "geometric":
+        return rigid_path(offset, half, arc, ball, race, fault.depth)
+    if fault.profile == "half_sine":
+        return fault.depth * math.cos(math.pi * offset / (2 * half))
+    if fault.profile == "raised_cosine":
+        return fault.depth * (1 - math.cos(math.pi * min(inside / (spall.RAISED_EDGE * half), 1))) / 2
+    if fault.profile == "table":
+        drops_there = fault.table[1 if fault.site == "ball" and race < 0 else 0]
+        return float(np.interp(offset, np.linspace(-half, half, len(drops_there)), drops_there))
+    return fault.depth
+
+
 def drops(record: Record, angles: FloatArray, places: FloatArray, share: float) -> FloatArray:
     """How far each ball, at the angle ``places``, has dropped into all spalls together, shape (ball,) [m]."""
     bearing = record.bearing
@@ -119,33 +202,50 @@ def drops(record: Record, angles: FloatArray, places: FloatArray, share: float) 
     total = np.zeros(bearing.n_balls)
     for fault in record.spalls:
         if fault.site == "ball":
-            half = fault.width / 2 / ball
             on_inner, on_outer = wrapped(spin + fault.angle), wrapped(spin + fault.angle - math.pi)
-            fallen = rigid_path(on_inner, half, ball, ball, inner, fault.depth)
-            fallen += rigid_path(on_outer, half, ball, ball, -outer, fault.depth)
+            fallen = fall(fault, on_inner, ball, ball, inner) + fall(fault, on_outer, ball, ball, -outer)
             total[fault.ball] += share * fallen
             continue
         race, centre = (inner, shaft + fault.angle) if fault.site == "inner" else (-outer, fault.angle)
         for number, place in enumerate(places):
-            offset = wrapped(place - centre)
-            total[number] += rigid_path(offset, fault.width / 2 / abs(race), abs(race), ball, race, fault.depth)
+            total[number] += fall(fault, wrapped(place - centre), abs(race), ball, race)
     return total
 
 
-def contact_force(
-    record: Record, y: FloatArray, angles: FloatArray, gaps: FloatArray, jitter: FloatArray, share: float
-):
+class Contacts(NamedTuple):
+    """Of every ball with its races, shape (ball,) unless it says otherwise."""
+
+    directions: FloatArray
+    """Shape (ball, axis) [1]."""
+    squeeze: FloatArray
+    """Negative where ball and races are apart [m]."""
+    approach: FloatArray
+    """Rate of the squeeze, the balls' own motion aside [m/s]."""
+
+
+def contacts(record: Record, slow: Slow, at: int, tau: float, y: FloatArray) -> Contacts:
+    """Contacts in the state ``y``, a share ``tau`` of the way from knot ``at`` to the next."""
+    angles, gaps, jitter = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow[:3])
+    places = angles[1] + 2 * np.pi * np.arange(record.bearing.n_balls) / record.bearing.n_balls + jitter
+    directions = np.stack([np.cos(places), np.sin(places)], axis=1)
+    seen = record.machine.contact_cosine * directions
+    gaps = gaps + drops(record, angles, places, slow.share[at + 1])
+    return Contacts(directions, seen @ (y[0:2] - y[2:4]) - gaps, seen @ (y[6:8] - y[8:10]))
+
+
+def contact_force(machine: Machine, found: Contacts) -> FloatArray:
     """Force of all balls on the housing, shape (axis,) [N]."""
-    machine, n_balls = record.machine, record.bearing.n_balls
-    places = angles[1] + 2 * np.pi * np.arange(n_balls) / n_balls
-    directions = np.stack([np.cos(places + jitter), np.sin(places + jitter)], axis=1)
-    cosine = machine.contact_cosine
-    squeeze = cosine * directions @ (y[0:2] - y[2:4]) - gaps - drops(record, angles, places + jitter, share)
-    touching = squeeze > 0
-    force = machine.load_deflection_factor * np.where(touching, squeeze, 0.0) ** 1.5
-    approach = cosine * directions @ (y[6:8] - y[8:10])
-    force = np.where(touching, np.maximum(force + machine.contact_damping * approach, 0.0), 0.0)
-    return cosine * force @ directions
+    touching = found.squeeze > 0
+    elastic = machine.load_deflection_factor * np.where(touching, found.squeeze, 0.0) ** machine.contact_exponent
+    force = np.where(touching, np.maximum(elastic + machine.contact_damping * found.approach, 0.0), 0.0)
+    return machine.contact_cosine * force @ found.directions
+
+
+def contact_stiffness(machine: Machine, squeeze: FloatArray) -> float:
+    """Slope of the elastic force of all balls, as if they all pushed one way [N/m]."""
+    n = machine.contact_exponent
+    slopes = n * machine.load_deflection_factor * np.maximum(squeeze, 0.0) ** (n - 1)
+    return float(machine.contact_cosine**2 * slopes.sum())
 
 
 def right_hand_side(record: Record, slow: Slow, knot: float, at: int, tau: float, y: FloatArray) -> FloatArray:
@@ -154,22 +254,22 @@ def right_hand_side(record: Record, slow: Slow, knot: float, at: int, tau: float
     MODEL.md section 4.2, term by term.
     """
     machine = record.machine
-    angles, gaps, jitter = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow[:3])
-    share = slow.share[at + 1]
-    force = contact_force(record, y, angles, gaps, jitter, share)
+    force = contact_force(machine, contacts(record, slow, at, tau, y))
     (first, second, sensor), (u, v, w) = y[:6].reshape(3, 2), y[6:].reshape(3, 2)
-    shaft_rate = (slow.angles[at + 1, 0] - slow.angles[at, 0]) / knot
-    turning = np.array([math.cos(angles[0]), math.sin(angles[0])])
-    unbalance = record.motion.unbalance * shaft_rate**2 * turning
-    load = np.array([machine.load_x, machine.load_y])
+    angle, rate = (1 - tau) * slow.angles[at, 0] + tau * slow.angles[at + 1, 0], slow.rates[at, 0]
+    quickening = (rate - slow.rates[at - 1, 0]) / knot if at > 0 else 0.0
+    outwards, across = np.array([math.cos(angle), math.sin(angle)]), np.array([math.sin(angle), -math.cos(angle)])
+    turning = record.motion.unbalance * (rate**2 * outwards + quickening * across) + record.motion.bow * outwards
+    outer = (1 - tau) * slow.forces[at, 0] + tau * slow.forces[at, 1]
     ring = np.array([machine.ring_stiffness_x, machine.ring_stiffness_y])
     support = np.array([machine.support_stiffness_x, machine.support_stiffness_y])
     leak = np.array([machine.support_damping_x, machine.support_damping_y])
     spring = np.array([machine.sensor_stiffness_x, machine.sensor_stiffness_y])
+    stretch = np.sign(second) * np.maximum(np.abs(second) - machine.looseness, 0.0)
     between = force + machine.ring_damping * (u - v) + ring * (first - second)
     to_sensor = spring * (second - sensor) + machine.sensor_damping * (v - w)
-    on_shaft = load + unbalance - between - machine.shaft_damping * u - machine.shaft_stiffness * first
-    on_housing = between - leak * v - support * second - to_sensor
+    on_shaft = outer[:2] + turning - between - machine.shaft_damping * u - machine.shaft_stiffness * first
+    on_housing = outer[2:] + between - leak * v - support * stretch - to_sensor
     sensor_rate = to_sensor / machine.sensor_mass if machine.sensor_mass > 0 else np.zeros(2)
     return np.concatenate([y[6:], on_shaft / machine.shaft_mass, on_housing / machine.housing_mass, sensor_rate])
 
@@ -212,7 +312,7 @@ def march_lanes(
     _march(shape, batch, knot / n_steps, n_steps, states, angles, history)
     accelerations = history.reshape(-1, AXES, LANES)
     return [
-        Trip(states[:, :N_DYNAMIC, i], accelerations[..., i], angles[..., i], states[:, CAGE_C:PICKED, i])
+        Trip(states[:, :N_DYNAMIC, i], accelerations[..., i], angles[..., i], states[:, CAGE_C:STEEPEST, i])
         for i in range(len(records))
     ]
 

@@ -11,11 +11,22 @@ from hypothesis import strategies as st
 from gen.physics.batch import Motion, Record, Spall, n_terms
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.motion import HIGHEST_ORDER, LOWEST_ORDER, N_ORDERS
+from gen.physics.hertz import LINE_EXPONENT
+from gen.physics.motion import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, N_ORDERS
 from gen.physics.rotor import Machine, sensor_springs
+from gen.physics.spall import PROFILES as EVERY_PROFILE
 
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular")
 NO_WAVES = np.empty(0)
+
+SPRING, DAMPER = sensor_springs(0.2, 3000.0, 0.03)
+RIG = Machine(
+    load_deflection_factor=9.26e9, contact_damping=0.0, contact_cosine=1.0, half_clearance=5e-6,
+    ball_radius=CATALOGUE["6205"].ball_diameter / 2, shaft_mass=5.5, housing_mass=3.0, sensor_mass=0.2, ring_damping=1000.0,
+    shaft_damping=200.0, shaft_stiffness=0.0, ring_stiffness_x=0.0, ring_stiffness_y=0.0, support_stiffness_x=6e7,
+    support_stiffness_y=5e7, support_damping_x=2250.0, support_damping_y=2000.0, sensor_stiffness_x=SPRING,
+    sensor_stiffness_y=SPRING, sensor_damping=DAMPER, load_x=20.0, load_y=-300.0,
+)  # fmt: skip
 
 seeds = st.integers(0, 2**32 - 1)
 angles = st.floats(-np.pi, np.pi)
@@ -149,3 +160,49 @@ def extended_records(draw):
     wide = Spall("inner", draw(st.floats(11.5e-3, 18e-3)), draw(st.floats(3e-6, 50e-6)), draw(angles))
     other = draw(st.lists(spalls(), max_size=1))
     return draw(wandering_records())._replace(spalls=(wide, *other))
+
+
+@st.composite
+def profiled_spalls(draw):
+    """A spall of any profile; tables have 9 points, every one of which the kernel's finer table has too."""
+    some, profile = draw(spalls()), draw(st.sampled_from(EVERY_PROFILE))
+    races = (2 if some.site == "ball" else 1) if profile == "table" else 0
+    tables = st.lists(st.tuples(*[depths] * 9), min_size=races, max_size=races)
+    return some._replace(profile=profile, table=tuple(draw(tables)))
+
+
+@st.composite
+def troubled_motions(draw):
+    """Motion with a broken cage, a bent and misaligned shaft on top of its processes; the cage knocks soon after the start."""
+    motion = draw(wandering_motions())
+    return motion._replace(
+        bow=draw(st.floats(0, 200)),
+        twice_x=draw(st.floats(-200, 200)),
+        twice_y=draw(st.floats(-200, 200)),
+        knock=draw(st.floats(1, 100)),
+        knock_angle=motion.cage_angle + draw(st.floats(-0.02, 0.05)),
+        late_ball=draw(st.integers(0, 8)),
+        late_by=draw(st.floats(-0.08, 0.08)),
+    )
+
+
+def ball_waves(seed, rms):
+    """Amplitudes of the waviness of nine balls over both contacts, shape (row,) [m]."""
+    return np.random.default_rng(seed).normal(scale=rms / np.sqrt(BALL_ORDERS), size=2 * BALL_ORDERS * 9)
+
+
+@st.composite
+def troubled_records(draw, *, rollers=False):
+    """A record with everything a recipe can ask for, in a support with play, at a shaft rate and load on schedule."""
+    seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
+    some = draw(st.lists(profiled_spalls(), min_size=2, max_size=4))
+    machine = draw(machines())._replace(looseness=draw(st.floats(1e-8, 5e-6)))
+    if rollers:
+        machine = machine._replace(load_deflection_factor=draw(st.floats(1e8, 1e9)), contact_exponent=LINE_EXPONENT)
+    there = record(machine, draw(troubled_motions()), some, seed=seed, waviness=rms)
+    schedule = np.random.default_rng(seed).uniform(0.7, 1.3, (draw(st.integers(1, 10)), 2))
+    return there._replace(
+        bearing=replace(there.bearing, roller_length=8e-3) if rollers else there.bearing,
+        waves=np.concatenate([there.waves, ball_waves(seed, rms)]),
+        schedule=schedule,
+    )

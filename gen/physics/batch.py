@@ -48,7 +48,7 @@ class Motion(NamedTuple):
     """Force that turns with the shaft whatever its speed: a bent shaft in its bearings [N]."""
     twice_x: float = 0.0
     twice_y: float = 0.0
-    """Forces at twice the shaft rate: misalignment [N]."""
+    """Force along a fixed direction at twice the shaft rate: misalignment [N]."""
     knock: float = 0.0
     knock_angle: float = 0.0
     """Knock of the cage on the housing, once per turn of the cage when its first pocket is there [N, rad]."""

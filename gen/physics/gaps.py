@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from gen.physics.kernel import CAGE_C, CAGE_S, COS, SHAFT_C, SHAFT_S, SIN, FloatArray, Shape, gap_row, jitter_row
-from gen.physics.lanes import COMPILED, INLINE, LANES, cosine, sine
+from gen.physics.lanes import COMPILED, INLINE, LANES, UNFUSED, cosine, sine
 from gen.physics.motion import (
     ARC,
     AXIS_FIRST,
@@ -49,7 +49,7 @@ from gen.physics.motion import (
 from gen.physics.spall import TABLE, drop
 
 
-@njit(**INLINE)
+@njit(**UNFUSED)
 def fold_waviness(lanes: Lanes, n_balls: int, race: int, c: FloatArray, s: FloatArray, folded: FloatArray) -> None:
     """Add the waviness of one race, turned to direction ``c, s``, to the ``n_balls`` complex amplitudes in ``folded``."""
     waves = lanes.waves
@@ -69,7 +69,7 @@ def fold_waviness(lanes: Lanes, n_balls: int, race: int, c: FloatArray, s: Float
             zs[lane] = zi * c[lane] + zr * s[lane]
 
 
-@njit(**INLINE)
+@njit(**UNFUSED)
 def waviness(
     lanes: Lanes,
     n_balls: int,
@@ -93,7 +93,7 @@ def waviness(
                 w[ball * LANES + lane] += real * COS[n_balls, turn] - imag * SIN[n_balls, turn]
 
 
-@njit(**INLINE)
+@njit(**UNFUSED)
 def add_ball_waviness(lanes: Lanes, n_balls: int, moves: FloatArray, w: FloatArray) -> None:
     """Add what the balls' own waviness gives at both their contacts at the next knot; all balls spin alike [m]."""
     waves = lanes.waves
@@ -114,7 +114,7 @@ def add_ball_waviness(lanes: Lanes, n_balls: int, moves: FloatArray, w: FloatArr
             zc[lane], zs[lane] = zr * c[lane] - zi * s[lane], zi * c[lane] + zr * s[lane]
 
 
-@njit(**INLINE)
+@njit(**UNFUSED)
 def ball_gaps(lanes: Lanes, n_balls: int, moves: FloatArray, gaps: FloatArray) -> None:
     """Gap of every ball at the next knot, waviness included and spalls aside, into ``gaps`` (ball * LANES + lane) [m]."""
     state = lanes.state

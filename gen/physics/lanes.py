@@ -13,6 +13,8 @@ LANES = 32  # records advanced side by side; below 16 LLVM keeps the loop scalar
 
 FASTMATH = {"nsz", "arcp", "contract", "afn"}
 INLINE: dict[str, Any] = {"forceinline": True, "fastmath": FASTMATH, "error_model": "numpy"}
+# For short loops over lanes, which LLVM unrolls: of two products in a sum it may fuse one in the first lanes and the other in the rest.
+UNFUSED: dict[str, Any] = {**INLINE, "fastmath": FASTMATH - {"contract"}}
 COMPILED: dict[str, Any] = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True}
 KERNEL: dict[str, Any] = {**COMPILED, "cache": True}
 

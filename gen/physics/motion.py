@@ -24,7 +24,7 @@ from gen.physics.kernel import (
     Shape,
     jitter_row,
 )  # fmt: skip
-from gen.physics.lanes import INLINE, LANES, cosine, sine
+from gen.physics.lanes import INLINE, LANES, UNFUSED, cosine, sine
 
 # Rows of ``drive``: what a record's motion is made of.
 (
@@ -71,7 +71,7 @@ class Lanes(NamedTuple):
     """Drops of tabulated spalls, shape (table, point) [m]; a ball spall has two, for the inner and the outer race."""
 
 
-@njit(**INLINE)
+@njit(**UNFUSED)
 def turn_phasors(phasors: FloatArray, n_terms: int) -> None:
     """Turn every phasor by one knot."""
     block = n_terms * LANES
@@ -97,7 +97,7 @@ def wrapped(angle: float) -> float:
     return angle - 2 * math.pi * np.rint(angle / (2 * math.pi))
 
 
-@njit(**INLINE)
+@njit(**UNFUSED)
 def turn_rings(lanes: Lanes, knot: int, n_steps: int, dt: float, moves: FloatArray) -> None:
     """Set the turning rates to the next knot, and note how far shaft, cage and ball spin will move in ``moves``."""
     params, drive, phasors, state = lanes.params, lanes.drive, lanes.phasors, lanes.state
@@ -170,12 +170,14 @@ def knock(lanes: Lanes, knot_seconds: float, ahead: float, lane: int, moves: Flo
     strength scatters from turn to turn by a factor between 0.5 and 2 that follows from the number of the turn.
     """
     strength = lanes.drive[KNOCK * LANES + lane]
-    if strength == 0.0 or moves[CAGE * LANES + lane] == 0.0:
+    if strength == 0.0:
         return 0.0
     turned = lanes.angles[CAGE * LANES + lane] - lanes.drive[KNOCK_ANGLE * LANES + lane]
     turned += ahead * moves[CAGE * LANES + lane]
     turns = math.floor(turned / (2 * math.pi) + 0.5)
     since = (turned - 2 * math.pi * turns) * knot_seconds / moves[CAGE * LANES + lane]
+    if not -knot_seconds < since < KNOCK_SECONDS + knot_seconds:  # so is what a cage at a standstill gives
+        return 0.0
     scatter = (turns * 0.6180339887498949) % 1.0  # golden ratio: even over few turns
     there = pushed(since + knot_seconds) - 2 * pushed(since) + pushed(since - knot_seconds)
     return strength * 2.0 ** (2 * scatter - 1) * there / knot_seconds**2
@@ -185,16 +187,20 @@ def knock(lanes: Lanes, knot_seconds: float, ahead: float, lane: int, moves: Flo
 def outer_forces(
     lanes: Lanes, knot: int, knot_seconds: float, ahead: float, lane: int, moves: FloatArray, force: FloatArray
 ) -> None:
-    """Forces on shaft and housing ``ahead`` knots from now, into ``force`` (x and y of the shaft, then of the housing) [N]."""
+    """Forces on shaft and housing ``ahead`` knots from now, into ``force`` (x and y of the shaft, then of the housing) [N].
+
+    Misalignment pulls to and fro along its own direction, and most when the shaft's mark points that way or the opposite one.
+    """
     drive = lanes.drive
     load = 1.0
     if len(lanes.schedule):
         load = lanes.schedule[min(knot + int(ahead), len(lanes.schedule) - 1), 1, lane]
-    turn = 2 * (lanes.angles[SHAFT * LANES + lane] + ahead * moves[SHAFT * LANES + lane])
-    c, s = math.cos(turn), math.sin(turn)
+    twice_x, twice_y = drive[TWICE_X * LANES + lane], drive[TWICE_Y * LANES + lane]
+    turned = lanes.angles[SHAFT * LANES + lane] + ahead * moves[SHAFT * LANES + lane]
+    pull = math.cos(2 * (turned - math.atan2(twice_y, twice_x)))
     hit, place = knock(lanes, knot_seconds, ahead, lane, moves), drive[KNOCK_ANGLE * LANES + lane]
-    force[0] = load * drive[LOAD_X * LANES + lane] + drive[TWICE_X * LANES + lane] * c
-    force[1] = load * drive[LOAD_Y * LANES + lane] + drive[TWICE_Y * LANES + lane] * s
+    force[0] = load * drive[LOAD_X * LANES + lane] + pull * twice_x
+    force[1] = load * drive[LOAD_Y * LANES + lane] + pull * twice_y
     force[2], force[3] = hit * math.cos(place), hit * math.sin(place)
 
 

@@ -1,39 +1,18 @@
 """Laws of the equations of motion and of the step that advances them."""
 
-import math
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.batch import Motion, Spall
-from gen.physics.catalogue import CATALOGUE
 from gen.physics.lanes import LANES
-from gen.physics.rotor import Machine, sensor_springs
-from tests.reference import march_lanes, march_twin
-from tests.strategies import (
-    angles,
-    extended_records,
-    machines,
-    record,
-    spalls,
-    steady_motions,
-    steady_records,
-    wandering_records,
-)
+from tests.reference import march_lanes
+from tests.strategies import RIG, machines, record, steady_motions, wandering_records
 
 law = settings(deadline=None, max_examples=20)
 KNOT = 1 / 12_000
 STANDING = Motion(0.0)
-SPRING, DAMPER = sensor_springs(0.2, 3000.0, 0.03)
-RIG = Machine(
-    load_deflection_factor=9.26e9, contact_damping=0.0, contact_cosine=1.0, half_clearance=5e-6,
-    ball_radius=CATALOGUE["6205"].ball_diameter / 2, shaft_mass=5.5, housing_mass=3.0, sensor_mass=0.2, ring_damping=1000.0,
-    shaft_damping=200.0, shaft_stiffness=0.0, ring_stiffness_x=0.0, ring_stiffness_y=0.0, support_stiffness_x=6e7,
-    support_stiffness_y=5e7, support_damping_x=2250.0, support_damping_y=2000.0, sensor_stiffness_x=SPRING,
-    sensor_stiffness_y=SPRING, sensor_damping=DAMPER, load_x=20.0, load_y=-300.0,
-)  # fmt: skip
 UNDAMPED = RIG._replace(
     ring_damping=0.0, shaft_damping=0.0, support_damping_x=0.0, support_damping_y=0.0, sensor_damping=0.0
 )
@@ -50,35 +29,6 @@ def displaced(*, along, by, clearance):
     start = np.zeros(12)
     start[:2] = (clearance + by) * np.cos(along), (clearance + by) * np.sin(along)
     return start
-
-
-def assert_the_twin_agrees(drawn):
-    lanes = march_lanes([drawn], 8, 4, KNOT)[0]
-    twin = march_twin(drawn, lanes.states[0], 8, 4, KNOT)
-    static = math.hypot(drawn.machine.load_x, drawn.machine.load_y) / drawn.machine.shaft_mass
-    largest = max(np.abs(twin.accelerations).max(), 1e-3 * static)  # at rest only rounding is left to compare
-    np.testing.assert_allclose(lanes.angles, twin.angles, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(lanes.directions, twin.directions, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(lanes.states[:, :6], twin.states[:, :6], rtol=0, atol=1e-16)
-    np.testing.assert_allclose(lanes.accelerations, twin.accelerations, rtol=0, atol=1e-9 * largest)
-
-
-@law
-@given(steady_records())
-def test_the_kernel_goes_where_its_twin_goes_without_a_fault(drawn):
-    assert_the_twin_agrees(drawn)
-
-
-@law
-@given(wandering_records())
-def test_the_kernel_goes_where_its_twin_goes_with_everything_at_once(drawn):
-    assert_the_twin_agrees(drawn)
-
-
-@law
-@given(extended_records())
-def test_a_spall_under_several_balls_lets_each_of_them_drop(drawn):
-    assert_the_twin_agrees(drawn)
 
 
 def test_the_error_of_a_smooth_trajectory_falls_with_the_fourth_power_of_the_step():
@@ -99,7 +49,7 @@ def energy(states):
     squeeze = relative[:, :1] * np.cos(turns) + relative[:, 1:] * np.sin(turns) - UNDAMPED.half_clearance
     contact = UNDAMPED.load_deflection_factor * np.maximum(squeeze, 0) ** 2.5 / 2.5
     support = np.array([UNDAMPED.support_stiffness_x, UNDAMPED.support_stiffness_y])
-    springs = support @ (housing**2).T / 2 + SPRING * np.sum((housing - sensor) ** 2, axis=1) / 2
+    springs = support @ (housing**2).T / 2 + RIG.sensor_stiffness_x * np.sum((housing - sensor) ** 2, axis=1) / 2
     load = states[:, 0] * UNDAMPED.load_x + states[:, 1] * UNDAMPED.load_y
     return states[:, 6:] ** 2 @ MASSES / 2 + contact.sum(axis=1) + springs - load
 
@@ -129,48 +79,6 @@ def test_the_bearing_moves_momentum_but_makes_none(machine, motion, seed):
     ground += machine.shaft_stiffness * start[:2] + machine.shaft_damping * start[6:8]
     load = np.array([machine.load_x, machine.load_y])
     np.testing.assert_allclose(total, load - ground, rtol=0, atol=1e-12 * np.abs(forces).max())
-
-
-@given(machines(contact_damping=0.0), steady_motions(), st.lists(spalls(), min_size=2, max_size=4))
-@law
-def test_a_mirrored_machine_gives_the_mirrored_record(machine, motion, some):
-    """x -> -x: angles become pi minus themselves, the shaft turns the other way, ball i becomes ball -i."""
-    there = record(machine, motion, some)
-    turned = motion._replace(
-        shaft_rate=-motion.shaft_rate,
-        shaft_angle=math.pi - motion.shaft_angle,
-        cage_angle=math.pi - motion.cage_angle,
-        spin_angle=-motion.spin_angle,
-    )
-    mirrored = [
-        spall._replace(angle=math.pi - spall.angle if spall.site == "outer" else -spall.angle, ball=-spall.ball % 9)
-        for spall in some
-    ]
-    back = record(machine._replace(load_x=-machine.load_x), turned, mirrored)
-    trips = march_lanes([there, back], 600, 8, KNOT)  # 50 ms
-    sign = np.tile([-1.0, 1.0], 3)
-    largest = np.abs(trips[0].states[:, :6]).max()
-    np.testing.assert_allclose(trips[1].states[:, :6], sign * trips[0].states[:, :6], rtol=0, atol=1e-8 * largest)
-
-
-@law
-@given(steady_records(), angles)
-def test_a_machine_turned_as_a_whole_gives_the_turned_record(there, turn):
-    machine = there.machine._replace(
-        ring_stiffness_y=there.machine.ring_stiffness_x,
-        support_stiffness_y=there.machine.support_stiffness_x,
-        support_damping_y=there.machine.support_damping_x,
-        sensor_stiffness_y=there.machine.sensor_stiffness_x,
-    )
-    c, s = math.cos(turn), math.sin(turn)
-    load = c * machine.load_x - s * machine.load_y, s * machine.load_x + c * machine.load_y
-    motion = there.motion._replace(
-        shaft_angle=there.motion.shaft_angle + turn, cage_angle=there.motion.cage_angle + turn
-    )
-    here = there._replace(machine=machine)
-    moved = there._replace(machine=machine._replace(load_x=load[0], load_y=load[1]), motion=motion)
-    one, other = (trip.states[:, :6].reshape(-1, 3, 2) for trip in march_lanes([here, moved], 240, 8, KNOT))
-    np.testing.assert_allclose(one @ np.array([[c, s], [-s, c]]), other, rtol=0, atol=1e-8 * np.abs(one).max())
 
 
 @law

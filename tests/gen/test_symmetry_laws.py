@@ -1,0 +1,143 @@
+"""A machine seen from elsewhere, in a mirror or with other faults that nothing touches gives the record seen from there."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.physics.batch import Spall, lay_out, record_shape
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.kernel import N_DYNAMIC
+from gen.physics.lanes import LANES
+from gen.physics.motion import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, WAVE_ROWS
+from tests.reference import march_lanes
+from tests.strategies import RIG, angles, record, steady_motions, troubled_records
+
+law = settings(deadline=None, max_examples=20)
+KNOT = 1 / 12_000
+N_KNOTS = 600  # 50 ms
+
+
+def turned(vector, turn):
+    """Pairs (..., axis) turned about the shaft."""
+    c, s = math.cos(turn), math.sin(turn)
+    return np.asarray(vector) @ np.array([[c, s], [-s, c]])
+
+
+def isotropic(machine):
+    return machine._replace(
+        ring_stiffness_y=machine.ring_stiffness_x,
+        support_stiffness_y=machine.support_stiffness_x,
+        support_damping_y=machine.support_damping_x,
+        sensor_stiffness_y=machine.sensor_stiffness_x,
+    )
+
+
+def turned_record(there, turn):
+    """The record with load, misalignment, knock, shaft, cage and outer race turned; the inner race turns with the shaft."""
+    machine, motion = there.machine, there.motion
+    load_x, load_y = turned([machine.load_x, machine.load_y], turn)
+    twice_x, twice_y = turned([motion.twice_x, motion.twice_y], turn)
+    return there._replace(
+        machine=machine._replace(load_x=load_x, load_y=load_y),
+        motion=motion._replace(
+            shaft_angle=motion.shaft_angle + turn,
+            cage_angle=motion.cage_angle + turn,
+            knock_angle=motion.knock_angle + turn,
+            twice_x=twice_x,
+            twice_y=twice_y,
+        ),
+        spalls=tuple(
+            spall._replace(angle=spall.angle + turn) if spall.site == "outer" else spall for spall in there.spalls
+        ),
+    )
+
+
+def rest_of(drawn):
+    """State in which a record starts, shape (coordinate,)."""
+    return lay_out([drawn], record_shape(drawn), KNOT).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
+
+
+@law
+@given(troubled_records(), angles, st.floats(-1e-5, 1e-5))
+def test_a_machine_turned_as_a_whole_gives_the_turned_record(drawn, turn, off):
+    """Without play in the support, which is square, and without waviness of the outer race, whose amplitudes count from x."""
+    here = drawn._replace(machine=isotropic(drawn.machine)._replace(looseness=1e-30), waves=np.empty(0))
+    start = rest_of(here) + off * np.repeat([1.0, 100.0], 6)
+    moved = turned_record(here, turn)
+    one = march_lanes([here], N_KNOTS, 8, KNOT, start)[0].states.reshape(-1, 6, 2)
+    other = march_lanes([moved], N_KNOTS, 8, KNOT, turned(start.reshape(6, 2), turn).ravel())[0].states.reshape(
+        -1, 6, 2
+    )
+    assert_alike(turned(one, turn), other)
+
+
+def assert_alike(one, other):
+    """Same displacements and rates but for rounding, which play in the support makes grow; shapes (knot, pair, axis)."""
+    for part, rounding in ((slice(0, 3), 1e-10), (slice(3, 6), 1e-9)):
+        np.testing.assert_allclose(other[:, part], one[:, part], rtol=0, atol=rounding * np.abs(one[:, part]).max())
+
+
+def mirrored_waves(waves):
+    """Amplitudes of the waviness of rings and balls seen in the mirror x -> -x, shape (row,) [m]."""
+    inner, outer = waves[:WAVE_ROWS].reshape(2, 2, -1)
+    sign = (-1.0) ** np.arange(LOWEST_ORDER, HIGHEST_ORDER + 1)
+    balls = waves[WAVE_ROWS:].reshape(BALL_ORDERS, 2, 9)[:, :, -np.arange(9)]
+    conjugate = np.array([[1.0], [-1.0]])
+    return np.concatenate([part.ravel() for part in (inner * conjugate, outer * conjugate * sign, balls * conjugate)])
+
+
+def mirrored_spall(spall):
+    return spall._replace(
+        angle=math.pi - spall.angle if spall.site == "outer" else -spall.angle,
+        ball=-spall.ball % 9,
+        table=tuple(drops[::-1] for drops in spall.table),
+    )
+
+
+def mirrored_motion(motion):
+    return motion._replace(
+        shaft_rate=-motion.shaft_rate,
+        shaft_angle=math.pi - motion.shaft_angle,
+        cage_angle=math.pi - motion.cage_angle,
+        spin_angle=-motion.spin_angle,
+        twice_x=-motion.twice_x,
+        knock_angle=math.pi - motion.knock_angle,
+        late_ball=-motion.late_ball % 9,
+        late_by=-motion.late_by,
+    )
+
+
+@law
+@given(troubled_records())
+def test_a_mirrored_machine_gives_the_mirrored_record(drawn):
+    """x -> -x: angles become pi minus themselves, the shaft turns the other way, ball i becomes ball -i.
+
+    At half the shaft rate the cage knocks once only: how hard it does later depends on the number of its turns.
+    """
+    there = drawn._replace(motion=drawn.motion._replace(jitter_rms=0.0, shaft_rate=drawn.motion.shaft_rate / 2))
+    mirrored = there._replace(
+        machine=there.machine._replace(load_x=-there.machine.load_x),
+        motion=mirrored_motion(there.motion),
+        spalls=tuple(map(mirrored_spall, there.spalls)),
+        waves=mirrored_waves(there.waves),
+    )
+    sign, start = np.tile([-1.0, 1.0], 6), rest_of(there)
+    one = march_lanes([there], N_KNOTS, 8, KNOT, start)[0].states * sign
+    other = march_lanes([mirrored], N_KNOTS, 8, KNOT, start * sign)[0].states
+    assert_alike(one.reshape(-1, 6, 2), other.reshape(-1, 6, 2))
+
+
+@law
+@given(steady_motions(), st.floats(-0.5, 0.5), st.floats(1e-5, 1e-3))
+def test_what_lies_deeper_than_a_ball_can_fall_makes_no_difference(motion, ahead, depth):
+    """A rotor of 54 N over a floor at 5 um or anywhere below, in the load zone at first: the ball hangs free."""
+    angle = ahead - math.pi / 2 - motion.shaft_angle
+    spall = Spall("inner", math.radians(20) * CATALOGUE["6205"].inner_radius, 5e-6, angle, profile="rectangular")
+    light = RIG._replace(half_clearance=0.0, load_x=0.0, load_y=-54.0, support_stiffness_y=1.5e7)
+    calm = motion._replace(unbalance=0.0)
+    shallow, deep = (record(light, calm, [spall._replace(depth=d)]) for d in (5e-6, depth))
+    one, other = march_lanes([shallow, deep], N_KNOTS, 8, KNOT)
+    np.testing.assert_array_equal(one.states, other.states)
+    assert np.ptp(one.states[:, 1]) > 1e-7

@@ -1,0 +1,103 @@
+"""The lane kernel goes where its slow twin goes, feature by feature; see :mod:`tests.reference`."""
+
+import math
+
+import numpy as np
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.physics.batch import lay_out, record_shape
+from gen.physics.integrate import integrate
+from gen.physics.kernel import N_DYNAMIC
+from gen.physics.lanes import LANES
+from tests.reference import (
+    contact_stiffness,
+    contacts,
+    march_lanes,
+    march_twin,
+    right_hand_side,
+    slow_motion,
+)
+from tests.strategies import extended_records, steady_records, troubled_records, wandering_records
+
+law = settings(deadline=None, max_examples=20)
+KNOT = 1 / 12_000
+
+
+def assert_the_twin_agrees(drawn, n_knots=8):
+    lanes = march_lanes([drawn], n_knots, 4, KNOT)[0]
+    twin = march_twin(drawn, lanes.states[0], n_knots, 4, KNOT)
+    static = math.hypot(drawn.machine.load_x, drawn.machine.load_y) / drawn.machine.shaft_mass
+    largest = max(np.abs(twin.accelerations).max(), 1e-3 * static)  # at rest only rounding is left to compare
+    np.testing.assert_allclose(lanes.angles, twin.angles, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(lanes.directions, twin.directions, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(lanes.states[:, :6], twin.states[:, :6], rtol=0, atol=1e-16)
+    np.testing.assert_allclose(lanes.accelerations, twin.accelerations, rtol=0, atol=1e-9 * largest)
+
+
+@law
+@given(steady_records())
+def test_the_kernel_goes_where_its_twin_goes_without_a_fault(drawn):
+    assert_the_twin_agrees(drawn)
+
+
+@law
+@given(wandering_records())
+def test_the_kernel_goes_where_its_twin_goes_with_spalls_and_wander(drawn):
+    assert_the_twin_agrees(drawn)
+
+
+@law
+@given(extended_records())
+def test_a_spall_under_several_balls_lets_each_of_them_drop(drawn):
+    assert_the_twin_agrees(drawn)
+
+
+@law
+@given(troubled_records())
+def test_the_kernel_goes_where_its_twin_goes_with_every_fault_of_bearing_and_machine(drawn):
+    assert_the_twin_agrees(drawn, 12)
+
+
+@law
+@given(troubled_records(rollers=True))
+def test_the_kernel_goes_where_its_twin_goes_with_rollers(drawn):
+    assert_the_twin_agrees(drawn, 12)
+
+
+def assert_what_comes_out_is_the_twins(drawn, seed, slack):
+    """Integrate 32 knots of a single step, as many as the integrator takes at once, and look at every one.
+
+    The slope of a contact that just touches is steep: squeezes may differ by ``slack`` [m].
+    """
+    pickups = np.random.default_rng(seed).normal(size=(2, 6))
+    drawn = drawn._replace(pickups=pickups)
+    shape = record_shape(drawn)
+    knot, n_knots = KNOT / 4, 32
+    found = integrate(shape, lay_out([drawn], shape, knot), knot, 1, np.ones(1), 0, n_knots)
+    start = lay_out([drawn], shape, knot).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
+    slow = slow_motion(drawn, knot, n_knots)
+    states = march_twin(drawn, start, n_knots, 1, knot).states[:-1]
+    if drawn.displacement:
+        expected = states[:, :6] @ pickups.T
+    else:
+        rates = [right_hand_side(drawn, slow, knot, at, 0.0, y) for at, y in enumerate(states)]
+        expected = np.array(rates)[:, 6:] @ pickups.T
+    largest = np.abs(expected).max()
+    np.testing.assert_allclose(found.response[..., 0], expected, rtol=0, atol=1e-9 * largest)
+    squeezes = [contacts(drawn, slow, at, 0.0, y).squeeze for at, y in enumerate(states)]
+    low, high = (max(contact_stiffness(drawn.machine, s + off) for s in squeezes) for off in (-slack, slack))
+    assert low * (1 - 1e-9) <= found.steepest[0] <= high * (1 + 1e-9)
+    assert (found.diverged == -1).all()
+
+
+@law
+@given(wandering_records(), st.integers(0, 2**32 - 1))
+def test_the_integrator_gives_the_weighted_accelerations_and_the_largest_contact_stiffness(drawn, seed):
+    assert_what_comes_out_is_the_twins(drawn, seed, 1e-20)
+
+
+@law
+@given(troubled_records(rollers=True), st.integers(0, 2**32 - 1))
+def test_the_integrator_gives_the_weighted_displacements_and_the_largest_stiffness_of_rollers(drawn, seed):
+    assert_what_comes_out_is_the_twins(drawn._replace(displacement=True), seed, 1e-11)
