@@ -28,8 +28,8 @@ def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 
     """Run the seed paper again.
 
     Its figures are drawn, and what it states is measured. Three parameter sets: paper is the first that was found;
-    paper-hertz keeps the contact stiffness that follows from the geometry and the weight of the rotor as load; paper-refit is what a
-    longer search found, and lets most statements hold. Where one does not, the table says why; docs/errata.md has the reasons at length.
+    paper-hertz keeps the contact stiffness that follows from the geometry and about the weight of the rotor as load; paper-refit keeps
+    both and lets most statements hold. Where one does not, the table says why; docs/errata.md has the reasons at length.
 
       raceway reproduce ophel2025 -o ophel
     """

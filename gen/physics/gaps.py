@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from gen.physics.kernel import CAGE_C, CAGE_S, COS, SHAFT_C, SHAFT_S, SIN, FloatArray, Shape, gap_row, jitter_row
-from gen.physics.lanes import COMPILED, INLINE, LANES, UNFUSED, cosine, sine
+from gen.physics.lanes import INLINE, LANES, UNFUSED, cosine, sine
 from gen.physics.motion import (
     ARC,
     AXIS_FIRST,
@@ -175,7 +175,7 @@ def tabulated(tables: FloatArray, row: int, offset: float, half: float) -> float
     return (1 - part) * tables[row, point] + part * tables[row, point + 1]
 
 
-@njit(**COMPILED)
+@njit(**INLINE)
 def pass_spall(
     lanes: Lanes,
     spall: int,

@@ -16,7 +16,7 @@ from scipy.signal import firwin
 from gen.physics import gaps, kernel, lanes, motion, spall
 from gen.physics.gaps import ball_gaps, move_gaps, move_spalls
 from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, advance, jitter_row, param_rows
-from gen.physics.lanes import COMPILED, INLINE, KERNEL, LANES
+from gen.physics.lanes import INLINE, KERNEL, LANES
 from gen.physics.motion import (
     ANGLE_ROWS,
     JITTER_FIRST,
@@ -131,7 +131,7 @@ def filter_knot(taps: FloatArray, history: FloatArray, first: int, width: int, t
             total[i] += taps[tap] * history[first + tap * width + i]
 
 
-@njit(**COMPILED)
+@njit(**INLINE)
 def integrate_lanes(
     shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
 ) -> Integral:

@@ -15,8 +15,9 @@ FASTMATH = {"nsz", "arcp", "contract", "afn"}
 INLINE: dict[str, Any] = {"forceinline": True, "fastmath": FASTMATH, "error_model": "numpy"}
 # For short loops over lanes, which LLVM unrolls: of two products in a sum it may fuse one in the first lanes and the other in the rest.
 UNFUSED: dict[str, Any] = {**INLINE, "fastmath": FASTMATH - {"contract"}}
-COMPILED: dict[str, Any] = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True}
-KERNEL: dict[str, Any] = {**COMPILED, "cache": True}
+# All the rest is inlined into it: a function left on its own is optimised apart in the process that compiles the kernel, and that process
+# would give other last bits than those that find the kernel in the cache.
+KERNEL: dict[str, Any] = {"fastmath": FASTMATH, "error_model": "numpy", "nogil": True, "cache": True}
 
 
 @njit(**INLINE)

@@ -14,6 +14,7 @@ from gen.physics.lanes import INLINE, cosine, sine
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular", "table")
 GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR, TABLE = range(5)
 RAISED_EDGE = 0.25  # share of the half width taken by each cosine flank
+FAR_INSIDE = 0.7  # rad from an edge, where the sine still holds
 
 
 @njit(**INLINE)
@@ -46,7 +47,7 @@ def drop(profile: int, offset: float, half: float, arc: float, ball: float, race
     from_edge = half - abs(offset)
     inside = max(from_edge, 0.0)
     if profile == GEOMETRIC:
-        chord = arc * sine(inside)
+        chord = min(arc * sine(min(inside, FAR_INSIDE)), ball)
         value = min(sagitta(chord, ball) + sagitta(chord, race), depth)
     elif profile == HALF_SINE:
         value = depth * max(cosine(0.5 * math.pi * min(abs(offset) / half, 1.0)), 0.0)
@@ -60,5 +61,5 @@ def drop(profile: int, offset: float, half: float, arc: float, ball: float, race
 
 def largest_drop(width: float, arc: float, ball: float, race: float, depth: float) -> float:
     """Deepest point of the geometric path over a spall of ``width`` [m]."""
-    half = min(0.5 * width / arc, 0.7)
+    half = min(0.5 * width / arc, FAR_INSIDE)
     return float(drop(GEOMETRIC, 0.0, half, arc, ball, race, depth))

@@ -53,6 +53,7 @@ from gen.scenarios.model import (
     stream,
 )
 
+_WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # width of a spall over the radius it lies on
 _DIMENSIONS = 64  # quasi-random values of an item; what it draws beyond them is plain random
 # dimensions of its own for each level: the same ones tied the first values of a specimen and its only record together (r up to 1)
 _FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
@@ -283,10 +284,10 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
         spalls.append(
             Spall(entry.kind, width, max(trace, default=depth), angle, carrier, entry.profile, trace, roughness)
         )
-        if width > 1.4 * radius:
+        if width > _WIDEST[entry.kind] * radius:
             raise RecipeError(
                 f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit the {entry.kind} radius of {radius * 1e3:.3g} mm; "
-                f"keep width_mm below {1.4 * radius * 1e3:.3g}."
+                f"keep width_mm below {_WIDEST[entry.kind] * radius * 1e3:.3g}."
             )
     return tuple(spalls)
 

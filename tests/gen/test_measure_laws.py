@@ -96,7 +96,9 @@ def test_a_record_is_measured_alike_alone_and_among_others(recipe_with):
     together = measure(heard, scenarios, recipe)
     for place in (0, 7, 23):
         alone = measure(
-            Response(heard.acceleration[place : place + 1], heard.oversampling, heard.step_phase, {}), [scenarios[place]], recipe
+            Response(heard.acceleration[place : place + 1], heard.oversampling, heard.step_phase, {}),
+            [scenarios[place]],
+            recipe,
         )
         np.testing.assert_array_equal(alone.signal[0], together.signal[place])
 
@@ -219,7 +221,9 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
 
 def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800})
-    plain = with_rig(draw_scenarios(recipe, 0, 1), path=Path(1.0, (), (0.0, 0.0)), background=QUIET, background_rms=0.0, gain=1.0)
+    plain = with_rig(
+        draw_scenarios(recipe, 0, 1), path=Path(1.0, (), (0.0, 0.0)), background=QUIET, background_rms=0.0, gain=1.0
+    )
     heard = response(recipe, 1, lambda time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
     signal = measure(heard, with_rig(plain, path=Path(1.0, (), (0.6, 0.2))), recipe).signal[0, 0].astype(float)
     assert line(signal, 2000) == pytest.approx(1.0, abs=1e-3)
@@ -249,7 +253,10 @@ def test_a_record_that_diverged_leaves_the_others_as_they_are(recipe_with):
 
 
 def test_a_channel_with_a_path_of_its_own_hears_the_bearing_through_it(recipe_with):
-    channels = [{"name": "drive_end", "body": "housing"}, {"name": "fan_end", "body": "housing", "path": {"direct": 0.25}}]
+    channels = [
+        {"name": "drive_end", "body": "housing"},
+        {"name": "fan_end", "body": "housing", "path": {"direct": 0.25}},
+    ]
     recipe = recipe_with(FLOAT | {"recording.channels": channels, "path.modes": None, "path.direct": 1.0})
     scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, background_rms=0.0, gain=1.0)
     near, far = measure(hiss(recipe, 1), scenarios, recipe).signal[0].astype(float)

@@ -107,3 +107,9 @@ def test_a_spall_deeper_than_a_ball_can_drop_might_as_well_have_no_bottom(share,
     half = width / 2 / abs(race)
     enough = fall(GEOMETRIC, 0.0, half, race)
     assert fall(GEOMETRIC, share * half, half, race, deeper * enough) == fall(GEOMETRIC, share * half, half, race)
+
+
+@law
+@given(st.floats(1.0, 2.5), st.floats(0, 0.25), races, st.floats(1e-6, 1e-4))
+def test_far_inside_a_spall_as_wide_as_several_balls_a_ball_lies_on_the_floor(half, share, race, depth):
+    assert fall(GEOMETRIC, share * half, half, race, depth) == depth
