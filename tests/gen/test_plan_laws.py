@@ -33,7 +33,7 @@ def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
 @pytest.mark.parametrize(("key", "factor"), [("corpus.rigs", 3), ("recording.duration_s", 1)])
 def test_more_records_take_more_time_and_room(write_recipe, tmp_path, key, factor):
     small = plan(write_recipe(tmp_path / "small.yaml"))
-    large = plan(write_recipe(tmp_path / "large.yaml", {key: 9 if factor == 3 else 0.3}))
+    large = plan(write_recipe(tmp_path / "large.yaml", {key: 9 if factor == 3 else 1.0}))
     assert large.records == factor * small.records
     assert large.bytes > 1.3 * small.bytes
     assert large.estimated_seconds > 1.3 * small.estimated_seconds

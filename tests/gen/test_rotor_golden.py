@@ -18,6 +18,7 @@ def test_the_shaft_rests_as_deep_and_its_lowest_ball_bears_as_much_as_in_the_mod
         "support_stiffness_x": CASE["support_stiffness"],
         "support_stiffness_y": CASE["support_stiffness"],
         "contact_cosine": 1.0,
+        "contact_exponent": 1.5,
         "load_y": -CASE["load"],
     }
     machine = as_columns([Machine(**fields)])

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from gen.errors import SimulationError
+from gen.machinery import physical_record, true_motion
 from gen.physics.integrate import decimation_taps
 from gen.physics.rotor import fastest_swing, likely_stiffness
 from gen.scenarios import draw_scenarios
-from gen.machinery import physical_record, true_motion
 from gen.simulate import FINE_STEP, lead_samples, simulate, steps_per_sample
 from tests.reference import march_lanes, slow_motion, waviness
 

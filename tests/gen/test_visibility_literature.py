@@ -7,6 +7,7 @@ import functools
 
 import numpy as np
 import pytest
+
 from benchmarks.visibility import LINES, ROWS, STATED, UNSEEN, visibilities
 
 SEEDS, SHARE = 32, 0.95
