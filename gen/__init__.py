@@ -12,6 +12,7 @@ importers     real recordings into the same format
 distributions what a recipe may draw from
 recipe        YAML to a frozen model
 scenarios     rigs, specimens and records, fully drawn
+damage        spalls and waviness, as the kernel takes them
 machinery     what the kernel needs of a scenario
 simulate      scenarios to accelerations
 measure       accelerations to what a data-acquisition card stores

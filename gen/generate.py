@@ -31,7 +31,7 @@ from gen.corpus import (
     write_part,
     write_text_durably,
 )  # fmt: skip
-from gen.errors import CorpusError, RacewayError, RecipeError
+from gen.errors import CorpusError, RacewayError, RecipeError, SimulationError
 from gen.labels import part_dataset
 from gen.measure import measure
 from gen.physics.batch import record_shape
@@ -246,7 +246,10 @@ def compile_kernels(recipe: Recipe) -> None:
     done = set()
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
-            record = kernel_record(scenario, recipe)
+            try:
+                record = kernel_record(scenario, recipe)
+            except SimulationError:  # left out when its part is made
+                continue
             if record_shape(record) not in done:
                 done.add(record_shape(record))
                 compile_kernel(record)

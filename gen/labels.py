@@ -10,7 +10,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus import FAULTS, SPLITS, Variable, make_dataset
-from gen.machinery import deepest, true_motion
+from gen.damage import deepest
+from gen.machinery import true_motion
 from gen.measure import Measured
 from gen.physics.bearing import orders
 from gen.physics.course import mean_share, share_at
@@ -20,9 +21,9 @@ from gen.simulate import Response
 
 EXTRA = (
     Variable("axial_load", "f8", "N", "operating", "axial load"),
-    Variable("temperature", "f8", "degC", "operating", "temperature of the oil in the contacts"),
+    Variable("temperature", "f8", "degC", "operating", "temperature of the oil in the contacts, NaN without a lubricant"),
     Variable("parts", "str", "1", "label", "parts that are damaged, joined by +, empty if healthy"),
-    Variable("largest_drop", "f8", "m", "label", "largest drop of a ball over the widest spall, 0 without a spall"),
+    Variable("largest_drop", "f8", "m", "label", "largest drop of a rigid ball over the widest spall, 0 without a spall"),
     Variable("width_share", "f8", "1", "label", "width of the widest spall over that from ball to ball, or round a ball; 0 without"),
     Variable("wear", "f8", "m", "label", "rms waviness of a worn race, 0 if none is"),
     Variable("pitch_error", "f8", "rad", "label", "angle by which a ball is out of its place in a broken cage"),
@@ -36,6 +37,7 @@ EXTRA = (
     Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders"),
     Variable("snr", "f8", "dB", "latent", "bearing over background"),
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),
+    Variable("running_clearance", "f8", "m", "latent", "the same as warm, oiled and axially loaded as it runs"),
     Variable("clipped", "i4", "1", "latent", "samples at the limits of the converter"),
     Variable("oversampling", "i4", "1", "provenance", "integration steps per sample"),
     Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
@@ -56,6 +58,9 @@ def part_dataset(
     columns = {name: [row[name] for row in rows] for name in rows[0]}
     columns |= {"clipped": measured.clipped, "snr": measured.snr}
     columns |= {"oversampling": response.oversampling, "step_phase": response.step_phase}
+    columns["running_clearance"] = [
+        np.nan if record is None else 2 * record.machine.half_clearance for record in response.records
+    ]
     columns["step_error"] = np.full(len(rows), np.nan) if step_error is None else step_error
     return make_dataset(
         measured.signal,
@@ -83,7 +88,7 @@ def _columns(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         "sample_rate": recipe.recording.sample_rate_hz,
         "load": conditions["load"] * mean_share(record.load_course, duration),
         "axial_load": conditions["axial_load"],
-        "temperature": conditions["temperature"],
+        "temperature": np.nan if rig.lubricant is None else conditions["temperature"],
         **nominal._asdict(),
         "bearing": rig.bearing.designation,
         **_fault_labels(scenario),

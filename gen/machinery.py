@@ -1,33 +1,34 @@
-"""What the kernel needs of a scenario: constants of the machine, its motion, its spalls and the course of speed and load.
+"""What the kernel needs of a scenario: constants of the machine, its motion, and the course of speed and load.
 
 Temperature, oil and axial load act here, once per record: they change clearance, contact stiffness and damping.
 """
 
 import functools
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import CubicSpline
 
+from gen.damage import kernel_spalls, waviness
 from gen.physics import motion
 from gen.physics.axial import axial_approach
 from gen.physics.batch import Motion, Record, n_terms
-from gen.physics.batch import Spall as KernelSpall
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
 from gen.physics.course import mean_share, share_at
-from gen.physics.hertz import contact_exponent, footprints, load_deflection_factor
+from gen.physics.hertz import contact_exponent, load_deflection_factor
 from gen.physics.integrate import HALF_TAPS
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs
-from gen.physics.spall import PROFILES, drop, largest_drop
-from gen.physics.trace import felt, places, rolled, roughened
 from gen.recipe import Recipe
-from gen.scenarios import Purpose, Scenario, Spall, stream
+from gen.scenarios import Purpose, Scenario
 
 FloatArray = NDArray[np.float64]
 
 LEAVES_LOAD_ZONE = math.pi / 3  # where the pocket of a broken cage knocks, from the load on
 LOAD_TERMS = 8
+THICKEST_FILM = 10e-6  # m, both contacts; measured films are below 2 um
 _BODIES = {"shaft": 0, "housing": 2, "sensor": 4}
 
 
@@ -35,39 +36,57 @@ def physical_record(scenario: Scenario, recipe: Recipe) -> Record:
     """What the kernel needs of a scenario; the recipe gives the times of the knots."""
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
     drawn, conditions = rig.machine, record.conditions
-    rng = scenario.rng(Purpose.MOTION)
-    shaft, cage, spin = rng.uniform(0, 2 * np.pi, 3)
-    omega = 2 * math.pi * conditions["shaft"]
+    start = _start(scenario)
+    # a balance grade is that of the highest speed a machine is made for (ISO 21940-11)
+    highest_rate = recipe.operation.shaft_rpm.support()[1] / 60
     turning = Motion(
         shaft_rate=conditions["shaft"],
         speed_rms=conditions["speed_wander"],
         mean_slip=conditions["mean_slip"],
         slip_rms=conditions["slip"],
-        spin_rms=specimen.axis.get("spin_wander", 0.0),
+        spin_rms=conditions["spin_wander"],
         jitter_rms=conditions["jitter"],
         axis_offset=specimen.axis.get("axis_offset", 0.0),
         axis_rms=specimen.axis.get("axis_wander", 0.0),
         axis_limit=specimen.axis.get("track", 0.0),
-        unbalance=drawn["shaft_mass"] * drawn["balance"] / omega,
-        shaft_angle=shaft,
-        cage_angle=cage,
-        spin_angle=spin,
+        unbalance=drawn["shaft_mass"] * drawn["balance"] / (2 * math.pi * highest_rate),
+        shaft_angle=start.shaft,
+        cage_angle=start.cage,
+        spin_angle=start.spin,
         bow=drawn["bow"],
         twice_x=drawn["misalignment"] * math.cos(drawn["misalignment_angle"]),
         twice_y=drawn["misalignment"] * math.sin(drawn["misalignment_angle"]),
         knock=specimen.cage.get("knock", 0.0),
         knock_angle=drawn["load_angle"] + LEAVES_LOAD_ZONE,
+        knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)),
         late_ball=0 if specimen.cage else -1,
         late_by=specimen.cage.get("pitch_error", 0.0),
     )
     pickups = np.zeros((len(rig.channels), 6))
     for row, (body, angle) in zip(pickups, rig.channels, strict=True):
         row[_BODIES[body] : _BODIES[body] + 2] = math.cos(angle), math.sin(angle)
-    frequencies, phases = _processes(specimen.bearing, conditions["shaft"], rng)
     return Record(
-        specimen.bearing, _machine(scenario, cage), turning, _kernel_spalls(scenario), frequencies, phases, pickups,
-        _waviness(scenario), _schedule(scenario, recipe),
+        specimen.bearing, _machine(scenario, start.cage), turning, kernel_spalls(scenario, heaviest_ball_load(scenario)),
+        start.frequencies, start.phases, pickups, waviness(scenario, recipe.recording.sample_rate_hz), _schedule(scenario, recipe),
     )  # fmt: skip
+
+
+class Start(NamedTuple):
+    """Angles at the start [rad], and frequencies [Hz] and phases [rad] of the terms of all processes, shape (term,)."""
+
+    shaft: float
+    cage: float
+    spin: float
+    frequencies: FloatArray
+    phases: FloatArray
+
+
+def _start(scenario: Scenario) -> Start:
+    """What is random in the motion of a record."""
+    rng = scenario.rng(Purpose.MOTION)
+    shaft, cage, spin = rng.uniform(0, 2 * np.pi, 3)
+    processes = _processes(scenario.specimen.bearing, scenario.record.conditions["shaft"], rng)
+    return Start(shaft, cage, spin, *processes)
 
 
 def _machine(scenario: Scenario, cage_angle: float) -> Machine:
@@ -76,7 +95,9 @@ def _machine(scenario: Scenario, cage_angle: float) -> Machine:
     mass = drawn["shaft_mass"] + drawn["housing_mass"]
     stiffness_x = mass * (2 * math.pi * drawn["support_frequency"]) ** 2
     stiffness_y = stiffness_x * drawn["support_ratio"]
-    spring, damper = (0.0, 0.0) if resonator is None else sensor_springs(*resonator.values())
+    spring = damper = 0.0
+    if resonator is not None:
+        spring, damper = sensor_springs(resonator["mass"], resonator["frequency"], resonator["damping"])
     factor, damping, half_clearance = _contact(scenario)
     machine = Machine(
         load_deflection_factor=factor,
@@ -108,7 +129,11 @@ def _machine(scenario: Scenario, cage_angle: float) -> Machine:
     if axial == 0:
         return machine
     angles = cage_angle + 2 * np.pi * np.arange(bearing.n_balls) / bearing.n_balls
-    return machine._replace(half_clearance=half_clearance - axial_approach(machine, axial, angles))
+    course = scenario.record.load_course
+    return machine._replace(
+        half_clearance=half_clearance
+        - axial_approach(machine, axial, angles, heaviest=1.0 if course is None else max(course.shares))
+    )
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:
@@ -119,82 +144,27 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
     if oil is None:
         return factor, 0.0, clearance / 2
     heaviest = heaviest_ball_load(scenario)
-    made = film(bearing, Lubricant(*oil.values()), conditions["temperature"], conditions["shaft"], heaviest)
+    lubricant = Lubricant(oil["viscosity_40"], oil["viscosity_100"], oil["density"], oil["pressure_viscosity"])
+    made = film(bearing, lubricant, conditions["temperature"], conditions["shaft"], heaviest)
+    if made.thickness > THICKEST_FILM:
+        raise ValueError(
+            f"an oil film of {made.thickness * 1e6:.3g} um is beyond what film formulas hold for, {THICKEST_FILM * 1e6:g} um; "
+            f"take thinner or warmer oil."
+        )
     softer = lubricated_factor(factor, contact_exponent(bearing), heaviest, made.stiffness)
     return softer, made.damping, clearance / 2 - made.thickness
 
 
 def heaviest_ball_load(scenario: Scenario) -> float:
-    """Static load of the most loaded ball after Stribeck [N]."""
-    return STRIBECK * scenario.record.conditions["load"] / scenario.specimen.bearing.n_balls
+    """Static load of the most loaded ball after Stribeck, and its share of the axial load on top [N]; preload is not counted."""
+    bearing, conditions = scenario.specimen.bearing, scenario.record.conditions
+    total = STRIBECK * conditions["load"]
+    if conditions["axial_load"] > 0 and bearing.contact_angle != 0:
+        total += conditions["axial_load"] / abs(math.sin(bearing.contact_angle))
+    return total / bearing.n_balls
 
 
 stiffness_of = functools.lru_cache(maxsize=4096)(load_deflection_factor)
-
-
-def _kernel_spalls(scenario: Scenario) -> tuple[KernelSpall, ...]:
-    """Spalls as the kernel knows them; outer race angles count from x there, and rough or wide contacts make tables."""
-    shift = scenario.rig.machine["load_angle"]
-    found = []
-    for number, spall in enumerate(scenario.specimen.spalls):
-        angle = spall.angle + (shift if spall.site == "outer" else 0.0)
-        plain = KernelSpall(spall.site, spall.width, spall.depth, angle, spall.ball, spall.profile)
-        found.append(_tabulated(scenario, number, plain) if _needs_table(scenario, spall) else plain)
-    return tuple(found)
-
-
-def _needs_table(scenario: Scenario, spall: Spall) -> bool:
-    return scenario.rig.footprint or spall.profile == "trace" or spall.roughness > 0
-
-
-def _tabulated(scenario: Scenario, number: int, plain: KernelSpall) -> KernelSpall:
-    paths = spall_paths(scenario, number)
-    if not scenario.rig.footprint:
-        return plain._replace(profile="table", table=tuple(tuple(path) for path in paths))
-    inner, outer = footprints(scenario.specimen.bearing, heaviest_ball_load(scenario))
-    widths = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[plain.site]
-    margin = max(widths)
-    table = tuple(tuple(felt(path, plain.width, b, margin)) for path, b in zip(paths, widths, strict=True))
-    return plain._replace(profile="table", width=plain.width + 2 * margin, table=table)
-
-
-def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
-    """Path of the middle of a contact over a spall, shape (point,), on each race that its balls roll on there [m]."""
-    specimen, spall = scenario.specimen, scenario.specimen.spalls[number]
-    bearing = specimen.bearing
-    inner, outer = bearing.inner_radius, -bearing.outer_radius
-    races = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[spall.site]
-    place = scenario.seed, scenario.rig.number, specimen.number, number
-    return _paths(spall, bearing.ball_diameter / 2, races, place)
-
-
-def deepest(scenario: Scenario, number: int) -> float:
-    """Largest drop over a spall, on whichever race is deeper [m]."""
-    spall, bearing = scenario.specimen.spalls[number], scenario.specimen.bearing
-    if spall.profile != "geometric" or spall.roughness > 0:
-        return max(float(path.max()) for path in spall_paths(scenario, number))
-    ball = bearing.ball_diameter / 2
-    arc = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": ball}[spall.site]
-    race = -bearing.outer_radius if spall.site == "outer" else bearing.inner_radius
-    return largest_drop(spall.width, arc, ball, race, spall.depth)
-
-
-@functools.lru_cache(maxsize=256)
-def _paths(
-    spall: Spall, ball: float, races: tuple[float, ...], place: tuple[int, int, int, int]
-) -> tuple[FloatArray, ...]:
-    at = places(spall.width)
-    if spall.profile not in ("geometric", "trace"):
-        arc = ball if spall.site == "ball" else abs(races[0])
-        profile, half = PROFILES.index(spall.profile), 0.5 * spall.width / arc
-        one = np.array([drop(profile, x / arc, half, arc, ball, races[0], spall.depth) for x in at])
-        return (one,) * len(races)
-    depths = np.full(len(at), spall.depth)
-    if spall.profile == "trace":
-        depths = np.interp(at, np.linspace(at[0], at[-1], len(spall.trace)), spall.trace)
-    if spall.roughness > 0:
-        depths = roughened(depths, spall.roughness, stream(*place, Purpose.ROUGHNESS))
-    return tuple(rolled(depths, spall.width, ball, race) for race in races)
 
 
 def _processes(bearing: Bearing, shaft_rate: float, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
@@ -227,58 +197,26 @@ def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
     if wander > 0:
         rng, shaft_rate = scenario.rng(Purpose.COURSE), record.conditions["shaft"]
         rates = 2 * np.pi * shaft_rate * 0.05 ** rng.random(LOAD_TERMS)
-        waves = np.cos(times[:, None] * rates + rng.uniform(0, 2 * np.pi, LOAD_TERMS))
-        factors[:, 1] *= np.maximum(1 + wander * math.sqrt(2 / LOAD_TERMS) * waves.sum(axis=1), 0.0)
+        phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
+        coarse = np.arange(times[0], times[-1] + 2 / (32 * shaft_rate), 1 / (32 * shaft_rate))  # 32 to a turn: to 1e-6
+        waves = CubicSpline(coarse, np.cos(coarse[:, None] * rates + phases).sum(axis=1))(times)
+        factors[:, 1] *= np.maximum(1 + wander * math.sqrt(2 / LOAD_TERMS) * waves, 0.0)
     return factors
-
-
-def _waviness(scenario: Scenario) -> FloatArray:
-    """Fourier amplitudes of both races, and of the balls if they have some, shape (row,) [m]: the specimen's own, phases random."""
-    specimen, properties = scenario.specimen, scenario.specimen.properties
-    rms, of_balls, wear = properties["waviness"], properties["ball_waviness"], specimen.wear
-    if rms == 0 and of_balls == 0 and wear is None:
-        return np.empty(0)
-    rng = stream(scenario.seed, scenario.rig.number, specimen.number, 0, Purpose.WAVINESS)
-    every = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1)
-    races = _falling(every) * rms * np.exp(1j * rng.uniform(0, 2 * np.pi, (2, motion.N_ORDERS)))
-    even = 2 * np.arange(1, motion.BALL_ORDERS + 1)
-    n_balls = specimen.bearing.n_balls
-    # a ball's two contacts see the same height in even orders: together twice as much
-    balls = 2 * of_balls * _falling(even)[:, None] * np.exp(1j * rng.uniform(0, 2 * np.pi, (len(even), n_balls)))
-    if wear is not None:
-        rng = stream(scenario.seed, scenario.rig.number, specimen.number, 0, Purpose.WEAR)
-        worn = _falling(every) if wear.order is None else math.sqrt(2) * (every == wear.order)
-        races[("inner", "outer").index(wear.site)] += (
-            worn * wear.waviness * np.exp(1j * rng.uniform(0, 2 * np.pi, len(every)))
-        )
-    rows = np.concatenate([part for race in races for part in (race.real, race.imag)])
-    if of_balls == 0:
-        return rows
-    return np.concatenate([rows, np.stack([balls.real, balls.imag], axis=1).ravel()])
-
-
-def _falling(orders_of_turn: NDArray[np.int_]) -> FloatArray:
-    """Amplitudes that fall as 1/order, of unit rms together [1]."""
-    falling = 1 / orders_of_turn
-    return falling * (math.sqrt(2) / np.linalg.norm(falling))
 
 
 def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
     """Mean shaft rate [Hz] over the record and mean fault orders, course, wander and slip included."""
     conditions = scenario.record.conditions
-    rng = scenario.rng(Purpose.MOTION)
-    rng.uniform(0, 2 * np.pi, 3)
-    frequencies, phases = _processes(scenario.specimen.bearing, conditions["shaft"], rng)
+    drawn = _start(scenario)
     start, duration, course = recipe.recording.settle_s, recipe.recording.duration_s, scenario.record.speed_course
 
     def mean(first: int, terms: int) -> float:
         """Over the turns of the shaft, which are even in time without a course."""
-        turn = 2 * np.pi * frequencies[first : first + terms]
-        phase = phases[first : first + terms]
+        turn = 2 * np.pi * drawn.frequencies[first : first + terms]
+        phase = drawn.phases[first : first + terms]
         if course is not None:
-            points = int(
-                np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17)
-            )  # ten to a cycle of the fastest process
+            # ten to a cycle of the fastest process
+            points = int(np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17))
             times = (np.arange(points) + 0.5) * (duration / points)
             share = share_at(course, times)
             waves = np.cos(np.outer(start + times, turn) + phase).sum(axis=1)
@@ -290,5 +228,5 @@ def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
     rate *= 1 + conditions["speed_wander"] * mean(0, motion.SPEED_TERMS)
     slip = conditions["mean_slip"] + conditions["slip"] * mean(motion.SLIP_FIRST, motion.SLIP_TERMS)
     found = slipping_orders(scenario.specimen.bearing, slip)
-    wander = scenario.specimen.axis.get("spin_wander", 0.0) * mean(motion.SPIN_FIRST, motion.SPIN_TERMS)
+    wander = conditions["spin_wander"] * mean(motion.SPIN_FIRST, motion.SPIN_TERMS)
     return rate, found._replace(bsf=found.bsf * (1 + wander))

@@ -27,6 +27,7 @@ FloatArray = NDArray[np.float64]
 FINE_STEP, COARSEST_STEP = 0.30, 1.0
 LEAD_S = 0.05  # given ahead of the record, for the measurement's filters to start in
 _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
+LARGEST_TURN = 0.7  # rad of the shaft from sample to sample, between which it turns evenly
 CHECKED_PARTS = 32  # one part in so many has its steps checked
 
 
@@ -41,7 +42,9 @@ class Response:
     step_phase: FloatArray
     """Fastest angular frequency that a record's contacts, as stiff as they became, allow, times the step, shape (record,) [rad]."""
     failures: dict[int, str]
-    """A sentence for each record that diverged, by its place in the batch."""
+    """A sentence for each record that cannot be or diverged, by its place in the batch."""
+    records: list[Record | None]
+    """What the kernel was given, None for a record that cannot be."""
 
 
 def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
@@ -62,28 +65,39 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
     Raises
     ------
     SimulationError
-        Before anything runs, if a step would be too coarse for the stiffest mode of a scenario.
+        Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft.
     """
-    records = [kernel_record(scenario, recipe) for scenario in scenarios]
-    factors = [steps_per_sample(record, scenario, recipe) for record, scenario in zip(records, scenarios, strict=True)]
-    made, phases = _integrated(records, factors, recipe)
     failures: dict[int, str] = {}
+    records: list[Record | None] = []
     for place, scenario in enumerate(scenarios):
-        number, factor = scenario.record.number, factors[place]
-        if made.diverged[place] >= 0:
+        try:
+            records.append(kernel_record(scenario, recipe))
+        except SimulationError as error:
+            records.append(None)
+            failures[place] = str(error)
+    possible = {place: record for place, record in enumerate(records) if record is not None}
+    factors = {place: steps_per_sample(record, scenarios[place], recipe) for place, record in possible.items()}
+    made, phases = _integrated(list(possible.values()), list(factors.values()), recipe)
+    for row, (place, factor) in enumerate(factors.items()):
+        number = scenarios[place].record.number
+        if made.diverged[row] >= 0:
             failures[place] = (
-                f"record {number} diverged at t = {made.diverged[place] / recipe.recording.sample_rate_hz:.4g} s with "
+                f"record {number} diverged at t = {made.diverged[row] / recipe.recording.sample_rate_hz:.4g} s with "
                 f"{factor} steps per sample; raise recording.oversampling or soften the machine."
             )
-        elif phases[place] > COARSEST_STEP:
-            need = math.ceil(factor * phases[place] / FINE_STEP)
+        elif phases[row] > COARSEST_STEP:
+            need = math.ceil(factor * phases[row] / FINE_STEP)
             failures[place] = (
                 f"record {number}: its contacts became stiffer than {factor} steps per sample can follow; "
                 f"set recording.oversampling to {need}."
             )
-    acceleration = made.response
+    acceleration = np.full((len(scenarios), *made.response.shape[1:]), np.nan)
+    acceleration[list(possible)] = made.response
     acceleration[list(failures)] = np.nan
-    return Response(acceleration, np.array(factors), phases, failures)
+    step_phase = np.full(len(scenarios), np.nan)
+    step_phase[list(possible)] = phases
+    oversampling = np.array([factors.get(place, 0) for place in range(len(scenarios))])
+    return Response(acceleration, oversampling, step_phase, failures, records)
 
 
 def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tuple[Integral, FloatArray]:
@@ -117,24 +131,19 @@ def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response, p
     errors = np.full(len(scenarios), np.nan)
     if part % CHECKED_PARTS:
         return errors
-    records = [kernel_record(scenario, recipe) for scenario in scenarios]
-    groups = [(record_shape(record), factor) for record, factor in zip(records, response.oversampling, strict=True)]
+    fine = {place: record for place, record in enumerate(response.records) if record and place not in response.failures}
+    groups = {place: (record_shape(record), int(response.oversampling[place])) for place, record in fine.items()}
     first: dict[str, int] = {}
-    for place, scenario in enumerate(scenarios):
-        if place not in response.failures:
-            first.setdefault(scenario.specimen.fault, place)
+    for place in fine:
+        first.setdefault(scenarios[place].specimen.fault, place)
     tried = list(first.values())
     for group in {groups[place] for place in tried}:
-        others = [
-            p for p, found in enumerate(groups) if found == group and p not in tried and p not in response.failures
-        ]
+        others = [place for place, found in groups.items() if found == group and place not in tried]
         tried += others[: -sum(groups[place] == group for place in tried) % LANES]
-    finer, _ = _integrated(
-        [records[place] for place in tried], [2 * int(response.oversampling[place]) for place in tried], recipe
-    )
+    finer, _ = _integrated([fine[place] for place in tried], [2 * groups[place][1] for place in tried], recipe)
     lead = lead_samples(recipe)
-    coarse, fine = response.acceleration[tried][..., lead:], finer.response[..., lead:]
-    errors[tried] = np.sqrt(np.sum((coarse - fine) ** 2, axis=(1, 2)) / np.sum(fine**2, axis=(1, 2)))
+    coarse, halved = response.acceleration[tried][..., lead:], finer.response[..., lead:]
+    errors[tried] = np.sqrt(np.sum((coarse - halved) ** 2, axis=(1, 2)) / np.sum(halved**2, axis=(1, 2)))
     return errors
 
 
@@ -184,8 +193,14 @@ def steps_per_sample(record: Record, scenario: Scenario, recipe: Recipe) -> int:
     """
     fs = recipe.recording.sample_rate_hz
     machine = record.machine
+    fastest = record.motion.shaft_rate * (float(record.schedule[:, 0].max()) if record.schedule.size else 1.0)
+    if 2 * math.pi * fastest / fs > LARGEST_TURN:
+        raise SimulationError(
+            f"record {scenario.record.number}: its shaft turns {360 * fastest / fs:.3g} degrees per sample; raise "
+            f"recording.sample_rate_hz to {math.ceil(2 * math.pi * fastest / LARGEST_TURN)}."
+        )
     stiffness = likely_stiffness(machine, record.bearing.n_balls, largest_pull(record))
-    rate = max(float(fastest_swing(machine, stiffness)), fastest_decay(machine) / 2.5)
+    rate = max(float(fastest_swing(machine, stiffness)), fastest_decay(machine, record.bearing.n_balls) / 2.5)
     asked = recipe.recording.oversampling
     if asked is not None:
         if rate / (asked * fs) > COARSEST_STEP:

@@ -127,14 +127,15 @@ def _rank(corpus: "xr.Dataset", record: int) -> tuple[int, int]:
 
 def _described(specimen: dict[str, Any]) -> str:
     """What is wrong with a specimen, in a few words."""
+    from gen.scenarios import Spall
+
     if specimen["wear"]:
         return f"{specimen['wear']['site']} race worn all round"
+    spalls = [Spall(*spall) for spall in specimen["spalls"]]
+    more = [", traced" if spall.trace else ", rough floor" if spall.roughness > 0 else "" for spall in spalls]
+    words = [f"{spall.site} {1e3 * spall.width:g} mm{text}" for spall, text in zip(spalls, more, strict=True)]
     wander = ", axis wanders" if specimen["axis"].get("axis_wander", 0) > 0 else ""
-    rough = [", traced" if spall[6] else ", rough floor" if spall[7] > 0 else "" for spall in specimen["spalls"]]
-    spalls = [
-        f"{site} {1e3 * width:g} mm{more}" for (site, width, *_), more in zip(specimen["spalls"], rough, strict=True)
-    ]
-    return (" + ".join(spalls) or ("cage" if specimen["cage"] else "healthy")) + wander
+    return (" + ".join(words) or ("cage" if specimen["cage"] else "healthy")) + wander
 
 
 def _shown(record: "xr.Dataset", title: str) -> "Shown":

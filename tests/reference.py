@@ -117,9 +117,23 @@ def knock(drawn: Motion, cage: float, rate: float, knot: float) -> float:
     total = 0.0
     for turn in range(math.floor(past / (2 * math.pi)) - 1, math.floor(past / (2 * math.pi)) + 3):
         since = (past - 2 * math.pi * turn) / rate
-        strength = drawn.knock * 2 ** (2 * (turn * (math.sqrt(5) - 1) / 2 % 1) - 1)
+        strength = drawn.knock * knock_scatter(turn, drawn.knock_seed)
         total += strength * (half_sine_under_slope(since, -knot) + half_sine_under_slope(since, knot)) / knot
     return total
+
+
+def knock_scatter(turn: int, seed: int) -> float:
+    """Log-normal factor of the knock of a turn, from two uniform numbers by Box and Muller [1]."""
+    first, second = (split_mix(2 * turn + k, seed) for k in (0, 1))
+    return math.exp(motion.KNOCK_SCATTER * math.sqrt(-2 * math.log(first)) * math.cos(2 * math.pi * second))
+
+
+def split_mix(number: int, seed: int) -> float:
+    """Number in (0, 1): the finaliser of SplitMix64 in whole numbers."""
+    x = (number * 0x9E3779B97F4A7C15 + seed) % 2**64
+    x = (x ^ x >> 30) * 0xBF58476D1CE4E5B9 % 2**64
+    x = (x ^ x >> 27) * 0x94D049BB133111EB % 2**64
+    return (((x ^ x >> 31) >> 12) + 0.5) / 2**52
 
 
 def half_sine_under_slope(since: float, reach: float) -> float:

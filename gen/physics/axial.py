@@ -14,13 +14,12 @@ from scipy.optimize import minimize
 from gen.physics.rotor import Machine
 
 FloatArray = NDArray[np.float64]
-HALF_LOADED = (
-    1.25  # axial over radial load times the tangent of the contact angle, at which half of the balls are loaded
-)
+# axial over radial load times the tangent of the contact angle, at which half of the balls are loaded
+HALF_LOADED = 1.25
 _MICROMETRE = 1e-6
 
 
-def axial_approach(machine: Machine, axial_load: float, angles: FloatArray) -> float:
+def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, heaviest: float = 1.0) -> float:
     """Squeeze that an axial load adds to every ball [m].
 
     Parameters
@@ -31,6 +30,8 @@ def axial_approach(machine: Machine, axial_load: float, angles: FloatArray) -> f
         Above 0 [N].
     angles : array, shape (ball,)
         Where the balls are [rad].
+    heaviest : float
+        Largest share of the radial load, which the axial load must hold against [1].
 
     Raises
     ------
@@ -39,10 +40,10 @@ def axial_approach(machine: Machine, axial_load: float, angles: FloatArray) -> f
     """
     cosine = machine.contact_cosine
     sine = np.sqrt(1 - cosine**2)
-    least = HALF_LOADED * np.hypot(machine.load_x, machine.load_y) * sine / cosine
+    least = HALF_LOADED * heaviest * np.hypot(machine.load_x, machine.load_y) * sine / cosine
     if sine == 0 or axial_load < least:
         message = (
-            f"an axial load of {axial_load:g} N is too small to hold its rings together; at least {least:.3g} N do."
+            f"an axial load of {axial_load:.4g} N is too small to hold its rings together; at least {least:.4g} N do."
         )
         if sine == 0:
             message = f"an axial load of {axial_load:g} N needs a contact angle above 0."

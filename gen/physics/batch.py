@@ -52,6 +52,8 @@ class Motion(NamedTuple):
     knock: float = 0.0
     knock_angle: float = 0.0
     """Knock of the cage on the housing, once per turn of the cage when its first pocket is there [N, rad]."""
+    knock_seed: int = 0
+    """Whole number that the scatter of the knocks follows from."""
     late_ball: int = -1
     late_by: float = 0.0
     """A ball that leads or lags its place in the cage [rad]."""
@@ -167,7 +169,7 @@ def _drive(records: list[Record], motions: Motion, machine: Machine, knot: float
         motions.axis_limit, motions.unbalance, machine.half_clearance, machine.ball_radius,
         [bearing.inner_radius for bearing in bearings], [bearing.outer_radius for bearing in bearings],
         machine.load_x, machine.load_y, motions.twice_x, motions.twice_y, motions.bow, motions.knock, motions.knock_angle,
-        motions.late_ball, motions.late_by,
+        motions.late_ball, motions.late_by, motions.knock_seed,
     ])  # fmt: skip
 
 

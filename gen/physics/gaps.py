@@ -242,11 +242,10 @@ def move_spalls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray) -> 
                     race = lanes.drive[INNER_RADIUS * LANES + lane]
                 half = spalls[(row + HALF) * LANES + lane]
                 nearest = np.rint((start + 0.5 * slope) / pitch)
-                around = int(half / pitch + 0.7)  # 0.2 more than it takes, for jitter and a late ball
-                for rank in range(-around, around + 1):
+                # a ball may leave its place by as much as the space between two
+                around = min(int(half / pitch + (1.5 if len(shape.jittered) else 0.7)), n_balls // 2)
+                for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
                     offset, rate = (nearest + rank) * pitch - start, -slope / (2 * n_steps)
-                    if abs(offset - 0.5 * slope) > half + 0.5 * abs(slope) + 0.2 * pitch:
-                        continue
                     ball = int((nearest + rank) % n_balls)
                     if len(shape.jittered):
                         source = jitter_row(shape) + 2 * ball

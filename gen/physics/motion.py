@@ -30,8 +30,8 @@ from gen.physics.lanes import INLINE, LANES, UNFUSED, cosine, sine
 (
     SHAFT_STEP, CAGE_RATIO, SPIN_RATIO, MEAN_SLIP, SPEED_RMS, SLIP_RMS, SPIN_RMS, JITTER_RMS, AXIS_OFFSET, AXIS_RMS, AXIS_LIMIT,
     UNBALANCE, CLEARANCE, BALL, INNER_RADIUS, OUTER_RADIUS, LOAD_X, LOAD_Y, TWICE_X, TWICE_Y, BOW, KNOCK, KNOCK_ANGLE, LATE_BALL, LATE_BY,
-    DRIVE_ROWS,
-) = range(26)  # fmt: skip
+    KNOCK_SEED, DRIVE_ROWS,
+) = range(27)  # fmt: skip
 SHAFT, CAGE, SPIN, ANGLE_ROWS = range(4)  # rows of ``angles`` [rad]
 SITE, POSITION, CARRIER, HALF, ARC, DEPTH, PROFILE, TABLE_ROW, SPALL_ROWS = range(9)  # rows of ``spalls``, per spall
 NO_SITE, INNER, OUTER, BALL_SITE = range(4)
@@ -46,11 +46,11 @@ JITTER_FIRST = AXIS_FIRST + AXIS_TERMS
 LOWEST_ORDER, HIGHEST_ORDER = 2, 60  # waviness per turn of a race
 N_ORDERS = HIGHEST_ORDER - LOWEST_ORDER + 1
 WAVE_ROWS = 4 * N_ORDERS  # real and imaginary amplitude of each order, inner race then outer race
-BALL_ORDERS = (
-    10  # waviness per turn of a ball, even orders from 2 on: it has two contacts, and in the odd ones they cancel
-)
+# waviness per turn of a ball, even orders from 2 on: it has two contacts, and in the odd ones they cancel
+BALL_ORDERS = 10
 TABLE_POINTS = 513  # of a tabulated spall, from edge to edge
 KNOCK_SECONDS = 3e-4  # a half sine
+KNOCK_SCATTER = 0.3  # standard deviation of the logarithm of its strength
 
 
 class Lanes(NamedTuple):
@@ -127,10 +127,8 @@ def turn_rings(lanes: Lanes, knot: int, n_steps: int, dt: float, moves: FloatArr
         per_knot = drive[UNBALANCE * LANES + lane] / (n_steps * dt) ** 2
         params[UNBALANCE_P * LANES + lane] = per_knot * shaft * shaft + drive[BOW * LANES + lane]
         params[UNBALANCE_Q * LANES + lane] = per_knot * quickening
-        for row in (
-            CAGE_C,
-            SHAFT_C,
-        ):  # a phasor turned 1e5 times keeps its angle to 1e-13, its length needs help
+        # a phasor turned 1e5 times keeps its angle to 1e-13, its length needs help
+        for row in (CAGE_C, SHAFT_C):
             c, s = state[row * LANES + lane], state[(row + 1) * LANES + lane]
             stretch = 1.5 - 0.5 * (c * c + s * s)
             state[row * LANES + lane], state[(row + 1) * LANES + lane] = c * stretch, s * stretch
@@ -163,11 +161,27 @@ def pushed(since: float) -> float:
 
 
 @njit(**INLINE)
+def uniform(number: float, seed: float) -> float:
+    """Random number in (0, 1) that belongs to ``number`` and ``seed``, both whole: the finaliser of SplitMix64."""
+    x = np.uint64(np.int64(number)) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(np.int64(seed))
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    x ^= x >> np.uint64(31)
+    return (np.float64(x >> np.uint64(12)) + 0.5) / 2.0**52
+
+
+@njit(**INLINE)
+def standard_normal(number: float, seed: float) -> float:
+    """Random number of a standard normal distribution that belongs to ``number`` and ``seed`` (Box and Muller)."""
+    return math.sqrt(-2 * math.log(uniform(2 * number, seed))) * math.cos(2 * math.pi * uniform(2 * number + 1, seed))
+
+
+@njit(**INLINE)
 def knock(lanes: Lanes, knot_seconds: float, ahead: float, lane: int, moves: FloatArray) -> float:
     """Force of the cage's knock on the housing, ``ahead`` knots from now: a half sine once per turn of the cage [N].
 
     The force runs straight from knot to knot and gives the momentum of the half sine however far apart the knots are. Its
-    strength scatters from turn to turn by a factor between 0.5 and 2 that follows from the number of the turn.
+    strength scatters from turn to turn, log-normally.
     """
     strength = lanes.drive[KNOCK * LANES + lane]
     if strength == 0.0:
@@ -178,9 +192,9 @@ def knock(lanes: Lanes, knot_seconds: float, ahead: float, lane: int, moves: Flo
     since = (turned - 2 * math.pi * turns) * knot_seconds / moves[CAGE * LANES + lane]
     if not -knot_seconds < since < KNOCK_SECONDS + knot_seconds:  # so is what a cage at a standstill gives
         return 0.0
-    scatter = (turns * 0.6180339887498949) % 1.0  # golden ratio: even over few turns
     there = pushed(since + knot_seconds) - 2 * pushed(since) + pushed(since - knot_seconds)
-    return strength * 2.0 ** (2 * scatter - 1) * there / knot_seconds**2
+    scatter = math.exp(KNOCK_SCATTER * standard_normal(turns, lanes.drive[KNOCK_SEED * LANES + lane]))
+    return strength * scatter * there / knot_seconds**2
 
 
 @njit(**INLINE)

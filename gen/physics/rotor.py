@@ -80,10 +80,12 @@ def fastest_swing(machine: Machine, contact_stiffness: FloatArray | float) -> Fl
     return np.sqrt(square)
 
 
-def fastest_decay(machine: Machine) -> float:
-    """Upper bound of the damping rates [1/s]."""
+def fastest_decay(machine: Machine, n_balls: int) -> float:
+    """Upper bound of the damping rates [1/s]: of evenly spaced balls half act along any direction."""
     inverse = 1 / machine.shaft_mass + 1 / machine.housing_mass
-    rate = (machine.ring_damping + 3 * machine.contact_damping) * inverse + machine.shaft_damping / machine.shaft_mass
+    rate = (
+        machine.ring_damping + 0.5 * n_balls * machine.contact_damping
+    ) * inverse + machine.shaft_damping / machine.shaft_mass
     rate += max(machine.support_damping_x, machine.support_damping_y) / machine.housing_mass
     if machine.sensor_mass > 0:
         rate += machine.sensor_damping * (1 / machine.sensor_mass + 1 / machine.housing_mass)

@@ -53,7 +53,6 @@ class BallFault(_Spalls):
     track_deg: Distribution = within(0, 90, default=8.6)
     axis_offset_deg: Distribution = within(-90, 90, default=0.0)
     axis_wander_deg: Distribution = within(0, 180, default=0.0)
-    spin_wander_percent: Distribution = within(0, 20, default=0.0)
 
 
 class CageFault(Section):

@@ -61,6 +61,9 @@ class CatalogueBearing(Section):
 
     @model_validator(mode="after")
     def _known(self) -> Self:
+        for name in self.entries:
+            if name in CATALOGUE:
+                raise ValueError(f"entries: {name} is in the catalogue already; give your own bearing another name.")
         for name in self.designations:
             if name not in self.entries and name not in _KNOWN:
                 near = difflib.get_close_matches(name, [*self.entries, *_KNOWN], 3)

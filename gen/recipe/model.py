@@ -99,6 +99,10 @@ class Recipe(Section):
                 )
         if self.n_samples < 16:
             raise ValueError(f"recording.duration_s: {self.n_samples} samples are too few; use at least 16.")
+        if self.operation.axial_load_n.support()[1] > 0 and not self._slanted():
+            raise ValueError(
+                "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
+            )
         for key, course in (("speed", self.operation.speed_course), ("load", self.operation.load_course)):
             if isinstance(course, Steps) and course.step_s * len(course.levels_percent) > self.recording.duration_s:
                 raise ValueError(
@@ -108,3 +112,12 @@ class Recipe(Section):
         if len({channel.name for channel in self.recording.channels}) < len(self.recording.channels):
             raise ValueError("recording.channels: two channels have one name; give each its own.")
         return self
+
+    def _slanted(self) -> bool:
+        """Whether some bearing has a contact angle."""
+        angles = {0.0, *self.specimen.contact_angle_deg.support()}
+        if isinstance(self.bearing, CatalogueBearing):
+            angles |= {self.bearing.bearing(designation).contact_angle for designation in self.bearing.designations}
+        else:
+            angles |= set(self.bearing.contact_angle_deg.support())
+        return angles != {0.0}

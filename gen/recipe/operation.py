@@ -66,6 +66,8 @@ class Operation(Section):
     mean_slip_percent: Distribution = within(-10, 20, default=0.0)
     slip_percent: Distribution = within(0, 10, default=1.0)
     jitter_deg: Distribution = within(0, 5, default=0.3)
+    spin_wander_percent: Distribution = within(0, 20, default=0.0)
+    """How unevenly the balls spin, rms."""
     axial_load_n: Distribution = within(0, 1e7, default=0.0)
     """Pulls the balls up their grooves; needs a contact angle."""
     load_wander_percent: Distribution = within(0, 50, default=0.0)

@@ -4,11 +4,14 @@
 module responsibility
 ====== ============================================================
 model  rigs, specimens, records, and the random streams they own
+draws  values drawn one after the other, from a recipe's distributions
+faults which specimens are damaged, and how
 draw   how each is drawn, level by level
 ====== ============================================================
 """
 
-from gen.scenarios.draw import draw_scenarios, fault_of_each_specimen
+from gen.scenarios.draw import draw_scenarios
+from gen.scenarios.faults import fault_of_each_specimen
 from gen.scenarios.model import (
     Background,
     Mode,

@@ -13,87 +13,40 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel
 from scipy.stats import qmc
 
-from gen.corpus import FAULTS, SPLITS
-from gen.distributions import Grid, weighted_index
+from gen.corpus import SPLITS
+from gen.distributions import weighted_index
 from gen.errors import RecipeError
 from gen.physics.bearing import Bearing
 from gen.physics.course import Course
 from gen.recipe import (
-    BallFault,
-    CageFault,
     CatalogueBearing,
-    CompoundFault,
-    Healthy,
     Modes,
-    RaceFault,
     Recipe,
-    Section,
-    WornFault,
     fault_class,
-    split_unit,
 )
 from gen.recipe import Course as WantedCourse
 from gen.recipe import Path as WantedPath
+from gen.scenarios.draws import Draws
+from gen.scenarios.faults import damaged, fault_of_each_specimen
 from gen.scenarios.model import (
     Background,
-    Drawn,
     Mode,
     Operation,
     Path,
     Purpose,
     Rig,
     Scenario,
-    Spall,
     Specimen,
     Tone,
-    Wear,
     stream,
 )
 
-_WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # width of a spall over the radius it lies on
+STEEPEST_CONTACT = math.radians(45)
 _DIMENSIONS = 64  # quasi-random values of an item; what it draws beyond them is plain random
 # dimensions of its own for each level: the same ones tied the first values of a specimen and its only record together (r up to 1)
 _FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
-
-
-class Draws:
-    """Values of one rig, specimen or record, drawn one after the other.
-
-    The first come from a quasi-random point if there is one; grids follow the number of the item.
-    """
-
-    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], turn: int) -> None:
-        self._rng = rng
-        self._point = list(point[::-1])
-        self._turn = turn
-
-    def u(self) -> float:
-        """Next number in [0, 1)."""
-        return float(self._point.pop()) if self._point else float(self._rng.random())
-
-    def value(self, distribution: Any) -> float:
-        """Value of a distribution in its own unit."""
-        u = self.u()
-        if isinstance(distribution, Grid):
-            self._turn, place = divmod(self._turn, len(distribution.values))
-            return float(distribution.values[place])
-        return distribution.draw(u)
-
-    def section(self, section: Section) -> Drawn:
-        """Every distribution of a section, in SI units, by its key without the unit."""
-        drawn: Drawn = {}
-        for key, distribution in section:
-            if isinstance(distribution, BaseModel) and hasattr(distribution, "draw"):
-                name, factor = split_unit(key)
-                drawn[name] = self.value(distribution) * factor
-        return drawn
-
-    def happens(self, section: Any) -> bool:
-        """Whether something with a probability is there."""
-        return self.u() < section.probability
 
 
 def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> list[Scenario]:
@@ -244,77 +197,18 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
         inner_conformity=properties["inner_conformity"],
         outer_conformity=properties["outer_conformity"],
     )
+    if abs(bearing.contact_angle) > STEEPEST_CONTACT:
+        raise RecipeError(
+            f"specimen {number}: a contact angle of {math.degrees(bearing.contact_angle):.3g} degrees is no radial bearing's; keep "
+            f"drawing and specimen together below {math.degrees(STEEPEST_CONTACT):.0f}."
+        )
     place = number % recipe.corpus.specimens_per_rig
     fault = fault_of_each_specimen(recipe, rig.number)[place]
     draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
     wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
     specimen = Specimen(number, bearing, properties, fault, (), {}, _draw_split(recipe, rig.number, place))
-    if isinstance(entry, Healthy):
-        return specimen
-    if isinstance(entry, WornFault):
-        wear = Wear(entry.site, draws.value(entry.waviness_um) * 1e-6, entry.order)
-        return replace(specimen, wear=wear)
-    for part in entry.parts if isinstance(entry, CompoundFault) else (entry,):
-        specimen = _with_part(draws, part, specimen)
-    return specimen
-
-
-def _with_part(draws: Draws, part: RaceFault | BallFault | CageFault, specimen: Specimen) -> Specimen:
-    if isinstance(part, CageFault):
-        return replace(specimen, cage=draws.section(part))
-    spalls = specimen.spalls + _draw_spalls(draws, part, specimen.bearing, specimen.number)
-    if isinstance(part, RaceFault):
-        return replace(specimen, spalls=spalls)
-    axis = draws.section(part)
-    axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander", "spin_wander")}
-    return replace(specimen, spalls=spalls, axis=axis)
-
-
-def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int) -> tuple[Spall, ...]:
-    carrier = int(draws.u() * bearing.n_balls)
-    radius = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[
-        entry.kind
-    ]
-    trace = tuple(depth * 1e-6 for depth in entry.trace_um or ())
-    spalls = []
-    for _ in range(round(draws.value(entry.spalls))):
-        width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
-        angle, roughness = math.radians(draws.value(entry.angle_deg)), draws.value(entry.roughness_um) * 1e-6
-        spalls.append(
-            Spall(entry.kind, width, max(trace, default=depth), angle, carrier, entry.profile, trace, roughness)
-        )
-        if width > _WIDEST[entry.kind] * radius:
-            raise RecipeError(
-                f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit the {entry.kind} radius of {radius * 1e3:.3g} mm; "
-                f"keep width_mm below {_WIDEST[entry.kind] * radius * 1e3:.3g}."
-            )
-    return tuple(spalls)
-
-
-def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
-    """Fault classes of the specimens of a rig: by weight, but never all healthy or all faulty if the recipe has both."""
-    weights: dict[str, float] = dict.fromkeys(FAULTS, 0.0)
-    for entry in recipe.faults:
-        weights[fault_class(entry)] += entry.weight
-    total, count = sum(weights.values()), recipe.corpus.specimens_per_rig
-    rng = stream(recipe.seed, rig, 0, 0, Purpose.CLASSES)
-    shares = {kind: weight / total * count for kind, weight in weights.items() if weight > 0}
-    chosen = [kind for kind, share in shares.items() for _ in range(math.floor(share + 1e-9))]
-    rest = np.array([share - math.floor(share + 1e-9) for share in shares.values()])
-    if len(chosen) < count:
-        # systematic sampling in random order: as many of the rest as are missing, each as often as its fraction says, none twice
-        order = rng.permutation(len(rest))
-        edges = np.cumsum(np.maximum(rest[order], 0.0))
-        picks = np.searchsorted(edges, rng.random() + np.arange(count - len(chosen)), side="right")
-        chosen += [list(shares)[i] for i in order[np.minimum(picks, len(rest) - 1)]]
-    faulty = [kind for kind in shares if kind != "healthy"]
-    if "healthy" in shares and faulty:
-        if "healthy" not in chosen:
-            chosen[int(rng.integers(count))] = "healthy"
-        elif all(kind == "healthy" for kind in chosen):
-            chosen[0] = faulty[weighted_index(tuple(shares[kind] for kind in faulty), rng.random())]
-    return [chosen[i] for i in rng.permutation(count)]
+    return damaged(draws, entry, specimen)
 
 
 def _draw_split(recipe: Recipe, rig: int, place: int) -> str:

@@ -31,6 +31,7 @@ class Purpose(IntEnum):
     ROUGHNESS = 10
     WEAR = 11
     COURSE = 12
+    KNOCKS = 13
 
 
 class Spall(NamedTuple):
@@ -167,7 +168,7 @@ class Scenario:
 
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""
-        return replace(self, specimen=replace(self.specimen, fault="healthy", spalls=(), cage={}, wear=None))
+        return replace(self, specimen=replace(self.specimen, fault="healthy", spalls=(), axis={}, cage={}, wear=None))
 
 
 def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:

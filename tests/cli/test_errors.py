@@ -126,9 +126,9 @@ TABLE = [
     ("plan {untraced}", "faults[2].profile: trace and trace_um belong together; give both or neither."),
     ("generate {hasty} -o {new}", "operation.load_course.step_s: 0.1 s leaves the levels no time; keep it below 0.05."),
     ("generate {twice} -o {new}", "faults[0].parts: cage, cage are not all different; several spalls of one part need no compound."),
-    ("plan {straight}", "record 0: an axial load of 100 N needs a contact angle above 0."),
-    ("generate {straight} -o {begun}", "record 0: an axial load of 100 N needs a contact angle above 0."),
-    ("generate {coming_loose} -o {begun}", "record 0: an axial load of 10 N is too small to hold its rings together; at least 66.1 N do."),
+    ("plan {straight}", "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."),
+    ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
+    ("plan {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; at least 66.12 N do."),
     ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
     ("info {nowhere}", "nowhere: no such folder; give the folder of a corpus"),

@@ -41,12 +41,13 @@ SMALL: dict[str, Any] = {
         "shaft_rpm": {"kind": "uniform", "low": 1500, "high": 2000},
         "load_n": {"kind": "loguniform", "low": 100, "high": 1000},
         "mean_slip_percent": 0.5,
+        "spin_wander_percent": 0.5,
     },
     "faults": [
         {"kind": "healthy"},
         {"kind": "inner", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": 0, "high": 360}},
         {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -40, "high": 40}},
-        {"kind": "ball", "width_mm": 0.5, "axis_wander_deg": 4, "spin_wander_percent": 0.5},
+        {"kind": "ball", "width_mm": 0.5, "axis_wander_deg": 4},
     ],
     "path": {"direct": 0.3, "modes": {"count": 2, "frequency_hz": {"kind": "uniform", "low": 500, "high": 5000}, "damping_percent": 3}},
     "background": {

@@ -8,11 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.optimize import root
 
+from gen.corpus import open_corpus
 from gen.errors import SimulationError
 from gen.generate import generate
 from gen.physics.axial import HALF_LOADED, axial_approach
 from gen.physics.hertz import LINE_EXPONENT
 from gen.plan import plan
+from gen.scenarios import draw_scenarios
+from gen.simulate import simulate
 from tests.strategies import RIG
 
 law = settings(deadline=None, max_examples=40)
@@ -80,7 +83,7 @@ def test_rings_that_an_axial_load_cannot_hold_together_are_refused(angle):
     machine = slanted(angle, 5e-6, (9.26e9, 1.5), 300.0)
     least = 1.25 * 300 * math.tan(angle)
     places = 2 * np.pi * np.arange(N_BALLS) / N_BALLS
-    with pytest.raises(ValueError, match=rf"is too small to hold its rings together; at least {least:.3g} N do\."):
+    with pytest.raises(ValueError, match=rf"is too small to hold its rings together; at least {least:.4g} N do\."):
         axial_approach(machine, 0.99 * least, places)
     assert axial_approach(machine, 1.01 * least, places) > 0
 
@@ -91,21 +94,33 @@ def test_an_axial_load_needs_a_slanted_contact():
         axial_approach(machine, 500.0, np.zeros(1))
 
 
-@pytest.mark.parametrize("command", ["plan", "generate"])
-@pytest.mark.parametrize(
-    ("angle", "reason"),
-    [
-        (0, r"an axial load of 50 N needs a contact angle above 0\."),
-        (15, r"an axial load of 50 N is too small to hold its rings together; at least 100 N do\."),
-    ],
-)
-def test_a_recipe_whose_axial_load_cannot_be_carried_names_the_record(write_recipe, tmp_path, command, angle, reason):
-    """Every second record has it; 300 N times 1.25 tan 15 degrees are 100 N."""
+def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write_recipe, tmp_path):
+    """Every second record has it; 300 N times 1.25 tan 15 degrees are 100.5 N."""
     changes = {
-        "specimen.contact_angle_deg": angle,
+        "specimen.contact_angle_deg": 15,
         "operation.load_n": 300,
-        "operation.axial_load_n": {"kind": "grid", "values": [0, 50]},
+        "operation.axial_load_n": {"kind": "grid", "values": [200, 50]},
     }
     recipe = write_recipe(tmp_path / "r.yaml", changes)
+    reason = "an axial load of 50 N is too small to hold its rings together; at least 100.5 N do."
     with pytest.raises(SimulationError, match=rf"^record 1: {reason}$"):
-        plan(recipe) if command == "plan" else generate(recipe, tmp_path / "c")
+        plan(recipe)
+    made = generate(recipe, tmp_path / "c")
+    assert made.failures == tuple(f"record {number}: {reason}" for number in range(1, 24, 2))
+    with open_corpus(made.directory) as corpus:
+        assert corpus["recording"].values.tolist() == list(range(0, 24, 2))
+        assert (corpus["running_clearance"] < corpus["diametral_clearance"]).all()
+
+
+def test_an_axial_load_needs_a_bearing_with_a_contact_angle(recipe_with):
+    with pytest.raises(ValueError, match="operation.axial_load_n: needs a contact angle"):
+        recipe_with({"operation.axial_load_n": 50})
+
+
+def test_the_axial_load_holds_against_the_heaviest_radial_load_of_a_course(recipe_with):
+    course = {"kind": "ramp", "from_percent": 100, "to_percent": 300}
+    changes = {"specimen.contact_angle_deg": 15, "operation.load_n": 300, "operation.axial_load_n": 200}
+    for load_course, held in ((None, True), (course, False)):
+        recipe = recipe_with(changes | {"operation.load_course": load_course})
+        failures = simulate(draw_scenarios(recipe, 0, 1), recipe).failures
+        assert (failures == {}) == held

@@ -30,6 +30,7 @@ STEADY = {
     "operation.slip_percent": 0,
     "operation.speed_wander_percent": 0,
     "operation.jitter_deg": 0,
+    "operation.spin_wander_percent": 0,
     "faults": [
         {"kind": "healthy"},
         {"kind": "inner", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": 0, "high": 360}},

@@ -9,13 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import kstest
 
-from gen.physics.batch import Motion
+from gen.physics.batch import Motion, Spall
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.motion import KNOCK_SECONDS
+from gen.physics.motion import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.rotor import as_columns, rest
-from tests.reference import march_lanes
+from tests.reference import knock_scatter, march_lanes
 from tests.strategies import RIG, angles, record
 
 law = settings(deadline=None, max_examples=15)
@@ -83,12 +84,12 @@ def test_misalignment_shakes_the_shaft_along_its_direction_at_twice_the_shaft_ra
 @law
 @given(st.floats(1000, 50_000), st.floats(1, 100), angles, st.floats(0.3, 3.0))
 def test_a_cage_knocks_once_a_turn_with_the_momentum_of_a_half_sine(knots_per_second, strength, place, ahead):
-    """On a housing that nothing holds; the first knock is half as strong as drawn, the next follows the golden ratio."""
+    """On a housing that nothing holds; each knock scatters by itself."""
     free = TIGHT._replace(
         half_clearance=1e-2, ring_damping=0.0, support_stiffness_x=1e-9, support_stiffness_y=1e-9,
         support_damping_x=0.0, support_damping_y=0.0, load_x=0.0, load_y=0.0,
     )  # fmt: skip
-    motion = Motion(60.0, cage_angle=place - ahead, knock=strength, knock_angle=place)
+    motion = Motion(60.0, cage_angle=place - ahead, knock=strength, knock_angle=place, knock_seed=round(1e6 * ahead))
     turn = 1 / (60 * orders(CATALOGUE["6205"]).ftf)
     knot, n_steps = 1 / knots_per_second, math.ceil(100_000 / knots_per_second)
     n_knots = math.ceil(1.9 * turn / knot)
@@ -100,10 +101,10 @@ def test_a_cage_knocks_once_a_turn_with_the_momentum_of_a_half_sine(knots_per_se
     times = knot * np.arange(n_knots + 1)
     between = (times > first + KNOCK_SECONDS + 2 * knot) & (times < first + turn - 2 * knot)
     after = times > first + turn + KNOCK_SECONDS + 2 * knot
-    golden = 2 ** (2 * (math.sqrt(5) - 1) / 2 - 1)
+    scatter = [knock_scatter(turn, motion.knock_seed) for turn in (0, 1)]
     np.testing.assert_allclose(along[times < first - 2 * knot], 0, rtol=0, atol=1e-12 * whole)
-    np.testing.assert_allclose(along[between], whole / 2, rtol=1e-9)
-    np.testing.assert_allclose(along[after], whole * (1 / 2 + golden), rtol=1e-9)
+    np.testing.assert_allclose(along[between], whole * scatter[0], rtol=1e-9)
+    np.testing.assert_allclose(along[after], whole * sum(scatter), rtol=1e-9)
     assert between.any()
     assert after.any()
 
@@ -140,3 +141,22 @@ def test_a_schedule_that_is_over_holds_whatever_its_neighbours_do():
     beside = march_lanes([scheduled(TIGHT, motion, short), long], 600, 8, KNOT)[0]
     np.testing.assert_array_equal(alone.states, beside.states)
     assert alone.angles[-1, 0] == pytest.approx(2 * np.pi * 30 * KNOT * (short[:, 0].sum() + 550 * 1.5))
+
+
+def test_knocks_scatter_log_normally_and_differ_from_cage_to_cage():
+    logs = np.log([[knock_scatter(turn, seed) for turn in range(2000)] for seed in (1, 2)]) / KNOCK_SCATTER
+    assert kstest(logs[0], "norm").pvalue > 0.01
+    assert abs(np.corrcoef(logs)[0, 1]) < 0.1
+    spectrum = np.abs(np.fft.rfft(logs[0])) ** 2
+    assert spectrum[1:].max() < 15 * spectrum[1:].mean()  # no tone
+
+
+@pytest.mark.parametrize("late_by", [0.0, 0.1, 0.3, 0.6])
+def test_a_ball_meets_a_spall_wherever_it_is_in_its_pocket(late_by):
+    """One ball far out of place, at a stand: it lies in the spall that is put under it."""
+    motion = Motion(1e-6, late_ball=0, late_by=late_by)
+    spall = Spall("outer", 0.5e-3, 1e-3, late_by)
+    machine = TIGHT._replace(load_x=300 * math.cos(late_by), load_y=300 * math.sin(late_by), half_clearance=0.0)
+    records = [record(machine, motion, some)._replace(schedule=CONSTANT) for some in ((), (spall,))]
+    sound, spalled = (march_lanes([each], 600, 8, KNOT)[0].states[-1] for each in records)
+    assert (spalled - sound)[:2] @ [math.cos(late_by), math.sin(late_by)] > 1e-6

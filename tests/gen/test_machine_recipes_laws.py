@@ -107,7 +107,7 @@ def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):
     )
     scenarios = draw_scenarios(recipe, 0, 2)
     moved = np.random.default_rng(1).normal(size=(2, 1, lead_samples(recipe) + recipe.n_samples))
-    response = Response(np.repeat(moved, 4, axis=1), np.ones(2, int), np.zeros(2), {})
+    response = Response(np.repeat(moved, 4, axis=1), np.ones(2, int), np.zeros(2), {}, [])
     heard = measure(response, scenarios, recipe).signal
     np.testing.assert_allclose(heard[:, 1], 0.5 * heard[:, 0], atol=1e-5)
     np.testing.assert_allclose(heard[:, 3], 4 * heard[:, 0], atol=1e-5)

@@ -22,7 +22,7 @@ def response(recipe, n_records, wave):
     """What ``wave(time)`` gives as the response of every record and channel."""
     n = lead_samples(recipe) + recipe.n_samples
     signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
-    return Response(signal.copy(), np.full(n_records, 8), np.full(n_records, 0.2), {})
+    return Response(signal.copy(), np.full(n_records, 8), np.full(n_records, 0.2), {}, [])
 
 
 def silence(recipe, n_records):
@@ -96,7 +96,7 @@ def test_a_record_is_measured_alike_alone_and_among_others(recipe_with):
     together = measure(heard, scenarios, recipe)
     for place in (0, 7, 23):
         alone = measure(
-            Response(heard.acceleration[place : place + 1], heard.oversampling, heard.step_phase, {}),
+            Response(heard.acceleration[place : place + 1], heard.oversampling, heard.step_phase, {}, []),
             [scenarios[place]],
             recipe,
         )

@@ -200,7 +200,7 @@ def test_a_record_without_its_fault_is_the_same_record(recipe_with):
         damaged, sound = physical_record(scenario, recipe), physical_record(twin, recipe)
         assert bool(damaged.spalls) == (scenario.specimen.fault != "healthy")
         assert sound.machine == damaged.machine
-        assert sound.motion == damaged.motion
+        assert sound.motion == damaged.motion._replace(axis_offset=0.0, axis_rms=0.0, axis_limit=0.0)
         for field in ("frequencies", "phases", "pickups", "waves"):
             np.testing.assert_array_equal(getattr(sound, field), getattr(damaged, field))
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
+from gen.errors import RecipeError, SimulationError
 from gen.generate import generate
 from gen.machinery import physical_record
 from gen.physics.rotor import fastest_swing
@@ -120,3 +121,22 @@ def test_records_left_out_are_not_tried(recipe_with):
     errors = step_errors(scenarios, recipe, simulate(scenarios, recipe), 0)
     assert np.isfinite(errors[:4]).any()
     assert np.isnan(errors[4:]).all()
+
+
+def test_a_shaft_that_turns_too_far_between_two_samples_is_refused(recipe_with):
+    recipe = recipe_with({"operation.shaft_rpm": 9000, "recording.sample_rate_hz": 1000})
+    with pytest.raises(SimulationError, match=r"^record 0: its shaft turns 54 degrees per sample; raise .* to 1347\.$"):
+        simulate(draw_scenarios(recipe, 0, 1), recipe)
+
+
+def test_oil_too_thick_for_the_formulas_leaves_the_record_out(recipe_with):
+    thick = {"contact": {"lubricant": {"viscosity_40_mm2_s": 1000}}, "operation.temperature_celsius": -20}
+    recipe = recipe_with(thick)
+    failures = simulate(draw_scenarios(recipe, 0, 1), recipe).failures
+    assert "um is beyond what film formulas hold for, 10 um; take thinner or warmer oil." in failures[0]
+
+
+def test_a_contact_too_steep_for_a_radial_bearing_is_refused(recipe_with):
+    bearing = {"kind": "geometry", "n_balls": 9, "pitch_mm": 39, "ball_share": 0.2, "contact_angle_deg": 40}
+    with pytest.raises(RecipeError, match=r"^specimen 0: a contact angle of 60 degrees"):
+        draw_scenarios(recipe_with({"bearing": bearing, "specimen.contact_angle_deg": 20}), 0, 1)

@@ -1,0 +1,120 @@
+"""What is uneven in a bearing, as the kernel takes it: spalls with the paths of balls over them, and waviness."""
+
+import functools
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.physics import motion
+from gen.physics.batch import Spall as KernelSpall
+from gen.physics.bearing import orders
+from gen.physics.hertz import footprints
+from gen.physics.spall import PROFILES, drop, largest_drop
+from gen.physics.trace import felt, places, rolled, roughened
+from gen.scenarios import Purpose, Scenario, Spall, stream
+
+FloatArray = NDArray[np.float64]
+
+# of the sample rate: waviness that passes a ball faster is left out, for gaps are known once per sample
+FASTEST_WAVE = 0.4
+
+
+def kernel_spalls(scenario: Scenario, ball_load: float) -> tuple[KernelSpall, ...]:
+    """Spalls as the kernel knows them; outer race angles count from x there, and rough or wide contacts make tables."""
+    shift = scenario.rig.machine["load_angle"]
+    found = []
+    for number, spall in enumerate(scenario.specimen.spalls):
+        angle = spall.angle + (shift if spall.site == "outer" else 0.0)
+        plain = KernelSpall(spall.site, spall.width, spall.depth, angle, spall.ball, spall.profile)
+        found.append(_tabulated(scenario, number, plain, ball_load) if _needs_table(scenario, spall) else plain)
+    return tuple(found)
+
+
+def _needs_table(scenario: Scenario, spall: Spall) -> bool:
+    return scenario.rig.footprint or spall.profile == "trace" or spall.roughness > 0
+
+
+def _tabulated(scenario: Scenario, number: int, plain: KernelSpall, ball_load: float) -> KernelSpall:
+    paths = spall_paths(scenario, number)
+    if not scenario.rig.footprint:
+        return plain._replace(profile="table", table=tuple(tuple(path) for path in paths))
+    inner, outer = footprints(scenario.specimen.bearing, ball_load)
+    widths = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[plain.site]
+    margin = max(widths)
+    table = tuple(tuple(felt(path, plain.width, b, margin)) for path, b in zip(paths, widths, strict=True))
+    return plain._replace(profile="table", width=plain.width + 2 * margin, table=table)
+
+
+def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
+    """Path of the middle of a contact over a spall, shape (point,), on each race that its balls roll on there [m]."""
+    specimen, spall = scenario.specimen, scenario.specimen.spalls[number]
+    bearing = specimen.bearing
+    inner, outer = bearing.inner_radius, -bearing.outer_radius
+    races = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[spall.site]
+    place = scenario.seed, scenario.rig.number, specimen.number, number
+    return _paths(spall, bearing.ball_diameter / 2, races, place)
+
+
+def deepest(scenario: Scenario, number: int) -> float:
+    """Largest drop of a rigid ball over a spall, on whichever race is deeper [m]."""
+    spall, bearing = scenario.specimen.spalls[number], scenario.specimen.bearing
+    if spall.profile != "geometric" or spall.roughness > 0:
+        return max(float(path.max()) for path in spall_paths(scenario, number))
+    ball = bearing.ball_diameter / 2
+    arc = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": ball}[spall.site]
+    race = -bearing.outer_radius if spall.site == "outer" else bearing.inner_radius
+    return largest_drop(spall.width, arc, ball, race, spall.depth)
+
+
+@functools.lru_cache(maxsize=256)
+def _paths(
+    spall: Spall, ball: float, races: tuple[float, ...], place: tuple[int, int, int, int]
+) -> tuple[FloatArray, ...]:
+    at = places(spall.width)
+    if spall.profile not in ("geometric", "trace"):
+        arc = ball if spall.site == "ball" else abs(races[0])
+        profile, half = PROFILES.index(spall.profile), 0.5 * spall.width / arc
+        one = np.array([drop(profile, x / arc, half, arc, ball, races[0], spall.depth) for x in at])
+        return (one,) * len(races)
+    depths = np.full(len(at), spall.depth)
+    if spall.profile == "trace":
+        depths = np.interp(at, np.linspace(at[0], at[-1], len(spall.trace)), spall.trace)
+    if spall.roughness > 0:
+        depths = roughened(depths, spall.roughness, stream(*place, Purpose.ROUGHNESS))
+    return tuple(rolled(depths, spall.width, ball, race) for race in races)
+
+
+def waviness(scenario: Scenario, fs: float) -> FloatArray:
+    """Fourier amplitudes of both races, and of the balls if they have some, shape (row,) [m]: the specimen's own, phases random."""
+    specimen, properties = scenario.specimen, scenario.specimen.properties
+    rms, of_balls, wear = properties["waviness"], properties["ball_waviness"], specimen.wear
+    if rms == 0 and of_balls == 0 and wear is None:
+        return np.empty(0)
+    rng = stream(scenario.seed, scenario.rig.number, specimen.number, 0, Purpose.WAVINESS)
+    every = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1)
+    races = _falling(every) * rms * np.exp(1j * rng.uniform(0, 2 * np.pi, (2, motion.N_ORDERS)))
+    even = 2 * np.arange(1, motion.BALL_ORDERS + 1)
+    n_balls = specimen.bearing.n_balls
+    # a ball's two contacts see the same height in even orders: together twice as much
+    balls = 2 * of_balls * _falling(even)[:, None] * np.exp(1j * rng.uniform(0, 2 * np.pi, (len(even), n_balls)))
+    if wear is not None:
+        rng = stream(scenario.seed, scenario.rig.number, specimen.number, 0, Purpose.WEAR)
+        worn = _falling(every) if wear.order is None else math.sqrt(2) * (every == wear.order)
+        races[("inner", "outer").index(wear.site)] += (
+            worn * wear.waviness * np.exp(1j * rng.uniform(0, 2 * np.pi, len(every)))
+        )
+    ftf, fastest = orders(specimen.bearing).ftf, FASTEST_WAVE * fs / scenario.record.conditions["shaft"]
+    races[0, every * (1 - ftf) > fastest] = 0.0
+    races[1, every * ftf > fastest] = 0.0
+    balls[even * orders(specimen.bearing).bsf > fastest] = 0.0
+    rows = np.concatenate([part for race in races for part in (race.real, race.imag)])
+    if of_balls == 0:
+        return rows
+    return np.concatenate([rows, np.stack([balls.real, balls.imag], axis=1).ravel()])
+
+
+def _falling(orders_of_turn: NDArray[np.int_]) -> FloatArray:
+    """Amplitudes that fall as 1/order, of unit rms together [1]."""
+    falling = 1 / orders_of_turn
+    return falling * (math.sqrt(2) / np.linalg.norm(falling))

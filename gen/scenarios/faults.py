@@ -1,0 +1,84 @@
+"""Which specimens of a rig are damaged, and how."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from gen.corpus import FAULTS
+from gen.distributions import weighted_index
+from gen.errors import RecipeError
+from gen.physics.bearing import Bearing
+from gen.recipe import BallFault, CageFault, CompoundFault, Fault, Healthy, RaceFault, Recipe, WornFault, fault_class
+from gen.scenarios.draws import Draws
+from gen.scenarios.model import Purpose, Spall, Specimen, Wear, stream
+
+_WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # width of a spall over the radius it lies on
+
+
+def damaged(draws: Draws, entry: Fault, specimen: Specimen) -> Specimen:
+    """A specimen with the fault that an entry of the recipe describes."""
+    if isinstance(entry, Healthy):
+        return specimen
+    if isinstance(entry, WornFault):
+        return replace(specimen, wear=Wear(entry.site, draws.value(entry.waviness_um) * 1e-6, entry.order))
+    for part in entry.parts if isinstance(entry, CompoundFault) else (entry,):
+        specimen = _with_part(draws, part, specimen)
+    return specimen
+
+
+def _with_part(draws: Draws, part: RaceFault | BallFault | CageFault, specimen: Specimen) -> Specimen:
+    if isinstance(part, CageFault):
+        return replace(specimen, cage=draws.section(part))
+    spalls = specimen.spalls + _draw_spalls(draws, part, specimen.bearing, specimen.number)
+    if isinstance(part, RaceFault):
+        return replace(specimen, spalls=spalls)
+    axis = draws.section(part)
+    axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander")}
+    return replace(specimen, spalls=spalls, axis=axis)
+
+
+def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int) -> tuple[Spall, ...]:
+    carrier = int(draws.u() * bearing.n_balls)
+    radius = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[
+        entry.kind
+    ]
+    trace = tuple(depth * 1e-6 for depth in entry.trace_um or ())
+    spalls = []
+    for _ in range(round(draws.value(entry.spalls))):
+        width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
+        angle, roughness = math.radians(draws.value(entry.angle_deg)), draws.value(entry.roughness_um) * 1e-6
+        spalls.append(
+            Spall(entry.kind, width, max(trace, default=depth), angle, carrier, entry.profile, trace, roughness)
+        )
+        if width > _WIDEST[entry.kind] * radius:
+            raise RecipeError(
+                f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit the {entry.kind} radius of {radius * 1e3:.3g} mm; "
+                f"keep width_mm below {_WIDEST[entry.kind] * radius * 1e3:.3g}."
+            )
+    return tuple(spalls)
+
+
+def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
+    """Fault classes of the specimens of a rig: by weight, but never all healthy or all faulty if the recipe has both."""
+    weights: dict[str, float] = dict.fromkeys(FAULTS, 0.0)
+    for entry in recipe.faults:
+        weights[fault_class(entry)] += entry.weight
+    total, count = sum(weights.values()), recipe.corpus.specimens_per_rig
+    rng = stream(recipe.seed, rig, 0, 0, Purpose.CLASSES)
+    shares = {kind: weight / total * count for kind, weight in weights.items() if weight > 0}
+    chosen = [kind for kind, share in shares.items() for _ in range(math.floor(share + 1e-9))]
+    rest = np.array([share - math.floor(share + 1e-9) for share in shares.values()])
+    if len(chosen) < count:
+        # systematic sampling in random order: as many of the rest as are missing, each as often as its fraction says, none twice
+        order = rng.permutation(len(rest))
+        edges = np.cumsum(np.maximum(rest[order], 0.0))
+        picks = np.searchsorted(edges, rng.random() + np.arange(count - len(chosen)), side="right")
+        chosen += [list(shares)[i] for i in order[np.minimum(picks, len(rest) - 1)]]
+    faulty = [kind for kind in shares if kind != "healthy"]
+    if "healthy" in shares and faulty:
+        if "healthy" not in chosen:
+            chosen[int(rng.integers(count))] = "healthy"
+        elif all(kind == "healthy" for kind in chosen):
+            chosen[0] = faulty[weighted_index(tuple(shares[kind] for kind in faulty), rng.random())]
+    return [chosen[i] for i in rng.permutation(count)]
