@@ -113,7 +113,7 @@ def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write
 
 
 def test_an_axial_load_needs_a_bearing_with_a_contact_angle(recipe_with):
-    with pytest.raises(ValueError, match="operation.axial_load_n: needs a contact angle"):
+    with pytest.raises(ValueError, match=r"operation\.axial_load_n: needs a contact angle"):
         recipe_with({"operation.axial_load_n": 50})
 
 
