@@ -104,7 +104,9 @@ def waviness(scenario: Scenario, fs: float) -> FloatArray:
         races[("inner", "outer").index(wear.site)] += (
             worn * wear.waviness * np.exp(1j * rng.uniform(0, 2 * np.pi, len(every)))
         )
-    ftf, fastest = orders(specimen.bearing).ftf, FASTEST_WAVE * fs / scenario.record.conditions["shaft"]
+    course = scenario.record.speed_course
+    highest_rate = scenario.record.conditions["shaft"] * (1.0 if course is None else max(course.shares))
+    ftf, fastest = orders(specimen.bearing).ftf, FASTEST_WAVE * fs / highest_rate
     races[0, every * (1 - ftf) > fastest] = 0.0
     races[1, every * ftf > fastest] = 0.0
     balls[even * orders(specimen.bearing).bsf > fastest] = 0.0

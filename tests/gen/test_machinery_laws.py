@@ -198,3 +198,12 @@ def test_a_wandering_load_has_its_rms_and_never_pulls_the_other_way(record_of):
 
 def test_steady_records_have_no_schedule(record_of):
     assert record_of({}).schedule.shape == (0, 2)
+
+
+def test_waviness_that_would_fold_down_is_left_out(record_of):
+    smooth = {"specimen.waviness_nm": 20, "specimen.ball_waviness_nm": 2, "operation.shaft_rpm": 6000}
+    whole, cut = (record_of(smooth | {"recording.sample_rate_hz": fs}).waves for fs in (48_000, 6_000))
+    kept = cut != 0
+    assert (whole != 0).all()
+    assert 0.2 < kept.mean() < 0.9
+    np.testing.assert_array_equal(cut[kept], whole[kept])

