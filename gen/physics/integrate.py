@@ -32,6 +32,8 @@ HALF_TAPS = 34  # per output sample; with beta 8 at least 80 dB from 1.025 Nyqui
 FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
 _BLOCK = 32  # knots between two runs of the filter
 
+Columns = tuple[FloatArray, NDArray[np.int64], FloatArray]
+
 
 class Integral(NamedTuple):
     """What comes out of a batch."""
@@ -134,8 +136,8 @@ def filter_knot(taps: FloatArray, history: FloatArray, first: int, width: int, t
 @njit(**INLINE)
 def integrate_lanes(
     shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
-) -> Integral:
-    """See :func:`integrate`."""
+) -> Columns:
+    """See :func:`integrate`; a named tuple would be made in Python, where a signal could leave its making half done."""
     params = np.zeros(param_rows(shape, n_steps) * LANES)
     params[: batch.params.size] = batch.params
     batch = Lanes(
@@ -183,16 +185,16 @@ def integrate_lanes(
         exponent = 10 / 9 if len(shape.roller) else 1.5
         squared = batch.params[COSA * LANES + lane] ** 2
         steepest[lane] *= exponent * squared * batch.params[STIFFNESS * LANES + lane]
-    return Integral(response, diverged, steepest)
+    return response, diverged, steepest
 
 
-def _cached(sources: str) -> Callable[..., Integral]:
+def _cached(sources: str) -> Callable[..., Columns]:
     """Compile and cache; numba looks for changes in this file alone, but what a function closes over is part of its key."""
 
     @njit(**KERNEL)
     def cached(
         shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
-    ) -> Integral:
+    ) -> Columns:
         _ = sources
         return integrate_lanes(shape, batch, dt, n_steps, taps, n_settle, n_out)
 
@@ -224,4 +226,4 @@ def integrate(
     n_settle, n_out : int
         Knots dropped before the first output, and outputs.
     """
-    return _compiled(shape, batch, dt, n_steps, taps, n_settle, n_out)
+    return Integral(*_compiled(shape, batch, dt, n_steps, taps, n_settle, n_out))
