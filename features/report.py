@@ -5,9 +5,7 @@ file with every picture inside. Corpora come from strangers: their text is escap
 """
 
 import base64
-import os
 from collections.abc import Mapping
-from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -30,7 +28,7 @@ from features.pictures import (
     draw_scores,
     picture,
 )
-from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, read_manifest, write_text_durably
+from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, read_manifest, write_durably, write_text_durably
 from gen.errors import CorpusError
 
 CANDIDATES = 15  # records of a class among which an example is chosen
@@ -137,17 +135,7 @@ def plot_record(corpus: Path | str, record: int, path: Path | str, *, channel: i
     if not _can_be_drawn(shown):
         message = f"{corpus}: record {record} cannot be drawn: its signal, shaft rate or fault orders are not numbers."
         raise CorpusError(message)
-    content = picture(draw_record(shown), formats[suffix])
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_bytes(content)
-        temporary.replace(path)
-    except OSError as error:
-        message = f"{path}: could not be written ({error}); free some space or choose another folder."
-        raise CorpusError(message) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
+    write_durably(picture(draw_record(shown), formats[suffix]), path)
 
 
 def _template() -> jinja2.Template:

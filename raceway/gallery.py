@@ -76,6 +76,8 @@ def _html(section: Section) -> str:
 
 def _paper(output: Path) -> "Iterator[Section]":
     """Figures 3 to 6 of the seed paper beside what it states of them."""
+    from features.pictures import picture
+    from gen.corpus import write_durably
     from gen.paper import PRESETS, findings, run
 
     made = run(PRESETS["paper"])
@@ -85,7 +87,7 @@ def _paper(output: Path) -> "Iterator[Section]":
         for figure, title, shown, spectral in FIGURES:
             if shown == state:
                 names.append(f"{figure}.png")
-                draw_figure(made, state, spectral, title).savefig(output / names[-1], dpi=90)
+                write_durably(picture(draw_figure(made, state, spectral, title), "png"), output / names[-1])
         table = _findings_table([finding for finding in found if finding.id.startswith(letter)])
         text = (
             "Preset paper of the seed paper, displacements in thousandths of a millimetre, and what the paper states."
@@ -104,6 +106,7 @@ def _every_fault(output: Path) -> Section:
     """Envelope spectra of one specimen of every kind of fault."""
     from features.envelopes import draw_envelopes
     from features.pictures import picture
+    from gen.corpus import write_durably
 
     corpus = _corpus("every_fault", output)
     kinds: dict[str, int] = {}
@@ -113,7 +116,7 @@ def _every_fault(output: Path) -> Section:
         _shown(corpus.isel(record=record), kind)
         for kind, record in sorted(kinds.items(), key=lambda item: _rank(corpus, item[1]))
     ]
-    (output / "envelopes.png").write_bytes(picture(draw_envelopes(shown), "png"))
+    write_durably(picture(draw_envelopes(shown), "png"), output / "envelopes.png")
     text = (
         "A 6205 at 1797 rpm, one specimen of each; the lines of its fault shaded, those of the others dotted. A worn race hums "
         "below the band whose envelope this is, and shows nothing here."
@@ -156,7 +159,7 @@ def _run_up(output: Path) -> Section:
 
     from features.envelopes import draw_waterfall
     from features.pictures import picture
-    from gen.corpus import FAULTS
+    from gen.corpus import FAULTS, write_durably
     from gen.physics.course import Course, share_at
 
     corpus = _corpus("run_up", output)
@@ -170,7 +173,7 @@ def _run_up(output: Path) -> Section:
             f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _orders_of(shown)
         )
         names.append(f"run-up-{shown.fault}.png")
-        (output / names[-1]).write_bytes(picture(figure, "png"))
+        write_durably(picture(figure, "png"), output / names[-1])
     text = "From 600 to 3000 rpm in nine seconds. Broken lines: orders of the shaft at the speed it then had."
     return "Run-ups", text, names, ""
 

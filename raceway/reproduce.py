@@ -33,7 +33,8 @@ def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 
 
       raceway reproduce ophel2025 -o ophel
     """
-    from gen.corpus import write_text_durably
+    from features.pictures import picture
+    from gen.corpus import write_durably, write_text_durably
     from gen.paper import PRESETS, findings, run
 
     output.mkdir(parents=True, exist_ok=True)
@@ -41,10 +42,9 @@ def reproduce(paper: str, output: Path, as_json: bool) -> None:  # noqa: ARG001 
     for name, preset in PRESETS.items():
         made = run(preset)
         found += findings(name, made)
-        for figure, title, state, spectral in FIGURES:
-            draw_figure(made, state, spectral, f"{title}, preset {name}").savefig(
-                output / f"{name}-{figure}.png", dpi=110
-            )
+        for number, title, state, spectral in FIGURES:
+            figure = draw_figure(made, state, spectral, f"{title}, preset {name}")
+            write_durably(picture(figure, "png"), output / f"{name}-{number}.png")
     table = {"findings": [finding._asdict() for finding in found]}
     write_text_durably(show.json_text(table), output / "findings.json")
     if as_json:

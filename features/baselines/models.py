@@ -5,10 +5,8 @@ named in ``TRUSTED`` and those skops knows.
 """
 
 import hashlib
-import os
 import zipfile
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -22,7 +20,7 @@ from features.baselines.estimators import DEFAULT_ESTIMATOR, Estimator, class_pr
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
 from features.baselines.scores import Scores, score
 from features.table import feature_table
-from gen.corpus import FAULTS
+from gen.corpus import FAULTS, write_durably
 from gen.errors import CorpusError
 
 FORMAT = 1
@@ -151,16 +149,7 @@ def save_model(model: Model, path: Path | str) -> None:
     """
     path = Path(path)
     content = {field.name: getattr(model, field.name) for field in fields(model)}
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        temporary.write_bytes(skops.io.dumps({"raceway_model": FORMAT, **content}))
-        temporary.replace(path)
-    except OSError as error:
-        message = f"{path}: could not be written ({error}); free some space or choose another folder."
-        raise CorpusError(message) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
+    write_durably(skops.io.dumps({"raceway_model": FORMAT, **content}), path)
 
 
 def load_model(path: Path | str) -> Model:

@@ -26,6 +26,7 @@ from gen.corpus.part import (
     open_part,
     part_name,
     sha256,
+    write_durably,
     write_part,
     write_text_durably,
 )
@@ -63,6 +64,7 @@ __all__ = [
     "read_manifest",
     "sha256",
     "validate_corpus",
+    "write_durably",
     "write_index",
     "write_manifest",
     "write_part",

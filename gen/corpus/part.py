@@ -128,7 +128,12 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
             temporary.unlink()
 
 
-def write_text_durably(text: str, path: Path) -> None:
-    """Write a text file, whole or not at all."""
+def write_durably(content: bytes, path: Path) -> None:
+    """Write a file, whole or not at all; CorpusError if the disk refuses it."""
     with whole_or_not_at_all(path) as temporary:
-        temporary.write_text(text, encoding="utf-8")
+        temporary.write_bytes(content)
+
+
+def write_text_durably(text: str, path: Path) -> None:
+    """Write a text file, whole or not at all; CorpusError if the disk refuses it."""
+    write_durably(text.encode(), path)
