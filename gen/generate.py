@@ -269,7 +269,7 @@ def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = No
     failures = tuple(response.failures[place] for place in sorted(response.failures))
     if not fine:
         return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
-    errors = step_errors(scenarios, recipe, response, part)
+    errors = step_errors(scenarios, recipe, response)
     dataset = part_dataset(measured, scenarios, recipe, response, errors).isel(record=fine)
     dataset.attrs |= {
         "recipe_sha256": recipe_hash(recipe),

@@ -19,7 +19,7 @@ from gen.physics.kernel import Shape
 from gen.physics.lanes import LANES
 from gen.physics.rotor import fastest_decay, fastest_swing, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING, Recipe
-from gen.scenarios import Scenario
+from gen.scenarios import Scenario, first_specimens
 
 FloatArray = NDArray[np.float64]
 
@@ -28,7 +28,7 @@ FINE_STEP, COARSEST_STEP = 0.30, 1.0
 LEAD_S = 0.05  # given ahead of the record, for the measurement's filters to start in
 _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # rad of the shaft from sample to sample, between which it turns evenly
-CHECKED_PARTS = 32  # one part in so many has its steps checked
+CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # in one part of so many the share of all their records has its steps checked
 
 
 @dataclass(frozen=True)
@@ -123,20 +123,17 @@ def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tu
     return Integral(response, diverged, steepest), np.array(phases)
 
 
-def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response, part: int) -> FloatArray:
+def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -> FloatArray:
     """Relative rms change of some records when their step is halved, NaN for those not tried, shape (record,).
 
-    One part in ``CHECKED_PARTS`` is tried: the first record of each class, and what fits into the same batches at no more cost.
+    ``scenarios`` are those of a part. Tried are what :func:`checked_places` names and what fits into the same batches at no more cost.
     """
     errors = np.full(len(scenarios), np.nan)
-    if part % CHECKED_PARTS:
-        return errors
     fine = {place: record for place, record in enumerate(response.records) if record and place not in response.failures}
     groups = {place: (record_shape(record), int(response.oversampling[place])) for place, record in fine.items()}
-    first: dict[str, int] = {}
-    for place in fine:
-        first.setdefault(scenarios[place].specimen.fault, place)
-    tried = list(first.values())
+    tried = checked_places(scenarios, recipe, list(fine))
+    if not tried:
+        return errors
     for group in {groups[place] for place in tried}:
         others = [place for place, found in groups.items() if found == group and place not in tried]
         tried += others[: -sum(groups[place] == group for place in tried) % LANES]
@@ -145,6 +142,24 @@ def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response, p
     coarse, halved = response.acceleration[tried][..., lead:], finer.response[..., lead:]
     errors[tried] = np.sqrt(np.sum((coarse - halved) ** 2, axis=(1, 2)) / np.sum(halved**2, axis=(1, 2)))
     return errors
+
+
+def checked_places(scenarios: list[Scenario], recipe: Recipe, fine: list[int]) -> list[int]:
+    """Places, among the ``fine`` ones of a part, of the records whose step is to be checked.
+
+    The first record of a class in the part where its first specimen of the corpus begins; in one part of ``CHECKED_PARTS``,
+    evenly spread, as many as are ``CHECKED_SHARE`` of the records that they hold together.
+    """
+    corpus, begun = recipe.corpus, {scenario.record.number for scenario in scenarios}
+    new = {fault for fault, number in first_specimens(recipe).items() if number * corpus.records_per_specimen in begun}
+    first: dict[str, int] = {}
+    for place in fine:
+        if scenarios[place].specimen.fault in new:
+            first.setdefault(scenarios[place].specimen.fault, place)
+    start, span = scenarios[0].record.number, CHECKED_PARTS * corpus.records_per_part
+    wanted = math.ceil(CHECKED_SHARE * min(span, recipe.n_records - start)) if start % span == 0 else 0
+    count = min(wanted, len(fine))
+    return sorted({*first.values(), *(fine[len(fine) * at // count] for at in range(count))})
 
 
 def kernel_record(scenario: Scenario, recipe: Recipe) -> Record:

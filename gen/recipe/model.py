@@ -57,6 +57,10 @@ class Recipe(Section):
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records if the corpus is to end early."""
 
+    def __hash__(self) -> int:
+        """Equal recipes have one name and seed; pydantic's own hash fails on the dictionaries of some sections."""
+        return hash((self.name, self.seed))
+
     @property
     def n_samples(self) -> int:
         """Number of samples of a record."""

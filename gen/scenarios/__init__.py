@@ -11,7 +11,7 @@ draw   how each is drawn, level by level
 """
 
 from gen.scenarios.draw import draw_scenarios
-from gen.scenarios.faults import fault_of_each_specimen
+from gen.scenarios.faults import fault_of_each_specimen, first_specimens
 from gen.scenarios.model import (
     Background,
     Mode,
@@ -41,5 +41,6 @@ __all__ = [
     "Wear",
     "draw_scenarios",
     "fault_of_each_specimen",
+    "first_specimens",
     "stream",
 ]

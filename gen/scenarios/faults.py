@@ -1,5 +1,6 @@
 """Which specimens of a rig are damaged, and how."""
 
+import functools
 import math
 from dataclasses import replace
 
@@ -82,3 +83,19 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
         elif all(kind == "healthy" for kind in chosen):
             chosen[0] = faulty[weighted_index(tuple(shares[kind] for kind in faulty), rng.random())]
     return [chosen[i] for i in rng.permutation(count)]
+
+
+@functools.lru_cache(maxsize=16)
+def first_specimens(recipe: Recipe) -> dict[str, int]:
+    """Number of the first specimen of each fault class in the corpus; rigs beyond the last of them are not looked at."""
+    corpus = recipe.corpus
+    n_specimens = -(-recipe.n_records // corpus.records_per_specimen)
+    n_classes = len({fault_class(entry) for entry in recipe.faults if entry.weight > 0})
+    found: dict[str, int] = {}
+    for first in range(0, n_specimens, corpus.specimens_per_rig):
+        faults = fault_of_each_specimen(recipe, first // corpus.specimens_per_rig)
+        for number, fault in enumerate(faults[: n_specimens - first], first):
+            found.setdefault(fault, number)
+        if len(found) == n_classes:
+            break
+    return found

@@ -1,5 +1,7 @@
 """Laws of the check of the step: some records are made again at half of it, all are held against their stiffest contacts."""
 
+from collections import Counter
+
 import numpy as np
 import pytest
 
@@ -8,8 +10,8 @@ from gen.errors import RecipeError, SimulationError
 from gen.generate import generate
 from gen.machinery import physical_record
 from gen.physics.rotor import fastest_swing
-from gen.scenarios import draw_scenarios
-from gen.simulate import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, simulate, step_errors
+from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
+from gen.simulate import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places, simulate, step_errors
 from tests.reference import contact_stiffness, contacts, march_lanes, slow_motion
 
 FS = 12_000.0
@@ -29,7 +31,7 @@ def checked(recipe_with):
     recipe = recipe_with()
     scenarios = draw_scenarios(recipe)
     response = simulate(scenarios, recipe)
-    return recipe, scenarios, response, step_errors(scenarios, recipe, response, 0)
+    return recipe, scenarios, response, step_errors(scenarios, recipe, response)
 
 
 def test_the_first_record_of_every_class_is_tried_at_half_the_step(checked):
@@ -46,12 +48,83 @@ def test_at_half_the_step_ordinary_records_change_by_less_than_a_thousandth(chec
     assert tried.max() < 1e-3
 
 
-@pytest.mark.parametrize("part", [1, CHECKED_PARTS - 1, CHECKED_PARTS, CHECKED_PARTS + 1])
-def test_one_part_in_so_many_is_tried(recipe_with, part):
-    recipe = recipe_with()
-    scenarios = draw_scenarios(recipe, 0, 2)
-    errors = step_errors(scenarios, recipe, simulate(scenarios, recipe), part)
-    assert np.isfinite(errors).any() == (part == CHECKED_PARTS)
+def checked_records(recipe):
+    """Scenarios whose step is checked, part by part."""
+    size = recipe.corpus.records_per_part
+    parts = [draw_scenarios(recipe, first, first + size) for first in range(0, recipe.n_records, size)]
+    return [[part[place] for place in checked_places(part, recipe, list(range(len(part))))] for part in parts]
+
+
+LAYOUTS = {
+    "every class in part 0": {"corpus.records_per_part": 64, "corpus.records_per_specimen": 1},
+    "one class in a part": {"corpus.records_per_part": 4, "corpus.records_per_specimen": 40},
+    "one record in a part": {"corpus.records_per_part": 1, "corpus.records_per_specimen": 3},
+    "parts across specimens": {"corpus.records_per_part": 5, "corpus.records_per_specimen": 7},
+    "fewer classes on a rig than there are": {"corpus.specimens_per_rig": 2, "corpus.records_per_specimen": 3},
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS.values(), ids=LAYOUTS)
+def test_every_class_and_a_hundredth_of_the_records_are_tried_whatever_the_layout(recipe_with, layout):
+    recipe = recipe_with({"corpus.rigs": 60, "records": 397} | layout)
+    checked = checked_records(recipe)
+    classes = {scenario.specimen.fault for scenario in draw_scenarios(recipe)}
+    assert len(classes) == len(recipe.faults)
+    assert {scenario.specimen.fault for part in checked for scenario in part} == classes
+    spans = Counter(
+        scenario.record.number // (CHECKED_PARTS * recipe.corpus.records_per_part)
+        for part in checked
+        for scenario in part
+    )
+    held = Counter(number // (CHECKED_PARTS * recipe.corpus.records_per_part) for number in range(recipe.n_records))
+    assert all(0.01 * held[span] <= spans[span] <= 1 + 0.01 * held[span] + len(classes) for span in held)
+    assert sum(spans.values()) <= len(held) + 0.01 * recipe.n_records + len(classes)
+
+
+def test_the_hundredth_is_spread_over_its_part_and_leaves_out_what_failed(recipe_with):
+    recipe = recipe_with({"corpus.rigs": 100, "corpus.records_per_part": 20})
+    scenarios = draw_scenarios(recipe, 640, 660)  # no class begins here: all do on the first rig
+    assert checked_places(scenarios, recipe, list(range(20))) == [0, 10]
+    assert checked_places(scenarios, recipe, [3, 4, 11, 12, 13]) == [3, 11]
+    assert checked_places(scenarios, recipe, []) == []
+    assert checked_places(draw_scenarios(recipe, 620, 640), recipe, list(range(20))) == []
+
+
+def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
+    recipe = recipe_with({"corpus.records_per_part": 24})
+    scenarios = draw_scenarios(recipe)
+    faults = [scenario.specimen.fault for scenario in scenarios]
+    failed = faults.index("inner")
+    tried = checked_places(scenarios, recipe, [place for place in range(len(scenarios)) if place != failed])
+    assert failed not in tried
+    assert faults.index("inner", failed + 1) in tried
+
+
+@pytest.mark.parametrize("records", [None, 21, 3, 1])
+@pytest.mark.parametrize("specimens", [2, 4, 5])
+def test_the_first_specimen_of_each_class_is_the_first_one_drawn_with_it(recipe_with, specimens, records):
+    recipe = recipe_with({"corpus.specimens_per_rig": specimens, "records": records})
+    drawn = [(scenario.specimen.fault, scenario.specimen.number) for scenario in draw_scenarios(recipe)]
+    assert first_specimens(recipe) == dict(reversed(drawn))
+
+
+def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe_with, monkeypatch):
+    seen = []
+
+    def looked_at(recipe, rig):
+        seen.append(rig)
+        return fault_of_each_specimen(recipe, rig)
+
+    monkeypatch.setattr("gen.scenarios.faults.fault_of_each_specimen", looked_at)
+    assert first_specimens(recipe_with({"corpus.rigs": 1000, "seed": 12345})).keys() == set(FAULTS[:4])
+    assert seen == [0]
+
+
+def test_a_part_of_which_nothing_is_to_be_checked_is_not_run_again(recipe_with):
+    recipe = recipe_with({"corpus.records_per_part": 2})
+    scenarios = draw_scenarios(recipe, 10, 12)
+    response = simulate(scenarios, recipe)
+    assert np.isnan(step_errors(scenarios, recipe, response)).all()
 
 
 def test_a_coarser_step_changes_more_when_it_is_halved(recipe_with):
@@ -60,7 +133,7 @@ def test_a_coarser_step_changes_more_when_it_is_halved(recipe_with):
     for steps in (2, 4, 8):
         recipe = recipe_with({"recording.oversampling": steps})
         scenarios = draw_scenarios(recipe, 0, 8)
-        errors.append(step_errors(scenarios, recipe, simulate(scenarios, recipe), 0))
+        errors.append(step_errors(scenarios, recipe, simulate(scenarios, recipe)))
     tried = np.isfinite(errors[0])
     assert (errors[0] > 2 * errors[1])[tried].all()
     assert (errors[1] > 2 * errors[2])[tried].all()
@@ -118,7 +191,7 @@ def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):
 def test_records_left_out_are_not_tried(recipe_with):
     recipe = recipe_with(ROUGH)
     scenarios = draw_scenarios(recipe, 4, 12)
-    errors = step_errors(scenarios, recipe, simulate(scenarios, recipe), 0)
+    errors = step_errors(scenarios, recipe, simulate(scenarios, recipe))
     assert np.isfinite(errors[:4]).any()
     assert np.isnan(errors[4:]).all()
 
