@@ -78,7 +78,7 @@ Part = Annotated[RaceFault | BallFault | CageFault, Field(discriminator="kind")]
 
 
 class CompoundFault(Section):
-    """Faults of several parts at once; the weights of the parts mean nothing."""
+    """Faults of several parts at once, with one weight together."""
 
     kind: Literal["compound"]
     weight: Weight = 1.0
@@ -91,6 +91,9 @@ class CompoundFault(Section):
             raise ValueError(
                 f"parts: {', '.join(kinds)} are not all different; several spalls of one part need no compound."
             )
+        weighted = [part.kind for part in self.parts if "weight" in part.model_fields_set]
+        if weighted:
+            raise ValueError(f"parts: a weight of {', '.join(weighted)} alone does nothing; give the compound one.")
         return self
 
 

@@ -107,6 +107,10 @@ class Recipe(Section):
             raise ValueError(
                 "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
             )
+        if "temperature_celsius" in self.operation.model_fields_set and self.contact.lubricant is None:
+            raise ValueError(
+                "operation.temperature_celsius: does nothing without oil; give contact.lubricant, or leave it out."
+            )
         for key, course in (("speed", self.operation.speed_course), ("load", self.operation.load_course)):
             if isinstance(course, Steps) and course.step_s * len(course.levels_percent) > self.recording.duration_s:
                 raise ValueError(

@@ -132,6 +132,8 @@ TABLE = [
     (OUTER, "{kind: compound, parts: [{kind: cage}, {width_mm: 1}]}", "faults[1].parts[1]: this needs a kind, such as kind: inner."),
     (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: ball, width_mm: 6}]}",
      "does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
+    (OUTER, "{kind: compound, parts: [{kind: cage, weight: 1}, {kind: outer, width_mm: 1}]}",
+     "faults[1].parts: a weight of cage alone does nothing; give the compound one."),
     # courses
     (RPM, RPM + ", speed_course: {kind: table, times_s: [0, 0], percent: [9, 9]}",
      "operation.speed_course: times_s do not rise; sort them, each once."),
@@ -154,6 +156,8 @@ TABLE = [
     # heat, oil, axial load, what is wrong with the machine
     (RPM, RPM + ", load_wander_percent: 60", "operation.load_wander_percent: 60 is not in [0, 50]."),
     (RPM, RPM + ", temperature_celsius: 300", "operation.temperature_celsius: 300 is not in [-40, 200]."),
+    (RPM, RPM + ", temperature_celsius: 40",
+     "operation.temperature_celsius: does nothing without oil; give contact.lubricant, or leave it out."),
     (RPM, RPM + ", inner_ring_hotter_k: 101", "operation.inner_ring_hotter_k: 101 is not in [-50, 100]."),
     (RPM, RPM + ", axial_load_n: -1", "operation.axial_load_n: -1 is not in [0, 1e+07]."),
     (RPM, RPM + ", axial_load_n: 100", "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg"),
