@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.interpolate import CubicSpline
 
 from gen.damage import kernel_spalls, waviness
 from gen.physics import motion
@@ -198,10 +197,21 @@ def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
         rng, shaft_rate = scenario.rng(Purpose.COURSE), record.conditions["shaft"]
         rates = 2 * np.pi * shaft_rate * 0.05 ** rng.random(LOAD_TERMS)
         phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
-        coarse = np.arange(times[0], times[-1] + 2 / (32 * shaft_rate), 1 / (32 * shaft_rate))  # 32 to a turn: to 1e-6
-        waves = CubicSpline(coarse, np.cos(coarse[:, None] * rates + phases).sum(axis=1))(times)
-        factors[:, 1] *= np.maximum(1 + wander * math.sqrt(2 / LOAD_TERMS) * waves, 0.0)
+        factors[:, 1] *= np.maximum(1 + wander * math.sqrt(2 / LOAD_TERMS) * cosine_sum(times, rates, phases), 0.0)
     return factors
+
+
+def cosine_sum(times: FloatArray, rates: FloatArray, phases: FloatArray) -> FloatArray:
+    """Sum over terms of ``cos(rate * time + phase)`` at evenly spaced times, shape (time,) [1]; rates in rad/s, shape (term,).
+
+    By ``cos(a + b) = cos(a) cos(b) - sin(a) sin(b)`` from the starts of blocks and the steps within one: 16 times as fast as a
+    cosine for each, and to rounding as exact. No BLAS, whose last bits may change with its threads.
+    """
+    length = math.isqrt(len(times))
+    starts = np.outer(times[::length], rates) + phases
+    steps = np.outer(rates, (times[-1] - times[0]) / (len(times) - 1) * np.arange(length))
+    of_start, of_step = np.hstack([np.cos(starts), -np.sin(starts)]), np.vstack([np.cos(steps), np.sin(steps)])
+    return np.einsum("bt,ts->bs", of_start, of_step).ravel()[: len(times)]
 
 
 def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
@@ -219,7 +229,7 @@ def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
             points = int(np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17))
             times = (np.arange(points) + 0.5) * (duration / points)
             share = share_at(course, times)
-            waves = np.cos(np.outer(start + times, turn) + phase).sum(axis=1)
+            waves = cosine_sum(start + times, turn, phase)
             return float(share @ waves / share.sum() * math.sqrt(2 / terms))
         swing = np.sin(turn * (start + duration) + phase) - np.sin(turn * start + phase)
         return float(np.sum(swing / (turn * duration)) * math.sqrt(2 / terms))

@@ -4,9 +4,11 @@ import math
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from gen.labels import part_dataset
-from gen.machinery import heaviest_ball_load, physical_record, true_motion
+from gen.machinery import cosine_sum, heaviest_ball_load, physical_record, true_motion
 from gen.measure import measure
 from gen.physics.batch import record_shape
 from gen.physics.catalogue import CATALOGUE
@@ -193,6 +195,16 @@ def test_a_wandering_load_has_its_rms_and_never_pulls_the_other_way(record_of):
     assert gentle.mean() == pytest.approx(1, abs=2e-3)
     assert gentle.std() == pytest.approx(0.05, rel=0.05)  # 8 cosines over a hundred of their slowest turns
     assert wild.min() == 0
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.integers(2, 3000), st.integers(0, 12), st.floats(-1, 60), st.floats(1e-5, 1e-3), st.integers(0, 2**32 - 1))
+def test_a_sum_of_cosines_is_the_sum_of_its_cosines(n, terms, start, step, seed):
+    rng = np.random.default_rng(seed)
+    times, rates, phases = start + step * np.arange(n), rng.uniform(0, 1000, terms), rng.uniform(0, 7, terms)
+    expected = np.cos(np.outer(times, rates) + phases).sum(axis=1)
+    rounding = 4 * np.finfo(float).eps * (1000 * np.abs(times).max() + 7)  # of the argument of a cosine
+    np.testing.assert_allclose(cosine_sum(times, rates, phases), expected, rtol=0, atol=(1 + terms) * rounding)
 
 
 def test_steady_records_have_no_schedule(record_of):
