@@ -19,7 +19,6 @@ from typing import Any
 from features.table import part_features
 from gen.corpus import write_part
 from gen.labels import part_dataset
-from gen.machinery import physical_record
 from gen.measure import measure
 from gen.physics.batch import lay_out, record_shape
 from gen.physics.integrate import decimation_taps, integrate
@@ -29,7 +28,7 @@ from gen.physics.motion import Lanes
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulate import Response, lead_samples, simulate, steps_per_sample
+from gen.simulate import Response, kernel_record, lead_samples, simulate, steps_per_sample
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5
@@ -105,7 +104,7 @@ def _batches(scenarios: list[Scenario], recipe: Recipe) -> list[Batch]:
     """The batches :func:`gen.simulate` makes of scenarios."""
     groups = defaultdict(list)
     for scenario in scenarios:
-        record = physical_record(scenario, recipe)
+        record = kernel_record(scenario, recipe)
         factor = steps_per_sample(record, scenario, recipe)
         groups[record_shape(record), factor].append(record)
     knot = 1 / recipe.recording.sample_rate_hz
