@@ -29,7 +29,7 @@ class _Spalls(Section):
     trace_um: Trace | None = None
     """Depth of the surface from edge to edge as a stylus measures it, evenly spaced, for ``profile: trace``."""
     roughness_um: Distribution = within(0, 50, default=0.0)
-    """Rms of the floor of a ``geometric`` spall."""
+    """Rms of the floor of a geometric or traced spall."""
 
     @model_validator(mode="after")
     def _traced(self) -> Self:
