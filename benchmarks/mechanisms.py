@@ -1,7 +1,7 @@
 """What each mechanism does to the marks by which simulated and real faults differ.
 
 ``python -m benchmarks.mechanisms`` prints a table: the reference machine of :mod:`benchmarks.visibility` with one thing changed at a time,
-medians over the seeds. Marks: kurtosis of the record; lines of the squared envelope one shaft turn beside BPFO, relative to BPFO;
+medians over the seeds. Marks: rms and kurtosis of the record; lines of the squared envelope one shaft turn beside BPFO, relative to BPFO;
 lines beside BPFI, relative to BPFI; share of the power of the envelope's swing that lies below 0.8 orders.
 """
 
@@ -58,6 +58,7 @@ def marks(fault: dict[str, Any], changes: Changes, n_seeds: int) -> dict[str, fl
     spectrum = squared_envelope_spectrum(signals)
     slow = np.arange(spectrum.shape[1]) / SECONDS < 0.8 * rate
     return {
+        "rms [m/s2]": float(np.median(np.std(signals, axis=1))),
         "kurtosis": float(np.median(kurtosis(signals, axis=1, fisher=False))),
         "BPFO +/- fr [dB]": _beside(spectrum, LINES["BPFO"] * rate, rate),
         "BPFI +/- fr [dB]": _beside(spectrum, LINES["BPFI"] * rate, rate),

@@ -1,4 +1,4 @@
-"""Oil and film against tables, other authors' formulas and a rule of practice.
+"""Oil and film against tables, other authors' formulas and a rule of practice; what docs/model.md says of them.
 
 .. [1] G. W. Stachowiak, A. W. Batchelor, *Engineering Tribology*, Elsevier, table 2.3: dynamic viscosity at 30, 60 and 100 C.
 .. [2] ASTM D341, a worked example of its equation: a gear oil SAE 140 of 404 and 28 mm2/s has 132.126 mm2/s at 60 C.
@@ -10,14 +10,17 @@
 
 import math
 from itertools import product
+from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import POINT_EXPONENT, effective_modulus, load_deflection_factor
 from gen.physics.lubricant import (
+    Film,
     Lubricant,
     density,
     dynamic_viscosity,
@@ -27,9 +30,11 @@ from gen.physics.lubricant import (
     point_film_thickness,
     point_squeeze_damping,
 )
+from gen.physics.rotor import STRIBECK
 
 STEEL = effective_modulus(207e9, 0.3)
 ALPHA = 2e-8
+PAGE = (Path(__file__).parents[2] / "docs" / "model.md").read_text(encoding="utf-8")
 MINERAL_OILS = (  # [1], mPa s at 30, 60, 100 C
     (38, 12.1, 5.3),
     (153, 34, 9.1),
@@ -131,3 +136,29 @@ def test_a_ball_in_its_film_is_damped_as_practice_says_of_rolling_bearings():
     assert np.mean([0.25e-5 < ratio < 2.5e-5 for ratio in ratios]) > 0.8
     assert min(ratios) > 0.25e-5 / 6
     assert max(ratios) < 6 * 2.5e-5
+
+
+def film_of_the_page(celsius: float) -> Film:
+    """Film of one ball of a 6205 with VG 68 oil at 30 Hz and 300 N."""
+    return film(CATALOGUE["6205"], Lubricant(), celsius, 30.0, 300.0)
+
+
+def test_the_oil_table_of_the_model_page_is_what_the_formulas_give():
+    films = [film_of_the_page(celsius) for celsius in (20, 60, 100)]
+    rows = {
+        "viscosity [mPa s]": [1e3 * dynamic_viscosity(Lubricant(), celsius) for celsius in (20, 60, 100)],
+        "film, both contacts [um]": [1e6 * one.thickness for one in films],
+        "damping [N s/m]": [one.damping for one in films],
+    }
+    for name, values in rows.items():
+        assert f"| {name} | {' | '.join(f'{value:.3g}' for value in values)} |" in PAGE
+
+
+def test_the_damping_of_a_fall_that_the_model_page_leaves_out_is_what_it_says():
+    """Where a ball swaps edges, half the width of the spall from either, it falls as steeply as its sagitta on the race."""
+    bearing = CATALOGUE["6205"]
+    rolling = 2 * math.pi * 30 * (1 - orders(bearing).ftf) * bearing.inner_radius
+    falling = rolling * 0.53e-3 / 2 * (2 / bearing.ball_diameter + 1 / bearing.inner_radius)
+    damping = film_of_the_page(60).damping
+    assert f"{falling:.2f} m/s x {damping:.0f} N s/m = {falling * damping:.0f} N on a ball that carries" in PAGE
+    assert f"carries {STRIBECK * 300 / bearing.n_balls:.0f} N of the 300 N" in PAGE
