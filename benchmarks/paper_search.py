@@ -65,9 +65,9 @@ def _miss(value: float, low: float, high: float) -> float:
     return 0.3 + 0.7 * min(abs(value - edge) / scale, 1.0)
 
 
-def holding(known: Preset, seed: int) -> np.ndarray:
-    """Statements that hold of ``DRAWS`` neighbours of a preset, all constants within ``CHANGE`` of its own, evenly, shape (draw,)."""
-    factors = np.random.default_rng(seed).uniform(1 - CHANGE, 1 + CHANGE, (DRAWS, len(known)))
+def holding(known: Preset, seed: int, draws: int = DRAWS) -> np.ndarray:
+    """Number of statements that hold of neighbours of a preset, every constant drawn evenly within ``CHANGE`` of its own, shape (draw,)."""
+    factors = np.random.default_rng(seed).uniform(1 - CHANGE, 1 + CHANGE, (draws, len(known)))
     made = run_many([Preset(*(np.array(known) * factor).tolist()) for factor in factors])
     return np.array([sum(f.holds for f in findings("perturbed", each)) for each in made])
 
