@@ -104,8 +104,8 @@ def waviness(scenario: Scenario, fs: float) -> FloatArray:
         races[("inner", "outer").index(wear.site)] += (
             worn * wear.waviness * np.exp(1j * rng.uniform(0, 2 * np.pi, len(every)))
         )
-    course = scenario.record.speed_course
-    highest_rate = scenario.record.conditions["shaft"] * (1.0 if course is None else max(course.shares))
+    profile = scenario.record.speed_profile
+    highest_rate = scenario.record.conditions["shaft"] * (1.0 if profile is None else max(profile.shares))
     ftf, fastest = orders(specimen.bearing).ftf, FASTEST_WAVE * fs / highest_rate
     races[0, every * (1 - ftf) > fastest] = 0.0
     races[1, every * ftf > fastest] = 0.0

@@ -14,7 +14,7 @@ from gen.damage import deepest
 from gen.machinery import true_motion
 from gen.measure import Measured
 from gen.physics.bearing import orders
-from gen.physics.course import mean_share, share_at
+from gen.physics.profile import mean_share, share_at
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
 from gen.simulate import Response
@@ -37,7 +37,7 @@ EXTRA = (
     Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders"),
     Variable("snr", "f8", "dB", "latent", "bearing over background"),
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),
-    Variable("running_clearance", "f8", "m", "latent", "the same as warm, oiled and axially loaded as it runs"),
+    Variable("operating_clearance", "f8", "m", "latent", "the same as warm, oiled and axially loaded as it runs"),
     Variable("clipped", "i4", "1", "latent", "samples at the limits of the converter"),
     Variable("oversampling", "i4", "1", "provenance", "integration steps per sample"),
     Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
@@ -58,7 +58,7 @@ def part_dataset(
     columns = {name: [row[name] for row in rows] for name in rows[0]}
     columns |= {"clipped": measured.clipped, "snr": measured.snr}
     columns |= {"oversampling": response.oversampling, "step_phase": response.step_phase}
-    columns["running_clearance"] = [
+    columns["operating_clearance"] = [
         np.nan if record is None else 2 * record.machine.half_clearance for record in response.records
     ]
     columns["step_error"] = np.full(len(rows), np.nan) if step_error is None else step_error
@@ -82,11 +82,13 @@ def _columns(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
     conditions, duration = record.conditions, recipe.recording.duration_s
     nominal, (true_rate, true_orders) = orders(rig.bearing), true_motion(scenario, recipe)
-    speeds = [1.0, 1.0] if record.speed_course is None else share_at(record.speed_course, np.array([0.0, duration]))
+    speeds = [1.0, 1.0] if record.speed_profile is None else share_at(record.speed_profile, np.array([0.0, duration]))
     return {
-        "shaft_rate": conditions["shaft"] * mean_share(record.speed_course, duration) * (1 + conditions["label_error"]),
+        "shaft_rate": conditions["shaft"]
+        * mean_share(record.speed_profile, duration)
+        * (1 + conditions["label_error"]),
         "sample_rate": recipe.recording.sample_rate_hz,
-        "load": conditions["load"] * mean_share(record.load_course, duration),
+        "load": conditions["load"] * mean_share(record.load_profile, duration),
         "axial_load": conditions["axial_load"],
         "temperature": np.nan if rig.lubricant is None else conditions["temperature"],
         **nominal._asdict(),

@@ -1,4 +1,4 @@
-"""What the kernel needs of a scenario: constants of the machine, its motion, and the course of speed and load.
+"""What the kernel needs of a scenario: constants of the machine, its motion, and the profiles of speed and load.
 
 Temperature, oil and axial load act here, once per record: they change clearance, contact stiffness and damping.
 """
@@ -15,10 +15,10 @@ from gen.physics import motion
 from gen.physics.axial import axial_approach
 from gen.physics.batch import Motion, Record, n_terms
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
-from gen.physics.course import mean_share, share_at
 from gen.physics.hertz import contact_exponent, load_deflection_factor
 from gen.physics.integrate import HALF_TAPS
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
+from gen.physics.profile import mean_share, share_at
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario
@@ -128,10 +128,10 @@ def _machine(scenario: Scenario, cage_angle: float) -> Machine:
     if axial == 0:
         return machine
     angles = cage_angle + 2 * np.pi * np.arange(bearing.n_balls) / bearing.n_balls
-    course = scenario.record.load_course
+    profile = scenario.record.load_profile
     return machine._replace(
         half_clearance=half_clearance
-        - axial_approach(machine, axial, angles, heaviest=1.0 if course is None else max(course.shares))
+        - axial_approach(machine, axial, angles, heaviest=1.0 if profile is None else max(profile.shares))
     )
 
 
@@ -183,18 +183,18 @@ def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
     """Factors of shaft rate and load at the knots, shape (knot, 2); (0, 2) if both are constant."""
     record = scenario.record
     wander = record.conditions["load_wander"]
-    if record.speed_course is None and record.load_course is None and wander == 0:
+    if record.speed_profile is None and record.load_profile is None and wander == 0:
         return np.empty((0, 2))
     fs = recipe.recording.sample_rate_hz
     settling = round(recipe.recording.settle_s * fs)
     times = (np.arange(settling + recipe.n_samples + HALF_TAPS + 2) - settling) / fs
     factors = np.ones((len(times), 2))
-    if record.speed_course is not None:
-        factors[:, 0] = share_at(record.speed_course, times + 0.5 / fs)
-    if record.load_course is not None:
-        factors[:, 1] = share_at(record.load_course, times)
+    if record.speed_profile is not None:
+        factors[:, 0] = share_at(record.speed_profile, times + 0.5 / fs)
+    if record.load_profile is not None:
+        factors[:, 1] = share_at(record.load_profile, times)
     if wander > 0:
-        rng, shaft_rate = scenario.rng(Purpose.COURSE), record.conditions["shaft"]
+        rng, shaft_rate = scenario.rng(Purpose.LOAD_WANDER), record.conditions["shaft"]
         rates = 2 * np.pi * shaft_rate * 0.05 ** rng.random(LOAD_TERMS)
         phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
         factors[:, 1] *= np.maximum(1 + wander * math.sqrt(2 / LOAD_TERMS) * cosine_sum(times, rates, phases), 0.0)
@@ -215,26 +215,26 @@ def cosine_sum(times: FloatArray, rates: FloatArray, phases: FloatArray) -> Floa
 
 
 def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
-    """Mean shaft rate [Hz] over the record and mean fault orders, course, wander and slip included."""
+    """Mean shaft rate [Hz] over the record and mean fault orders, speed profile, wander and slip included."""
     conditions = scenario.record.conditions
     drawn = _start(scenario)
-    start, duration, course = recipe.recording.settle_s, recipe.recording.duration_s, scenario.record.speed_course
+    start, duration, profile = recipe.recording.settle_s, recipe.recording.duration_s, scenario.record.speed_profile
 
     def mean(first: int, terms: int) -> float:
-        """Over the turns of the shaft, which are even in time without a course."""
+        """Over the turns of the shaft, which are even in time without a profile."""
         turn = 2 * np.pi * drawn.frequencies[first : first + terms]
         phase = drawn.phases[first : first + terms]
-        if course is not None:
+        if profile is not None:
             # ten to a cycle of the fastest process
             points = int(np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17))
             times = (np.arange(points) + 0.5) * (duration / points)
-            share = share_at(course, times)
+            share = share_at(profile, times)
             waves = cosine_sum(start + times, turn, phase)
             return float(share @ waves / share.sum() * math.sqrt(2 / terms))
         swing = np.sin(turn * (start + duration) + phase) - np.sin(turn * start + phase)
         return float(np.sum(swing / (turn * duration)) * math.sqrt(2 / terms))
 
-    rate = conditions["shaft"] * mean_share(course, duration)
+    rate = conditions["shaft"] * mean_share(profile, duration)
     rate *= 1 + conditions["speed_wander"] * mean(0, motion.SPEED_TERMS)
     slip = conditions["mean_slip"] + conditions["slip"] * mean(motion.SLIP_FIRST, motion.SLIP_TERMS)
     found = slipping_orders(scenario.specimen.bearing, slip)

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.course import turned
+from gen.physics.profile import turned
 from gen.recipe import Recipe
 from gen.scenarios import Background, Mode, Purpose, Rig, Scenario
 from gen.simulate import LEAD_S, Response, lead_samples
@@ -165,9 +165,9 @@ def _filtered(x: FloatArray, spectrum: ComplexArray | FloatArray) -> FloatArray:
 
 
 def _shaft_angle(scenario: Scenario, n: int, fs: float, rng: np.random.Generator) -> FloatArray:
-    """Shaft angle at the mean rate, or along its course, from a random start, shape (time,) [rad]."""
+    """Shaft angle at the mean rate, or along its profile, from a random start, shape (time,) [rad]."""
     times = np.arange(n) / fs
-    run = turned(scenario.record.speed_course, times - LEAD_S)
+    run = turned(scenario.record.speed_profile, times - LEAD_S)
     return 2 * np.pi * (scenario.record.conditions["shaft"] * run + rng.random())
 
 

@@ -182,7 +182,7 @@ def lead_samples(recipe: Recipe) -> int:
 
 
 def largest_pull(record: Record) -> float:
-    """What may pull at the shaft beside its steady load: unbalance, a bent shaft, misalignment, the course of the load [N]."""
+    """What may pull at the shaft beside its steady load: unbalance, a bent shaft, misalignment, the profile of the load [N]."""
     turning = record.motion
     speeds, loads = record.schedule.T if record.schedule.size else (np.ones(1), np.ones(1))
     unbalance = turning.unbalance * (2 * math.pi * turning.shaft_rate * float(speeds.max())) ** 2

@@ -160,7 +160,7 @@ def _run_up(output: Path) -> Section:
     from features.envelopes import draw_waterfall
     from features.pictures import picture
     from gen.corpus import FAULTS, write_durably
-    from gen.physics.course import Course, share_at
+    from gen.physics.profile import Profile, share_at
 
     corpus = _corpus("run_up", output)
     names = []
@@ -168,7 +168,7 @@ def _run_up(output: Path) -> Section:
         record = corpus.isel(record=int(np.flatnonzero(corpus["fault"].values == fault)[0]))
         shown, drawn = _shown(record, FAULTS[fault]), json.loads(str(record["draws"].values))["record"]
         times = np.arange(len(shown.signal)) / shown.fs
-        rate = drawn["conditions"]["shaft"] * share_at(Course(*drawn["speed_course"]), times)
+        rate = drawn["conditions"]["shaft"] * share_at(Profile(*drawn["speed_profile"]), times)
         figure = draw_waterfall(
             f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _orders_of(shown)
         )

@@ -6,8 +6,8 @@ EVERY_FAULT = [
     {"kind": "outer", "width_mm": 3, "depth_um": 15, "spalls": 2, "profile": "half_sine"},
     {"kind": "ball", "width_mm": 0.5, "axis_wander_deg": 4},
     {"kind": "cage"},
-    {"kind": "worn", "site": "inner", "waviness_um": 0.3, "order": 10},
-    {"kind": "worn", "site": "outer", "waviness_um": 0.3},
+    {"kind": "distributed", "site": "inner", "waviness_um": 0.3, "order": 10},
+    {"kind": "distributed", "site": "outer", "waviness_um": 0.3},
     {
         "kind": "compound",
         "parts": [
@@ -32,7 +32,7 @@ EVERYTHING = {
     "operation.load_wander_percent": 5,
     "operation.temperature_celsius": {"kind": "uniform", "low": 20, "high": 90},
     "operation.inner_ring_hotter_k": 5,
-    "operation.speed_course": {"kind": "run_up", "from_percent": 50, "to_percent": 120, "lasting_s": 0.1},
-    "operation.load_course": {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.02},
+    "operation.speed_profile": {"kind": "run_up", "from_percent": 50, "to_percent": 120, "lasting_s": 0.1},
+    "operation.load_profile": {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.02},
     "faults": EVERY_FAULT,
 }

@@ -7,7 +7,7 @@ bearing   geometry, fault frequencies in orders of the shaft
 catalogue bearings by designation, with ratings and sources
 hertz     point and line contact: geometry to load-deflection factor
 lubricant oil film and temperature: clearance, stiffness, damping
-course    how speed and load run over a record
+profile   how speed and load run over a record
 lanes     how kernels are compiled: one record per lane
 spall     how far a ball drops as it rolls over a defect
 rotor     machine constants, static rest, fastest swing

@@ -6,7 +6,7 @@ module    responsibility
 section   what every part shares: units, bounds, known keys
 machine   bearing, machine, lubricant, specimen
 faults    spalls, worn races, broken cages, several at once
-operation speed and load with their course, slip, temperature
+operation speed and load with their profiles, slip, temperature
 sensing   sensors, path, background, level, converter
 model     the recipe as a whole
 reading   files, names, error sentences, hash and JSON schema
@@ -14,10 +14,19 @@ reference ``recipes/README.md`` and ``recipes/schema.json``
 ========= ========================================================
 """
 
-from gen.recipe.faults import BallFault, CageFault, CompoundFault, Fault, Healthy, RaceFault, WornFault, fault_class
+from gen.recipe.faults import (
+    BallFault,
+    CageFault,
+    CompoundFault,
+    DistributedFault,
+    Fault,
+    Healthy,
+    RaceFault,
+    fault_class,
+)
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.model import Recipe
-from gen.recipe.operation import Course
+from gen.recipe.operation import Profile
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
 from gen.recipe.section import Section, split_unit
 from gen.recipe.sensing import MAX_OVERSAMPLING, Channel, Modes, Modulation, Path
@@ -29,16 +38,16 @@ __all__ = [
     "CatalogueBearing",
     "Channel",
     "CompoundFault",
-    "Course",
+    "DistributedFault",
     "Fault",
     "Healthy",
     "Modes",
     "Modulation",
     "Path",
+    "Profile",
     "RaceFault",
     "Recipe",
     "Section",
-    "WornFault",
     "fault_class",
     "find_recipe",
     "read_recipe",

@@ -64,10 +64,10 @@ class CageFault(Section):
     knock_n: Distribution = within(0, 10_000, default=20.0)
 
 
-class WornFault(Section):
+class DistributedFault(Section):
     """A race worn all round: waviness, of one ``order`` per turn or falling as 1/order; its class is that of its ``site``."""
 
-    kind: Literal["worn"]
+    kind: Literal["distributed"]
     weight: Weight = 1.0
     site: Literal["inner", "outer"]
     waviness_um: Distribution = within(0, 50, open_low=True, default=0.5)
@@ -97,9 +97,11 @@ class CompoundFault(Section):
         return self
 
 
-Fault = Annotated[Healthy | RaceFault | BallFault | CageFault | WornFault | CompoundFault, Field(discriminator="kind")]
+Fault = Annotated[
+    Healthy | RaceFault | BallFault | CageFault | DistributedFault | CompoundFault, Field(discriminator="kind")
+]
 
 
 def fault_class(fault: Fault) -> str:
     """Class that records of a fault are labelled with."""
-    return fault.site if isinstance(fault, WornFault) else fault.kind
+    return fault.site if isinstance(fault, DistributedFault) else fault.kind

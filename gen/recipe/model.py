@@ -111,11 +111,11 @@ class Recipe(Section):
             raise ValueError(
                 "operation.temperature_celsius: does nothing without oil; give contact.lubricant, or leave it out."
             )
-        for key, course in (("speed", self.operation.speed_course), ("load", self.operation.load_course)):
-            if isinstance(course, Steps) and course.step_s * len(course.levels_percent) > self.recording.duration_s:
+        for key, profile in (("speed", self.operation.speed_profile), ("load", self.operation.load_profile)):
+            if isinstance(profile, Steps) and profile.step_s * len(profile.levels_percent) > self.recording.duration_s:
                 raise ValueError(
-                    f"operation.{key}_course.step_s: {course.step_s:g} s leaves the levels no time; keep it below "
-                    f"{self.recording.duration_s / len(course.levels_percent):.3g}."
+                    f"operation.{key}_profile.step_s: {profile.step_s:g} s leaves the levels no time; keep it below "
+                    f"{self.recording.duration_s / len(profile.levels_percent):.3g}."
                 )
         if len({channel.name for channel in self.recording.channels}) < len(self.recording.channels):
             raise ValueError("recording.channels: two channels have one name; give each its own.")

@@ -1,4 +1,4 @@
-"""How the machine runs: speed and load with their course over a record, slip, jitter, temperature."""
+"""How the machine runs: speed and load with their profiles over a record, slip, jitter, temperature."""
 
 from itertools import pairwise
 from typing import Annotated, Literal, Self
@@ -38,7 +38,7 @@ class Steps(Section):
 
 
 class Table(Section):
-    """A measured course: shares at times, straight between them, constant before the first and after the last."""
+    """A measured profile: shares at times, straight between them, constant before the first and after the last."""
 
     kind: Literal["table"]
     times_s: Annotated[tuple[Number, ...], Field(min_length=1, max_length=10_000)]
@@ -53,11 +53,11 @@ class Table(Section):
         return self
 
 
-Course = Annotated[Ramp | RunUp | Steps | Table, Field(discriminator="kind")]
+Profile = Annotated[Ramp | RunUp | Steps | Table, Field(discriminator="kind")]
 
 
 class Operation(Section):
-    """How the machine runs, drawn per record; courses are shares of ``shaft_rpm`` and ``load_n`` over the record."""
+    """How the machine runs, drawn per record; profiles are shares of ``shaft_rpm`` and ``load_n`` over the record."""
 
     shaft_rpm: Distribution = within(1, 100_000)
     label_error_percent: Distribution = within(-50, 50, default=0.0)
@@ -76,5 +76,5 @@ class Operation(Section):
     """Of the oil in the contacts."""
     inner_ring_hotter_k: Distribution = within(-50, 100, default=0.0)
     """Inner ring over outer ring: takes up clearance."""
-    speed_course: Course | None = None
-    load_course: Course | None = None
+    speed_profile: Profile | None = None
+    load_profile: Profile | None = None

@@ -184,7 +184,7 @@ _ALLOWED = {
 
 def _first_kind(item: Any) -> str:
     known = {
-        "bearing": "catalogue", "faults": "inner", "parts": "inner", "speed_course": "run_up", "load_course": "ramp"
+        "bearing": "catalogue", "faults": "inner", "parts": "inner", "speed_profile": "run_up", "load_profile": "ramp"
     }  # fmt: skip
     place = [step for step in item["loc"] if isinstance(step, str)]
     whole = isinstance(item["loc"][-1], int) or item["loc"][-1] in known
@@ -206,7 +206,7 @@ def _place(location: tuple[int | str, ...]) -> str:
 
 _BRANCHES = {
     "constant", "uniform", "loguniform", "normal", "choice", "grid", "catalogue", "geometry", "adc", "float32", "physical", "snr",
-    "healthy", "inner", "outer", "ball", "cage", "worn", "compound", "ramp", "run_up", "steps", "table", "[key]",
+    "healthy", "inner", "outer", "ball", "cage", "distributed", "compound", "ramp", "run_up", "steps", "table", "[key]",
 }  # fmt: skip
 
 

@@ -19,15 +19,15 @@ from gen.corpus import SPLITS
 from gen.distributions import weighted_index
 from gen.errors import RecipeError
 from gen.physics.bearing import Bearing
-from gen.physics.course import Course
+from gen.physics.profile import Profile
 from gen.recipe import (
     CatalogueBearing,
     Modes,
     Recipe,
     fault_class,
 )
-from gen.recipe import Course as WantedCourse
 from gen.recipe import Path as WantedPath
+from gen.recipe import Profile as WantedProfile
 from gen.scenarios.draws import Draws
 from gen.scenarios.faults import damaged, fault_of_each_specimen
 from gen.scenarios.model import (
@@ -233,23 +233,23 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
         u = draws.u()
         snr = (level.healthy_db if specimen.fault == "healthy" else level.faulty_db).draw(u)
         rms = draws.value(level.rms_m_s2)
-    courses = [
-        None if course is None else _draw_course(draws, course, recipe.recording.duration_s)
-        for course in (recipe.operation.speed_course, recipe.operation.load_course)
+    profiles = [
+        None if profile is None else _draw_profile(draws, profile, recipe.recording.duration_s)
+        for profile in (recipe.operation.speed_profile, recipe.operation.load_profile)
     ]
-    return Operation(number, conditions, snr, rms, *courses)
+    return Operation(number, conditions, snr, rms, *profiles)
 
 
-def _draw_course(draws: Draws, course: WantedCourse, duration: float) -> Course:
-    if course.kind == "table":
-        return Course(course.times_s, tuple(share / 100 for share in course.percent))
-    if course.kind == "steps":
-        levels = tuple(level / 100 for level in course.levels_percent)
+def _draw_profile(draws: Draws, profile: WantedProfile, duration: float) -> Profile:
+    if profile.kind == "table":
+        return Profile(profile.times_s, tuple(share / 100 for share in profile.percent))
+    if profile.kind == "steps":
+        levels = tuple(level / 100 for level in profile.levels_percent)
         changes = [duration * place / len(levels) for place in range(1, len(levels))]
-        times = [time + side * course.step_s / 2 for time in changes for side in (-1, 1)]
+        times = [time + side * profile.step_s / 2 for time in changes for side in (-1, 1)]
         shares = [level for pair in pairwise(levels) for level in pair]
-        return Course(tuple(times), tuple(shares), smooth=True)
-    drawn = draws.section(course)
-    if course.kind == "ramp":
-        return Course((0.0, duration), (drawn["from"], drawn["to"]))
-    return Course((drawn["start"], drawn["start"] + drawn["lasting"]), (drawn["from"], drawn["to"]), smooth=True)
+        return Profile(tuple(times), tuple(shares), smooth=True)
+    drawn = draws.section(profile)
+    if profile.kind == "ramp":
+        return Profile((0.0, duration), (drawn["from"], drawn["to"]))
+    return Profile((drawn["start"], drawn["start"] + drawn["lasting"]), (drawn["from"], drawn["to"]), smooth=True)

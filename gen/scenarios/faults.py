@@ -10,7 +10,17 @@ from gen.corpus import FAULTS
 from gen.distributions import weighted_index
 from gen.errors import RecipeError
 from gen.physics.bearing import Bearing
-from gen.recipe import BallFault, CageFault, CompoundFault, Fault, Healthy, RaceFault, Recipe, WornFault, fault_class
+from gen.recipe import (
+    BallFault,
+    CageFault,
+    CompoundFault,
+    DistributedFault,
+    Fault,
+    Healthy,
+    RaceFault,
+    Recipe,
+    fault_class,
+)
 from gen.scenarios.draws import Draws
 from gen.scenarios.model import Purpose, Spall, Specimen, Wear, stream
 
@@ -21,7 +31,7 @@ def damaged(draws: Draws, entry: Fault, specimen: Specimen) -> Specimen:
     """A specimen with the fault that an entry of the recipe describes."""
     if isinstance(entry, Healthy):
         return specimen
-    if isinstance(entry, WornFault):
+    if isinstance(entry, DistributedFault):
         return replace(specimen, wear=Wear(entry.site, draws.value(entry.waviness_um) * 1e-6, entry.order))
     for part in entry.parts if isinstance(entry, CompoundFault) else (entry,):
         specimen = _with_part(draws, part, specimen)

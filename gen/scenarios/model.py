@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from gen.physics.bearing import Bearing
-from gen.physics.course import Course
+from gen.physics.profile import Profile
 
 Drawn = dict[str, float]
 
@@ -30,7 +30,7 @@ class Purpose(IntEnum):
     SAMPLING = 9
     ROUGHNESS = 10
     WEAR = 11
-    COURSE = 12
+    LOAD_WANDER = 12
     KNOCKS = 13
 
 
@@ -145,8 +145,8 @@ class Operation:
     conditions: Drawn
     snr: float | None
     rms: float | None
-    speed_course: Course | None = None
-    load_course: Course | None = None
+    speed_profile: Profile | None = None
+    load_profile: Profile | None = None
 
 
 @dataclass(frozen=True)

@@ -109,7 +109,7 @@ def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write
     assert made.failures == tuple(f"record {number}: {reason}" for number in range(1, 24, 2))
     with open_corpus(made.directory) as corpus:
         assert corpus["recording"].values.tolist() == list(range(0, 24, 2))
-        assert (corpus["running_clearance"] < corpus["diametral_clearance"]).all()
+        assert (corpus["operating_clearance"] < corpus["diametral_clearance"]).all()
 
 
 def test_an_axial_load_needs_a_bearing_with_a_contact_angle(recipe_with):
@@ -117,10 +117,10 @@ def test_an_axial_load_needs_a_bearing_with_a_contact_angle(recipe_with):
         recipe_with({"operation.axial_load_n": 50})
 
 
-def test_the_axial_load_holds_against_the_heaviest_radial_load_of_a_course(recipe_with):
-    course = {"kind": "ramp", "from_percent": 100, "to_percent": 300}
+def test_the_axial_load_holds_against_the_heaviest_radial_load_of_a_profile(recipe_with):
+    profile = {"kind": "ramp", "from_percent": 100, "to_percent": 300}
     changes = {"specimen.contact_angle_deg": 15, "operation.load_n": 300, "operation.axial_load_n": 200}
-    for load_course, held in ((None, True), (course, False)):
-        recipe = recipe_with(changes | {"operation.load_course": load_course})
+    for load_profile, held in ((None, True), (profile, False)):
+        recipe = recipe_with(changes | {"operation.load_profile": load_profile})
         failures = simulate(draw_scenarios(recipe, 0, 1), recipe).failures
         assert (failures == {}) == held

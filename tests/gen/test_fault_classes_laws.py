@@ -142,7 +142,7 @@ def test_classes_come_by_weight_and_wear_counts_as_its_site(recipe_with):
         {"kind": "healthy", "weight": 2},
         {"kind": "inner", "width_mm": 0.5},
         {"kind": "cage", "weight": 2},
-        {"kind": "worn", "site": "inner", "weight": 3},
+        {"kind": "distributed", "site": "inner", "weight": 3},
         {"kind": "compound", "parts": [{"kind": "inner", "width_mm": 0.5}, {"kind": "cage"}], "weight": 0.5},
     ]
     recipe = recipe_with({"corpus.specimens_per_rig": 17, "corpus.rigs": 40, "faults": faults})
@@ -161,7 +161,7 @@ def test_the_draws_of_every_class_are_stored_whole(whole, drawn):
             assert stored == json.loads(json.dumps(scenario.as_dict()))
             assert stored["specimen"]["cage"] == scenario.specimen.cage
             assert (stored["specimen"]["wear"] is None) == (scenario.specimen.wear is None)
-            assert stored["record"]["speed_course"] == [[0, 0.1], [0.5, 1.2], True]
+            assert stored["record"]["speed_profile"] == [[0, 0.1], [0.5, 1.2], True]
             assert stored["rig"]["lubricant"] == scenario.rig.lubricant
 
 

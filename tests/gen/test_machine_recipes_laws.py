@@ -85,8 +85,8 @@ def test_a_loose_housing_rattles_at_orders_that_a_fast_one_has_not(signal_of):
 
 def test_a_run_up_sweeps_the_line_of_a_bent_shaft(signal_of):
     """Half the rate in the first fifth, the whole in the last; the acceleration grows with the square."""
-    course = {"kind": "run_up", "from_percent": 50, "to_percent": 100, "start_s": 0.2, "lasting_s": 0.6}
-    signal = signal_of({"machine.bow_n": 100, "operation.speed_course": course})
+    profile = {"kind": "run_up", "from_percent": 50, "to_percent": 100, "start_s": 0.2, "lasting_s": 0.6}
+    signal = signal_of({"machine.bow_n": 100, "operation.speed_profile": profile})
     first, last = signal[: round(0.2 * FS)], signal[-round(0.2 * FS) :]
     assert line(first, 0.5) == pytest.approx(shaken(100, 0.5), rel=0.08)
     assert line(last, 1.0) == pytest.approx(shaken(100, 1.0), rel=0.08)

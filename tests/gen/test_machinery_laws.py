@@ -1,4 +1,4 @@
-"""Laws of what the kernel is given: heat, oil, bearings and courses of a recipe reach it, and the labels follow."""
+"""Laws of what the kernel is given: heat, oil, bearings and profiles of a recipe reach it, and the labels follow."""
 
 import math
 
@@ -25,7 +25,7 @@ STEPS = {"kind": "steps", "levels_percent": [50, 100, 30], "step_s": 0.01}
 TABLE = {"kind": "table", "times_s": [0, 0.05, 0.1], "percent": [100, 60, 80]}
 RAMP = {"kind": "ramp", "from_percent": 80, "to_percent": 120}
 MEANS = [(RAMP, 1.0), (TABLE, 0.75), (STEPS, 0.6), (RUN_UP, 0.2 * 0.4 + 0.6 * 0.85 + 0.2 * 1.3)]
-means = pytest.mark.parametrize(("course", "mean"), MEANS, ids=[course["kind"] for course, _ in MEANS])
+means = pytest.mark.parametrize(("profile", "mean"), MEANS, ids=[profile["kind"] for profile, _ in MEANS])
 
 
 @pytest.fixture
@@ -149,24 +149,24 @@ def test_the_heaviest_ball_carries_five_times_its_even_share(recipe_with):
 
 
 @means
-def test_labels_of_load_and_shaft_rate_follow_the_mean_of_their_course(recipe_with, course, mean):
+def test_labels_of_load_and_shaft_rate_follow_the_mean_of_their_profile(recipe_with, profile, mean):
     steady = {"operation.shaft_rpm": 1800, "operation.load_n": 400}
-    found = labels(recipe_with(steady | {"operation.speed_course": course, "operation.load_course": course}))
+    found = labels(recipe_with(steady | {"operation.speed_profile": profile, "operation.load_profile": profile}))
     assert found["shaft_rate"].values == pytest.approx(30 * mean, rel=1e-4)
     assert found["load"].values == pytest.approx(400 * mean, rel=1e-4)
 
 
 def test_the_rates_at_both_ends_of_a_run_up_are_labelled(recipe_with):
-    found = labels(recipe_with({"operation.shaft_rpm": 1800, "operation.speed_course": RUN_UP}))
+    found = labels(recipe_with({"operation.shaft_rpm": 1800, "operation.speed_profile": RUN_UP}))
     assert found["first_shaft_rate"].values == pytest.approx(12)
     assert found["last_shaft_rate"].values == pytest.approx(39)
 
 
 @means
-def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, course, mean):
+def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profile, mean):
     """A speed that wanders while it runs up: the mean of a product is not the product of the means."""
     changes = {"operation.speed_wander_percent": 1, "operation.slip_percent": 2, "operation.shaft_rpm": 1800}
-    recipe = recipe_with(changes | {"operation.speed_course": course})
+    recipe = recipe_with(changes | {"operation.speed_profile": profile})
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 3):
         rate, orders = true_motion(scenario, recipe)
@@ -177,8 +177,8 @@ def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, cours
         assert cage / shaft == pytest.approx(orders.ftf, rel=2e-4)
 
 
-def test_a_course_starts_with_the_record_and_not_with_its_settling(record_of):
-    record = record_of({"operation.load_course": STEPS, "operation.speed_course": RUN_UP})
+def test_a_profile_starts_with_the_record_and_not_with_its_settling(record_of):
+    record = record_of({"operation.load_profile": STEPS, "operation.speed_profile": RUN_UP})
     start = round(0.06 * FS)
     assert (record.schedule[: start + 1, 1] == 0.5).all()
     assert record.schedule[start + round(0.05 * FS), 1] == 1.0

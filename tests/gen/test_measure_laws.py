@@ -263,10 +263,10 @@ def test_a_channel_with_a_path_of_its_own_hears_the_bearing_through_it(recipe_wi
     np.testing.assert_allclose(far, near / 4, atol=1e-6)
 
 
-def test_shaft_harmonics_follow_the_course_of_the_speed(recipe_with):
-    course = {"kind": "run_up", "from_percent": 50, "to_percent": 150, "lasting_s": 2}
+def test_shaft_harmonics_follow_the_profile_of_the_speed(recipe_with):
+    profile = {"kind": "run_up", "from_percent": 50, "to_percent": 150, "lasting_s": 2}
     recipe = recipe_with(
-        FLOAT | {"recording.duration_s": 2.0, "operation.shaft_rpm": 1800, "operation.speed_course": course}
+        FLOAT | {"recording.duration_s": 2.0, "operation.shaft_rpm": 1800, "operation.speed_profile": profile}
     )
     sound = replace(QUIET, harmonics=(Tone(10.0, 1.0),))
     scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=sound, background_rms=1.0, gain=1.0)

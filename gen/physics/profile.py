@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 
-class Course(NamedTuple):
+class Profile(NamedTuple):
     """Shares of a nominal value at rising times; constant before the first point and after the last."""
 
     times: tuple[float, ...]
@@ -22,14 +22,14 @@ class Course(NamedTuple):
     """Whether it runs without a jerk between points."""
 
 
-def share_at(course: Course, times: NDArray[np.floating]) -> FloatArray:
+def share_at(profile: Profile, times: NDArray[np.floating]) -> FloatArray:
     """Share at ``times`` [s], of their shape [1].
 
-    >>> [float(share) for share in share_at(Course((0.0, 2.0), (1.0, 3.0), smooth=True), np.array([-1.0, 1.0, 5.0]))]
+    >>> [float(share) for share in share_at(Profile((0.0, 2.0), (1.0, 3.0), smooth=True), np.array([-1.0, 1.0, 5.0]))]
     [1.0, 2.0, 3.0]
     """
-    knots, shares = np.asarray(course.times), np.asarray(course.shares)
-    if not course.smooth or len(knots) < 2:
+    knots, shares = np.asarray(profile.times), np.asarray(profile.shares)
+    if not profile.smooth or len(knots) < 2:
         return np.asarray(np.interp(times, knots, shares))
     place = np.interp(times, knots, np.arange(len(knots)))
     at = np.minimum(place.astype(int), len(knots) - 2)
@@ -37,16 +37,16 @@ def share_at(course: Course, times: NDArray[np.floating]) -> FloatArray:
     return shares[at] + (shares[at + 1] - shares[at]) * part**3 * (10 - 15 * part + 6 * part**2)
 
 
-def mean_share(course: Course | None, duration: float) -> float:
-    """Mean share over the record, 1 without a course [1]."""
-    if course is None:
+def mean_share(profile: Profile | None, duration: float) -> float:
+    """Mean share over the record, 1 without a profile [1]."""
+    if profile is None:
         return 1.0
-    return float(share_at(course, (np.arange(4096) + 0.5) * (duration / 4096)).mean())
+    return float(share_at(profile, (np.arange(4096) + 0.5) * (duration / 4096)).mean())
 
 
-def turned(course: Course | None, times: FloatArray) -> FloatArray:
+def turned(profile: Profile | None, times: FloatArray) -> FloatArray:
     """Integral of the share from the first of evenly spaced ``times`` on, of their shape [s]."""
-    if course is None:
+    if profile is None:
         return times - times[0]
     step = times[1] - times[0]
-    return np.concatenate([[0.0], np.cumsum(share_at(course, times[:-1] + step / 2))]) * step
+    return np.concatenate([[0.0], np.cumsum(share_at(profile, times[:-1] + step / 2))]) * step
