@@ -201,7 +201,7 @@ def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
     return factors
 
 
-def cosine_sum(times: FloatArray, rates: FloatArray, phases: FloatArray) -> FloatArray:
+def cosine_sum(times: NDArray[np.floating], rates: FloatArray, phases: FloatArray) -> FloatArray:
     """Sum over terms of ``cos(rate * time + phase)`` at evenly spaced times, shape (time,) [1]; rates in rad/s, shape (term,).
 
     By ``cos(a + b) = cos(a) cos(b) - sin(a) sin(b)`` from the starts of blocks and the steps within one: 16 times as fast as a
