@@ -5,7 +5,8 @@ chosen before the run from what the machine should do, and held against what its
 """
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -126,17 +127,14 @@ def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tu
 def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -> FloatArray:
     """Relative rms change of some records when their step is halved, NaN for those not tried, shape (record,).
 
-    ``scenarios`` are those of a part. Tried are what :func:`checked_places` names and what fits into the same batches at no more cost.
+    ``scenarios`` are those of a part; :func:`checked_places` says which of them.
     """
     errors = np.full(len(scenarios), np.nan)
     fine = {place: record for place, record in enumerate(response.records) if record and place not in response.failures}
     groups = {place: (record_shape(record), int(response.oversampling[place])) for place, record in fine.items()}
-    tried = checked_places(scenarios, recipe, list(fine))
+    tried = checked_places(scenarios, recipe, groups)
     if not tried:
         return errors
-    for group in {groups[place] for place in tried}:
-        others = [place for place, found in groups.items() if found == group and place not in tried]
-        tried += others[: -sum(groups[place] == group for place in tried) % LANES]
     finer, _ = _integrated([fine[place] for place in tried], [2 * groups[place][1] for place in tried], recipe)
     lead = lead_samples(recipe)
     coarse, halved = response.acceleration[tried][..., lead:], finer.response[..., lead:]
@@ -144,22 +142,36 @@ def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -
     return errors
 
 
-def checked_places(scenarios: list[Scenario], recipe: Recipe, fine: list[int]) -> list[int]:
-    """Places, among the ``fine`` ones of a part, of the records whose step is to be checked.
+def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[int, Hashable]) -> list[int]:
+    """Places in a part of the records whose step is to be checked; records of one group, in ``groups`` by place, share batches.
 
-    The first record of a class in the part where its first specimen of the corpus begins; in one part of ``CHECKED_PARTS``,
-    evenly spread, as many as are ``CHECKED_SHARE`` of the records that they hold together.
+    The first record of a class in the part where its first specimen of the corpus begins; in one part of ``CHECKED_PARTS``
+    more, up to ``CHECKED_SHARE`` of the records that they hold together; and what fills their batches at no more cost.
     """
     corpus, begun = recipe.corpus, {scenario.record.number for scenario in scenarios}
     new = {fault for fault, number in first_specimens(recipe).items() if number * corpus.records_per_specimen in begun}
     first: dict[str, int] = {}
-    for place in fine:
+    for place in groups:
         if scenarios[place].specimen.fault in new:
             first.setdefault(scenarios[place].specimen.fault, place)
     start, span = scenarios[0].record.number, CHECKED_PARTS * corpus.records_per_part
-    wanted = math.ceil(CHECKED_SHARE * min(span, recipe.n_records - start)) if start % span == 0 else 0
-    count = min(wanted, len(fine))
-    return sorted({*first.values(), *(fine[len(fine) * at // count] for at in range(count))})
+    wanted = CHECKED_SHARE * min(span, recipe.n_records - start) if start % span == 0 else 0
+    chosen = _with_full_batches(list(first.values()), groups)
+    for place in groups:
+        if len(chosen) >= wanted:
+            break
+        if place not in chosen:
+            chosen = _with_full_batches([*chosen, place], groups)
+    return chosen
+
+
+def _with_full_batches(chosen: list[int], groups: Mapping[int, Hashable]) -> list[int]:
+    """Chosen places and, of their groups, those that fill the last batch of each."""
+    filled = list(chosen)
+    for group, count in Counter(groups[place] for place in chosen).items():
+        others = [place for place, found in groups.items() if found == group and place not in chosen]
+        filled += others[: -count % LANES]
+    return filled
 
 
 def kernel_record(scenario: Scenario, recipe: Recipe) -> Record:

@@ -9,6 +9,7 @@ from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
 from gen.errors import RecipeError, SimulationError
 from gen.generate import generate
 from gen.machinery import physical_record
+from gen.physics.lanes import LANES
 from gen.physics.rotor import fastest_swing
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
 from gen.simulate import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places, simulate, step_errors
@@ -49,10 +50,10 @@ def test_at_half_the_step_ordinary_records_change_by_less_than_a_thousandth(chec
 
 
 def checked_records(recipe):
-    """Scenarios whose step is checked, part by part."""
+    """Scenarios whose step is checked, part by part, if no two share a batch."""
     size = recipe.corpus.records_per_part
     parts = [draw_scenarios(recipe, first, first + size) for first in range(0, recipe.n_records, size)]
-    return [[part[place] for place in checked_places(part, recipe, list(range(len(part))))] for part in parts]
+    return [[part[place] for place in checked_places(part, recipe, {n: n for n in range(len(part))})] for part in parts]
 
 
 LAYOUTS = {
@@ -81,13 +82,15 @@ def test_every_class_and_a_hundredth_of_the_records_are_tried_whatever_the_layou
     assert sum(spans.values()) <= len(held) + 0.01 * recipe.n_records + len(classes)
 
 
-def test_the_hundredth_is_spread_over_its_part_and_leaves_out_what_failed(recipe_with):
-    recipe = recipe_with({"corpus.rigs": 100, "corpus.records_per_part": 20})
-    scenarios = draw_scenarios(recipe, 640, 660)  # no class begins here: all do on the first rig
-    assert checked_places(scenarios, recipe, list(range(20))) == [0, 10]
-    assert checked_places(scenarios, recipe, [3, 4, 11, 12, 13]) == [3, 11]
-    assert checked_places(scenarios, recipe, []) == []
-    assert checked_places(draw_scenarios(recipe, 620, 640), recipe, list(range(20))) == []
+def test_batches_are_filled_with_their_like_and_count(recipe_with):
+    recipe = recipe_with({"corpus.rigs": 500, "corpus.records_per_part": 100})
+    scenarios = draw_scenarios(recipe, 3200, 3300)  # no class begins here: all do on the first rig
+    assert checked_places(scenarios, recipe, dict.fromkeys(range(100))) == [*range(LANES)]  # of 8
+    by_turns = {place: place % 20 for place in range(100)}
+    assert checked_places(scenarios, recipe, by_turns) == [0, 20, 40, 60, 80, 1, 21, 41, 61, 81]
+    assert checked_places(scenarios, recipe, {3: "a", 4: "b", 90: "a"}) == [3, 90, 4]
+    assert checked_places(scenarios, recipe, {}) == []
+    assert checked_places(draw_scenarios(recipe, 3100, 3200), recipe, dict.fromkeys(range(100))) == []
 
 
 def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
@@ -95,7 +98,7 @@ def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
     scenarios = draw_scenarios(recipe)
     faults = [scenario.specimen.fault for scenario in scenarios]
     failed = faults.index("inner")
-    tried = checked_places(scenarios, recipe, [place for place in range(len(scenarios)) if place != failed])
+    tried = checked_places(scenarios, recipe, {place: place for place in range(len(scenarios)) if place != failed})
     assert failed not in tried
     assert faults.index("inner", failed + 1) in tried
 
