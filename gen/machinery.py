@@ -16,7 +16,7 @@ from gen.physics.axial import axial_approach
 from gen.physics.batch import Motion, Record, n_terms
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
 from gen.physics.hertz import contact_exponent, load_deflection_factor
-from gen.physics.integrate import HALF_TAPS
+from gen.physics.decimate import HALF_TAPS
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.profile import mean_share, share_at
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs

@@ -17,6 +17,7 @@ from scipy.signal import find_peaks, get_window, hilbert
 from gen.physics.batch import Motion, Record, Spall, lay_out, n_terms, record_shape
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
+from gen.physics.decimate import decimation
 from gen.physics.integrate import integrate
 from gen.physics.lanes import LANES
 from gen.physics.rotor import Machine
@@ -95,7 +96,7 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
         for first in range(0, len(records), LANES):
             some = records[first : first + LANES]
             lanes = lay_out(some, shape, 1 / fs, at_rest=False)
-            made = integrate(shape, lanes, 1 / fs, 1, np.ones(1), 0, round(SECONDS * fs))
+            made = integrate(shape, lanes, 1 / fs, 1, decimation(1), 0, round(SECONDS * fs))
             found[cracked] += list(made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)] * 1e6)
     return [
         Run(healthy, cracked, preset.shaft_rate)

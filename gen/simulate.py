@@ -15,7 +15,8 @@ from numpy.typing import NDArray
 from gen.errors import SimulationError
 from gen.machinery import physical_record
 from gen.physics.batch import Record, lay_out, record_shape
-from gen.physics.integrate import Integral, decimation_taps, integrate
+from gen.physics.decimate import decimation
+from gen.physics.integrate import Integral, integrate
 from gen.physics.kernel import Shape
 from gen.physics.lanes import LANES
 from gen.physics.rotor import fastest_decay, fastest_swing, likely_stiffness
@@ -114,7 +115,7 @@ def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tu
         for first in range(0, len(places), LANES):
             some = places[first : first + LANES]
             lanes = lay_out([records[place] for place in some], shape, 1 / fs)
-            made = integrate(shape, lanes, 1 / (fs * factor), factor, decimation_taps(factor), n_settle, n_out)
+            made = integrate(shape, lanes, 1 / (fs * factor), factor, decimation(factor), n_settle, n_out)
             response[some] = made.response.T[: len(some)]
             diverged[some], steepest[some] = made.diverged[: len(some)], made.steepest[: len(some)]
     phases = [
@@ -207,7 +208,7 @@ def compile_kernel(record: Record) -> None:
     """Compile the kernel that a record needs, or fetch it from numba's cache on disk."""
     shape = record_shape(record)
     lanes = lay_out([record], shape, 1e-4)
-    integrate(shape, lanes, 1e-5, 1, decimation_taps(1), 0, 1)
+    integrate(shape, lanes, 1e-5, 1, decimation(1), 0, 1)
 
 
 def steps_per_sample(record: Record, scenario: Scenario, recipe: Recipe) -> int:

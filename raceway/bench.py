@@ -21,7 +21,8 @@ from gen.corpus import write_part
 from gen.labels import part_dataset
 from gen.measure import measure
 from gen.physics.batch import lay_out, record_shape
-from gen.physics.integrate import decimation_taps, integrate
+from gen.physics.decimate import decimation
+from gen.physics.integrate import integrate
 from gen.physics.kernel import Shape
 from gen.physics.lanes import LANES
 from gen.physics.motion import Lanes
@@ -119,7 +120,7 @@ def _integrate(batches: list[Batch], recipe: Recipe) -> None:
     fs, lead = recipe.recording.sample_rate_hz, lead_samples(recipe)
     n_out = lead + recipe.n_samples
     for shape, lanes, factor in batches:
-        taps = decimation_taps(factor)
+        taps = decimation(factor)
         integrate(shape, lanes, 1 / (fs * factor), factor, taps, samples_integrated(recipe) - n_out, n_out)
 
 

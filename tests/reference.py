@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from gen.physics import gaps, kernel, lanes, motion, spall
-from gen.physics.batch import Motion, Record, Spall, lay_out, record_shape
-from gen.physics.integrate import place_balls, to_next_knot
+from gen.physics import decimate, gaps, integrate, kernel, lanes, motion, spall
+from gen.physics.batch import WAVES, Motion, Record, Spall, lay_out, record_shape
+from gen.physics.integrate import prepare, to_next_knot
 from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, STEEPEST, FloatArray, advance, param_rows
 from gen.physics.lanes import KERNEL, LANES
-from gen.physics.motion import ANGLE_ROWS
+from gen.physics.motion import ANGLE_ROWS, STRIDE, slow_rows
 from gen.physics.rotor import Machine
 
 EVERY_ACCELERATION = np.eye(AXES)
@@ -45,6 +45,8 @@ class Slow(NamedTuple):
     """Under each ball, waviness taken off, shape (knot, ball) [m]."""
     jitter: FloatArray
     """Of each ball in its pocket, shape (knot, ball) [rad]."""
+    directions: FloatArray
+    """Of each ball as the cage sees it, straight between the nodes of the processes, shape (knot, ball, axis) [1]."""
     rates: FloatArray
     """Of shaft, cage and ball spin up to the next knot, shape (knot, angle) [rad/s]."""
     forces: FloatArray
@@ -61,29 +63,43 @@ def process(record: Record, first: int, terms: int, times: FloatArray) -> FloatA
 
 
 def slow_motion(record: Record, knot: float, n_knots: int) -> Slow:
-    """Slow quantities at the knots, ``knot`` seconds apart; rates hold from one knot to the next."""
+    """Slow quantities at the knots, ``knot`` seconds apart; rates hold from one knot to the next, as they are halfway."""
     bearing, drawn = record.bearing, record.motion
     gamma, size = bearing.gamma, bearing.pitch_diameter / bearing.ball_diameter
+    nodes = STRIDE * knot * np.arange(n_knots // STRIDE + 2)
     times = np.linspace(0, knot * n_knots, n_knots + 1)
-    shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * process(record, 0, motion.SPEED_TERMS, times))
+
+    def straight(first: int, terms: int, when: FloatArray) -> FloatArray:
+        return np.interp(when, nodes, process(record, first, terms, nodes))
+
+    halfway = times + knot / 2
+    shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * straight(0, motion.SPEED_TERMS, halfway))
     shaft = shaft * scheduled(record, n_knots + 1)[:, 0]
-    slip = drawn.mean_slip + drawn.slip_rms * process(record, motion.SLIP_FIRST, motion.SLIP_TERMS, times)
-    wander = 1 + drawn.spin_rms * process(record, motion.SPIN_FIRST, motion.SPIN_TERMS, times)
+    slip = drawn.mean_slip + drawn.slip_rms * straight(motion.SLIP_FIRST, motion.SLIP_TERMS, halfway)
+    wander = 1 + drawn.spin_rms * straight(motion.SPIN_FIRST, motion.SPIN_TERMS, halfway)
     rates = np.stack([shaft, shaft * (1 - gamma) / 2 * (1 - slip), shaft * size / 2 * (1 - gamma**2) * wander], axis=1)
     start = np.array([drawn.shaft_angle, drawn.cage_angle, drawn.spin_angle])
     angles = start + np.concatenate([np.zeros((1, 3)), np.cumsum(knot * rates[:-1], axis=0)])
-    balls = range(bearing.n_balls)
-    jitter = [
-        drawn.jitter_rms * process(record, motion.JITTER_FIRST + ball * motion.JITTER_TERMS, motion.JITTER_TERMS, times)
-        + (drawn.late_by if ball == drawn.late_ball else 0.0)
-        for ball in balls
-    ]
-    places = angles[:, 1:2] + 2 * np.pi * np.array(balls) / bearing.n_balls
+    balls = np.arange(bearing.n_balls)
+    at_nodes = np.stack(
+        [
+            drawn.jitter_rms * process(record, motion.JITTER_FIRST + ball * motion.JITTER_TERMS, motion.JITTER_TERMS, nodes)
+            + (drawn.late_by if ball == drawn.late_ball else 0.0)
+            for ball in balls
+        ],
+        axis=1,
+    )
+    jitter = np.stack([np.interp(times, nodes, of_ball) for of_ball in at_nodes.T], axis=1)
+    seats = 2 * np.pi * balls / bearing.n_balls + at_nodes
+    directions = np.stack(
+        [[np.interp(times, nodes, of_ball) for of_ball in towards(seats).T] for towards in (np.cos, np.sin)]
+    ).transpose(2, 1, 0)
+    places = angles[:, 1:2] + 2 * np.pi * balls / bearing.n_balls
     height = waviness(record, places - angles[:, :1], places) + ball_waviness(record, angles[:, 2])
     gaps = record.machine.half_clearance - height
-    tilt = drawn.axis_offset + drawn.axis_rms * process(record, motion.AXIS_FIRST, motion.AXIS_TERMS, times)
+    tilt = drawn.axis_offset + drawn.axis_rms * straight(motion.AXIS_FIRST, motion.AXIS_TERMS, times)
     share = np.maximum(0.0, 1 - (tilt / drawn.axis_limit) ** 2) if drawn.axis_limit > 0 else np.ones(n_knots + 1)
-    return Slow(angles, gaps, np.stack(jitter, axis=1), rates, outer_forces(record, knot, angles, rates), share)
+    return Slow(angles, gaps, jitter, directions, rates, outer_forces(record, knot, angles, rates), share)
 
 
 def scheduled(record: Record, n_knots: int) -> FloatArray:
@@ -150,7 +166,7 @@ def waviness(record: Record, on_inner: FloatArray, on_outer: FloatArray) -> Floa
     if record.waves.size == 0:
         return np.zeros_like(on_outer)
     orders = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1)
-    amplitudes = record.waves[: motion.WAVE_ROWS].reshape(2, 2, -1)
+    amplitudes = record.waves[: WAVES].reshape(2, 2, -1)
     height = np.zeros_like(on_outer)
     for (real, imaginary), angles in zip(amplitudes, (on_inner, on_outer), strict=True):
         turns = angles[..., None] * orders
@@ -162,8 +178,8 @@ def ball_waviness(record: Record, spin: FloatArray) -> FloatArray:
     """Height of every ball over both its contacts at the spin angles ``spin``, shape (time, ball) [m]."""
     orders = 2 * np.arange(1, motion.BALL_ORDERS + 1)
     height = np.zeros((len(spin), record.bearing.n_balls))
-    if record.waves.size > motion.WAVE_ROWS:
-        real, imaginary = record.waves[motion.WAVE_ROWS :].reshape(len(orders), 2, -1).transpose(1, 0, 2)
+    if record.waves.size > WAVES:
+        real, imaginary = record.waves[WAVES :].reshape(len(orders), 2, -1).transpose(1, 0, 2)
         turns = np.outer(spin, orders)
         height += np.cos(turns) @ real - np.sin(turns) @ imaginary
     return height
@@ -239,9 +255,10 @@ class Contacts(NamedTuple):
 
 def contacts(record: Record, slow: Slow, at: int, tau: float, y: FloatArray) -> Contacts:
     """Contacts in the state ``y``, a share ``tau`` of the way from knot ``at`` to the next."""
-    angles, gaps, jitter = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow[:3])
+    angles, gaps, jitter, in_cage = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow[:4])
     places = angles[1] + 2 * np.pi * np.arange(record.bearing.n_balls) / record.bearing.n_balls + jitter
-    directions = np.stack([np.cos(places), np.sin(places)], axis=1)
+    c, s = math.cos(angles[1]), math.sin(angles[1])
+    directions = in_cage @ np.array([[c, s], [-s, c]])
     seen = record.machine.contact_cosine * directions
     gaps = gaps + drops(record, angles, places, slow.share[at + 1])
     return Contacts(directions, seen @ (y[0:2] - y[2:4]) - gaps, seen @ (y[6:8] - y[8:10]))
@@ -308,6 +325,17 @@ def march_twin(record: Record, start: FloatArray, n_knots: int, n_steps: int, kn
     return Trip(np.array(states), np.array(accelerations), slow.angles, directions)
 
 
+def decimation_taps(n_steps: int) -> FloatArray:
+    """All stages of the decimation as one filter at the rate of the steps, shape (tap,)."""
+    whole, spacing = np.ones(1), 1
+    for taps, factor, kept in decimate.decimation(n_steps):
+        if taps.size:
+            spread = np.zeros(kept * spacing + 1)
+            spread[::spacing] = taps[: kept + 1, 0]
+            whole, spacing = np.convolve(whole, spread), spacing * factor
+    return whole
+
+
 def march_lanes(
     records: list[Record], n_knots: int, n_steps: int, knot: float, start: FloatArray | None = None
 ) -> list[Trip]:
@@ -317,7 +345,7 @@ def march_lanes(
     batch = lay_out(every, shape, knot)
     params = np.zeros(param_rows(shape, n_steps) * LANES)
     params[: batch.params.size] = batch.params
-    batch = batch._replace(params=params)
+    batch = batch._replace(params=params, slow=np.zeros(2 * slow_rows(shape) * LANES))
     if start is not None:
         batch.state.reshape(-1, LANES)[:N_DYNAMIC] = np.asarray(start)[:, None]
     states = np.empty((n_knots + 1, N_STATE, LANES))
@@ -337,17 +365,18 @@ def _cached(sources: str):
     @njit(**KERNEL)
     def march(shape, lanes, dt, n_steps, states, angles, history):
         _ = sources
-        moves = np.empty(ANGLE_ROWS * LANES)
-        last, widths = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
-        place_balls(shape, lanes, n_steps, moves, last)
+        work = prepare(shape, lanes, n_steps)
         for knot in range(len(states)):
             states[knot] = lanes.state.reshape(N_STATE, LANES)
             angles[knot] = lanes.angles.reshape(ANGLE_ROWS, LANES)
             if knot + 1 < len(states):
-                to_next_knot(shape, lanes, knot, n_steps, dt, moves, last, widths)
-                advance(shape, lanes.state, lanes.params, dt, n_steps, history, knot * n_steps * AXES)
+                to_next_knot(shape, lanes, knot, n_steps, dt, work)
+                since = 2.0 * n_steps * (knot % STRIDE)
+                advance(shape, lanes.state, lanes.params, dt, n_steps, since, history, knot * n_steps * AXES)
 
     return march
 
 
-_march = _cached(sha256("".join(map(getsource, (lanes, spall, kernel, motion, gaps))).encode()).hexdigest())
+_march = _cached(
+    sha256("".join(map(getsource, (lanes, spall, kernel, motion, gaps, decimate, integrate))).encode()).hexdigest()
+)

@@ -3,6 +3,7 @@
 A record is a :class:`Machine` in :class:`Motion` with its spalls. The last batch is padded with copies of its first record.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,6 +14,9 @@ from gen.physics.kernel import FloatArray, Shape
 from gen.physics.lanes import LANES
 from gen.physics.rotor import Machine, as_columns, rest
 from gen.physics.spall import PROFILES
+
+
+WAVES = 4 * motion.N_ORDERS  # amplitudes of both races
 
 
 class Spall(NamedTuple):
@@ -73,7 +77,8 @@ class Record(NamedTuple):
     pickups: FloatArray
     """Weights of the six accelerations in each channel, shape (channel, coordinate) [1]."""
     waves: FloatArray
-    """Waviness amplitudes [m], shape (WAVE_ROWS,), with ``2 * BALL_ORDERS * n_balls`` more if the balls have some, or empty."""
+    """Waviness amplitudes [m], shape (race, real and imaginary part, order), in a row; (order, part, ball) of the balls after it if they have
+    some; or empty."""
     schedule: FloatArray = np.empty((0, 2))
     """Factors of shaft rate (over the knot) and load (at its start), shape (knot, 2); (0, 2) if both are constant."""
     displacement: bool = False
@@ -125,9 +130,6 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
         state[4:6] = state[2:4]
     state[kernel.CAGE_C], state[kernel.CAGE_S] = np.cos(cage), np.sin(cage)
     state[kernel.SHAFT_C], state[kernel.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
-    waves = np.zeros((max(record.waves.size for record in padded), LANES))
-    for lane, record in enumerate(padded):
-        waves[: record.waves.size, lane] = record.waves
     spalls, tables = _spalls(padded)
     return motion.Lanes(
         state.ravel(),
@@ -136,18 +138,19 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
         np.stack([motions.shaft_angle, motions.cage_angle, motions.spin_angle]).ravel(),
         spalls.ravel(),
         _phasors(padded, knot).ravel(),
-        waves.ravel(),
+        np.empty(0),
+        _waves(padded, shape).ravel(),
         _schedules(padded),
         tables,
     )
 
 
 def _params(records: list[Record], machine: Machine, shape: Shape) -> FloatArray:
-    params = np.zeros((kernel.jitter_row(shape), LANES))
+    params = np.zeros((kernel.direction_row(shape), LANES))
     with np.errstate(divide="ignore"):
         sensor = np.where(np.asarray(machine.sensor_mass) > 0, 1 / np.asarray(machine.sensor_mass), 0.0)
     params[: kernel.N_CONSTANTS] = [
-        machine.load_deflection_factor, machine.contact_damping, machine.contact_cosine, machine.half_clearance,
+        machine.load_deflection_factor, np.divide(machine.contact_damping, machine.load_deflection_factor), machine.contact_cosine, machine.half_clearance,
         1 / np.asarray(machine.shaft_mass), 1 / np.asarray(machine.housing_mass), sensor, machine.ring_damping,
         machine.shaft_damping, machine.shaft_stiffness, machine.ring_stiffness_x, machine.ring_stiffness_y,
         machine.support_stiffness_x, machine.support_stiffness_y, machine.support_damping_x, machine.support_damping_y,
@@ -163,12 +166,13 @@ def _drive(records: list[Record], motions: Motion, machine: Machine, knot: float
     bearings = [record.bearing for record in records]
     gamma = np.array([bearing.gamma for bearing in bearings])
     size = np.array([bearing.pitch_diameter / bearing.ball_diameter for bearing in bearings])
+    twice = np.arctan2(motions.twice_y, motions.twice_x)
     return np.array([
         2 * np.pi * knot * np.asarray(motions.shaft_rate), 0.5 * (1 - gamma), 0.5 * size * (1 - gamma**2), motions.mean_slip,
         motions.speed_rms, motions.slip_rms, motions.spin_rms, motions.jitter_rms, motions.axis_offset, motions.axis_rms,
         motions.axis_limit, motions.unbalance, machine.half_clearance, machine.ball_radius,
         [bearing.inner_radius for bearing in bearings], [bearing.outer_radius for bearing in bearings],
-        machine.load_x, machine.load_y, motions.twice_x, motions.twice_y, motions.bow, motions.knock, motions.knock_angle,
+        machine.load_x, machine.load_y, motions.twice_x, motions.twice_y, np.cos(2 * twice), np.sin(2 * twice), motions.bow, motions.knock, motions.knock_angle,
         motions.late_ball, motions.late_by, motions.knock_seed,
     ])  # fmt: skip
 
@@ -178,24 +182,42 @@ def _spalls(records: list[Record]) -> tuple[FloatArray, FloatArray]:
     sites = {"inner": motion.INNER, "outer": motion.OUTER, "ball": motion.BALL_SITE}
     spalls = np.zeros((max(len(record.spalls) for record in records), motion.SPALL_ROWS, LANES))
     tables = [np.zeros(motion.TABLE_POINTS)]
+    # of a ball from its place in the cage, at most: all terms at their peaks
+    farthest = [r.motion.jitter_rms * math.sqrt(2 * motion.JITTER_TERMS) + abs(r.motion.late_by) for r in records]
+    spalls[:, motion.PERIOD] = 1.0
+    spalls[:, motion.REACH] = -1.0  # where there is no spall, no ball is near
     for lane, record in enumerate(records):
         for place, spall in enumerate(record.spalls):
             half, arc = spall_reach(record.bearing, spall)
             profile = PROFILES.index(spall.profile)
+            with_rings = {"inner": (1, -1, 0, -spall.angle), "outer": (1, 0, 0, -spall.angle), "ball": (0, 0, 1, spall.angle)}
+            period = np.pi if spall.site == "ball" else 2 * np.pi / record.bearing.n_balls
             spalls[place, :, lane] = (
-                sites[spall.site],
-                spall.angle,
-                spall.ball,
-                half,
-                arc,
-                spall.depth,
-                profile,
+                *with_rings[spall.site], period, half + farthest[lane], sites[spall.site], spall.ball, half, arc, spall.depth, profile,
                 len(tables),
-            )
+            )  # fmt: skip
             for drops in spall.table:
                 points = np.linspace(0, len(drops) - 1, motion.TABLE_POINTS)
                 tables.append(np.interp(points, np.arange(len(drops)), drops))
     return spalls, np.stack(tables)
+
+
+def _waves(records: list[Record], shape: Shape) -> FloatArray:
+    """Waviness amplitudes as :class:`motion.Lanes` has them, shape (row, lane)."""
+    n_balls, terms = len(shape.balls), motion.n_terms(shape)
+    of_races = max(record.waves.size > 0 for record in records)
+    of_balls = max(record.waves.size > WAVES for record in records)
+    waves = np.zeros((motion.race_rows(shape) * of_races + 2 * motion.BALL_ORDERS * n_balls * of_balls, LANES))
+    for lane, record in enumerate(records):
+        if record.waves.size:
+            races = np.zeros((2, terms * n_balls, 2))
+            own = record.waves[:WAVES].reshape(2, 2, -1).transpose(0, 2, 1)
+            races[:, motion.LOWEST_ORDER : motion.HIGHEST_ORDER + 1] = own
+            waves[: races.size, lane] = races.ravel()
+        if record.waves.size > WAVES:
+            balls = record.waves[WAVES:].reshape(motion.BALL_ORDERS, 2, n_balls).transpose(0, 2, 1)
+            waves[motion.race_rows(shape) :, lane] = balls.ravel()
+    return waves
 
 
 def _schedules(records: list[Record]) -> FloatArray:
@@ -210,5 +232,5 @@ def _schedules(records: list[Record]) -> FloatArray:
 
 def _phasors(records: list[Record], knot: float) -> FloatArray:
     phases = np.stack([record.phases for record in records], axis=1)
-    turns = 2 * np.pi * knot * np.stack([record.frequencies for record in records], axis=1)
-    return np.stack([np.cos(phases), np.sin(phases), np.cos(turns), np.sin(turns)])
+    turns = 2 * np.pi * knot * motion.STRIDE * np.stack([record.frequencies for record in records], axis=1)
+    return np.stack([np.cos(phases), np.sin(phases), np.cos(turns), np.sin(turns)], axis=1)

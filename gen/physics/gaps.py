@@ -1,8 +1,8 @@
 """The gap under every ball at every half step: clearance, waviness of the races, and what spalls take away.
 
-Race waviness is a Fourier series; the sum over its orders is folded onto the balls, since ball ``i`` sees order ``n`` with the phase
-``2 pi i n / n_balls``. Each ball has even orders of its own. A spall widens the gap of each ball that passes it; a ball over several
-spalls drops by all of them.
+Race waviness is a Fourier series; ball ``i`` sees order ``n`` with the phase ``2 pi i n / n_balls``, so all orders that differ by the
+number of balls go together: as many sums as there are balls, each by Horner's rule, and one Fourier transform from sums to balls. Each
+ball has even orders of its own. A spall widens the gap of each ball that passes it; a ball over several spalls drops by all of them.
 """
 
 import math
@@ -10,15 +10,12 @@ import math
 import numpy as np
 from numba import njit
 
-from gen.physics.kernel import CAGE_C, CAGE_S, COS, SHAFT_C, SHAFT_S, SIN, FloatArray, Shape, gap_row, jitter_row
-from gen.physics.lanes import INLINE, LANES, UNFUSED, cosine, sine
+from gen.physics.kernel import CAGE_C, CAGE_S, MAX_BALLS, SHAFT_C, SHAFT_S, FloatArray, Shape, drop_row, gap_row
+from gen.physics.lanes import INLINE, LANES, cosine, fma, lane_count, sine, wide
 from gen.physics.motion import (
     ARC,
-    AXIS_FIRST,
     AXIS_LIMIT,
     AXIS_OFFSET,
-    AXIS_RMS,
-    AXIS_TERMS,
     BALL,
     BALL_ORDERS,
     BALL_SITE,
@@ -29,138 +26,175 @@ from gen.physics.motion import (
     HALF,
     INNER,
     INNER_RADIUS,
-    LOWEST_ORDER,
-    N_ORDERS,
-    NO_SITE,
+    JITTER,
     OUTER_RADIUS,
+    PERIOD,
     POSITION,
     PROFILE,
+    REACH,
     SHAFT,
     SITE,
     SPALL_ROWS,
     SPIN,
     TABLE_POINTS,
     TABLE_ROW,
-    WAVE_ROWS,
+    TILT,
+    WITH_CAGE,
+    WITH_SHAFT,
+    WITH_SPIN,
     Lanes,
-    process,
-    wrapped,
+    n_terms,
+    race_rows,
+    slow_rows,
 )  # fmt: skip
-from gen.physics.spall import TABLE, drop
+from gen.physics.spall import GEOMETRIC, RECTANGULAR, TABLE, drop
 
 
-@njit(**UNFUSED)
-def fold_waviness(lanes: Lanes, n_balls: int, race: int, c: FloatArray, s: FloatArray, folded: FloatArray) -> None:
-    """Add the waviness of one race, turned to direction ``c, s``, to the ``n_balls`` complex amplitudes in ``folded``."""
-    waves = lanes.waves
-    zc, zs = np.empty(LANES), np.empty(LANES)
-    for lane in range(LANES):
-        zc[lane] = c[lane] * c[lane] - s[lane] * s[lane]
-        zs[lane] = 2 * c[lane] * s[lane]
-    for order in range(N_ORDERS):
-        row = (2 * race * N_ORDERS + order) * LANES
-        bin_ = ((order + LOWEST_ORDER) % n_balls) * LANES
-        for lane in range(LANES):
-            real, imag = waves[row + lane], waves[row + N_ORDERS * LANES + lane]
-            zr, zi = zc[lane], zs[lane]
-            folded[bin_ + lane] += real * zr - imag * zi
-            folded[n_balls * LANES + bin_ + lane] += real * zi + imag * zr
-            zc[lane] = zr * c[lane] - zi * s[lane]
-            zs[lane] = zi * c[lane] + zr * s[lane]
+_TURNS = np.arange(MAX_BALLS)[:, None] * np.arange(MAX_BALLS) / np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None, None]
+COS_OF_TURNS, SIN_OF_TURNS = np.cos(2 * np.pi * _TURNS), np.sin(2 * np.pi * _TURNS)  # (number of balls, ball, order)
+SIN_OF_TURNS[2 * np.arange(MAX_BALLS // 2 + 1), :, np.arange(MAX_BALLS // 2 + 1) % MAX_BALLS] = 0.0  # of half the number of balls
+DIRECTION, POWER, TURN, N_ROTATIONS = range(4)  # complex numbers of the work array of the waviness, two rows each
 
 
-@njit(**UNFUSED)
-def waviness(
-    lanes: Lanes,
-    n_balls: int,
-    cage_c: FloatArray,
-    cage_s: FloatArray,
-    in_c: FloatArray,
-    in_s: FloatArray,
-    w: FloatArray,
-) -> None:
-    """Waviness under every ball, both races together, into ``w`` (ball * LANES + lane) [m]."""
-    folded = np.zeros(2 * n_balls * LANES)
-    fold_waviness(lanes, n_balls, 0, in_c, in_s, folded)
-    fold_waviness(lanes, n_balls, 1, cage_c, cage_s, folded)
-    for ball in range(n_balls):
-        for lane in range(LANES):
-            w[ball * LANES + lane] = 0.0
-        for order in range(n_balls):
-            turn = (ball * order) % n_balls
-            for lane in range(LANES):
-                real, imag = folded[order * LANES + lane], folded[(n_balls + order) * LANES + lane]
-                w[ball * LANES + lane] += real * COS[n_balls, turn] - imag * SIN[n_balls, turn]
+@njit(**INLINE)
+def start_rotation(shape: Shape, z: FloatArray) -> None:
+    """Set ``TURN`` to 1 and ``POWER`` to the direction to the power of the number of balls."""
+    wide()
+    for lane in range(lane_count()):
+        c, s = z[lane], z[LANES + lane]
+        p, q = c, s
+        for _ in range(len(shape.balls) - 1):
+            p, q = fma(p, c, -(q * s)), fma(p, s, q * c)
+        z[2 * POWER * LANES + lane], z[(2 * POWER + 1) * LANES + lane] = p, q
+        z[2 * TURN * LANES + lane], z[(2 * TURN + 1) * LANES + lane] = 1.0, 0.0
 
 
-@njit(**UNFUSED)
-def add_ball_waviness(lanes: Lanes, n_balls: int, moves: FloatArray, w: FloatArray) -> None:
-    """Add what the balls' own waviness gives at both their contacts at the next knot; all balls spin alike [m]."""
-    waves = lanes.waves
-    c, s = np.empty(LANES), np.empty(LANES)
-    for lane in range(LANES):
+@njit(**INLINE)
+def fold_waviness(shape: Shape, waves: FloatArray, z: FloatArray, folded: FloatArray) -> None:
+    """Add the waviness of one race, turned to the direction in ``z``, to the complex amplitudes in ``folded``, two rows for each ball."""
+    wide()
+    n_balls = len(shape.balls)
+    start_rotation(shape, z)
+    for first in range(n_balls):
+        amplitudes, sums = waves[2 * first * LANES :], folded[2 * first * LANES :]
+        for lane in range(lane_count()):
+            c, s = z[2 * POWER * LANES + lane], z[(2 * POWER + 1) * LANES + lane]
+            real = imag = 0.0
+            for term in range(n_terms(shape)):
+                row = 2 * (n_terms(shape) - 1 - term) * n_balls * LANES + lane
+                real, imag = (
+                    fma(real, c, fma(-imag, s, amplitudes[row])), fma(real, s, fma(imag, c, amplitudes[row + LANES])),
+                )  # fmt: skip
+            c, s = z[2 * TURN * LANES + lane], z[(2 * TURN + 1) * LANES + lane]
+            sums[lane] += fma(real, c, -(imag * s))
+            sums[LANES + lane] += fma(real, s, imag * c)
+            p, q = z[2 * DIRECTION * LANES + lane], z[(2 * DIRECTION + 1) * LANES + lane]
+            z[2 * TURN * LANES + lane], z[(2 * TURN + 1) * LANES + lane] = fma(c, p, -(s * q)), fma(c, q, s * p)
+
+
+@njit(**INLINE)
+def unfold(shape: Shape, folded: FloatArray, gaps: FloatArray) -> None:
+    """Take the real part of the Fourier transform of ``folded``, one value per ball, from ``gaps``.
+
+    Balls ``i`` and ``n - i`` share their sums.
+    """
+    wide()
+    n_balls = len(shape.balls)
+    for lane in range(lane_count()):
+        for order in range(1, (n_balls + 1) // 2):
+            low, high = 2 * order * LANES + lane, 2 * (n_balls - order) * LANES + lane
+            folded[low] += folded[high]
+            folded[low + LANES] -= folded[high + LANES]
+    for ball in range(n_balls // 2 + 1):
+        here, mirror = gaps[ball * LANES :], gaps[(n_balls - ball) % n_balls * LANES :]
+        other = 1.0 if ball < n_balls - ball < n_balls else 0.0
+        cosines, sines = COS_OF_TURNS[n_balls, ball], SIN_OF_TURNS[n_balls, ball]
+        for lane in range(lane_count()):
+            even, odd = folded[lane], 0.0
+            for order in range(1, n_balls // 2 + 1):
+                even = fma(folded[2 * order * LANES + lane], cosines[order], even)
+                odd = fma(folded[(2 * order + 1) * LANES + lane], sines[order], odd)
+            here[lane] -= even - odd
+            mirror[lane] -= other * (even + odd)
+
+
+@njit(**INLINE)
+def take_ball_waviness(shape: Shape, lanes: Lanes, moves: FloatArray, z: FloatArray, gaps: FloatArray) -> None:
+    """Take what the balls' own waviness gives at both their contacts at the next knot from ``gaps``; all balls spin alike."""
+    wide()
+    n_balls = len(shape.balls)
+    for lane in range(lane_count()):
         twice = 2 * (lanes.angles[SPIN * LANES + lane] + moves[SPIN * LANES + lane])
-        c[lane], s[lane] = math.cos(twice), math.sin(twice)
-    zc, zs = c.copy(), s.copy()
-    width = n_balls * LANES
-    for order in range(BALL_ORDERS):
-        row = WAVE_ROWS * LANES + 2 * order * width
+        z[lane], z[LANES + lane] = math.cos(twice), math.sin(twice)
+    for ball in range(n_balls):
+        waves, here = lanes.waves[(race_rows(shape) + 2 * ball) * LANES :], gaps[ball * LANES :]
+        for lane in range(lane_count()):
+            c, s = z[lane], z[LANES + lane]
+            real = imag = 0.0
+            for order in range(BALL_ORDERS):
+                row = 2 * (BALL_ORDERS - 1 - order) * n_balls * LANES + lane
+                a, b = real + waves[row], imag + waves[row + LANES]
+                real, imag = fma(a, c, -(b * s)), fma(a, s, b * c)
+            here[lane] -= real
+
+
+@njit(**INLINE)
+def ball_gaps(shape: Shape, lanes: Lanes, moves: FloatArray, work: FloatArray, gaps: FloatArray) -> None:
+    """Gap of every ball at the next knot, waviness included and spalls aside, into ``gaps`` (ball * LANES + lane) [m].
+
+    ``work`` has two rows for each ball and two for each of the rotations.
+    """
+    wide()
+    state, n_balls = lanes.state, len(shape.balls)
+    for lane in range(lane_count()):
         for ball in range(n_balls):
-            for lane in range(LANES):
-                i = ball * LANES + lane
-                w[i] += waves[row + i] * zc[lane] - waves[row + width + i] * zs[lane]
-        for lane in range(LANES):
-            zr, zi = zc[lane], zs[lane]
-            zc[lane], zs[lane] = zr * c[lane] - zi * s[lane], zi * c[lane] + zr * s[lane]
-
-
-@njit(**UNFUSED)
-def ball_gaps(lanes: Lanes, n_balls: int, moves: FloatArray, gaps: FloatArray) -> None:
-    """Gap of every ball at the next knot, waviness included and spalls aside, into ``gaps`` (ball * LANES + lane) [m]."""
-    state = lanes.state
-    if lanes.waves.size:
-        cage_c, cage_s, in_c, in_s = np.empty(LANES), np.empty(LANES), np.empty(LANES), np.empty(LANES)
-        for lane in range(LANES):
+            gaps[ball * LANES + lane] = lanes.drive[CLEARANCE * LANES + lane]
+    if not lanes.waves.size:
+        return
+    z, folded = work, work[2 * N_ROTATIONS * LANES :]
+    for lane in range(lane_count()):
+        for row in range(2 * n_balls):
+            folded[row * LANES + lane] = 0.0
+    for race in range(2):
+        for lane in range(lane_count()):
             c, s = state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane]
             dc, ds = cosine(moves[CAGE * LANES + lane]), sine(moves[CAGE * LANES + lane])
-            c, s = c * dc - s * ds, s * dc + c * ds
-            p, q = state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane]
-            dc, ds = cosine(moves[SHAFT * LANES + lane]), sine(moves[SHAFT * LANES + lane])
-            p, q = p * dc - q * ds, q * dc + p * ds
-            cage_c[lane], cage_s[lane] = c, s
-            in_c[lane], in_s[lane] = c * p + s * q, s * p - c * q
-        waviness(lanes, n_balls, cage_c, cage_s, in_c, in_s, gaps)
-        if lanes.waves.size > WAVE_ROWS * LANES:
-            add_ball_waviness(lanes, n_balls, moves, gaps)
-    else:
-        gaps[:] = 0.0
-    for ball in range(n_balls):
-        for lane in range(LANES):
-            gaps[ball * LANES + lane] = lanes.drive[CLEARANCE * LANES + lane] - gaps[ball * LANES + lane]
+            c, s = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
+            if race == 0:
+                p, q = state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane]
+                dc, ds = cosine(moves[SHAFT * LANES + lane]), sine(moves[SHAFT * LANES + lane])
+                p, q = fma(p, dc, -(q * ds)), fma(q, dc, p * ds)
+                c, s = fma(c, p, s * q), fma(s, p, -(c * q))
+            z[2 * DIRECTION * LANES + lane], z[(2 * DIRECTION + 1) * LANES + lane] = c, s
+        fold_waviness(shape, lanes.waves[race * (race_rows(shape) // 2) * LANES :], z, folded)
+    unfold(shape, folded, gaps)
+    if lanes.waves.size > race_rows(shape) * LANES:
+        take_ball_waviness(shape, lanes, moves, z, gaps)
 
 
 @njit(**INLINE)
-def move_gaps(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, last: FloatArray, gaps: FloatArray) -> None:
-    """Lay down the gap of every ball at every half step: a straight line from ``last`` to its value at the next knot."""
-    n_balls = len(shape.balls)
-    ball_gaps(lanes, n_balls, moves, gaps)
-    row = gap_row(shape) * LANES
-    width = n_balls * LANES
-    for half_step in range(2 * n_steps + 1):
-        part = half_step / (2 * n_steps)
-        for i in range(width):
-            lanes.params[row + half_step * width + i] = last[i] + part * (gaps[i] - last[i])
-    last[:] = gaps
+def move_gaps(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, work: FloatArray, next_gaps: FloatArray) -> None:
+    """Let the gap of every ball run straight to its value at the next knot; ``next_gaps`` holds those at this one."""
+    wide()
+    gaps, per_half_step = lanes.params[gap_row(shape) * LANES :], 0.5 / n_steps
+    for lane in range(lane_count()):
+        for ball in range(len(shape.balls)):
+            gaps[2 * ball * LANES + lane] = next_gaps[ball * LANES + lane]
+    ball_gaps(shape, lanes, moves, work, next_gaps)
+    for lane in range(lane_count()):
+        for ball in range(len(shape.balls)):
+            further = next_gaps[ball * LANES + lane] - gaps[2 * ball * LANES + lane]
+            gaps[(2 * ball + 1) * LANES + lane] = further * per_half_step
 
 
 @njit(**INLINE)
-def share_on_track(lanes: Lanes, lane: int) -> float:
+def share_on_track(shape: Shape, lanes: Lanes, lane: int) -> float:
     """Share of its drop that a ball spall gives while the spin axis leaves it off the track, 1 if it never does [1]."""
     limit = lanes.drive[AXIS_LIMIT * LANES + lane]
     if limit <= 0.0:
         return 1.0
-    tilt = lanes.drive[AXIS_OFFSET * LANES + lane]
-    tilt += lanes.drive[AXIS_RMS * LANES + lane] * process(lanes.phasors, AXIS_FIRST, AXIS_TERMS, lane)
+    slope = lanes.slow[(slow_rows(shape) + TILT) * LANES + lane]
+    tilt = lanes.drive[AXIS_OFFSET * LANES + lane] + lanes.slow[TILT * LANES + lane] + slope
     return max(0.0, 1 - (tilt / limit) ** 2)
 
 
@@ -177,79 +211,92 @@ def tabulated(tables: FloatArray, row: int, offset: float, half: float) -> float
 
 @njit(**INLINE)
 def pass_spall(
-    lanes: Lanes,
-    spall: int,
-    lane: int,
-    gap: int,
-    stride: int,
-    start: float,
-    slope: float,
-    share: float,
-    race: float,
-    n_steps: int,
-) -> None:
-    """Widen a gap while a ball passes a spall, from offset ``start`` at ``slope`` per half step, at every half step."""
-    spalls = lanes.spalls
-    row = spall * SPALL_ROWS
-    half = spalls[(row + HALF) * LANES + lane]
+    shape: Shape, lanes: Lanes, spall: int, lane: int, ball: int, start: float, slope: float, share: float, race: float, n_steps: int,
+    falls: FloatArray,
+) -> None:  # fmt: skip
+    """Let a ball drop while it passes a spall, from offset ``start`` at ``slope`` per half step, at every half step."""
+    wide()
+    this = lanes.spalls[spall * SPALL_ROWS * LANES :]
+    half, n_half_steps = this[HALF * LANES + lane], 2 * n_steps + 1
     end = start + 2 * n_steps * slope
     if min(start, end) >= half or max(start, end) <= -half:
         return
-    arc, depth = spalls[(row + ARC) * LANES + lane], spalls[(row + DEPTH) * LANES + lane]
-    profile = int(spalls[(row + PROFILE) * LANES + lane])
-    table = int(spalls[(row + TABLE_ROW) * LANES + lane])
-    if spalls[(row + SITE) * LANES + lane] == BALL_SITE and race < 0.0:
+    arc, depth, radius = this[ARC * LANES + lane], this[DEPTH * LANES + lane], lanes.drive[BALL * LANES + lane]
+    profile, table = int(this[PROFILE * LANES + lane]), int(this[TABLE_ROW * LANES + lane])
+    if this[SITE * LANES + lane] == BALL_SITE and race < 0.0:
         table += 1
-    ball = lanes.drive[BALL * LANES + lane]
-    for half_step in range(2 * n_steps + 1):
-        offset = start + slope * half_step
-        fall = (
-            tabulated(lanes.tables, table, offset, half)
-            if profile == TABLE
-            else drop(profile, offset, half, arc, ball, race, depth)
-        )
-        lanes.params[gap + half_step * stride] += share * fall
+    if profile == TABLE:
+        for half_step in range(n_half_steps):
+            falls[half_step] = tabulated(lanes.tables, table, fma(slope, half_step, start), half)
+    elif profile == RECTANGULAR:
+        for half_step in range(n_half_steps):
+            falls[half_step] = depth if abs(fma(slope, half_step, start)) < half else 0.0
+    elif profile == GEOMETRIC:
+        for half_step in range(n_half_steps):
+            falls[half_step] = drop(GEOMETRIC, fma(slope, half_step, start), half, arc, radius, race, depth)
+    else:
+        for half_step in range(n_half_steps):
+            falls[half_step] = drop(profile, fma(slope, half_step, start), half, arc, radius, race, depth)
+    drops = lanes.params[(drop_row(shape) + ball) * LANES + lane :]
+    for half_step in range(n_half_steps):
+        drops[half_step * len(shape.balls) * LANES] += share * falls[half_step]
 
 
 @njit(**INLINE)
-def move_spalls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray) -> None:
-    """Widen the gaps over every spall that a ball meets before the next knot."""
-    n_balls = len(shape.balls)
-    pitch = 2 * math.pi / n_balls
-    params, angles, spalls = lanes.params, lanes.angles, lanes.spalls
-    stride = n_balls * LANES
-    for spall in range(spalls.size // (SPALL_ROWS * LANES)):
-        row = spall * SPALL_ROWS
-        for lane in range(LANES):
-            site = spalls[(row + SITE) * LANES + lane]
-            place = spalls[(row + POSITION) * LANES + lane]
-            if site == BALL_SITE:
-                ball = int(spalls[(row + CARRIER) * LANES + lane])
-                slope = moves[SPIN * LANES + lane]
-                middle = wrapped(angles[SPIN * LANES + lane] + place + 0.5 * slope)
-                inner = abs(middle) < 0.5 * math.pi
-                race = lanes.drive[INNER_RADIUS * LANES + lane] if inner else -lanes.drive[OUTER_RADIUS * LANES + lane]
-                start = (middle if inner else wrapped(middle - math.pi)) - 0.5 * slope
-                gap = (gap_row(shape) + ball) * LANES + lane
-                share = share_on_track(lanes, lane)
-                pass_spall(lanes, spall, lane, gap, stride, start, slope / (2 * n_steps), share, race, n_steps)
-            elif site != NO_SITE:
-                start, slope = place - angles[CAGE * LANES + lane], -moves[CAGE * LANES + lane]
-                race = -lanes.drive[OUTER_RADIUS * LANES + lane]
-                if site == INNER:
-                    start += angles[SHAFT * LANES + lane]
-                    slope += moves[SHAFT * LANES + lane]
-                    race = lanes.drive[INNER_RADIUS * LANES + lane]
-                half = spalls[(row + HALF) * LANES + lane]
-                nearest = np.rint((start + 0.5 * slope) / pitch)
-                # a ball may leave its place by as much as the space between two
-                around = min(int(half / pitch + (1.5 if len(shape.jittered) else 0.7)), n_balls // 2)
-                for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
-                    offset, rate = (nearest + rank) * pitch - start, -slope / (2 * n_steps)
-                    ball = int((nearest + rank) % n_balls)
-                    if len(shape.jittered):
-                        source = jitter_row(shape) + 2 * ball
-                        offset += params[source * LANES + lane]
-                        rate += params[(source + 1) * LANES + lane]
-                    gap = (gap_row(shape) + ball) * LANES + lane
-                    pass_spall(lanes, spall, lane, gap, stride, offset, rate, 1.0, race, n_steps)
+def meet_spall(
+    shape: Shape, lanes: Lanes, spall: int, lane: int, n_steps: int, start: float, slope: float, falls: FloatArray
+) -> None:
+    """Let the balls that meet a spall drop; ball 0, or the track of a ball spall, is at ``start`` from it and moves by ``slope``."""
+    n_balls, rate = len(shape.balls), slope / (2 * n_steps)
+    this = lanes.spalls[spall * SPALL_ROWS * LANES :]
+    site, period = this[SITE * LANES + lane], this[PERIOD * LANES + lane]
+    nearest = np.int64(np.rint((start + 0.5 * slope) / period))
+    inner, outer = lanes.drive[INNER_RADIUS * LANES + lane], -lanes.drive[OUTER_RADIUS * LANES + lane]
+    if site == BALL_SITE:
+        race, ball = inner if nearest & 1 == 0 else outer, int(this[CARRIER * LANES + lane])
+        share = share_on_track(shape, lanes, lane)
+        pass_spall(shape, lanes, spall, lane, ball, start - nearest * period, rate, share, race, n_steps, falls)
+        return
+    race = inner if site == INNER else outer
+    reach = this[REACH * LANES + lane] + 0.5 * abs(slope)
+    around = min(int(reach / period + 0.5), n_balls // 2)
+    for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
+        ball = (rank - nearest) % n_balls
+        offset, passing = start + (rank - nearest) * period, rate
+        if len(shape.jittered):
+            source = (JITTER + ball) * LANES + lane
+            offset += lanes.slow[source]
+            passing += lanes.slow[slow_rows(shape) * LANES + source] / (2 * n_steps)
+        pass_spall(shape, lanes, spall, lane, ball, offset, passing, 1.0, race, n_steps, falls)
+
+
+@njit(**INLINE)
+def move_spalls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, work: FloatArray, dropped: FloatArray) -> None:
+    """Let every ball that meets a spall before the next knot drop.
+
+    ``work`` has four rows and room for all half steps; ``dropped`` is 1 in its first place if drops of the last knot are to be cleared.
+    """
+    wide()
+    if dropped[0] > 0.0:
+        drops = lanes.params[drop_row(shape) * LANES :]
+        for i in range((2 * n_steps + 1) * len(shape.balls) * lane_count()):
+            drops[i] = 0.0
+        dropped[0] = 0.0
+    angles, starts, slopes, near, falls = lanes.angles, 0, LANES, 2 * LANES, work[3 * LANES :]
+    for spall in range(lanes.spalls.size // (SPALL_ROWS * LANES)):
+        this = lanes.spalls[spall * SPALL_ROWS * LANES :]
+        for lane in range(lane_count()):
+            with_cage, with_shaft = this[WITH_CAGE * LANES + lane], this[WITH_SHAFT * LANES + lane]
+            with_spin, period = this[WITH_SPIN * LANES + lane], this[PERIOD * LANES + lane]
+            start = with_cage * angles[CAGE * LANES + lane] + with_shaft * angles[SHAFT * LANES + lane]
+            start += with_spin * angles[SPIN * LANES + lane] + this[POSITION * LANES + lane]
+            slope = with_cage * moves[CAGE * LANES + lane] + with_shaft * moves[SHAFT * LANES + lane]
+            slope += with_spin * moves[SPIN * LANES + lane]
+            middle = start + 0.5 * slope
+            away = abs(middle - period * np.rint(middle / period)) - 0.5 * abs(slope)
+            work[starts + lane], work[slopes + lane] = start, slope
+            work[near + lane] = 1.0 if away < this[REACH * LANES + lane] else 0.0
+        for lane in range(lane_count()):
+            if work[near + lane] > 0.0:
+                meet_spall(shape, lanes, spall, lane, n_steps, work[starts + lane], work[slopes + lane], falls)
+                dropped[0] = 1.0

@@ -1,6 +1,6 @@
 """A batch of records from its first knot to its last, decimated on the way.
 
-The full-rate history is kept for a few knots only: long enough for the anti-alias filter, whose outputs are all that leaves the batch.
+The history at the rate of the steps is kept for a few knots only: what leaves the batch are the outputs of the anti-alias filter.
 """
 
 from collections.abc import Callable
@@ -11,26 +11,27 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.signal import firwin
 
-from gen.physics import gaps, kernel, lanes, motion, spall
-from gen.physics.gaps import ball_gaps, move_gaps, move_spalls
-from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, advance, jitter_row, param_rows
-from gen.physics.lanes import INLINE, KERNEL, LANES
+from gen.physics import decimate, gaps, kernel, lanes, motion, spall
+from gen.physics.decimate import OUTPUTS, Decimation, filter_rows
+from gen.physics.gaps import N_ROTATIONS, ball_gaps, move_gaps, move_spalls
+from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, advance, param_rows
+from gen.physics.lanes import ALLOCATING, INLINE, KERNEL, LANES, lane_count
 from gen.physics.motion import (
     ANGLE_ROWS,
-    JITTER_FIRST,
-    JITTER_TERMS,
+    JITTER,
+    STRIDE,
     Lanes,
+    keep_turning,
     move_forces,
-    move_jitter,
-    turn_phasors,
+    move_processes,
+    slow_rows,
+    start_processes,
     turn_rings,
 )
 
-HALF_TAPS = 34  # per output sample; with beta 8 at least 80 dB from 1.025 Nyquist on
 FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
-_BLOCK = 32  # knots between two runs of the filter
+BLOCK = 8  # knots between two runs of the filters, a multiple of what they give in one pass
 
 Columns = tuple[FloatArray, NDArray[np.int64], FloatArray]
 
@@ -46,168 +47,124 @@ class Integral(NamedTuple):
     """Largest contact stiffness at any step, summed over the balls: a bound for every direction, shape (lane,) [N/m]."""
 
 
-def decimation_taps(factor: int) -> FloatArray:
-    """Linear-phase low-pass for decimation by ``factor``, shape (tap,); a single 1 if there is nothing to decimate.
+class Work(NamedTuple):
+    """Arrays that live as long as a batch."""
 
-    Cut-off at 0.875 of the new Nyquist frequency with a transition of 0.15 of it (Kaiser window, 80 dB).
-    """
-    if factor == 1:
-        return np.ones(1)
-    return firwin(2 * HALF_TAPS * factor + 1, 0.875 / factor, window=("kaiser", 7.857))
+    moves: FloatArray
+    """How far shaft, cage and ball spin move to the next knot, ANGLE_ROWS rows [rad]."""
+    gaps: FloatArray
+    """Gap of every ball at the next knot, spalls aside [m]."""
+    dropped: FloatArray
+    """Whether a ball was in a spall, a single number."""
+    scratch: FloatArray
+    """Room for whoever is at work."""
 
 
-def lead_knots(factor: int) -> int:
-    """Knots by which an output of the filter lags its newest input."""
-    return 0 if factor == 1 else HALF_TAPS
+@njit(**ALLOCATING)
+def prepare(shape: Shape, lanes: Lanes, n_steps: int) -> Work:
+    """Work arrays, and what moves at its first knot."""
+    n_balls = len(shape.balls)
+    rows = 2 * N_ROTATIONS + 2 * n_balls + JITTER
+    scratch = np.empty(rows * LANES + 2 * n_steps + 1)
+    work = Work(np.zeros(ANGLE_ROWS * LANES), np.empty(n_balls * LANES), np.zeros(1), scratch)
+    start_processes(shape, lanes)
+    if len(shape.uneven):
+        ball_gaps(shape, lanes, work.moves, work.scratch, work.gaps)
+    return work
 
 
 @njit(**INLINE)
-def to_next_knot(
-    shape: Shape,
-    lanes: Lanes,
-    knot: int,
-    n_steps: int,
-    dt: float,
-    moves: FloatArray,
-    last: FloatArray,
-    widths: FloatArray,
-) -> None:
-    """Prepare ``lanes.params`` for the steps up to the next knot, and move the angles there.
-
-    ``last`` holds the gaps at this knot and receives those at the next; ``moves`` and ``widths`` are work arrays.
-    """
-    turn_rings(lanes, knot, n_steps, dt, moves)
-    turn_phasors(lanes.phasors, JITTER_FIRST + len(shape.balls) * JITTER_TERMS)
+def to_next_knot(shape: Shape, lanes: Lanes, knot: int, n_steps: int, dt: float, work: Work) -> None:
+    """Prepare ``lanes.params`` for the steps up to the next knot, and move the angles there."""
+    if knot % STRIDE == 0:
+        move_processes(shape, lanes, n_steps, work.scratch)
+    turn_rings(shape, lanes, knot, n_steps, dt, work.moves)
     if len(shape.forced):
-        move_forces(lanes, knot, n_steps, dt, moves)
-    if len(shape.jittered):
-        move_jitter(shape, lanes, n_steps)
+        move_forces(lanes, knot, n_steps, dt, work.moves, work.scratch)
     if len(shape.uneven):
-        move_gaps(shape, lanes, n_steps, moves, last, widths)
-        move_spalls(shape, lanes, n_steps, moves)
-    for i in range(ANGLE_ROWS * LANES):
-        lanes.angles[i] += moves[i]
+        move_gaps(shape, lanes, n_steps, work.moves, work.scratch, work.gaps)
+        move_spalls(shape, lanes, n_steps, work.moves, work.scratch, work.dropped)
+    keep_turning(shape, lanes, work.moves)
 
 
 @njit(**INLINE)
-def place_balls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, last: FloatArray) -> None:
-    """Gaps into ``last`` and jitter at the first knot."""
-    moves[:] = 0.0
-    if len(shape.uneven):
-        ball_gaps(lanes, len(shape.balls), moves, last)
-    if len(shape.jittered):
-        move_jitter(shape, lanes, n_steps)
-        for ball in range(len(shape.balls)):
-            row = jitter_row(shape) + 2 * ball
-            for lane in range(LANES):
-                lanes.params[row * LANES + lane] += 2 * n_steps * lanes.params[(row + 1) * LANES + lane]
-                lanes.params[(row + 1) * LANES + lane] = 0.0
-
-
-@njit(**INLINE)
-def filter_knot(taps: FloatArray, history: FloatArray, first: int, width: int, total: FloatArray) -> None:
-    """Weighted sum of the rows of ``history`` from element ``first`` on, into ``total`` (shape ``width``)."""
-    total[:] = 0.0
-    whole = taps.size - taps.size % 8
-    for tap in range(0, whole, 8):  # eight taps per pass over the lanes: one at a time waits for the sum to be stored
-        a, b, c, d = taps[tap], taps[tap + 1], taps[tap + 2], taps[tap + 3]
-        e, f, g, h = taps[tap + 4], taps[tap + 5], taps[tap + 6], taps[tap + 7]
-        at = first + tap * width
-        for i in range(width):
-            low = (
-                a * history[at + i]
-                + b * history[at + width + i]
-                + c * history[at + 2 * width + i]
-                + d * history[at + 3 * width + i]
-            )
-            at4 = at + 4 * width
-            high = (
-                e * history[at4 + i]
-                + f * history[at4 + width + i]
-                + g * history[at4 + 2 * width + i]
-                + h * history[at4 + 3 * width + i]
-            )
-            total[i] += low + high
-    for tap in range(whole, taps.size):
-        for i in range(width):
-            total[i] += taps[tap] * history[first + tap * width + i]
-
-
-@njit(**INLINE)
-def integrate_lanes(
-    shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
-) -> Columns:
-    """See :func:`integrate`; a named tuple would be made in Python, where a signal could leave its making half done."""
-    params = np.zeros(param_rows(shape, n_steps) * LANES)
-    params[: batch.params.size] = batch.params
-    batch = Lanes(
-        batch.state.copy(), params, batch.drive, batch.angles.copy(), batch.spalls, batch.phasors.copy(), batch.waves,
-        batch.schedule, batch.tables,
-    )  # fmt: skip
-    n_channels, n_taps = len(shape.channels), taps.size
-    width = n_channels * LANES
-    lead = (n_taps - 1) // (2 * n_steps) + n_settle
-    history = np.zeros((n_taps - 1 + _BLOCK * n_steps) * width)
-    response = np.empty((n_out, n_channels, LANES))
-    diverged = np.full(LANES, -1)
-    moves = np.empty(ANGLE_ROWS * LANES)
-    total = np.empty(width)
-    last, widths = np.zeros(len(shape.balls) * LANES), np.zeros(len(shape.balls) * LANES)
-    place_balls(shape, batch, n_steps, moves, last)
-    for first in range(0, lead + n_out, _BLOCK):
-        for knot in range(_BLOCK):
-            to_next_knot(shape, batch, first + knot, n_steps, dt, moves, last, widths)
-            advance(
-                shape,
-                batch.state,
-                batch.params,
-                dt,
-                n_steps,
-                history,
-                (n_taps - 1 + knot * n_steps) * n_channels,
-            )
-            for lane in range(LANES):
-                inside = True
-                for row in range(N_DYNAMIC // 2):
-                    inside &= abs(batch.state[row * LANES + lane]) < FAR_OFF
-                if not inside and diverged[lane] < 0:
-                    diverged[lane] = first + knot
-        for knot in range(_BLOCK):
-            out = first + knot - lead
-            if 0 <= out < n_out:
-                filter_knot(taps, history, knot * n_steps * width, width, total)
-                for i in range(width):
-                    response[out, i // LANES, i % LANES] = total[i]
-        for i in range((n_taps - 1) * width):
-            history[i] = history[_BLOCK * n_steps * width + i]
-    steepest = batch.state[STEEPEST * LANES : (STEEPEST + 1) * LANES].copy()
-    for lane in range(LANES):
-        exponent = 10 / 9 if len(shape.roller) else 1.5
-        squared = batch.params[COSA * LANES + lane] ** 2
-        steepest[lane] *= exponent * squared * batch.params[STIFFNESS * LANES + lane]
-    return response, diverged, steepest
+def keep(history: FloatArray, size: int, start: int) -> None:
+    """Move ``size`` values from ``start`` on to the front."""
+    newest = history[start:]
+    for i in range(size):
+        history[i] = newest[i]
 
 
 def _cached(sources: str) -> Callable[..., Columns]:
-    """Compile and cache; numba looks for changes in this file alone, but what a function closes over is part of its key."""
+    """What :func:`integrate` does; a named tuple would be made in Python, where a signal could leave its making half done.
+
+    Numba looks for changes in this file alone, but what a function closes over is part of its key.
+    """
 
     @njit(**KERNEL)
-    def cached(
-        shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
+    def integrate_lanes(
+        shape: Shape, batch: Lanes, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
     ) -> Columns:
         _ = sources
-        return integrate_lanes(shape, batch, dt, n_steps, taps, n_settle, n_out)
+        params = np.zeros(param_rows(shape, n_steps) * LANES)
+        for i in range(batch.params.size):
+            params[i] = batch.params[i]
+        batch = Lanes(
+            batch.state.copy(), params, batch.drive, batch.angles.copy(), batch.spalls, batch.phasors.copy(),
+            np.zeros(2 * slow_rows(shape) * LANES), batch.waves, batch.schedule, batch.tables,
+        )  # fmt: skip
+        n_channels, width = len(shape.channels), len(shape.channels) * LANES
+        two_stages = len(filters.first.taps) > 0
+        first_stage = filters.first if two_stages else filters.last
+        kept, half_kept = first_stage.kept, filters.last.kept
+        history = np.zeros((kept + BLOCK * n_steps + 4) * width)
+        halfway = np.zeros((half_kept + 2 * BLOCK + 4) * width)
+        lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
+        response = np.empty(((n_out + 2 * BLOCK) * width))
+        diverged = np.full(LANES, -1)
+        work = prepare(shape, batch, n_steps)
+        for first in range(0, lead + n_settle + n_out, BLOCK):
+            for knot in range(first, first + BLOCK):
+                to_next_knot(shape, batch, knot, n_steps, dt, work)
+                since = 2.0 * n_steps * (knot % STRIDE)
+                at = (kept + (knot - first) * n_steps) * n_channels
+                advance(shape, batch.state, batch.params, dt, n_steps, since, history, at)
+                for lane in range(lane_count()):
+                    inside = True
+                    for row in range(N_DYNAMIC // 2):
+                        inside &= abs(batch.state[row * LANES + lane]) < FAR_OFF
+                    if not inside and diverged[lane] < 0:
+                        diverged[lane] = knot
+            if two_stages:
+                for output in range(0, 2 * BLOCK, OUTPUTS):
+                    filter_rows(first_stage.taps, history, output * first_stage.factor, n_channels, halfway, half_kept + output, work.scratch)
+            out = first - lead - n_settle + BLOCK  # one block later: there is room for what comes out before the first output
+            if out >= 0:
+                source = halfway if two_stages else history
+                for output in range(0, BLOCK, OUTPUTS):
+                    filter_rows(filters.last.taps, source, output * filters.last.factor, n_channels, response, out + output, work.scratch)
+            keep(history, kept * width, BLOCK * n_steps * width)
+            if two_stages:
+                keep(halfway, half_kept * width, 2 * BLOCK * width)
+        steepest = np.empty(LANES)
+        exponent = 10 / 9 if len(shape.roller) else 1.5
+        for lane in range(lane_count()):
+            slope = exponent * batch.params[COSA * LANES + lane] ** 2 * batch.params[STIFFNESS * LANES + lane]
+            steepest[lane] = batch.state[STEEPEST * LANES + lane] * slope
+        return response.reshape((n_out + 2 * BLOCK, n_channels, LANES))[BLOCK : BLOCK + n_out], diverged, steepest
 
-    return cached
+    return integrate_lanes
 
 
-_compiled = _cached(
-    sha256("".join(getsource(module) for module in (lanes, spall, kernel, motion, gaps)).encode()).hexdigest()
+integrate_lanes = _cached(
+    sha256(
+        "".join([str(LANES), *map(getsource, (lanes, spall, kernel, motion, gaps, decimate))]).encode()
+    ).hexdigest()
 )
 
 
 def integrate(
-    shape: Shape, batch: Lanes, dt: float, n_steps: int, taps: FloatArray, n_settle: int, n_out: int
+    shape: Shape, batch: Lanes, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
 ) -> Integral:
     """Integrate a batch.
 
@@ -221,9 +178,9 @@ def integrate(
         Step [s].
     n_steps : int
         Steps per knot.
-    taps : array, shape (tap,)
-        Anti-alias filter at the full rate.
+    filters : Decimation
+        Anti-alias filters.
     n_settle, n_out : int
         Knots dropped before the first output, and outputs.
     """
-    return Integral(*_compiled(shape, batch, dt, n_steps, taps, n_settle, n_out))
+    return Integral(*integrate_lanes(shape, batch, dt, n_steps, filters, n_settle, n_out))

@@ -2,21 +2,20 @@
 
 A lane holds one record; the loop over lanes has no branch and no call, and its body is the whole classical Runge-Kutta step of that
 record in scalars, so that LLVM turns it into vector instructions. Between two knots (one per output sample) every slow quantity moves
-along a straight line: cage and shaft turn at a constant rate, ball gaps, ball jitter and spall offsets are linear in time.
+along a straight line: cage and shaft turn at a constant rate, ball gaps, ball directions and spall offsets are linear in time.
 
 Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor on its resonance. Balls push along their own
 direction in the frame of the cage, in which they stand still but for their jitter. The system is that of Ophel et al. with its signs
 and reactions corrected, plus a sensor mass: Lagrange's equations of the energies in docs/model.md.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics.lanes import INLINE, LANES
+from gen.physics.lanes import CALLED, INLINE, LANES, fma, lane_count, square_root, wide
 
 FloatArray = NDArray[np.float64]
 
@@ -32,7 +31,8 @@ N_DYNAMIC = 2 * AXES
 CAGE_C, CAGE_S, SHAFT_C, SHAFT_S, STEEPEST, PICKED = range(N_DYNAMIC, N_DYNAMIC + 6)
 N_STATE = PICKED + AXES
 # Rows of ``params``: constants of the record, what holds until the next knot (forces with their slopes per half step), the weights of
-# the pickups, the jitter of each ball with its slope, and the gap under each ball at every half step.
+# the pickups, direction of each ball in its pocket and gap under it with their slopes, and what spalls add to the gap at every half step.
+# The contact damping is that of a ball over its load-deflection factor, which multiplies the sum over all balls.
 (
     STIFFNESS, DAMPING, COSA, GAP, IM1, IM2, IMR, C1, C0, K0, K1X, K1Y, K2X, K2Y, C2X, C2Y, KRX, KRY, CR, LOOSENESS, N_CONSTANTS,
 ) = range(21)  # fmt: skip
@@ -42,6 +42,8 @@ N_STATE = PICKED + AXES
 PICKUPS = N_HELD
 
 Motion = tuple[float, float, float, float]
+Push = tuple[float, float, float]
+"""Force along the axes of the cage's frame, over the load-deflection factor of a ball, and squeeze to the power ``n - 1``."""
 
 
 class Shape(NamedTuple):
@@ -69,22 +71,28 @@ def make_shape(n_balls: int, n_channels: int, **flags: bool) -> Shape:
     return Shape(*((None,) * int(counts.get(field, 0)) for field in Shape._fields))
 
 
-@njit(**INLINE)
-def jitter_row(shape: Shape) -> int:
-    """First row of the jitters in ``params``, two for each ball."""
+@njit(**CALLED)
+def direction_row(shape: Shape) -> int:
+    """First row of the directions of jittered balls in ``params``: cosine and sine, then their slopes per half step, of each ball."""
     return PICKUPS + len(shape.channels) * AXES
 
 
-@njit(**INLINE)
+@njit(**CALLED)
 def gap_row(shape: Shape) -> int:
-    """First row of the gaps in ``params``: half step after half step, every ball of each."""
-    return jitter_row(shape) + 2 * len(shape.balls)
+    """First row of the gaps in ``params``: gap and its slope per half step, of each ball."""
+    return direction_row(shape) + (4 * len(shape.balls) if len(shape.jittered) else 0)
 
 
-@njit(**INLINE)
+@njit(**CALLED)
+def drop_row(shape: Shape) -> int:
+    """First row of the drops into spalls in ``params``: half step after half step, every ball of each."""
+    return gap_row(shape) + (2 * len(shape.balls) if len(shape.uneven) else 0)
+
+
+@njit(**CALLED)
 def param_rows(shape: Shape, n_steps: int) -> int:
     """Number of rows of ``params``."""
-    return gap_row(shape) + (2 * n_steps + 1) * len(shape.balls)
+    return drop_row(shape) + ((2 * n_steps + 1) * len(shape.balls) if len(shape.uneven) else 0)
 
 
 @njit(**INLINE)
@@ -93,123 +101,133 @@ def ninth_root(x: float) -> float:
 
     Between those the ninth root is 1.08 to 1.42 times the eighth.
     """
-    y = 1.25 * math.sqrt(math.sqrt(math.sqrt(x))) + 1e-300
+    y = 1.25 * square_root(square_root(square_root(x))) + 1e-300
     for _ in range(3):
         cube = y * y * y
         ninth = cube * cube * cube
-        y *= (8 * ninth + 10 * x) / (10 * ninth + 8 * x + 1e-300)
+        y *= fma(8.0, ninth, 10 * x) / (fma(10.0, ninth, 8 * x) + 1e-300)
     return y
 
 
+class Instant(NamedTuple):
+    """A place in the time between two knots."""
+
+    half_step: float
+    """Half steps since the last knot."""
+    since: float
+    """Half steps since the directions of the balls were laid down."""
+    drops: FloatArray
+    """Drop of each ball into spalls, shape (ball * LANES + lane) [m]."""
+
+
 @njit(**INLINE)
-def ball_force(
-    shape: Shape, ball: int, motion: Motion, half_step: int, lane: int, params: FloatArray
-) -> tuple[float, float, float]:
-    """Force of one ball on the housing, along the axes of the cage's frame [N], and its squeeze to the power ``n - 1``."""
+def add_ball(
+    shape: Shape, ball: int, total: Push, motion: Motion, instant: Instant, lane: int, params: FloatArray
+) -> Push:
+    """Add the push of one ball to a sum."""
     if ball >= len(shape.balls):
-        return 0.0, 0.0, 0.0
+        return total
     x, y, u, v = motion
-    ball_c, ball_s = COS[len(shape.balls), ball], SIN[len(shape.balls), ball]
+    c, s = COS[len(shape.balls), ball], SIN[len(shape.balls), ball]
     if len(shape.jittered):
-        row = jitter_row(shape) + 2 * ball
-        jitter = params[row * LANES + lane] + params[(row + 1) * LANES + lane] * half_step
-        square = jitter * jitter
-        c = 1 - square * (0.5 - square * (1 / 24 - square * (1 / 720)))
-        s = jitter * (1 - square * (1 / 6 - square * (1 / 120 - square * (1 / 5040))))
-        ball_c, ball_s = ball_c * c - ball_s * s, ball_s * c + ball_c * s
+        row = (direction_row(shape) + 4 * ball) * LANES + lane
+        c = fma(params[row + 2 * LANES], instant.since, params[row])
+        s = fma(params[row + 3 * LANES], instant.since, params[row + LANES])
     gap = params[GAP * LANES + lane]
     if len(shape.uneven):
-        gap = params[(gap_row(shape) + half_step * len(shape.balls) + ball) * LANES + lane]
-    squeeze = max(x * ball_c + y * ball_s - gap, 0.0)
-    power = ninth_root(squeeze) if len(shape.roller) else math.sqrt(squeeze)
-    force = params[STIFFNESS * LANES + lane] * (squeeze * power)
+        row = (gap_row(shape) + 2 * ball) * LANES + lane
+        gap = fma(params[row + LANES], instant.half_step, params[row]) + instant.drops[ball * LANES + lane]
+    squeeze = max(fma(x, c, fma(y, s, -gap)), 0.0)
+    power = ninth_root(squeeze) if len(shape.roller) else square_root(squeeze)
+    force = squeeze * power
     if len(shape.damped):
-        approach = u * ball_c + v * ball_s
-        damped = max(force + params[DAMPING * LANES + lane] * approach, 0.0)
+        damped = max(fma(params[DAMPING * LANES + lane], fma(u, c, v * s), force), 0.0)
         force = damped if squeeze > 0.0 else 0.0
-    return force * ball_c, force * ball_s, power
+    along, across, powers = total
+    return fma(force, c, along), fma(force, s, across), powers + power
 
 
 @njit(**INLINE)
-def four_balls(
-    shape: Shape,
-    first: int,
-    motion: Motion,
-    half_step: int,
-    lane: int,
-    params: FloatArray,
-) -> tuple[float, float, float]:
-    """Four balls together; a loop over balls would not be unrolled before LLVM looks at the loop over lanes."""
-    ax, ay, ap = ball_force(shape, first, motion, half_step, lane, params)
-    bx, by, bp = ball_force(shape, first + 1, motion, half_step, lane, params)
-    cx, cy, cp = ball_force(shape, first + 2, motion, half_step, lane, params)
-    dx, dy, dp = ball_force(shape, first + 3, motion, half_step, lane, params)
-    return (ax + bx) + (cx + dx), (ay + by) + (cy + dy), (ap + bp) + (cp + dp)
+def add_four(
+    shape: Shape, first: int, totals: tuple[Push, ...], motion: Motion, instant: Instant, lane: int, params: FloatArray
+) -> tuple[Push, ...]:
+    """Add four balls to four sums; a loop over balls would not be unrolled before LLVM looks at the loop over lanes."""
+    return (
+        add_ball(shape, first, totals[0], motion, instant, lane, params),
+        add_ball(shape, first + 1, totals[1], motion, instant, lane, params),
+        add_ball(shape, first + 2, totals[2], motion, instant, lane, params),
+        add_ball(shape, first + 3, totals[3], motion, instant, lane, params),
+    )
 
 
 @njit(**INLINE)
 def contact_force(
-    shape: Shape, motion: Motion, c: float, s: float, half_step: int, lane: int, params: FloatArray
-) -> tuple[float, float, float]:
-    """Force that all balls together put on the housing, and its reaction on the shaft [N], and the sum of their powers.
+    shape: Shape, motion: Motion, c: float, s: float, instant: Instant, lane: int, params: FloatArray
+) -> Push:
+    """Force that all balls together put on the housing, and its reaction on the shaft, x and y [N], and the sum of their powers.
 
     ``motion`` is displacement and velocity of the shaft relative to the housing; ``c`` and ``s`` are the direction of the cage.
     """
     cosa = params[COSA * LANES + lane]
     x, y, u, v = motion
-    seen = (cosa * (x * c + y * s), cosa * (y * c - x * s), cosa * (u * c + v * s), cosa * (v * c - u * s))
-    ax, ay, ap = four_balls(shape, 0, seen, half_step, lane, params)
-    bx, by, bp = four_balls(shape, 4, seen, half_step, lane, params)
-    cx, cy, cp = four_balls(shape, 8, seen, half_step, lane, params)
-    dx, dy, dp = four_balls(shape, 12, seen, half_step, lane, params)
-    ex, ey, ep = four_balls(shape, 16, seen, half_step, lane, params)
-    fx, fy, fp = four_balls(shape, 20, seen, half_step, lane, params)
-    along, across = cosa * (ax + bx + cx + dx + ex + fx), cosa * (ay + by + cy + dy + ey + fy)
-    return along * c - across * s, along * s + across * c, ap + bp + cp + dp + ep + fp
+    seen = (cosa * fma(x, c, y * s), cosa * fma(y, c, -(x * s)), cosa * fma(u, c, v * s), cosa * fma(v, c, -(u * s)))
+    nothing = (0.0, 0.0, 0.0)
+    sums = (nothing, nothing, nothing, nothing)
+    # numbers that numba does not take for types: it would compile the four balls once for each
+    sums = add_four(shape, np.int64(0), sums, seen, instant, lane, params)
+    sums = add_four(shape, np.int64(4), sums, seen, instant, lane, params)
+    sums = add_four(shape, np.int64(8), sums, seen, instant, lane, params)
+    sums = add_four(shape, np.int64(12), sums, seen, instant, lane, params)
+    sums = add_four(shape, np.int64(16), sums, seen, instant, lane, params)
+    sums = add_four(shape, np.int64(20), sums, seen, instant, lane, params)
+    (ax, ay, ap), (bx, by, bp), (cx, cy, cp), (dx, dy, dp) = sums
+    scale = cosa * params[STIFFNESS * LANES + lane]
+    along, across = scale * ((ax + bx) + (cx + dx)), scale * ((ay + by) + (cy + dy))
+    return fma(along, c, -(across * s)), fma(along, s, across * c), (ap + bp) + (cp + dp)
 
 
 @njit(**INLINE)
-def forces(shape: Shape, half_step: int, lane: int, params: FloatArray) -> tuple[float, float, float, float]:
+def forces(shape: Shape, half_step: float, lane: int, params: FloatArray) -> tuple[float, float, float, float]:
     """External forces on shaft and housing, x and y [N]."""
     row = FORCES * LANES + lane
     wx, wy = params[row], params[row + LANES]
     if not len(shape.forced):
         return wx, wy, 0.0, 0.0
     return (
-        wx + params[row + 4 * LANES] * half_step,
-        wy + params[row + 5 * LANES] * half_step,
-        params[row + 2 * LANES] + params[row + 6 * LANES] * half_step,
-        params[row + 3 * LANES] + params[row + 7 * LANES] * half_step,
+        fma(params[row + 4 * LANES], half_step, wx),
+        fma(params[row + 5 * LANES], half_step, wy),
+        fma(params[row + 6 * LANES], half_step, params[row + 2 * LANES]),
+        fma(params[row + 7 * LANES], half_step, params[row + 3 * LANES]),
     )
 
 
 @njit(**INLINE)
 def accelerations(
-    shape: Shape, q: tuple[float, ...], turn: Motion, half_step: int, lane: int, params: FloatArray
+    shape: Shape, q: tuple[float, ...], turn: Motion, instant: Instant, lane: int, params: FloatArray
 ) -> tuple[float, float, float, float, float, float, float]:
     """Accelerations of the three bodies [m s-2], and the sum of powers; ``turn`` holds the directions of cage and shaft."""
     x1, y1, x2, y2, xr, yr, u1, v1, u2, v2, ur, vr = q
     c, s, shaft_c, shaft_s = turn
     dx, dy, du, dv = x1 - x2, y1 - y2, u1 - u2, v1 - v2
-    fx, fy, powers = contact_force(shape, (dx, dy, du, dv), c, s, half_step, lane, params)
+    fx, fy, powers = contact_force(shape, (dx, dy, du, dv), c, s, instant, lane, params)
     c1, c0, k0 = params[C1 * LANES + lane], params[C0 * LANES + lane], params[K0 * LANES + lane]
-    jx = fx + c1 * du + params[K1X * LANES + lane] * dx
-    jy = fy + c1 * dv + params[K1Y * LANES + lane] * dy
+    jx = fma(params[K1X * LANES + lane], dx, fma(c1, du, fx))
+    jy = fma(params[K1Y * LANES + lane], dy, fma(c1, dv, fy))
     p, q_ = params[UNBALANCE_P * LANES + lane], params[UNBALANCE_Q * LANES + lane]
-    wx, wy, hx, hy = forces(shape, half_step, lane, params)
-    f1x = wx + (p * shaft_c + q_ * shaft_s) - jx - c0 * u1 - k0 * x1
-    f1y = wy + (p * shaft_s - q_ * shaft_c) - jy - c0 * v1 - k0 * y1
+    wx, wy, hx, hy = forces(shape, instant.half_step, lane, params)
+    f1x = fma(-k0, x1, fma(-c0, u1, fma(p, shaft_c, fma(q_, shaft_s, wx)) - jx))
+    f1y = fma(-k0, y1, fma(-c0, v1, fma(p, shaft_s, fma(-q_, shaft_c, wy)) - jy))
     sx, sy = x2, y2
     if len(shape.loose):
         play = params[LOOSENESS * LANES + lane]
         sx, sy = x2 - min(max(x2, -play), play), y2 - min(max(y2, -play), play)
-    f2x = jx + hx - params[C2X * LANES + lane] * u2 - params[K2X * LANES + lane] * sx
-    f2y = jy + hy - params[C2Y * LANES + lane] * v2 - params[K2Y * LANES + lane] * sy
+    f2x = fma(-params[K2X * LANES + lane], sx, fma(-params[C2X * LANES + lane], u2, jx + hx))
+    f2y = fma(-params[K2Y * LANES + lane], sy, fma(-params[C2Y * LANES + lane], v2, jy + hy))
     arx = ary = 0.0
     if len(shape.resonator):
         cr, imr = params[CR * LANES + lane], params[IMR * LANES + lane]
-        rx = params[KRX * LANES + lane] * (x2 - xr) + cr * (u2 - ur)
-        ry = params[KRY * LANES + lane] * (y2 - yr) + cr * (v2 - vr)
+        rx = fma(params[KRX * LANES + lane], x2 - xr, cr * (u2 - ur))
+        ry = fma(params[KRY * LANES + lane], y2 - yr, cr * (v2 - vr))
         f2x, f2y, arx, ary = f2x - rx, f2y - ry, rx * imr, ry * imr
     im1, im2 = params[IM1 * LANES + lane], params[IM2 * LANES + lane]
     return f1x * im1, f1y * im1, f2x * im2, f2y * im2, arx, ary, powers
@@ -219,20 +237,19 @@ def accelerations(
 def moved(q: tuple[float, ...], p: tuple[float, ...], a: tuple[float, ...], h: float) -> tuple[float, ...]:
     """State after ``h`` seconds at rates ``p`` and accelerations ``a``."""
     return (
-        q[0] + h * p[0], q[1] + h * p[1], q[2] + h * p[2], q[3] + h * p[3], q[4] + h * p[4], q[5] + h * p[5],
-        q[6] + h * a[0], q[7] + h * a[1], q[8] + h * a[2], q[9] + h * a[3], q[10] + h * a[4], q[11] + h * a[5],
+        fma(h, p[0], q[0]), fma(h, p[1], q[1]), fma(h, p[2], q[2]), fma(h, p[3], q[3]), fma(h, p[4], q[4]), fma(h, p[5], q[5]),
+        fma(h, a[0], q[6]), fma(h, a[1], q[7]), fma(h, a[2], q[8]), fma(h, a[3], q[9]), fma(h, a[4], q[10]), fma(h, a[5], q[11]),
     )  # fmt: skip
 
 
 @njit(**INLINE)
-def simpson(
+def six_means(
     a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...], d: tuple[float, ...]
 ) -> tuple[float, ...]:
-    """Runge-Kutta mean of the slopes of the four stages."""
+    """Six times the Runge-Kutta mean of the slopes of the four stages."""
     return (
-        (a[0] + 2 * (b[0] + c[0]) + d[0]) * (1 / 6), (a[1] + 2 * (b[1] + c[1]) + d[1]) * (1 / 6),
-        (a[2] + 2 * (b[2] + c[2]) + d[2]) * (1 / 6), (a[3] + 2 * (b[3] + c[3]) + d[3]) * (1 / 6),
-        (a[4] + 2 * (b[4] + c[4]) + d[4]) * (1 / 6), (a[5] + 2 * (b[5] + c[5]) + d[5]) * (1 / 6),
+        fma(2.0, b[0] + c[0], a[0] + d[0]), fma(2.0, b[1] + c[1], a[1] + d[1]), fma(2.0, b[2] + c[2], a[2] + d[2]),
+        fma(2.0, b[3] + c[3], a[3] + d[3]), fma(2.0, b[4] + c[4], a[4] + d[4]), fma(2.0, b[5] + c[5], a[5] + d[5]),
     )  # fmt: skip
 
 
@@ -242,12 +259,15 @@ def half_turn(turn: Motion, lane: int, params: FloatArray) -> Motion:
     c, s, shaft_c, shaft_s = turn
     dc, ds = params[CAGE_TURN_C * LANES + lane], params[CAGE_TURN_S * LANES + lane]
     pc, ps = params[SHAFT_TURN_C * LANES + lane], params[SHAFT_TURN_S * LANES + lane]
-    return c * dc - s * ds, s * dc + c * ds, shaft_c * pc - shaft_s * ps, shaft_s * pc + shaft_c * ps
+    return (
+        fma(c, dc, -(s * ds)), fma(s, dc, c * ds),
+        fma(shaft_c, pc, -(shaft_s * ps)), fma(shaft_s, pc, shaft_c * ps),
+    )  # fmt: skip
 
 
 @njit(**INLINE)
 def advance(
-    shape: Shape, state: FloatArray, params: FloatArray, dt: float, n_steps: int, history: FloatArray, at: int
+    shape: Shape, state: FloatArray, params: FloatArray, dt: float, n_steps: int, since: float, history: FloatArray, at: int
 ) -> None:
     """Advance every lane from one knot to the next by ``n_steps`` classical Runge-Kutta steps.
 
@@ -261,34 +281,46 @@ def advance(
         Step [s].
     n_steps : int
         Steps to the next knot.
+    since : float
+        Half steps since the directions of the balls were laid down.
     history : array, shape (step * channel * LANES + lane)
-        Receives, from row ``at`` on, what is picked up at the start of each step [m s-2, or m].
+        Receives, from its row ``at`` on, what is picked up at the start of each step [m s-2, or m].
     at : int
-        First row of ``history`` to fill.
+        First row of ``history`` to fill; a row is a step and a channel.
     """
-    n_channels = len(shape.channels)
+    wide()
+    n_channels, drops = len(shape.channels), drop_row(shape) * LANES
+    width = len(shape.balls) * LANES if len(shape.uneven) else 0
     for step in range(n_steps):
-        half_step = 2 * step
+        half_step = 2.0 * step
+        # views, since numba would look at every index whether it counts from the end
+        start = Instant(half_step, since + half_step, params[drops + 2 * step * width :])
+        middle = Instant(half_step + 1, since + half_step + 1, params[drops + (2 * step + 1) * width :])
+        end = Instant(half_step + 2, since + half_step + 2, params[drops + (2 * step + 2) * width :])
         for lane in range(LANES):
+            xr = yr = ur = vr = 0.0
+            if len(shape.resonator):
+                xr, yr, ur, vr = (
+                    state[4 * LANES + lane], state[5 * LANES + lane], state[10 * LANES + lane], state[11 * LANES + lane],
+                )  # fmt: skip
             q = (
-                state[lane], state[LANES + lane], state[2 * LANES + lane], state[3 * LANES + lane],
-                state[4 * LANES + lane], state[5 * LANES + lane], state[6 * LANES + lane], state[7 * LANES + lane],
-                state[8 * LANES + lane], state[9 * LANES + lane], state[10 * LANES + lane], state[11 * LANES + lane],
+                state[lane], state[LANES + lane], state[2 * LANES + lane], state[3 * LANES + lane], xr, yr,
+                state[6 * LANES + lane], state[7 * LANES + lane], state[8 * LANES + lane], state[9 * LANES + lane], ur, vr,
             )  # fmt: skip
             turn = (
                 state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane],
                 state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane],
             )  # fmt: skip
-            a1 = accelerations(shape, q, turn, half_step, lane, params)
+            a1 = accelerations(shape, q, turn, start, lane, params)
             turn = half_turn(turn, lane, params)
             q2 = moved(q, q[6:], a1, 0.5 * dt)
-            a2 = accelerations(shape, q2, turn, half_step + 1, lane, params)
+            a2 = accelerations(shape, q2, turn, middle, lane, params)
             q3 = moved(q, q2[6:], a2, 0.5 * dt)
-            a3 = accelerations(shape, q3, turn, half_step + 1, lane, params)
+            a3 = accelerations(shape, q3, turn, middle, lane, params)
             turn = half_turn(turn, lane, params)
             q4 = moved(q, q3[6:], a3, dt)
-            a4 = accelerations(shape, q4, turn, half_step + 2, lane, params)
-            new = moved(q, simpson(q[6:], q2[6:], q3[6:], q4[6:]), simpson(a1, a2, a3, a4), dt)
+            a4 = accelerations(shape, q4, turn, end, lane, params)
+            new = moved(q, six_means(q[6:], q2[6:], q3[6:], q4[6:]), six_means(a1, a2, a3, a4), dt * (1 / 6))
             for row in range(N_DYNAMIC):
                 state[row * LANES + lane] = new[row]
             for row in range(4):
@@ -297,10 +329,10 @@ def advance(
             for axis in range(AXES):
                 state[(PICKED + axis) * LANES + lane] = q[axis] if len(shape.displacement) else a1[axis]
         for channel in range(n_channels):
-            row = at + step * n_channels + channel
-            for lane in range(LANES):
+            weights = params[(PICKUPS + channel * AXES) * LANES :]
+            received = history[(at + step * n_channels + channel) * LANES :]
+            for lane in range(lane_count()):
                 value = 0.0
                 for axis in range(AXES):
-                    weight = params[(PICKUPS + channel * AXES + axis) * LANES + lane]
-                    value += weight * state[(PICKED + axis) * LANES + lane]
-                history[row * LANES + lane] = value
+                    value = fma(weights[axis * LANES + lane], state[(PICKED + axis) * LANES + lane], value)
+                received[lane] = value

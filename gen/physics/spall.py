@@ -9,7 +9,7 @@ import math
 
 from numba import njit
 
-from gen.physics.lanes import INLINE, cosine, sine
+from gen.physics.lanes import CALLED, cosine, sine
 
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular", "table")
 GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR, TABLE = range(5)
@@ -17,7 +17,7 @@ RAISED_EDGE = 0.25  # share of the half width taken by each cosine flank
 FAR_INSIDE = 0.7  # rad from an edge, where the sine still holds
 
 
-@njit(**INLINE)
+@njit(**CALLED)
 def sagitta(chord: float, radius: float) -> float:
     """Height of an arc of signed ``radius`` over half its ``chord`` [m].
 
@@ -27,7 +27,7 @@ def sagitta(chord: float, radius: float) -> float:
     return radius - math.copysign(math.sqrt(max(radius * radius - chord * chord, 0.0)), radius)
 
 
-@njit(**INLINE)
+@njit(**CALLED)
 def drop(profile: int, offset: float, half: float, arc: float, ball: float, race: float, depth: float) -> float:
     """Drop of a ball whose contact is ``offset`` from the centre of a spall [m].
 

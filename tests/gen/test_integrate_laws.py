@@ -8,7 +8,8 @@ from scipy.signal import find_peaks, hilbert
 from gen.physics.batch import Motion, Spall, lay_out, record_shape
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.integrate import decimation_taps, integrate
+from gen.physics.decimate import decimation
+from gen.physics.integrate import integrate
 from gen.physics.lanes import LANES
 from tests.strategies import RIG, record, seeds, wandering_records
 
@@ -24,7 +25,7 @@ def responses(records, n_steps, n_settle, n_out):
     records = [drawn._replace(pickups=Y_OF_SENSOR) for drawn in records]
     shape = record_shape(records[0])
     batch = lay_out(records, shape, 1 / FS)
-    made = integrate(shape, batch, 1 / (FS * n_steps), n_steps, decimation_taps(n_steps), n_settle, n_out)
+    made = integrate(shape, batch, 1 / (FS * n_steps), n_steps, decimation(n_steps), n_settle, n_out)
     assert (made.diverged == -1).all()
     return made.response.T[: len(records)]
 
@@ -122,6 +123,6 @@ def test_a_late_ball_comes_late_once_a_turn_of_the_cage():
 def test_a_record_comes_out_of_every_lane_with_the_same_bits(drawn):
     drawn = drawn._replace(pickups=Y_OF_SENSOR)
     shape = record_shape(drawn)
-    made = integrate(shape, lay_out([drawn] * LANES, shape, 1 / FS), 1 / (4 * FS), 4, np.ones(1), 0, 32)
+    made = integrate(shape, lay_out([drawn] * LANES, shape, 1 / FS), 1 / (4 * FS), 4, decimation(4), 0, 32)
     assert (made.response == made.response[..., :1]).all()
     assert (made.steepest == made.steepest[0]).all()

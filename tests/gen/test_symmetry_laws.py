@@ -6,11 +6,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.batch import Spall, lay_out, record_shape
+from gen.physics.batch import WAVES, Spall, lay_out, record_shape
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.kernel import N_DYNAMIC
 from gen.physics.lanes import LANES
-from gen.physics.motion import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, WAVE_ROWS
+from gen.physics.motion import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from tests.reference import march_lanes
 from tests.strategies import RIG, angles, record, steady_motions, troubled_records
 
@@ -81,9 +81,9 @@ def assert_alike(one, other):
 
 def mirrored_waves(waves):
     """Amplitudes of the waviness of rings and balls seen in the mirror x -> -x, shape (row,) [m]."""
-    inner, outer = waves[:WAVE_ROWS].reshape(2, 2, -1)
+    inner, outer = waves[:WAVES].reshape(2, 2, -1)
     sign = (-1.0) ** np.arange(LOWEST_ORDER, HIGHEST_ORDER + 1)
-    balls = waves[WAVE_ROWS:].reshape(BALL_ORDERS, 2, 9)[:, :, -np.arange(9)]
+    balls = waves[WAVES:].reshape(BALL_ORDERS, 2, 9)[:, :, -np.arange(9)]
     conjugate = np.array([[1.0], [-1.0]])
     return np.concatenate([part.ravel() for part in (inner * conjugate, outer * conjugate * sign, balls * conjugate)])
 

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.batch import lay_out, record_shape
+from gen.physics.decimate import decimation
 from gen.physics.integrate import integrate
 from gen.physics.kernel import N_DYNAMIC
 from gen.physics.lanes import LANES
@@ -74,7 +75,7 @@ def assert_what_comes_out_is_the_twins(drawn, seed, slack):
     drawn = drawn._replace(pickups=pickups)
     shape = record_shape(drawn)
     knot, n_knots = KNOT / 4, 32
-    found = integrate(shape, lay_out([drawn], shape, knot), knot, 1, np.ones(1), 0, n_knots)
+    found = integrate(shape, lay_out([drawn], shape, knot), knot, 1, decimation(1), 0, n_knots)
     start = lay_out([drawn], shape, knot).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
     slow = slow_motion(drawn, knot, n_knots)
     states = march_twin(drawn, start, n_knots, 1, knot).states[:-1]
