@@ -17,7 +17,7 @@ from gen.physics.lanes import INLINE, LANES, fma, lane_count, wide
 
 FloatArray = NDArray[np.float64]
 
-HALF_TAPS = 34  # samples on either side of an output; with beta 7.857 at least 80 dB from 1.025 Nyquist on
+HALF_TAPS = 26  # samples on either side of an output
 FIRST_HALF_TAPS = 6  # of the first stage, in its outputs: 80 dB from 1.4 times the sample rate on, flat to half of it
 OUTPUTS = 4  # of a pass over the history
 BETA = 7.857  # of the Kaiser windows
@@ -46,12 +46,12 @@ class Decimation(NamedTuple):
 def decimation(n_steps: int) -> Decimation:
     """Low-passes for ``n_steps`` steps per sample.
 
-    The last one cuts off at 0.875 of the new Nyquist frequency with a transition of 0.15 of it (Kaiser window, 80 dB).
+    Together they pass what is below 0.8 of the new Nyquist frequency and stop, by 80 dB, all that would fold into a record.
     """
     if n_steps == 1:
         return Decimation(NO_STAGE, _stage(np.ones(1), 1))
     factor = 2 if n_steps % 2 == 0 and n_steps > 2 else n_steps
-    last = _low_pass(HALF_TAPS, factor, 0.875 / factor)
+    last = _low_pass(HALF_TAPS, factor, 0.9 / factor)
     if factor == n_steps:
         return Decimation(NO_STAGE, _stage(last, factor))
     ratio = n_steps // 2
@@ -78,30 +78,29 @@ def _stage(taps: FloatArray, factor: int) -> Stage:
 
 
 @njit(**INLINE)
-def filter_rows(taps: FloatArray, history: FloatArray, first: int, channels: int, out: FloatArray, at: int, total: FloatArray) -> None:
+def filter_rows(
+    channels: tuple[None, ...], taps: FloatArray, history: FloatArray, first: int, out: FloatArray, at: int, total: FloatArray
+) -> None:
     """Four rows of ``out`` from row ``at`` on: weighted sums of the rows of ``history`` from row ``first`` on.
 
-    A row is as long as ``channels * LANES``; ``total`` is a work array of four rows of one channel.
+    A row has all lanes of all ``channels``; ``total`` is a work array of four rows.
     """
     wide()
-    for channel in range(channels):
-        for i in range(OUTPUTS * lane_count()):
-            total[i] = 0.0
-        for row in range(0, len(taps), 4):
-            a0, b0, c0, d0 = taps[row, 0], taps[row, 1], taps[row, 2], taps[row, 3]
-            a1, b1, c1, d1 = taps[row + 1, 0], taps[row + 1, 1], taps[row + 1, 2], taps[row + 1, 3]
-            a2, b2, c2, d2 = taps[row + 2, 0], taps[row + 2, 1], taps[row + 2, 2], taps[row + 2, 3]
-            a3, b3, c3, d3 = taps[row + 3, 0], taps[row + 3, 1], taps[row + 3, 2], taps[row + 3, 3]
-            source, stride = ((first + row) * channels + channel) * LANES, channels * LANES
-            # views, since numba would look at every index whether it counts from the end
-            ws, xs = history[source:], history[source + stride :]
-            ys, zs = history[source + 2 * stride :], history[source + 3 * stride :]
-            for lane in range(lane_count()):
-                w, x, y, z = ws[lane], xs[lane], ys[lane], zs[lane]
-                total[lane] = fma(a0, w, fma(a1, x, fma(a2, y, fma(a3, z, total[lane]))))
-                total[LANES + lane] = fma(b0, w, fma(b1, x, fma(b2, y, fma(b3, z, total[LANES + lane]))))
-                total[2 * LANES + lane] = fma(c0, w, fma(c1, x, fma(c2, y, fma(c3, z, total[2 * LANES + lane]))))
-                total[3 * LANES + lane] = fma(d0, w, fma(d1, x, fma(d2, y, fma(d3, z, total[3 * LANES + lane]))))
-        for output in range(OUTPUTS):
-            for lane in range(lane_count()):
-                out[((at + output) * channels + channel) * LANES + lane] = total[output * LANES + lane]
+    width = len(channels) * LANES
+    for i in range(OUTPUTS * len(channels) * lane_count()):
+        total[i] = 0.0
+    for row in range(0, len(taps), 4):
+        a0, b0, c0, d0 = taps[row, 0], taps[row, 1], taps[row, 2], taps[row, 3]
+        a1, b1, c1, d1 = taps[row + 1, 0], taps[row + 1, 1], taps[row + 1, 2], taps[row + 1, 3]
+        a2, b2, c2, d2 = taps[row + 2, 0], taps[row + 2, 1], taps[row + 2, 2], taps[row + 2, 3]
+        a3, b3, c3, d3 = taps[row + 3, 0], taps[row + 3, 1], taps[row + 3, 2], taps[row + 3, 3]
+        rows = history[(first + row) * width :]
+        for i in range(len(channels) * lane_count()):
+            w, x, y, z = rows[i], rows[width + i], rows[2 * width + i], rows[3 * width + i]
+            total[i] = fma(a0, w, fma(a1, x, fma(a2, y, fma(a3, z, total[i]))))
+            total[width + i] = fma(b0, w, fma(b1, x, fma(b2, y, fma(b3, z, total[width + i]))))
+            total[2 * width + i] = fma(c0, w, fma(c1, x, fma(c2, y, fma(c3, z, total[2 * width + i]))))
+            total[3 * width + i] = fma(d0, w, fma(d1, x, fma(d2, y, fma(d3, z, total[3 * width + i]))))
+    outputs = out[at * width :]
+    for i in range(OUTPUTS * len(channels) * lane_count()):
+        outputs[i] = total[i]

@@ -16,7 +16,7 @@ from gen.physics import decimate, gaps, kernel, lanes, motion, spall
 from gen.physics.decimate import OUTPUTS, Decimation, filter_rows
 from gen.physics.gaps import N_ROTATIONS, ball_gaps, move_gaps, move_spalls
 from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, advance, param_rows
-from gen.physics.lanes import ALLOCATING, INLINE, KERNEL, LANES, lane_count
+from gen.physics.lanes import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
 from gen.physics.motion import (
     ANGLE_ROWS,
     JITTER,
@@ -64,9 +64,9 @@ class Work(NamedTuple):
 def prepare(shape: Shape, lanes: Lanes, n_steps: int) -> Work:
     """Work arrays, and what moves at its first knot."""
     n_balls = len(shape.balls)
-    rows = 2 * N_ROTATIONS + 2 * n_balls + JITTER
-    scratch = np.empty(rows * LANES + 2 * n_steps + 1)
-    work = Work(np.zeros(ANGLE_ROWS * LANES), np.empty(n_balls * LANES), np.zeros(1), scratch)
+    rows = 2 * N_ROTATIONS + 2 * n_balls + JITTER + OUTPUTS * len(shape.channels)
+    scratch = zeros(rows * LANES + 2 * n_steps + 1)
+    work = Work(zeros(ANGLE_ROWS * LANES), zeros(n_balls * LANES), zeros(1), scratch)
     start_processes(shape, lanes)
     if len(shape.uneven):
         ball_gaps(shape, lanes, work.moves, work.scratch, work.gaps)
@@ -106,21 +106,21 @@ def _cached(sources: str) -> Callable[..., Columns]:
         shape: Shape, batch: Lanes, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
     ) -> Columns:
         _ = sources
-        params = np.zeros(param_rows(shape, n_steps) * LANES)
+        params = zeros(param_rows(shape, n_steps) * LANES)
         for i in range(batch.params.size):
             params[i] = batch.params[i]
         batch = Lanes(
-            batch.state.copy(), params, batch.drive, batch.angles.copy(), batch.spalls, batch.phasors.copy(),
-            np.zeros(2 * slow_rows(shape) * LANES), batch.waves, batch.schedule, batch.tables,
+            copied(batch.state), params, copied(batch.drive), copied(batch.angles), copied(batch.spalls), copied(batch.phasors),
+            zeros(2 * slow_rows(shape) * LANES), copied(batch.waves), batch.schedule, batch.tables,
         )  # fmt: skip
         n_channels, width = len(shape.channels), len(shape.channels) * LANES
         two_stages = len(filters.first.taps) > 0
         first_stage = filters.first if two_stages else filters.last
         kept, half_kept = first_stage.kept, filters.last.kept
-        history = np.zeros((kept + BLOCK * n_steps + 4) * width)
-        halfway = np.zeros((half_kept + 2 * BLOCK + 4) * width)
+        history = zeros((kept + BLOCK * n_steps + 4) * width)
+        halfway = zeros((half_kept + 2 * BLOCK + 4) * width)
         lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
-        response = np.empty(((n_out + 2 * BLOCK) * width))
+        response = zeros((n_out + 2 * BLOCK) * width)
         diverged = np.full(LANES, -1)
         work = prepare(shape, batch, n_steps)
         for first in range(0, lead + n_settle + n_out, BLOCK):
@@ -137,12 +137,12 @@ def _cached(sources: str) -> Callable[..., Columns]:
                         diverged[lane] = knot
             if two_stages:
                 for output in range(0, 2 * BLOCK, OUTPUTS):
-                    filter_rows(first_stage.taps, history, output * first_stage.factor, n_channels, halfway, half_kept + output, work.scratch)
+                    filter_rows(shape.channels, first_stage.taps, history, output * first_stage.factor, halfway, half_kept + output, work.scratch)
             out = first - lead - n_settle + BLOCK  # one block later: there is room for what comes out before the first output
             if out >= 0:
                 source = halfway if two_stages else history
                 for output in range(0, BLOCK, OUTPUTS):
-                    filter_rows(filters.last.taps, source, output * filters.last.factor, n_channels, response, out + output, work.scratch)
+                    filter_rows(shape.channels, filters.last.taps, source, output * filters.last.factor, response, out + output, work.scratch)
             keep(history, kept * width, BLOCK * n_steps * width)
             if two_stages:
                 keep(halfway, half_kept * width, 2 * BLOCK * width)

@@ -1,7 +1,8 @@
 """The equations of motion of shaft, housing and sensor, and the Runge-Kutta step that advances them.
 
-A lane holds one record; the loop over lanes has no branch and no call, and its body is the whole classical Runge-Kutta step of that
-record in scalars, so that LLVM turns it into vector instructions. Between two knots (one per output sample) every slow quantity moves
+A lane holds one record; the loop over lanes has no branch and no call, and its body is one stage of the classical Runge-Kutta step of
+that record in scalars, so that LLVM turns it into vector instructions. While the forces of one group of lanes add up, the processor is
+at the next; with all four stages in one body it waits, and that body takes three times as long to compile. Between two knots (one per output sample) every slow quantity moves
 along a straight line: cage and shaft turn at a constant rate, ball gaps, ball directions and spall offsets are linear in time.
 
 Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor on its resonance. Balls push along their own
@@ -26,10 +27,12 @@ SIN = np.sin(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)
 
 AXES = 6
 # Rows of ``state``: coordinates x1 y1 x2 y2 xr yr, their rates, the directions of cage and shaft, the largest sum over all balls of
-# the slope of ``squeeze**n / n`` so far (it bounds the contact stiffness), and what was last picked up.
+# the slope of ``squeeze**n / n`` so far (it bounds the contact stiffness); then, of the step under way, where it began and the weighted
+# sum of its slopes.
 N_DYNAMIC = 2 * AXES
-CAGE_C, CAGE_S, SHAFT_C, SHAFT_S, STEEPEST, PICKED = range(N_DYNAMIC, N_DYNAMIC + 6)
-N_STATE = PICKED + AXES
+CAGE_C, CAGE_S, SHAFT_C, SHAFT_S, STEEPEST, BEGINNING = range(N_DYNAMIC, N_DYNAMIC + 6)
+SLOPES = BEGINNING + N_DYNAMIC
+N_STATE = SLOPES + N_DYNAMIC
 # Rows of ``params``: constants of the record, what holds until the next knot (forces with their slopes per half step), the weights of
 # the pickups, direction of each ball in its pocket and gap under it with their slopes, and what spalls add to the gap at every half step.
 # The contact damping is that of a ball over its load-deflection factor, which multiplies the sum over all balls.
@@ -42,6 +45,7 @@ N_STATE = PICKED + AXES
 PICKUPS = N_HELD
 
 Motion = tuple[float, float, float, float]
+State = tuple[float, ...]
 Push = tuple[float, float, float]
 """Force along the axes of the cage's frame, over the load-deflection factor of a ball, and squeeze to the power ``n - 1``."""
 
@@ -170,7 +174,8 @@ def contact_force(
     """
     cosa = params[COSA * LANES + lane]
     x, y, u, v = motion
-    seen = (cosa * fma(x, c, y * s), cosa * fma(y, c, -(x * s)), cosa * fma(u, c, v * s), cosa * fma(v, c, -(u * s)))
+    c, s = cosa * c, cosa * s
+    seen = (fma(x, c, y * s), fma(y, c, -(x * s)), fma(u, c, v * s), fma(v, c, -(u * s)))
     nothing = (0.0, 0.0, 0.0)
     sums = (nothing, nothing, nothing, nothing)
     # numbers that numba does not take for types: it would compile the four balls once for each
@@ -181,8 +186,8 @@ def contact_force(
     sums = add_four(shape, np.int64(16), sums, seen, instant, lane, params)
     sums = add_four(shape, np.int64(20), sums, seen, instant, lane, params)
     (ax, ay, ap), (bx, by, bp), (cx, cy, cp), (dx, dy, dp) = sums
-    scale = cosa * params[STIFFNESS * LANES + lane]
-    along, across = scale * ((ax + bx) + (cx + dx)), scale * ((ay + by) + (cy + dy))
+    stiffness = params[STIFFNESS * LANES + lane]
+    along, across = stiffness * ((ax + bx) + (cx + dx)), stiffness * ((ay + by) + (cy + dy))
     return fma(along, c, -(across * s)), fma(along, s, across * c), (ap + bp) + (cp + dp)
 
 
@@ -221,8 +226,10 @@ def accelerations(
     if len(shape.loose):
         play = params[LOOSENESS * LANES + lane]
         sx, sy = x2 - min(max(x2, -play), play), y2 - min(max(y2, -play), play)
-    f2x = fma(-params[K2X * LANES + lane], sx, fma(-params[C2X * LANES + lane], u2, jx + hx))
-    f2y = fma(-params[K2Y * LANES + lane], sy, fma(-params[C2Y * LANES + lane], v2, jy + hy))
+    f2x = fma(-params[K2X * LANES + lane], sx, fma(-params[C2X * LANES + lane], u2, jx))
+    f2y = fma(-params[K2Y * LANES + lane], sy, fma(-params[C2Y * LANES + lane], v2, jy))
+    if len(shape.forced):
+        f2x, f2y = f2x + hx, f2y + hy
     arx = ary = 0.0
     if len(shape.resonator):
         cr, imr = params[CR * LANES + lane], params[IMR * LANES + lane]
@@ -234,35 +241,101 @@ def accelerations(
 
 
 @njit(**INLINE)
-def moved(q: tuple[float, ...], p: tuple[float, ...], a: tuple[float, ...], h: float) -> tuple[float, ...]:
-    """State after ``h`` seconds at rates ``p`` and accelerations ``a``."""
+def read(shape: Shape, state: FloatArray, row: int, lane: int) -> State:
+    """Twelve rows of a lane; a sensor that is not there stands still."""
+    i = row * LANES + lane
+    xr = yr = ur = vr = 0.0
+    if len(shape.resonator):
+        xr, yr, ur, vr = state[i + 4 * LANES], state[i + 5 * LANES], state[i + 10 * LANES], state[i + 11 * LANES]
     return (
-        fma(h, p[0], q[0]), fma(h, p[1], q[1]), fma(h, p[2], q[2]), fma(h, p[3], q[3]), fma(h, p[4], q[4]), fma(h, p[5], q[5]),
-        fma(h, a[0], q[6]), fma(h, a[1], q[7]), fma(h, a[2], q[8]), fma(h, a[3], q[9]), fma(h, a[4], q[10]), fma(h, a[5], q[11]),
+        state[i], state[i + LANES], state[i + 2 * LANES], state[i + 3 * LANES], xr, yr,
+        state[i + 6 * LANES], state[i + 7 * LANES], state[i + 8 * LANES], state[i + 9 * LANES], ur, vr,
     )  # fmt: skip
 
 
 @njit(**INLINE)
-def six_means(
-    a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...], d: tuple[float, ...]
-) -> tuple[float, ...]:
-    """Six times the Runge-Kutta mean of the slopes of the four stages."""
+def write(shape: Shape, state: FloatArray, row: int, lane: int, q: State) -> None:
+    """Twelve rows of a lane, less those of a sensor that is not there; a loop over them would be a branch to LLVM."""
+    i = row * LANES + lane
+    state[i], state[i + LANES], state[i + 2 * LANES], state[i + 3 * LANES] = q[0], q[1], q[2], q[3]
+    state[i + 6 * LANES], state[i + 7 * LANES], state[i + 8 * LANES], state[i + 9 * LANES] = q[6], q[7], q[8], q[9]
+    if len(shape.resonator):
+        state[i + 4 * LANES], state[i + 5 * LANES], state[i + 10 * LANES], state[i + 11 * LANES] = q[4], q[5], q[10], q[11]
+
+
+@njit(**INLINE)
+def moved(shape: Shape, q: State, slope: State, h: float) -> State:
+    """State after ``h`` seconds along a slope."""
+    xr = yr = ur = vr = 0.0
+    if len(shape.resonator):
+        xr, yr, ur, vr = fma(h, slope[4], q[4]), fma(h, slope[5], q[5]), fma(h, slope[10], q[10]), fma(h, slope[11], q[11])
     return (
-        fma(2.0, b[0] + c[0], a[0] + d[0]), fma(2.0, b[1] + c[1], a[1] + d[1]), fma(2.0, b[2] + c[2], a[2] + d[2]),
-        fma(2.0, b[3] + c[3], a[3] + d[3]), fma(2.0, b[4] + c[4], a[4] + d[4]), fma(2.0, b[5] + c[5], a[5] + d[5]),
+        fma(h, slope[0], q[0]), fma(h, slope[1], q[1]), fma(h, slope[2], q[2]), fma(h, slope[3], q[3]), xr, yr,
+        fma(h, slope[6], q[6]), fma(h, slope[7], q[7]), fma(h, slope[8], q[8]), fma(h, slope[9], q[9]), ur, vr,
     )  # fmt: skip
 
 
 @njit(**INLINE)
-def half_turn(turn: Motion, lane: int, params: FloatArray) -> Motion:
-    """Directions of cage and shaft half a step later."""
-    c, s, shaft_c, shaft_s = turn
-    dc, ds = params[CAGE_TURN_C * LANES + lane], params[CAGE_TURN_S * LANES + lane]
-    pc, ps = params[SHAFT_TURN_C * LANES + lane], params[SHAFT_TURN_S * LANES + lane]
-    return (
-        fma(c, dc, -(s * ds)), fma(s, dc, c * ds),
-        fma(shaft_c, pc, -(shaft_s * ps)), fma(shaft_s, pc, shaft_c * ps),
+def half_turn(state: FloatArray, params: FloatArray) -> None:
+    """Turn the directions of cage and shaft by half a step."""
+    wide()
+    for lane in range(lane_count()):
+        for row, turn in ((CAGE_C, CAGE_TURN_C), (SHAFT_C, SHAFT_TURN_C)):
+            c, s = state[row * LANES + lane], state[(row + 1) * LANES + lane]
+            dc, ds = params[turn * LANES + lane], params[(turn + 1) * LANES + lane]
+            state[row * LANES + lane], state[(row + 1) * LANES + lane] = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
+
+
+@njit(**INLINE)
+def slopes_of(
+    shape: Shape, state: FloatArray, params: FloatArray, instant: Instant, lane: int
+) -> tuple[State, State, float]:
+    """State of a lane, its derivative, and the sum of the powers of its balls."""
+    q = read(shape, state, 0, lane)
+    turn = (
+        state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane], state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane],
     )  # fmt: skip
+    a1x, a1y, a2x, a2y, arx, ary, powers = accelerations(shape, q, turn, instant, lane, params)
+    return q, (q[6], q[7], q[8], q[9], q[10], q[11], a1x, a1y, a2x, a2y, arx, ary), powers
+
+
+@njit(**INLINE)
+def first_stage(shape: Shape, state: FloatArray, params: FloatArray, dt: float, instant: Instant) -> None:
+    """Begin a step: note where and with which slope, and go half a step along it."""
+    wide()
+    for lane in range(LANES):
+        q, slope, powers = slopes_of(shape, state, params, instant, lane)
+        state[STEEPEST * LANES + lane] = max(state[STEEPEST * LANES + lane], powers)
+        write(shape, state, BEGINNING, lane, q)
+        write(shape, state, SLOPES, lane, slope)
+        write(shape, state, 0, lane, moved(shape, q, slope, 0.5 * dt))
+
+
+@njit(**INLINE)
+def later_stage(
+    shape: Shape, state: FloatArray, params: FloatArray, instant: Instant, weight: float, ahead: float, along_all: float
+) -> None:
+    """Add a slope to the sum with its ``weight``; go ``ahead`` of the beginning along it, and ``along_all`` along the sum [s]."""
+    wide()
+    for lane in range(LANES):
+        _, slope, _ = slopes_of(shape, state, params, instant, lane)
+        total = moved(shape, read(shape, state, SLOPES, lane), slope, weight)
+        write(shape, state, SLOPES, lane, total)
+        write(shape, state, 0, lane, moved(shape, moved(shape, read(shape, state, BEGINNING, lane), total, along_all), slope, ahead))
+
+
+@njit(**INLINE)
+def pick_up(shape: Shape, state: FloatArray, params: FloatArray, received: FloatArray) -> None:
+    """Weighted sums of displacements or accelerations at the beginning of a step, one for each channel."""
+    wide()
+    picked = BEGINNING if len(shape.displacement) else SLOPES + AXES
+    for channel in range(len(shape.channels)):
+        weights, there = params[(PICKUPS + channel * AXES) * LANES :], received[channel * LANES :]
+        for lane in range(lane_count()):
+            value = 0.0
+            for axis in range(AXES if len(shape.resonator) else 4):
+                value = fma(weights[axis * LANES + lane], state[(picked + axis) * LANES + lane], value)
+            there[lane] = value
 
 
 @njit(**INLINE)
@@ -288,51 +361,18 @@ def advance(
     at : int
         First row of ``history`` to fill; a row is a step and a channel.
     """
-    wide()
-    n_channels, drops = len(shape.channels), drop_row(shape) * LANES
-    width = len(shape.balls) * LANES if len(shape.uneven) else 0
+    drops, width = drop_row(shape) * LANES, len(shape.balls) * LANES if len(shape.uneven) else 0
     for step in range(n_steps):
         half_step = 2.0 * step
         # views, since numba would look at every index whether it counts from the end
         start = Instant(half_step, since + half_step, params[drops + 2 * step * width :])
-        middle = Instant(half_step + 1, since + half_step + 1, params[drops + (2 * step + 1) * width :])
-        end = Instant(half_step + 2, since + half_step + 2, params[drops + (2 * step + 2) * width :])
-        for lane in range(LANES):
-            xr = yr = ur = vr = 0.0
-            if len(shape.resonator):
-                xr, yr, ur, vr = (
-                    state[4 * LANES + lane], state[5 * LANES + lane], state[10 * LANES + lane], state[11 * LANES + lane],
-                )  # fmt: skip
-            q = (
-                state[lane], state[LANES + lane], state[2 * LANES + lane], state[3 * LANES + lane], xr, yr,
-                state[6 * LANES + lane], state[7 * LANES + lane], state[8 * LANES + lane], state[9 * LANES + lane], ur, vr,
-            )  # fmt: skip
-            turn = (
-                state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane],
-                state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane],
-            )  # fmt: skip
-            a1 = accelerations(shape, q, turn, start, lane, params)
-            turn = half_turn(turn, lane, params)
-            q2 = moved(q, q[6:], a1, 0.5 * dt)
-            a2 = accelerations(shape, q2, turn, middle, lane, params)
-            q3 = moved(q, q2[6:], a2, 0.5 * dt)
-            a3 = accelerations(shape, q3, turn, middle, lane, params)
-            turn = half_turn(turn, lane, params)
-            q4 = moved(q, q3[6:], a3, dt)
-            a4 = accelerations(shape, q4, turn, end, lane, params)
-            new = moved(q, six_means(q[6:], q2[6:], q3[6:], q4[6:]), six_means(a1, a2, a3, a4), dt * (1 / 6))
-            for row in range(N_DYNAMIC):
-                state[row * LANES + lane] = new[row]
-            for row in range(4):
-                state[(CAGE_C + row) * LANES + lane] = turn[row]
-            state[STEEPEST * LANES + lane] = max(state[STEEPEST * LANES + lane], a1[6])
-            for axis in range(AXES):
-                state[(PICKED + axis) * LANES + lane] = q[axis] if len(shape.displacement) else a1[axis]
-        for channel in range(n_channels):
-            weights = params[(PICKUPS + channel * AXES) * LANES :]
-            received = history[(at + step * n_channels + channel) * LANES :]
-            for lane in range(lane_count()):
-                value = 0.0
-                for axis in range(AXES):
-                    value = fma(weights[axis * LANES + lane], state[(PICKED + axis) * LANES + lane], value)
-                received[lane] = value
+        first_stage(shape, state, params, dt, start)
+        pick_up(shape, state, params, history[(at + step * len(shape.channels)) * LANES :])
+        for stage in range(1, 4):
+            passed = 1 if stage < 3 else 2
+            if stage != 2:
+                half_turn(state, params)
+            instant = Instant(half_step + passed, since + half_step + passed, params[drops + (2 * step + passed) * width :])
+            last = stage == 3
+            ahead = 0.0 if last else dt * (0.5 * stage)
+            later_stage(shape, state, params, instant, 1.0 if last else 2.0, ahead, dt / 6 if last else 0.0)

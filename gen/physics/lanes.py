@@ -8,11 +8,12 @@ per combination and finds it again in its cache on disk, which it could not for 
 
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 
-LANES = 16  # records advanced side by side; a multiple of 8
+LANES = 32  # records advanced side by side; a multiple of 8
 
 CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # from Python too
 # Without ways in from Python no machine code is made of what is only ever inlined: half of the time a kernel takes to compile.
@@ -78,19 +79,39 @@ def _number(context: Any, bits: Any) -> Any:  # noqa: ARG001
     return types.float64(types.int64), generate
 
 
+@njit(**ALLOCATING)
+def zeros(size: int) -> Any:
+    """Zeros from an address on where vectors do not straddle the lines of the cache: it halves the time of what streams through it."""
+    block = np.zeros(size + 8)
+    start = -block.ctypes.data % 64 // 8
+    return block[start : start + size]
+
+
+@njit(**ALLOCATING)
+def copied(values: Any) -> Any:
+    """A copy, placed like :func:`zeros`."""
+    copy = zeros(values.size)
+    for i in range(values.size):
+        copy[i] = values[i]
+    return copy
+
+
 @njit(**INLINE)
 def square_root(x: float) -> float:
-    """Square root of a number that is not negative, to 2e-16.
+    """Square root of a number that is not negative, to 5e-15.
 
-    Half the exponent gives ``1 / sqrt(x)`` to 3.4 %; a step of fourth order and one of third, from the series of ``(1 - e)**-0.5``, do the
-    rest in 12 multiplications and additions. A processor takes 9 (Zen 5) to 24 (Golden Cove) cycles for eight square roots, and 6 for these.
+    Half the exponent gives 0.79 / sqrt(x) to some per cent, a Newton step with constants that suit that [1]_ 1 / sqrt(x) to 9e-4, and the
+    series of ``(1 - e)**-0.5`` the rest: ten multiplications and additions. A processor takes 9 (Zen 5) to 24 (Golden Cove) cycles for
+    eight square roots, and 5 for these.
+
+    .. [1] L. Moroz et al., "Fast calculation of inverse square root with the use of magic constant: analytical approach", *Appl. Math.
+           Comput.* 316 (2018) 245-255.
     """
-    y = _number(0x5FE6EB50C7B537A9 - (_bits(x) >> 1))
-    e = fma(-(x * y), y, 1.0)
-    y = fma(y * e, fma(e, fma(e, fma(e, 35 / 128, 5 / 16), 3 / 8), 1 / 2), y)
+    y = _number(0x5FE16710B87F3F10 - (_bits(x) >> 1))
+    y *= fma(-(x * y), y, 1.89099012345679)
     root = x * y
     e = fma(-root, y, 1.0)
-    return fma(root * e, fma(e, 3 / 8, 1 / 2), root)
+    return fma(root * e, fma(e, fma(e, fma(e, 35 / 128, 5 / 16), 3 / 8), 1 / 2), root)
 
 
 @njit(**INLINE)
