@@ -35,8 +35,7 @@ generated: $(VENV)/installed
 	$(BIN)/python -m gen.recipe.reference .
 
 bench: $(VENV)/installed
-	$(BIN)/raceway bench ophel2025
-	$(BIN)/raceway bench domain_randomised
+	$(BIN)/python -m benchmarks
 
 clean:
 	rm -rf $(VENV) out build *.egg-info

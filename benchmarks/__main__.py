@@ -1,0 +1,69 @@
+"""Every benchmark, or those named: one table of ratios; a run of all writes ``benchmarks/results.json``.
+
+``python -m benchmarks [NAME...]``. Each row is a value and that of a named alternative, both medians over interleaved pairs, and the median
+of their ratios. Values in s, ms or MB are better when small, rates when large.
+"""
+
+import argparse
+import json
+import os
+from collections.abc import Callable, Iterator
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from benchmarks import features, kernel, opening, pipeline, rivals
+from benchmarks.pairs import Line, Row, Skipped
+from raceway.bench import _machine
+
+SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
+    "kernel": kernel.rows,
+    "rivals": rivals.rows,
+    "pipeline": pipeline.rows,
+    "features": features.rows,
+    "opening": opening.rows,
+}
+RESULTS = Path(__file__).with_name("results.json")
+HEADS = ("", "what", "value", "alternative", "its value", "ratio", "pairs")
+
+
+def machine() -> dict[str, Any]:
+    """What the figures depend on."""
+    found = _machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
+    for name in ("xarray", "netCDF4", "h5py", "dask", "jax", "tsfel"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = None
+    return found
+
+
+def table(lines: list[Line]) -> str:
+    """Rows in columns, and below them a sentence for each that is missing."""
+    cells = [HEADS, *(_cells(line) for line in lines if isinstance(line, Row))]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    rows = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]
+    return "\n".join(rows + [f"{line.name}: {line.why}" for line in lines if isinstance(line, Skipped)])
+
+
+def _cells(row: Row) -> tuple[str, ...]:
+    value, other = (f"{number:,.4g} {row.unit}" for number in (row.value, row.alternative_value))
+    return row.name, row.what, value, row.alternative, other, f"{row.ratio:.3g}", str(row.pairs)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.partition("\n")[0])
+    parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(SUBJECTS)}; by default all")
+    names = parser.parse_args().names or list(SUBJECTS)
+    if unknown := set(names) - set(SUBJECTS):
+        parser.error(f"{', '.join(sorted(unknown))}: no such benchmark; choose from {', '.join(SUBJECTS)}.")
+    lines = [line for name in names for line in SUBJECTS[name]()]
+    print(table(lines))
+    if set(names) == set(SUBJECTS):
+        rows = [line._asdict() for line in lines if isinstance(line, Row)]
+        skipped = [line._asdict() for line in lines if isinstance(line, Skipped)]
+        RESULTS.write_text(json.dumps({"machine": machine(), "rows": rows, "skipped": skipped}, indent=1) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,80 @@
+"""``plain.c`` and ``intrinsics.c``: compiled into a temporary folder, called through ctypes on records in lanes."""
+
+import ctypes
+import shutil
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of
+from gen.physics.batch import Record
+
+HERE = Path(__file__).parent
+FLAGS = ("-std=gnu99", "-O3", "-march=native", "-ffast-math", "-shared", "-fPIC")
+
+March = Callable[[FloatArray, FloatArray, FloatArray, float, int, int, FloatArray], None]
+
+
+class Batch(NamedTuple):
+    """Records in the rows of the C kernels, one per lane."""
+
+    state: FloatArray
+    """Shape (coordinate, lane): x1 y1 x2 y2 and their rates [m, m/s]."""
+    turn: FloatArray
+    """Directions of cage and shaft, and where the spall is among the balls, in distances between them, shape (row, lane)."""
+    params: FloatArray
+    """Shape (parameter, lane)."""
+
+
+def compiler() -> str | None:
+    """Path of the C compiler, if there is one."""
+    return shutil.which("cc")
+
+
+def has_avx512() -> bool:
+    """Whether this processor runs what ``intrinsics.c`` asks of it."""
+    try:
+        return "avx512dq" in Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return False
+
+
+def compiled(source: str, lanes: int, spall: int, folder: Path) -> March:
+    """A kernel for a number of lanes and a profile of the spall."""
+    library = folder / f"{source}-{lanes}-{spall}.so"
+    sizes = (f"-DLANES={lanes}", f"-DSPALL={spall}")
+    subprocess.run(["cc", *FLAGS, *sizes, "-o", library, HERE / f"{source}.c", "-lm"], check=True)
+    march = ctypes.CDLL(str(library)).march
+    array = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
+    march.argtypes = [array, array, array, ctypes.c_double, ctypes.c_long, ctypes.c_long, array]
+    march.restype = None
+    return march
+
+
+def in_lanes(records: list[Record], lanes: int, dt: float) -> list[Batch]:
+    """Records laid out for steps of ``dt`` seconds; some come twice where the last batch would not be full."""
+    full = [records[place % len(records)] for place in range(-(-len(records) // lanes) * lanes)]
+    return [_batch(*seed_of(full[first : first + lanes]), dt) for first in range(0, len(full), lanes)]
+
+
+def _batch(seed: Seed, state: FloatArray, dt: float) -> Batch:
+    passed = (seed.shaft_angle + seed.spall_angle - seed.cage_angle) / SPACING % N_BALLS
+    cage, shaft = seed.cage_rate * dt / 2, seed.omega * dt / 2
+    turn = [np.cos(seed.cage_angle), np.sin(seed.cage_angle), np.cos(seed.shaft_angle), np.sin(seed.shaft_angle), passed]
+    params = [
+        seed.load_deflection_factor, seed.half_clearance, 1 / seed.shaft_mass, 1 / seed.housing_mass, seed.ring_damping,
+        seed.support_stiffness_x, seed.support_stiffness_y, seed.support_damping_x, seed.support_damping_y, seed.load_x,
+        seed.load_y, seed.unbalance, np.cos(cage), np.sin(cage), np.cos(shaft), np.sin(shaft), (shaft - cage) / SPACING,
+        seed.half_span, seed.inner_radius, seed.depth, seed.ball_radius,
+    ]  # fmt: skip
+    return Batch(state, np.stack(turn), np.stack(params))
+
+
+def accelerations(march: March, batch: Batch, dt: float, samples: int, steps: int) -> FloatArray:
+    """Accelerations x1 y1 x2 y2 every ``steps`` steps, shape (sample, coordinate, lane) [m s-2]."""
+    made = np.empty((samples, 4, batch.state.shape[1]))
+    march(batch.state.copy(), batch.turn.copy(), batch.params, dt, samples, steps, made)
+    return made

@@ -1,0 +1,47 @@
+"""Opening a corpus of many parts and reading one record, against ``xarray.open_mfdataset`` over the parts.
+
+The files are in the page cache. ``check="size"`` compares sizes with the manifest, the default the hash of every byte.
+"""
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.pairs import Line, interleaved, row, seconds
+from benchmarks.pipeline import SHORT, variant
+from gen.corpus import SIGNAL, open_corpus
+from gen.generate import generate
+
+
+def rows(pairs: int = 9, *, parts: int = 50, records_per_part: int = 20) -> Iterator[Line]:
+    """Lines of the table."""
+    with tempfile.TemporaryDirectory() as folder:
+        recipe = variant(SHORT, Path(folder) / "parts.yaml", corpus={"records_per_part": records_per_part})
+        corpus = generate(recipe, Path(folder) / "corpus", records=parts * records_per_part).directory
+        record = parts * records_per_part // 2
+        found = interleaved(
+            pairs,
+            hashed=lambda: 1e3 * seconds(read_record, corpus, record),
+            sized=lambda: 1e3 * seconds(read_record, corpus, record, "size"),
+            many=lambda: 1e3 * seconds(read_from_parts, corpus, record),
+        )
+    what, alternative = f"open {parts} parts, read a record", "xarray.open_mfdataset"
+    yield row("opening size", f"{what}, check='size'", "ms", found["sized"], alternative, found["many"])
+    yield row("opening sha256", f"{what}, check='sha256'", "ms", found["hashed"], alternative, found["many"])
+
+
+def read_record(corpus: Path, record: int, check: str = "sha256") -> np.ndarray:
+    """Signal of one record through ``corpus.nc``, shape (channel, time) [m s-2]."""
+    with open_corpus(corpus, check) as opened:
+        return opened[SIGNAL][record].values
+
+
+def read_from_parts(corpus: Path, record: int) -> np.ndarray:
+    """The same from the parts; what is the same in all of them is not compared, which is how it goes fastest."""
+    paths = sorted((corpus / "parts").glob("*.nc"))
+    same = {"data_vars": "minimal", "coords": "minimal", "compat": "override", "join": "override"}
+    with xr.open_mfdataset(paths, combine="nested", concat_dim="record", engine="netcdf4", decode_times=False, **same) as opened:
+        return opened[SIGNAL][record].values

@@ -1,0 +1,65 @@
+"""Every benchmark runs, once and small."""
+
+import importlib.util
+import math
+
+from benchmarks import features, kernel, opening, pipeline, rivals
+from benchmarks.__main__ import table
+from benchmarks.pairs import Row, Skipped, row
+
+
+def sound(lines) -> dict[str, Row]:
+    rows = {line.name: line for line in lines if isinstance(line, Row)}
+    assert all(math.isfinite(found.ratio) and found.ratio > 0 for found in rows.values())
+    return rows
+
+
+def test_the_kernel_is_compared_with_c_and_the_full_model_with_the_seed(brief_seed, brief_full):
+    lines = list(kernel.rows(1, recipe=brief_seed, full=brief_full, records=4, samples=20))
+    assert {line.name for line in lines} == {"kernel plain", "kernel intrinsics", "kernel full"}
+    assert "kernel full" in sound(lines)
+
+
+def test_the_kernel_is_compared_with_its_rivals(brief_seed):
+    lines = list(rivals.rows(1, recipe=brief_seed, records=4, steps=4, sampled_s=0.002))
+    assert {"kernel solve_ivp", "kernel numpy"} <= set(sound(lines))
+    assert isinstance(lines[-1], Row if importlib.util.find_spec("jax") else Skipped)
+
+
+def test_a_corpus_is_compared_with_the_kernel_alone(brief_full):
+    assert set(sound(pipeline.throughput_rows(1, brief_full, 2))) == {"pipeline zlib", "pipeline zstd"}
+
+
+def test_two_workers_are_compared_with_one(few_short):
+    assert set(sound(pipeline.worker_rows(1, few_short, 12, 4))) == {"pipeline workers", "pipeline started"}
+
+
+def test_a_large_corpus_is_compared_with_a_small_one(few_short):
+    rows = sound(pipeline.growth_rows(1, few_short, (4, 16)))
+    assert 20 < rows["growth memory"].value < 4000
+
+
+def test_a_cold_start_is_compared_with_a_warm_one(few_short):
+    (found,) = sound(pipeline.start_rows(1, few_short)).values()
+    assert found.ratio > 1
+
+
+def test_features_are_compared_where_tsfel_is_installed():
+    (line,) = features.rows(1, records=2, theirs=1)
+    assert isinstance(line, Row if importlib.util.find_spec("tsfel") else Skipped)
+
+
+def test_opening_a_corpus_is_compared_with_opening_its_parts():
+    assert set(sound(opening.rows(1, parts=3, records_per_part=2))) == {"opening size", "opening sha256"}
+
+
+def test_a_record_is_the_same_from_the_index_and_from_the_parts(tiny_corpus):
+    assert (opening.read_record(tiny_corpus, 14) == opening.read_from_parts(tiny_corpus, 14)).all()
+
+
+def test_the_table_has_a_line_for_each_row_and_a_sentence_for_each_that_is_missing():
+    made = row("kernel", "speed", "records/s", [2.0, 9.0, 4.0], "rival", [1.0, 3.0, 4.0])
+    assert made[2:] == (4.0, "records/s", "rival", 3.0, 2.0, 3)
+    lines = table([made, Skipped("rival", "it is not here.")]).splitlines()
+    assert lines[1].split() == "kernel speed 4 records/s rival 3 records/s 2 3".split()
+    assert lines[2] == "rival: it is not here."
