@@ -63,7 +63,13 @@ def in_lanes(records: list[Record], lanes: int, dt: float) -> list[Batch]:
 def _batch(seed: Seed, state: FloatArray, dt: float) -> Batch:
     passed = (seed.shaft_angle + seed.spall_angle - seed.cage_angle) / SPACING % N_BALLS
     cage, shaft = seed.cage_rate * dt / 2, seed.omega * dt / 2
-    turn = [np.cos(seed.cage_angle), np.sin(seed.cage_angle), np.cos(seed.shaft_angle), np.sin(seed.shaft_angle), passed]
+    turn = [
+        np.cos(seed.cage_angle),
+        np.sin(seed.cage_angle),
+        np.cos(seed.shaft_angle),
+        np.sin(seed.shaft_angle),
+        passed,
+    ]
     params = [
         seed.load_deflection_factor, seed.half_clearance, 1 / seed.shaft_mass, 1 / seed.housing_mass, seed.ring_damping,
         seed.support_stiffness_x, seed.support_stiffness_y, seed.support_damping_x, seed.support_damping_y, seed.load_x,

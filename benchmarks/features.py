@@ -38,4 +38,11 @@ def rows(pairs: int = 5, *, records: int = 128, theirs: int = 16) -> Iterator[Li
         tsfel=lambda: theirs / seconds(lambda: [extract(record) for record in x[:theirs]]),
     )
     alternative = f"TSFEL, spectral and statistical ({extract(x[0])})"
-    yield row("features tsfel", f"all groups ({len(feature_names())})", "records/s", found["ours"], alternative, found["tsfel"])
+    yield row(
+        "features tsfel",
+        f"all groups ({len(feature_names())})",
+        "records/s",
+        found["ours"],
+        alternative,
+        found["tsfel"],
+    )

@@ -60,7 +60,10 @@ def throughput_rows(pairs: int, recipe: Path = FULL, kernel_records: int = 32) -
             return made.records / made.stage_seconds["integrate"]
 
         found = interleaved(
-            pairs, zlib=lambda: steady(recipes["zlib"], folder), zstd=lambda: steady(recipes["zstd"], folder), kernel=kernel_alone
+            pairs,
+            zlib=lambda: steady(recipes["zlib"], folder),
+            zstd=lambda: steady(recipes["zstd"], folder),
+            kernel=kernel_alone,
         )
     for codec in CODECS:
         what = f"recipe to parts on disk, {codec}, full model, one worker"
@@ -87,7 +90,9 @@ def worker_rows(pairs: int, recipe: Path = FULL, records: int = 384, records_per
         )
     what = "recipe to parts on disk, full model, two workers"
     yield row("pipeline workers", f"{what}, running", "records/s", found["two"], "one worker, running", found["one"])
-    yield row("pipeline started", f"{what} to be started", "records/s", found["started"], "in this process", found["here"])
+    yield row(
+        "pipeline started", f"{what} to be started", "records/s", found["started"], "in this process", found["here"]
+    )
 
 
 def growth_rows(pairs: int, recipe: Path = SHORT, scales: tuple[int, int] = SCALES) -> Iterator[Line]:

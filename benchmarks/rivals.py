@@ -24,7 +24,9 @@ NUMPY_RECORDS, JAX_RECORDS = 1024, 512
 ATOL = np.repeat([5e-12, 5e-9], 4)  # a millionth of the rms of displacements [m] and rates [m/s]
 
 
-def rows(pairs: int = 5, *, recipe: Path | str = SEED, records: int = 64, steps: int = 400, sampled_s: float = 0.1) -> Iterator[Line]:
+def rows(
+    pairs: int = 5, *, recipe: Path | str = SEED, records: int = 64, steps: int = 400, sampled_s: float = 0.1
+) -> Iterator[Line]:
     """Lines of the table; rivals take ``steps`` steps, ``solve_ivp`` simulates ``sampled_s`` seconds."""
     dt, factor = step_seconds(recipe)
     seed, state = _spalled(recipe, records)
@@ -94,7 +96,7 @@ def numpy_march(seed: Seed, state: FloatArray, dt: float, steps: int) -> FloatAr
 def adaptive(seed: Seed, state: FloatArray, duration: float, sample: float) -> FloatArray:
     """Accelerations of the first record at its samples, shape (4, sample) [m s-2]."""
     one = Seed(*(float(values[0]) for values in seed))
-    times = np.arange(0, duration, sample)
+    times = sample * np.arange(round(duration / sample))
     found = solve_ivp(lambda t, q: slope(np, t, q, one), (0, duration), state[:, 0], t_eval=times, rtol=1e-6, atol=ATOL)
     return np.stack([slope(np, t, q, one)[4:] for t, q in zip(times, found.y.T, strict=True)], axis=1)
 

@@ -1,15 +1,16 @@
 """The kernels our own is timed against compute the same motion."""
 
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
 from benchmarks import rivals
 from benchmarks.compiled import accelerations, compiled, compiler, has_avx512, in_lanes
-from benchmarks.pipeline import variant
 from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_records
-from gen.recipe import find_recipe, read_recipe
+from gen.physics.batch import Record
+from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
 from gen.simulate import simulate
 
@@ -18,36 +19,63 @@ RECORDING = {"sample_rate_hz": FS, "oversampling": 1, "duration_s": 0.001, "sett
 PROFILES = {"healthy": NO_SPALL, "rectangular": RECTANGULAR, "geometric": GEOMETRIC}
 
 
+class Case(NamedTuple):
+    """Records with one profile of spall, and their first 5 ms by our kernel, as they come and unfiltered."""
+
+    profile: int
+    records: list[Record]
+    ours: np.ndarray
+    """Shape (sample, coordinate, record) [m s-2]."""
+
+
 @pytest.fixture(scope="module", params=PROFILES)
-def case(request, tmp_path_factory):
-    """Profile, records that have it, and their first 5 ms by our kernel, without a filter, shape (sample, coordinate, record)."""
-    faults = {"healthy": {"kind": "healthy"}}.get(
-        request.param, {"kind": "inner", "width_mm": 2, "depth_um": 5, "angle_deg": 15, "profile": request.param}
-    )
-    path = variant(find_recipe("ophel2025"), tmp_path_factory.mktemp("case") / "case.yaml", recording=RECORDING)
-    recipe = read_recipe(path)
-    recipe = type(recipe).model_validate(recipe.model_dump(mode="json") | {"faults": [faults]})
-    scenarios = draw_scenarios(recipe, 0, LANES)
-    ours = simulate(scenarios, recipe).acceleration[..., :SAMPLES].transpose(2, 1, 0)
-    profile = PROFILES[request.param]
-    return profile, seed_records(recipe, LANES)[profile], ours
+def case(request: pytest.FixtureRequest) -> Case:
+    spall = {"kind": "inner", "width_mm": 2, "depth_um": 5, "angle_deg": 15, "profile": request.param}
+    seed = read_recipe("ophel2025").model_dump(mode="json")
+    seed["recording"].update(RECORDING)
+    seed["faults"] = [{"kind": "healthy"} if request.param == "healthy" else spall]
+    recipe, profile = Recipe.model_validate(seed), PROFILES[request.param]
+    made = simulate(draw_scenarios(recipe, 0, LANES), recipe).acceleration[..., :SAMPLES]
+    return Case(profile, seed_records(recipe, LANES)[profile], made.transpose(2, 1, 0))
 
 
-def distance(found: np.ndarray, ours: np.ndarray) -> float:
-    return float(np.abs(found - ours).max() / np.abs(ours).max())
+def distance(found: np.ndarray, expected: np.ndarray) -> float:
+    return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
 @pytest.mark.parametrize("source", ["plain", "intrinsics"])
-def test_a_kernel_in_c_computes_the_motion_of_ours(source, case, tmp_path: Path):
+def test_a_kernel_in_c_computes_the_motion_of_ours(source: str, case: Case, tmp_path: Path):
     if compiler() is None or (source == "intrinsics" and not has_avx512()):
         pytest.skip("no C compiler, or no AVX-512")
-    profile, records, ours = case
-    (batch,) = in_lanes(records, LANES, 1 / FS)
-    assert distance(accelerations(compiled(source, LANES, profile, tmp_path), batch, 1 / FS, SAMPLES, 1), ours) < 1e-9
+    (batch,) = in_lanes(case.records, LANES, 1 / FS)
+    march = compiled(source, LANES, case.profile, tmp_path)
+    assert distance(accelerations(march, batch, 1 / FS, SAMPLES, 1), case.ours) < 1e-9
 
 
-def test_numpy_computes_the_motion_of_ours(case):
-    profile, records, ours = case
-    if profile == GEOMETRIC:
-        pytest.skip("the rivals know the rectangular spall of the recipe alone")
-    assert distance(rivals.numpy_march(*seed_of(records), 1 / FS, SAMPLES), ours) < 1e-9
+@pytest.mark.parametrize("case", ["healthy", "rectangular"], indirect=True)  # the rivals know no other spall
+def test_numpy_computes_the_motion_of_ours(case: Case):
+    assert distance(rivals.numpy_march(*seed_of(case.records), 1 / FS, SAMPLES), case.ours) < 1e-9
+
+
+@pytest.mark.parametrize("case", ["rectangular"], indirect=True)
+def test_jax_computes_the_motion_of_ours(case: Case):
+    pytest.importorskip("jax")
+    found = rivals.jax_march(SAMPLES)(*seed_of(case.records), 1 / FS)
+    assert distance(np.asarray(found), case.ours) < 1e-9
+
+
+def test_a_record_on_its_own_moves_as_in_a_batch(case: Case):
+    """Right-hand side of ``solve_ivp`` and of NumPy's batch."""
+    seed, state = seed_of(case.records)
+    both = rivals.slope(np, 0.001, state, seed)
+    one = type(seed)(*(float(values[0]) for values in seed))
+    np.testing.assert_allclose(rivals.slope(np, 0.001, state[:, 0], one), both[:, 0], rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize("case", ["rectangular"], indirect=True)
+def test_solve_ivp_follows_the_motion_of_ours(case: Case):
+    """A fixed step meets the edges of a spall up to a step late, an adaptive one where they are."""
+    seed, state = seed_of(case.records)
+    found = rivals.adaptive(seed, state, SAMPLES / FS, 1 / FS)
+    ours = case.ours[:, :, 0].T
+    assert np.linalg.norm(found - ours) < 0.02 * np.linalg.norm(ours)
