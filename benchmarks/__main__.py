@@ -60,8 +60,9 @@ def main() -> None:
         parser.error(f"{', '.join(sorted(unknown))}: no such benchmark; choose from {', '.join(SUBJECTS)}.")
     lines: list[Line] = []
     for name in names:
-        print(f"{name} ...", file=sys.stderr)
-        lines += SUBJECTS[name]()
+        for line in SUBJECTS[name]():
+            print(f"{line.name}: {line.ratio:.3g}" if isinstance(line, Row) else line.why, file=sys.stderr)
+            lines.append(line)
     print(table(lines))
     if set(names) == set(SUBJECTS):
         rows = [line._asdict() for line in lines if isinstance(line, Row)]
