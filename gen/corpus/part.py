@@ -5,12 +5,17 @@ A part is written to a temporary name, flushed to disk and renamed, so that a ki
 
 import hashlib
 import os
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
+import h5py
+import netCDF4
+import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
@@ -21,6 +26,7 @@ _CODECS: dict[Codec, dict[str, Any]] = {
     "zstd": {"compression": "zstd", "complevel": 1, "shuffle": True},
     "none": {},
 }
+_INCOMPRESSIBLE = 7.8  # bits per byte
 
 
 class PartRow(NamedTuple):
@@ -84,19 +90,76 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
     CorpusError
         If the disk refuses the file, with the reason it gives.
     """
-    encoding = {str(name): _encoding(str(name), variable) for name, variable in dataset.variables.items()}
-    encoding[SIGNAL] = {"chunksizes": (1, 1, dataset.sizes["elapsed_time"]), **_CODECS[codec]}
     with whole_or_not_at_all(path) as temporary:
-        dataset.to_netcdf(temporary, engine="netcdf4", format="NETCDF4", encoding=encoding)
+        with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
+            file.setncatts(dataset.attrs)
+            for dimension, size in dataset.sizes.items():
+                file.createDimension(str(dimension), size)
+            for name, variable in dataset.variables.items():
+                _write_variable(file, str(name), variable, dataset, codec)
+        if codec == "zlib":
+            _write_deflated(dataset[SIGNAL].values, temporary)
     return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path))
 
 
-def _encoding(name: str, variable: xr.Variable) -> dict[str, Any]:
-    """Text as fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed."""
-    if variable.dtype.kind in "OU":
-        return {"dtype": "S1", "char_dim_name": f"{name}_length", "zlib": True, "complevel": 1}
-    compressed = {"zlib": True, "complevel": 1, "shuffle": True} if name == "elapsed_time" else {}
-    return {"_FillValue": None, **compressed}
+def _write_variable(file: netCDF4.Dataset, name: str, variable: xr.Variable, dataset: xr.Dataset, codec: Codec) -> None:
+    """Text goes into fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed."""
+    values, dimensions, attributes = variable.values, tuple(map(str, variable.dims)), dict(variable.attrs)
+    storage: dict[str, Any] = {"fill_value": attributes.pop("_FillValue", False)}
+    if name == SIGNAL:
+        storage |= {"chunksizes": (1, 1, values.shape[2]), **_CODECS[codec]}
+        if values.dtype.kind == "f":
+            storage["fill_value"] = np.nan
+    elif name == "elapsed_time":
+        storage |= _CODECS["zlib"]
+    elif values.dtype.kind in "OU":
+        values = np.array([text.encode() for text in values], "S")
+        values = values.view("S1").reshape(len(values), -1)
+        dimensions += (f"{name}_length",)
+        file.createDimension(dimensions[-1], values.shape[1])
+        storage |= {"zlib": True, "complevel": 1}
+        attributes["_Encoding"] = "utf-8"
+    if name in dataset.data_vars:
+        attributes["coordinates"] = " ".join(sorted(str(label) for label in set(dataset.coords) - set(dataset.dims)))
+    stored = file.createVariable(name, values.dtype, dimensions, **storage)
+    stored.set_auto_maskandscale(False)
+    stored.set_auto_chartostring(False)
+    stored.setncatts(attributes)
+    if name != SIGNAL or codec != "zlib":
+        stored[:] = values
+
+
+def _write_deflated(signal: NDArray[Any], path: Path) -> None:
+    """Write the chunks of the signal, compressed here: HDF5's own way through zlib takes more than twice as long."""
+    with h5py.File(path, "r+") as file:
+        stored: Any = file[SIGNAL]
+        for record, channel in np.ndindex(signal.shape[:2]):
+            stored.id.write_direct_chunk((record, channel, 0), deflated(signal[record, channel]))
+
+
+def deflated(samples: NDArray[Any]) -> bytes:
+    r"""Samples after HDF5's shuffle as a zlib stream, about as short as level 1 makes it.
+
+    The lower bytes of a noisy signal are noise that no code shortens: planes of evenly spread bytes are stored as they are. In the
+    others runs are all that repeats.
+
+    >>> zlib.decompress(deflated(np.array([1, 2, 3], np.int16)))
+    b'\x01\x02\x03\x00\x00\x00'
+    """
+    planes = np.ascontiguousarray(samples.view(np.uint8).reshape(len(samples), -1).T)
+    pieces = [b"\x78\x01"]
+    for plane in planes:
+        level = 0 if _entropy(plane[:: 1 + len(plane) // 4096]) > _INCOMPRESSIBLE else 1
+        coder = zlib.compressobj(level, zlib.DEFLATED, -zlib.MAX_WBITS, strategy=zlib.Z_RLE)
+        pieces += coder.compress(plane), coder.flush(zlib.Z_FULL_FLUSH)
+    return b"".join([*pieces, b"\x03\x00", zlib.adler32(planes).to_bytes(4, "big")])
+
+
+def _entropy(values: NDArray[np.uint8]) -> float:
+    """Bits that each of ``values`` takes."""
+    counts = np.bincount(values)
+    shares = counts[counts > 0] / len(values)
+    return -float(shares @ np.log2(shares))
 
 
 @contextmanager
