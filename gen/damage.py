@@ -8,11 +8,11 @@ from numpy.typing import NDArray
 
 from gen.physics import motion
 from gen.physics.batch import Spall as KernelSpall
-from gen.physics.bearing import orders
+from gen.physics.bearing import Bearing, orders
 from gen.physics.hertz import footprints
 from gen.physics.spall import PROFILES, drop, largest_drop
 from gen.physics.trace import felt, places, rolled, roughened
-from gen.scenarios import Purpose, Scenario, Spall, stream
+from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
 
 FloatArray = NDArray[np.float64]
 
@@ -88,32 +88,38 @@ def _paths(
 def waviness(scenario: Scenario, fs: float) -> FloatArray:
     """Fourier amplitudes of both races, and of the balls if they have some, shape (row,) [m]: the specimen's own, phases random."""
     specimen, properties = scenario.specimen, scenario.specimen.properties
-    rms, of_balls, wear = properties["waviness"], properties["ball_waviness"], specimen.wear
-    if rms == 0 and of_balls == 0 and wear is None:
+    rms, of_balls = properties["waviness"], properties["ball_waviness"]
+    if rms == 0 and of_balls == 0 and specimen.wear is None:
         return np.empty(0)
-    rng = stream(scenario.seed, scenario.rig.number, specimen.number, 0, Purpose.WAVINESS)
-    every = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1)
+    place = scenario.seed, scenario.rig.number, specimen.number, 0
+    rows, orders_at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)
+    course = scenario.record.speed_profile
+    highest_rate = scenario.record.conditions["shaft"] * (1.0 if course is None else max(course.shares))
+    return rows * (orders_at_balls <= FASTEST_WAVE * fs / highest_rate)
+
+
+@functools.lru_cache(maxsize=256)
+def _waves(
+    place: tuple[int, int, int, int], bearing: Bearing, rms: float, of_balls: float, wear: Wear | None
+) -> tuple[FloatArray, FloatArray]:
+    """Amplitudes of a specimen, and how often each wave passes a ball in a turn of the shaft, shape (row,) [m, 1]."""
+    rng, n_balls, spinning = stream(*place, Purpose.WAVINESS), bearing.n_balls, orders(bearing)
+    every, even = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1), 2 * np.arange(1, motion.BALL_ORDERS + 1)
     races = _falling(every) * rms * np.exp(1j * rng.uniform(0, 2 * np.pi, (2, motion.N_ORDERS)))
-    even = 2 * np.arange(1, motion.BALL_ORDERS + 1)
-    n_balls = specimen.bearing.n_balls
     # a ball's two contacts see the same height in even orders: together twice as much
     balls = 2 * of_balls * _falling(even)[:, None] * np.exp(1j * rng.uniform(0, 2 * np.pi, (len(even), n_balls)))
     if wear is not None:
-        rng = stream(scenario.seed, scenario.rig.number, specimen.number, 0, Purpose.WEAR)
+        rng = stream(*place, Purpose.WEAR)
         worn = _falling(every) if wear.order is None else math.sqrt(2) * (every == wear.order)
         races[("inner", "outer").index(wear.site)] += (
             worn * wear.waviness * np.exp(1j * rng.uniform(0, 2 * np.pi, len(every)))
         )
-    profile = scenario.record.speed_profile
-    highest_rate = scenario.record.conditions["shaft"] * (1.0 if profile is None else max(profile.shares))
-    ftf, fastest = orders(specimen.bearing).ftf, FASTEST_WAVE * fs / highest_rate
-    races[0, every * (1 - ftf) > fastest] = 0.0
-    races[1, every * ftf > fastest] = 0.0
-    balls[even * orders(specimen.bearing).bsf > fastest] = 0.0
-    rows = np.concatenate([part for race in races for part in (race.real, race.imag)])
-    if of_balls == 0:
-        return rows
-    return np.concatenate([rows, np.stack([balls.real, balls.imag], axis=1).ravel()])
+    rows = [np.stack([races.real, races.imag], axis=1).ravel()]
+    passing = [every * (1 - spinning.ftf)] * 2 + [every * spinning.ftf] * 2
+    if of_balls > 0:
+        rows.append(np.stack([balls.real, balls.imag], axis=1).ravel())
+        passing.append(np.repeat(even * spinning.bsf, 2 * n_balls))
+    return np.concatenate(rows), np.concatenate(passing)
 
 
 def _falling(orders_of_turn: NDArray[np.int_]) -> FloatArray:

@@ -54,7 +54,10 @@ def part_dataset(
     step_error: NDArray[np.float64] | None = None,
 ) -> xr.Dataset:
     """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
-    rows = [_columns(scenario, recipe) for scenario in scenarios]
+    # records share rigs and specimens: those are written out once
+    shared = {id(item): item for scenario in scenarios for item in (scenario.rig, scenario.specimen)}
+    drawn = {number: json.dumps(item, default=vars) for number, item in shared.items()}
+    rows = [_columns(scenario, recipe, drawn) for scenario in scenarios]
     columns = {name: [row[name] for row in rows] for name in rows[0]}
     columns |= {"clipped": measured.clipped, "snr": measured.snr}
     columns |= {"oversampling": response.oversampling, "step_phase": response.step_phase}
@@ -77,8 +80,8 @@ def part_dataset(
     )
 
 
-def _columns(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
-    """Everything that is known of a record before it is measured."""
+def _columns(scenario: Scenario, recipe: Recipe, drawn: dict[int, str]) -> dict[str, Any]:
+    """Everything that is known of a record before it is measured; ``drawn`` are its rig and specimen as JSON, by identity."""
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
     conditions, duration = record.conditions, recipe.recording.duration_s
     nominal, (true_rate, true_orders) = orders(rig.bearing), true_motion(scenario, recipe)
@@ -104,7 +107,7 @@ def _columns(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         "last_shaft_rate": conditions["shaft"] * speeds[1],
         **{f"true_{name}": value for name, value in true_orders._asdict().items()},
         "diametral_clearance": specimen.properties["diametral_clearance"],
-        "draws": json.dumps(scenario.as_dict()),
+        "draws": f'{{"rig": {drawn[id(rig)]}, "specimen": {drawn[id(specimen)]}, "record": {json.dumps(record, default=vars)}}}',
     }
 
 

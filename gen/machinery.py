@@ -16,12 +16,12 @@ from gen.physics.axial import axial_approach
 from gen.physics.batch import Motion, Record, n_terms
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
 from gen.physics.hertz import contact_exponent, load_deflection_factor
-from gen.physics.decimate import HALF_TAPS
+from gen.physics.decimate import LEAD
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.profile import mean_share, share_at
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs
 from gen.recipe import Recipe
-from gen.scenarios import Purpose, Scenario
+from gen.scenarios import Purpose, Scenario, stream
 
 FloatArray = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ def physical_record(scenario: Scenario, recipe: Recipe) -> Record:
         twice_y=drawn["misalignment"] * math.sin(drawn["misalignment_angle"]),
         knock=specimen.cage.get("knock", 0.0),
         knock_angle=drawn["load_angle"] + LEAVES_LOAD_ZONE,
-        knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)),
+        knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)) if specimen.cage else 0,
         late_ball=0 if specimen.cage else -1,
         late_by=specimen.cage.get("pitch_error", 0.0),
     )
@@ -82,10 +82,15 @@ class Start(NamedTuple):
 
 def _start(scenario: Scenario) -> Start:
     """What is random in the motion of a record."""
-    rng = scenario.rng(Purpose.MOTION)
-    shaft, cage, spin = rng.uniform(0, 2 * np.pi, 3)
-    processes = _processes(scenario.specimen.bearing, scenario.record.conditions["shaft"], rng)
-    return Start(shaft, cage, spin, *processes)
+    place = scenario.seed, scenario.rig.number, scenario.specimen.number, scenario.record.number
+    return _start_at(place, scenario.specimen.bearing, scenario.record.conditions["shaft"])
+
+
+@functools.lru_cache(maxsize=1024)  # asked for twice, by the kernel and by the labels
+def _start_at(place: tuple[int, int, int, int], bearing: Bearing, shaft_rate: float) -> Start:
+    rng = stream(*place, Purpose.MOTION)
+    shaft, cage, spin = (2 * np.pi * rng.random(3)).tolist()
+    return Start(shaft, cage, spin, *_processes(bearing, shaft_rate, rng))
 
 
 def _machine(scenario: Scenario, cage_angle: float) -> Machine:
@@ -168,15 +173,19 @@ stiffness_of = functools.lru_cache(maxsize=4096)(load_deflection_factor)
 
 def _processes(bearing: Bearing, shaft_rate: float, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and phases [rad] of the terms of all processes, shape (term,): log-uniform within each process's band."""
-    ftf = orders(bearing).ftf * shaft_rate
-    bands = np.repeat(
-        np.array([[0.3, 3.0], [0.2 * shaft_rate, 2 * shaft_rate], [0.05 * shaft_rate, 0.6 * shaft_rate],
-                  [0.05 * shaft_rate, 0.6 * shaft_rate], [0.3 * ftf, 3 * ftf]]),
-        [motion.SPEED_TERMS, motion.SLIP_TERMS, motion.SPIN_TERMS, motion.AXIS_TERMS, motion.JITTER_TERMS * bearing.n_balls],
-        axis=0,
-    )  # fmt: skip
+    lowest, widths, unit = _bands(bearing.n_balls)
     u = rng.random((2, n_terms(bearing.n_balls)))
-    return bands[:, 0] * (bands[:, 1] / bands[:, 0]) ** u[0], 2 * np.pi * u[1]
+    units = np.array([1.0, shaft_rate, orders(bearing).ftf * shaft_rate])
+    return lowest * units[unit] * np.exp(widths * u[0]), 2 * np.pi * u[1]
+
+
+@functools.lru_cache(maxsize=64)
+def _bands(n_balls: int) -> tuple[FloatArray, FloatArray, NDArray[np.int_]]:
+    """Lower end of each term's band, log of its upper over its lower, and its unit: 1 Hz, the shaft's rate or the cage's; shape (term,)."""
+    bands = np.array([[0.3, 3.0, 0], [0.2, 2, 1], [0.05, 0.6, 1], [0.05, 0.6, 1], [0.3, 3, 2]])
+    terms = [motion.SPEED_TERMS, motion.SLIP_TERMS, motion.SPIN_TERMS, motion.AXIS_TERMS, motion.JITTER_TERMS * n_balls]
+    low, high, unit = np.repeat(bands, terms, axis=0).T
+    return low, np.log(high / low), unit.astype(int)
 
 
 def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
@@ -187,7 +196,7 @@ def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
         return np.empty((0, 2))
     fs = recipe.recording.sample_rate_hz
     settling = round(recipe.recording.settle_s * fs)
-    times = (np.arange(settling + recipe.n_samples + HALF_TAPS + 2) - settling) / fs
+    times = (np.arange(settling + recipe.n_samples + LEAD + 2) - settling) / fs
     factors = np.ones((len(times), 2))
     if record.speed_profile is not None:
         factors[:, 0] = share_at(record.speed_profile, times + 0.5 / fs)
@@ -220,19 +229,17 @@ def true_motion(scenario: Scenario, recipe: Recipe) -> tuple[float, Orders]:
     drawn = _start(scenario)
     start, duration, profile = recipe.recording.settle_s, recipe.recording.duration_s, scenario.record.speed_profile
 
+    turn, phase = 2 * np.pi * drawn.frequencies[: motion.AXIS_FIRST], drawn.phases[: motion.AXIS_FIRST]
+    if profile is None:
+        means = (np.sin(turn * (start + duration) + phase) - np.sin(turn * start + phase)) / (turn * duration)
+    else:  # over the turns of the shaft, ten to a cycle of the fastest process
+        points = int(np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17))
+        times = (np.arange(points) + 0.5) * (duration / points)
+        share = share_at(profile, times)
+        means = np.einsum("t,tk->k", share, np.cos(np.outer(start + times, turn) + phase)) / share.sum()
+
     def mean(first: int, terms: int) -> float:
-        """Over the turns of the shaft, which are even in time without a profile."""
-        turn = 2 * np.pi * drawn.frequencies[first : first + terms]
-        phase = drawn.phases[first : first + terms]
-        if profile is not None:
-            # ten to a cycle of the fastest process
-            points = int(np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17))
-            times = (np.arange(points) + 0.5) * (duration / points)
-            share = share_at(profile, times)
-            waves = cosine_sum(start + times, turn, phase)
-            return float(share @ waves / share.sum() * math.sqrt(2 / terms))
-        swing = np.sin(turn * (start + duration) + phase) - np.sin(turn * start + phase)
-        return float(np.sum(swing / (turn * duration)) * math.sqrt(2 / terms))
+        return float(means[first : first + terms].sum()) * math.sqrt(2 / terms)
 
     rate = conditions["shaft"] * mean_share(profile, duration)
     rate *= 1 + conditions["speed_wander"] * mean(0, motion.SPEED_TERMS)

@@ -95,15 +95,24 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
             file.setncatts(dataset.attrs)
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)
-            for name, variable in dataset.variables.items():
-                _write_variable(file, str(name), variable, dataset, codec)
+            # all is declared before anything is written: to and fro costs a third of the time
+            declared = [_declare(file, str(name), dataset, codec) for name in dataset.variables]
+            for stored, values in declared:
+                if stored.name != SIGNAL or codec != "zlib":
+                    stored[:] = values
         if codec == "zlib":
             _write_deflated(dataset[SIGNAL].values, temporary)
     return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path))
 
 
-def _write_variable(file: netCDF4.Dataset, name: str, variable: xr.Variable, dataset: xr.Dataset, codec: Codec) -> None:
-    """Text goes into fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed."""
+def _declare(
+    file: netCDF4.Dataset, name: str, dataset: xr.Dataset, codec: Codec
+) -> tuple[netCDF4.Variable, NDArray[Any]]:
+    """Declare a variable, and return it with what to write into it.
+
+    Text goes into fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed.
+    """
+    variable = dataset.variables[name]
     values, dimensions, attributes = variable.values, tuple(map(str, variable.dims)), dict(variable.attrs)
     storage: dict[str, Any] = {"fill_value": attributes.pop("_FillValue", False)}
     if name == SIGNAL:
@@ -125,8 +134,7 @@ def _write_variable(file: netCDF4.Dataset, name: str, variable: xr.Variable, dat
     stored.set_auto_maskandscale(False)
     stored.set_auto_chartostring(False)
     stored.setncatts(attributes)
-    if name != SIGNAL or codec != "zlib":
-        stored[:] = values
+    return stored, values
 
 
 def _write_deflated(signal: NDArray[Any], path: Path) -> None:
@@ -152,7 +160,7 @@ def deflated(samples: NDArray[Any]) -> bytes:
         level = 0 if _entropy(plane[:: 1 + len(plane) // 4096]) > _INCOMPRESSIBLE else 1
         coder = zlib.compressobj(level, zlib.DEFLATED, -zlib.MAX_WBITS, strategy=zlib.Z_RLE)
         pieces += coder.compress(plane), coder.flush(zlib.Z_FULL_FLUSH)
-    return b"".join([*pieces, b"\x03\x00", zlib.adler32(planes).to_bytes(4, "big")])
+    return b"".join([*pieces, b"\x03\x00", zlib.adler32(planes.data).to_bytes(4, "big")])
 
 
 def _entropy(values: NDArray[np.uint8]) -> float:

@@ -19,6 +19,7 @@ FloatArray = NDArray[np.float64]
 
 HALF_TAPS = 26  # samples on either side of an output
 FIRST_HALF_TAPS = 6  # of the first stage, in its outputs: 80 dB from 1.4 times the sample rate on, flat to half of it
+LEAD = HALF_TAPS + FIRST_HALF_TAPS // 2  # samples by which an output lags its newest input, at most
 OUTPUTS = 4  # of a pass over the history
 BETA = 7.857  # of the Kaiser windows
 
@@ -56,13 +57,6 @@ def decimation(n_steps: int) -> Decimation:
         return Decimation(NO_STAGE, _stage(last, factor))
     ratio = n_steps // 2
     return Decimation(_stage(_low_pass(FIRST_HALF_TAPS, ratio, 0.96 / ratio), ratio), _stage(last, factor))
-
-
-def lead_knots(n_steps: int) -> int:
-    """Samples by which an output lags its newest input."""
-    if n_steps == 1:
-        return 0
-    return HALF_TAPS + (FIRST_HALF_TAPS // 2 if n_steps % 2 == 0 and n_steps > 2 else 0)
 
 
 def _low_pass(half_taps: int, factor: int, cutoff: float) -> FloatArray:
