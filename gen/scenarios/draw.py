@@ -5,6 +5,7 @@ Every level and purpose has a random stream of its own, found by number and neve
 the fault do not know the fault: a record with and without it differ in the fault alone.
 """
 
+import functools
 import math
 import warnings
 from dataclasses import replace
@@ -66,8 +67,9 @@ def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> l
     first_rig, last_rig = first_specimen // per_rig, last_specimen // per_rig
     rig_points = _points(recipe, Purpose.RIG, first_rig, last_rig + 1)
     rigs = {number: _draw_rig(recipe, number, point) for number, point in rig_points.items()}
+    classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
     specimens = {
-        number: _draw_specimen(recipe, rigs[number // per_rig], number, point)
+        number: _draw_specimen(recipe, rigs[number // per_rig], number, point, classes[number // per_rig])
         for number, point in _points(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
     }
     return [
@@ -88,7 +90,9 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
     engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
     rng = stream(recipe.seed, 0, 0, 0, Purpose.SAMPLING)
     engine = engine_type(_FIRST_DIMENSION[level] + _DIMENSIONS, scramble=True, rng=rng)
-    if first > 0:  # scipy's Sobol overflows on 0
+    if isinstance(engine, qmc.Halton):
+        engine.num_generated = first  # its own way there makes all points before
+    elif first > 0:  # scipy's Sobol overflows on 0
         engine.fast_forward(first)
     with warnings.catch_warnings():
         warnings.filterwarnings(
@@ -184,7 +188,9 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     return Background(slope, floor, modes, modulation, tuple(harmonics), tuple(tones), impulses, knocks)
 
 
-def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64]) -> Specimen:
+def _draw_specimen(
+    recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str]
+) -> Specimen:
     draws = Draws(
         stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN),
         point,
@@ -203,7 +209,7 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
             f"drawing and specimen together below {math.degrees(STEEPEST_CONTACT):.0f}."
         )
     place = number % recipe.corpus.specimens_per_rig
-    fault = fault_of_each_specimen(recipe, rig.number)[place]
+    fault = classes[place]
     draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
     wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
@@ -214,13 +220,19 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
 def _draw_split(recipe: Recipe, rig: int, place: int) -> str:
     split, corpus = recipe.corpus.split, recipe.corpus
     if split.by == "rig":
-        rank = stream(recipe.seed, 0, 0, 0, Purpose.SPLIT).permutation(corpus.rigs)[rig]
+        rank = _ranks(recipe.seed, 0, corpus.rigs)[rig]
         u = rank / corpus.rigs if corpus.rigs > 1 else 1.0  # the first of two or more is set aside if any is
     else:
-        rank = stream(recipe.seed, rig, 0, 0, Purpose.SPLIT).permutation(corpus.specimens_per_rig)[place]
+        rank = _ranks(recipe.seed, rig, corpus.specimens_per_rig)[place]
         u = (rank + (rig * 0.6180339887 + 0.5) % 1) / corpus.specimens_per_rig  # golden ratio: even over rigs too
     train, validation, test = SPLITS
     return test if u < split.test else validation if u < split.test + split.validation else train
+
+
+@functools.lru_cache(maxsize=4)
+def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
+    """Order in which rigs, or the specimens of a rig, are set aside."""
+    return stream(seed, rig, 0, 0, Purpose.SPLIT).permutation(count)
 
 
 def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray[np.float64]) -> Operation:

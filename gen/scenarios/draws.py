@@ -1,5 +1,6 @@
 """Values of one rig, specimen or record, drawn one after the other."""
 
+import functools
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,8 @@ from pydantic import BaseModel
 from gen.distributions import Grid
 from gen.recipe import Section, split_unit
 from gen.scenarios.model import Drawn
+
+_unit_of = functools.cache(split_unit)
 
 
 class Draws:
@@ -39,7 +42,7 @@ class Draws:
         drawn: Drawn = {}
         for key, distribution in section:
             if isinstance(distribution, BaseModel) and hasattr(distribution, "draw"):
-                name, factor = split_unit(key)
+                name, factor = _unit_of(key)
                 drawn[name] = self.value(distribution) * factor
         return drawn
 
