@@ -101,7 +101,7 @@ def waviness(scenario: Scenario, fs: float) -> FloatArray:
 @functools.lru_cache(maxsize=256)
 def _waves(
     place: tuple[int, int, int, int], bearing: Bearing, rms: float, of_balls: float, wear: Wear | None
-) -> tuple[FloatArray, FloatArray]:
+) -> tuple[FloatArray, NDArray[np.floating]]:
     """Amplitudes of a specimen, and how often each wave passes a ball in a turn of the shaft, shape (row,) [m, 1]."""
     rng, n_balls, spinning = stream(*place, Purpose.WAVINESS), bearing.n_balls, orders(bearing)
     every, even = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1), 2 * np.arange(1, motion.BALL_ORDERS + 1)

@@ -5,6 +5,7 @@ that a task may run twice and an interrupted corpus is completed by the same cal
 time: memory does not grow with the corpus.
 """
 
+import functools
 import json
 import shutil
 from collections.abc import Callable, Iterator
@@ -33,7 +34,7 @@ from gen.corpus import (
 )  # fmt: skip
 from gen.errors import CorpusError, RacewayError, RecipeError, SimulationError
 from gen.labels import part_dataset
-from gen.measure import measure
+from gen.measure import compile_mixing, measure
 from gen.physics.batch import record_shape
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
@@ -164,6 +165,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     return known
 
 
+@functools.cache
 def _versions() -> dict[str, str]:
     """Versions of what the bytes of a part depend on."""
     return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
@@ -243,6 +245,7 @@ def _numbered_part(recipe: Recipe, part: int, directory: Path, known: str | None
 
 def compile_kernels(recipe: Recipe) -> None:
     """Compile every kernel a recipe needs into numba's cache on disk, before several processes would do it at once."""
+    compile_mixing(draw_scenarios(recipe, 0, 1)[0], recipe)
     done = set()
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):

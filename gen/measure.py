@@ -8,6 +8,7 @@ leaves an error of 1e-7 of the record's largest value: a three-hundredth of a co
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,7 +61,7 @@ def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Me
     heard = [sounds[scenario.rig.number] for scenario in scenarios]
     converter = recording.converter
     counts_per_unit = None if converter.kind == "float32" else LARGEST_COUNT / converter.full_scale_m_s2
-    signal = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
+    signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, snr = np.zeros(shape[0], np.int32), np.empty(shape[0])
     several = max(1, _ROWS // shape[1])
     for first in range(0, shape[0], several):
@@ -75,22 +76,32 @@ def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Me
     return Measured(signal, counts_per_unit, clipped, snr)
 
 
+def compile_mixing(scenario: Scenario, recipe: Recipe) -> None:
+    """Compile what puts records together, or fetch it from numba's cache on disk."""
+    silence = np.zeros((1, len(recipe.recording.channels), lead_samples(recipe) + recipe.n_samples))
+    measure(Response(silence, np.ones(1, np.int64), np.zeros(1), {}, [None]), [scenario], recipe)
+
+
 def _mixed(
     acceleration: FloatArray, scenarios: Sequence[Scenario], sounds: Sequence[Sound], recipe: Recipe
 ) -> tuple[Float32Array, FloatArray]:
     """Bearing over background at the drawn levels, shape (record, channel, time) [m s-2], and the ratio of the two [dB]."""
-    lead = lead_samples(recipe)
+    lead, (n_records, n_channels, length) = lead_samples(recipe), acceleration.shape
     kept = slice(lead, lead + recipe.n_samples)
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
-    bearing, background = _through_paths(acceleration, sounds), _noise(sounds, acceleration.shape[1], rngs)
-    rms, gains = np.empty((2, len(scenarios))), np.empty((2, len(scenarios)))
-    for row, (scenario, sound, rng) in enumerate(zip(scenarios, sounds, rngs, strict=True)):
-        lines, start, knock = _phases(sound, rng)
-        shaft = _shaft(scenario, acceleration.shape[2], recipe.recording.sample_rate_hz, start)
-        ringing = _NO_RINGING if sound.ring is None else _ringing(sound, shaft, knock, acceleration.shape[2], rng)
-        heard, other = mix(bearing[row], background[row], ringing, shaft, lines, lead, lead + recipe.n_samples)
-        rms[:, row] = np.maximum((heard, other), 1e-30)
-        gains[:, row] = _gains(scenario, *rms[:, row])
+    phases = [_phases(sound, rng) for sound, rng in zip(sounds, rngs, strict=True)]
+    shafts = [
+        _shaft(scenario, length, recipe.recording.sample_rate_hz, start)
+        for scenario, (_, start, _) in zip(scenarios, phases, strict=True)
+    ]
+    bearing, background = _through_paths(acceleration, sounds), _noise(sounds, n_channels, rngs)
+    knocks = [knock for _, _, knock in phases]
+    ringing = _ringing(sounds, shafts, knocks, length, rngs)
+    rms, gains = np.empty((2, n_records)), np.empty((2, n_records))
+    for row, (lines, _, _) in enumerate(phases):
+        found = mix(bearing[row], background[row], ringing[row], shafts[row], lines, kept.start, kept.stop)
+        rms[:, row] = np.maximum(found, 1e-30)
+        gains[:, row] = _gains(scenarios[row], *rms[:, row])
     gain, noise = gains.astype(np.float32)[:, :, None, None]
     mixed = gain * bearing[..., kept]
     mixed += np.multiply(noise, background[..., kept], out=background[..., kept])
@@ -146,8 +157,26 @@ def _shaft(scenario: Scenario, length: int, fs: float, start: float) -> Shaft:
     return Shaft(start, step, start + step * fs * turned(course, np.arange(length) / fs - LEAD_S))
 
 
-def _ringing(sound: Sound, shaft: Shaft, knock: float, length: int, rng: np.random.Generator) -> Float32Array:
-    """Impulses at random times and knocks that come with the shaft, behind the paths, shape (channel, time) [1]."""
+def _ringing(
+    sounds: Sequence[Sound],
+    shafts: Sequence[Shaft],
+    knocks: Sequence[float],
+    length: int,
+    rngs: Sequence[np.random.Generator],
+) -> list[Float32Array]:
+    """Impulses at random times and knocks that come with the shaft, behind the paths, each of shape (channel, time) or (0, 0) [1]."""
+    found = [_NO_RINGING] * len(sounds)
+    heard = [row for row, sound in enumerate(sounds) if sound.impulses[0] > 0 or sound.knocks[0] > 0]
+    if heard:
+        hits = np.stack([_hits(sounds[row], shafts[row], knocks[row], length, rngs[row]) for row in heard])
+        spectra = rfft(hits, sounds[0].n)[:, None] * np.stack([sounds[row].struck for row in heard])
+        for row, ringing in zip(heard, irfft(spectra, sounds[0].n), strict=True):
+            found[row] = ringing
+    return found
+
+
+def _hits(sound: Sound, shaft: Shaft, knock: float, length: int, rng: np.random.Generator) -> Float32Array:
+    """Strengths of impulses and knocks at the samples on which they fall, shape (time,) [1]."""
     hits = np.zeros(length, np.float32)
     number, level = sound.impulses
     times = rng.integers(length, size=rng.poisson(number))
@@ -157,7 +186,7 @@ def _ringing(sound: Sound, shaft: Shaft, knock: float, length: int, rng: np.rand
         angles = shaft.angles if len(shaft.angles) else shaft.start + shaft.step * np.arange(length)
         times = np.flatnonzero(np.diff(np.floor((orders * angles + knock) / (2 * np.pi))) > 0) + 1
         hits[times] += level * (1 + 0.2 * rng.standard_normal(len(times), dtype=np.float32))
-    return irfft(rfft(hits, sound.n) * sound.paths, sound.n) * sound.ring
+    return hits
 
 
 def _gains(scenario: Scenario, heard: float, other: float) -> tuple[float, float]:

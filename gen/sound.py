@@ -37,8 +37,8 @@ class Sound:
     """Number in a response, and level."""
     knocks: tuple[float, float]
     """Number in a turn of the shaft, and level."""
-    ring: Float32Array | None
-    """What brings an impulse to a peak of one behind each channel's path, shape (channel, 1), if there are any."""
+    struck: NDArray[np.complex64]
+    """The paths, scaled so that an impulse has a peak of one behind each, shape (channel, frequency); unscaled without impulses."""
 
     @staticmethod
     def of(rig: Rig, length: int, fs: float) -> "Sound":
@@ -57,9 +57,9 @@ class Sound:
             (2 * math.pi * tone.frequency / fs, math.sqrt(2) * tone.level, tone.modulation) for tone in background.tones
         ]
         impulses, knocks = background.impulses, background.knocks
-        ring = None
+        struck = paths
         if impulses is not None or knocks is not None:
-            ring = 1 / np.abs(irfft(paths, n)).max(axis=1, keepdims=True)
+            struck = paths / np.abs(irfft(paths, n)).max(axis=1, keepdims=True)
         return Sound(
             n,
             paths,
@@ -71,7 +71,7 @@ class Sound:
             np.array([0, *(1 if own is None else place for place, own in enumerate(rig.own_paths, 2))]),
             (0.0, 0.0) if impulses is None else (impulses.frequency * length / fs, impulses.level),
             (0.0, 0.0) if knocks is None else (knocks.frequency, knocks.level),
-            ring,
+            struck,
         )
 
 

@@ -188,9 +188,7 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     return Background(slope, floor, modes, modulation, tuple(harmonics), tuple(tones), impulses, knocks)
 
 
-def _draw_specimen(
-    recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str]
-) -> Specimen:
+def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str]) -> Specimen:
     draws = Draws(
         stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN),
         point,
