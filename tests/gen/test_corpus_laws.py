@@ -2,6 +2,7 @@
 
 import shutil
 import subprocess
+import zlib
 from pathlib import Path
 
 import netCDF4
@@ -25,6 +26,7 @@ from gen.corpus import (
     write_manifest,
     write_part,
 )
+from gen.corpus.part import deflated
 from gen.errors import CorpusError
 from tests.corpora import EXTRA, FS, columns, dataset, physical, write_corpus
 
@@ -142,3 +144,16 @@ def test_a_part_that_is_no_netcdf_file_is_named(tmp_path):
     (tmp_path / part_name(0)).write_text("no netCDF")
     with pytest.raises(CorpusError, match=r"part-00000\.nc: not a readable netCDF-4 part"):
         open_part(tmp_path / part_name(0))
+
+
+@law
+@given(st.integers(0, 2**32 - 1), st.integers(1, 9000), st.floats(0, 9000), st.sampled_from([np.int16, np.float32]))
+def test_compressed_samples_are_a_zlib_stream_of_their_shuffled_bytes(seed, n, level, kind):
+    samples = (level * np.random.default_rng(seed).standard_normal(n)).clip(-32767, 32767).astype(kind)
+    shuffled = samples.view(np.uint8).reshape(n, -1).T.tobytes()
+    assert zlib.decompress(deflated(samples)) == shuffled
+    assert len(deflated(samples)) <= len(zlib.compress(shuffled, 1)) * 1.02 + 40
+
+
+def test_what_needs_no_bits_takes_none():
+    assert len(deflated(np.zeros(12_800, np.int16))) < 200

@@ -78,6 +78,13 @@ def test_classes_come_as_often_as_their_weights_say(recipe_with, specimens, weig
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_the_end_of_a_large_corpus_can_be_drawn_alone(recipe_with, sampling):
+    recipe = recipe_with({"corpus.sampling": sampling, "corpus.rigs": 10**6})
+    last = draw_scenarios(recipe, recipe.n_records - 3)
+    assert [scenario.record.number for scenario in last] == list(range(recipe.n_records - 3, recipe.n_records))
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
 def test_any_range_of_records_is_a_piece_of_the_whole(recipe_with, sampling):
     recipe = recipe_with({"corpus.sampling": sampling})
     whole = draw_scenarios(recipe)
