@@ -93,8 +93,8 @@ def waviness(scenario: Scenario, fs: float) -> FloatArray:
         return np.empty(0)
     place = scenario.seed, scenario.rig.number, specimen.number, 0
     rows, orders_at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)
-    course = scenario.record.speed_profile
-    highest_rate = scenario.record.conditions["shaft"] * (1.0 if course is None else max(course.shares))
+    profile = scenario.record.speed_profile
+    highest_rate = scenario.record.conditions["shaft"] * (1.0 if profile is None else max(profile.shares))
     return rows * (orders_at_balls <= FASTEST_WAVE * fs / highest_rate)
 
 

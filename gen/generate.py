@@ -273,7 +273,9 @@ def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = No
     if not fine:
         return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
     errors = step_errors(scenarios, recipe, response)
-    dataset = part_dataset(measured, scenarios, recipe, response, errors).isel(record=fine)
+    dataset = part_dataset(measured, scenarios, recipe, response, errors)
+    if failures:
+        dataset = dataset.isel(record=fine)
     dataset.attrs |= {
         "recipe_sha256": recipe_hash(recipe),
         "versions": json.dumps(_versions()),

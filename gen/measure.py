@@ -149,12 +149,12 @@ def _phases(sound: Sound, rng: np.random.Generator) -> tuple[Lines, float, float
 
 
 def _shaft(scenario: Scenario, length: int, fs: float, start: float) -> Shaft:
-    """Angle of the shaft at the mean rate, or along its course, from the start of the response on."""
+    """Angle of the shaft at the mean rate, or along its profile, from the start of the response on."""
     step = 2 * math.pi * scenario.record.conditions["shaft"] / fs
-    course = scenario.record.speed_profile
-    if course is None:
+    profile = scenario.record.speed_profile
+    if profile is None:
         return Shaft(start, step, _NO_ANGLES)
-    return Shaft(start, step, start + step * fs * turned(course, np.arange(length) / fs - LEAD_S))
+    return Shaft(start, step, start + step * fs * turned(profile, np.arange(length) / fs - LEAD_S))
 
 
 def _ringing(
