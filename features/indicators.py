@@ -11,25 +11,29 @@ and say much about the machine itself. The lines are those of [1]_.
        Process.* 25 (2011) 485-520.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
-from scipy.fft import ifft, next_fast_len
+from scipy.fft import irfft, next_fast_len
 
 from features.lines import FAMILIES, LINE_NAMES, Orders, highest_order, read_lines
-from features.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, standardised_moments, time_statistics
+from features.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, time_statistics
 from features.spectra import (
+    ZERO_PADDING,
     ComplexArray,
     FloatArray,
     analytic_band,
     band_energies,
+    centred,
     cepstrally_whitened,
-    envelope_spectrum,
+    fine_amplitudes,
     fourier_coefficients,
+    hann_weighted,
     psd,
     psd_whitened,
     running_median,
+    squared_modulus,
 )
 
 __all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
@@ -129,7 +133,7 @@ def indicators(
     usable = np.flatnonzero(_usable(x, shaft_rate, orders))
     for start in range(0, len(usable), BATCH):
         rows = usable[start : start + BATCH]
-        batch = np.asarray(x[rows], dtype=np.float64)
+        batch = centred(x[rows])
         nominal = Orders(*(order[rows] for order in orders))
         values[rows] = _features(batch, fs, shaft_rate[rows], nominal, groups)
     return values, names
@@ -137,7 +141,8 @@ def indicators(
 
 def _usable(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.ndarray:
     known = [np.isfinite(values) & (values > 0) for values in (shaft_rate, *orders)]
-    return np.isfinite(x).all(axis=-1) & (x.max(axis=-1) > x.min(axis=-1)) & np.logical_and.reduce(known)
+    highest, lowest = x.max(axis=-1), x.min(axis=-1)
+    return np.isfinite(highest) & np.isfinite(lowest) & (highest > lowest) & np.logical_and.reduce(known)
 
 
 def _features(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str]) -> FloatArray:
@@ -160,40 +165,49 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
         return lines, shape
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
     coefficients = fourier_coefficients(x[long_enough], fs, TOP)
-    read = [_read(z, duration, shaft_rate, orders) for z in _signals(coefficients, duration, fs)]
-    line_views, shape_views = (_views(np.stack(values, axis=1)) for values in zip(*read, strict=True))
+    read = _read(_signals(coefficients, duration, fs), duration, shaft_rate, orders)
+    line_views, shape_views = map(_views, read)
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
     lines[long_enough] = np.concatenate([_flat(line_views), _flat(over)], axis=-1)
     shape[long_enough] = np.concatenate([_flat(shape_views), _raw_shape(coefficients)], axis=-1)
     return lines, shape
 
 
-def _signals(coefficients: ComplexArray, duration: float, fs: float) -> list[ComplexArray]:
-    """Two broad analytic signals, then the narrow bands of which more than half is below the Nyquist rate.
-
-    In single precision: whitened coefficients are all about as large as one another, and it takes two thirds
-    of the time.
-    """
-    cepstral = cepstrally_whitened(coefficients).astype(np.complex64)
-    whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration)).astype(np.complex64)
+def _signals(coefficients: ComplexArray, duration: float, fs: float) -> Iterator[ComplexArray]:
+    """Yield two broad analytic signals, then the narrow bands of which more than half is below the Nyquist rate."""
+    cepstral = cepstrally_whitened(coefficients)
+    whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
     narrow = [(whitened, band) for band in NARROW if sum(band) < fs]
     cuts = [(cepstral, BROAD), (whitened, BROAD), *narrow]
-    return [analytic_band(source, round(low * duration), round(high * duration)) for source, (low, high) in cuts]
+    for source, (low, high) in cuts:
+        yield analytic_band(source, round(low * duration), round(high * duration))
 
 
-def _read(z: ComplexArray, duration: float, shaft_rate: FloatArray, orders: Orders) -> tuple[FloatArray, FloatArray]:
-    rate = z.shape[-1] / duration
-    frequencies, spectrum = envelope_spectrum(z, rate)
-    resolution = frequencies[1]
-    bins = min(int(np.max(highest_order(orders) * shaft_rate) / resolution) + 2, len(frequencies))
-    level = log_level(spectrum, resolution, shaft_rate, bins)
-    lines = read_lines(level, shaft_rate / resolution, orders)
-    return lines, envelope_shape(z, spectrum, rate, shaft_rate)
-
-
-def log_level(spectrum: FloatArray, resolution: float, shaft_rate: FloatArray, bins: int) -> FloatArray:
-    """Logarithm of the first bins of envelope spectra over their running median, shape (record, bins)."""
+def _read(
+    signals: Iterable[ComplexArray], duration: float, shaft_rate: FloatArray, orders: Orders
+) -> tuple[FloatArray, FloatArray]:
+    """Lines and shape of the envelope of each signal, shapes (record, signal, value)."""
+    resolution = 1 / (ZERO_PADDING * duration)
+    bins = int(np.max(highest_order(orders) * shaft_rate) / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
+    lines, shapes = [], []
+    for z in signals:
+        power = squared_modulus(z)
+        weighted = hann_weighted(np.sqrt(power))
+        last = ZERO_PADDING * z.shape[-1] // 2
+        spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, last + 1))
+        level = log_level(spectrum, width, min(bins, last + 1))
+        shapes.append(envelope_shape(power, weighted, spectrum, z.shape[-1] / duration, shaft_rate))
+        lines.append(read_lines(level, shaft_rate / resolution, orders))
+    return np.stack(lines, axis=1), np.stack(shapes, axis=1)
+
+
+def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
+    """Logarithm of the first bins of envelope spectra over their running median, shape (record, bins).
+
+    ``width`` is that of the window of the median in bins, shape (record,). The spectra reach as far again
+    beyond the bins, unless they end before.
+    """
     floor = running_median(spectrum, width, bins)
     least = np.finfo(spectrum.dtype).tiny
     return np.log(np.maximum(spectrum[:, :bins], least) / np.maximum(floor, least))
@@ -212,9 +226,9 @@ def _flat(values: FloatArray) -> FloatArray:
 def _raw_shape(coefficients: ComplexArray) -> FloatArray:
     """Kurtosis and crest factor of what lies below 5 kHz, shape (record, 2)."""
     n = next_fast_len(2 * coefficients.shape[-1])
-    raw = np.real(np.asarray(ifft(2 * coefficients, n=n, axis=-1, norm="forward")))
-    kurtosis, _ = standardised_moments(raw)
-    return np.stack([kurtosis, np.abs(raw).max(axis=-1) / np.sqrt(np.mean(raw**2, axis=-1))], axis=-1)
+    raw = np.asarray(irfft(coefficients, n=n, axis=-1, norm="forward")) + coefficients[:, :1].real
+    peak, _, _, square, _, fourth = moments(raw).T
+    return np.stack([fourth / square**2, peak / np.sqrt(square)], axis=-1)
 
 
 def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray) -> FloatArray:

@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.spectra import FloatArray
+from features.spectra import FloatArray, row_kernel
 
 LINE_TOLERANCE = 0.015
 COMB_TOLERANCE = 0.02
-COMB_HARMONICS = np.arange(1, 4)
+COMB_HARMONICS = 3
 HIGHEST_LINE_ORDERS = (0.25, 12.0)
 
 FAMILIES = ("bpfo", "bpfi", "2bsf")
@@ -47,7 +47,7 @@ def families(orders: Orders) -> FloatArray:
 
 def highest_order(orders: Orders) -> FloatArray:
     """Highest order at which `read_lines` looks, shape (record,)."""
-    comb = COMB_HARMONICS[-1] * (1 + COMB_TOLERANCE) * families(orders).max(axis=-1)
+    comb = COMB_HARMONICS * (1 + COMB_TOLERANCE) * families(orders).max(axis=-1)
     return np.maximum(comb, HIGHEST_LINE_ORDERS[1])
 
 
@@ -64,7 +64,6 @@ def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) ->
     orders
         Where the lines are.
     """
-    level = np.pad(level, ((0, 0), (0, 1)))
     base, one = families(orders), np.ones_like(orders.ftf)
     ftf = orders.ftf
     sides = np.stack([one, one, ftf], axis=-1)
@@ -85,35 +84,56 @@ def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) ->
     )
 
 
+@row_kernel
 def single_lines(level: FloatArray, bins: FloatArray) -> FloatArray:
     """Highest level within the tolerance of each place, shapes (record, frequency) at (record, line)."""
-    first = np.rint(bins * (1 - LINE_TOLERANCE)).astype(np.intp)[..., None]
-    last = np.rint(bins * (1 + LINE_TOLERANCE)).astype(np.intp)[..., None]
-    window = np.minimum(first + np.arange((last - first).max() + 1), last)
-    return _pick(level, window).max(axis=-1)
+    out = np.empty(bins.shape)
+    for row in range(bins.shape[0]):
+        for line in range(bins.shape[1]):
+            first = int(np.rint(bins[row, line] * (1 - LINE_TOLERANCE)))
+            last = int(np.rint(bins[row, line] * (1 + LINE_TOLERANCE)))
+            highest = _at(level[row], last)
+            for place in range(first, last):
+                highest = max(highest, _at(level[row], place))
+            out[row, line] = highest
+    return out
 
 
+@row_kernel
 def combs(level: FloatArray, bins: FloatArray) -> FloatArray:
     """Largest mean level of harmonics 1 to 3 over a speed error shared by the three, shape (record, family).
 
     The error runs over +-2 % in steps that move the third harmonic by one bin.
     """
-    step = 1 / (COMB_HARMONICS[-1] * bins)[..., None]
-    count = int(np.ceil(2 * COMB_TOLERANCE / step.min())) + 1
-    error = np.minimum(-COMB_TOLERANCE + step * np.arange(count), COMB_TOLERANCE)
-    total = np.zeros(error.shape)
-    for harmonic in COMB_HARMONICS:
-        total += _pick(level, np.rint(harmonic * bins[..., None] * (1 + error)).astype(np.intp))
-    return total.max(axis=-1) / len(COMB_HARMONICS)
+    out = np.empty(bins.shape)
+    for row in range(bins.shape[0]):
+        for family in range(bins.shape[1]):
+            step = 1 / (COMB_HARMONICS * bins[row, family])
+            highest = -np.inf
+            for number in range(int(np.ceil(2 * COMB_TOLERANCE / step)) + 1):
+                error = min(-COMB_TOLERANCE + step * number, COMB_TOLERANCE)
+                total = 0.0
+                for harmonic in range(1, COMB_HARMONICS + 1):
+                    total += _at(level[row], int(np.rint(harmonic * bins[row, family] * (1 + error))))
+                highest = max(highest, total)
+            out[row, family] = highest / COMB_HARMONICS
+    return out
 
 
+@row_kernel
 def highest_line(level: FloatArray, bins_per_order: FloatArray) -> FloatArray:
-    """Level of the highest line between 0.25 and 12 orders, shape (record,)."""
-    low, high = (np.rint(order * bins_per_order)[:, None] for order in HIGHEST_LINE_ORDERS)
-    place = np.arange(level.shape[-1])
-    return np.where((place >= low) & (place <= high), level, 0.0).max(axis=-1)
+    """Level of the highest line between 0.25 and 12 orders, at least 0, shape (record,)."""
+    out = np.empty(len(level))
+    for row in range(len(level)):
+        first = int(np.rint(HIGHEST_LINE_ORDERS[0] * bins_per_order[row]))
+        last = int(np.rint(HIGHEST_LINE_ORDERS[1] * bins_per_order[row]))
+        highest = level.dtype.type(0.0)
+        for place in range(first, min(last + 1, level.shape[1])):
+            highest = max(highest, level[row, place])
+        out[row] = highest
+    return out
 
 
-def _pick(level: FloatArray, bins: np.ndarray) -> FloatArray:
-    flat = np.clip(bins, 0, level.shape[-1] - 1).reshape(len(bins), -1)
-    return np.take_along_axis(level, flat, axis=-1).reshape(bins.shape)
+@row_kernel
+def _at(level: FloatArray, place: int) -> float:
+    return level[max(place, 0)] if place < len(level) else 0.0

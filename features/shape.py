@@ -8,7 +8,7 @@ makes its power wander slowly against the turn of the shaft [1]_.
 
 import numpy as np
 
-from features.spectra import ComplexArray, FloatArray
+from features.spectra import ZERO_PADDING, FloatArray, row_kernel, total
 
 SHAPE_NAMES = ("impulsiveness", "slow_fluctuation", "slow_share")
 SMOOTHING_TURNS = 0.5
@@ -26,7 +26,9 @@ TIME_NAMES = (
 )
 
 
-def envelope_shape(z: ComplexArray, spectrum: FloatArray, rate: float, shaft_rate: FloatArray) -> FloatArray:
+def envelope_shape(
+    power: FloatArray, weighted: FloatArray, spectrum: FloatArray, rate: float, shaft_rate: FloatArray
+) -> FloatArray:
     """Shape of the envelope of analytic signals: the three of `SHAPE_NAMES`, shape (record, 3).
 
     Impulsiveness is ``ln(E|z|^4 / (E|z|^2)^2)``, ln 2 for Gaussian noise; slow fluctuation is the relative
@@ -35,42 +37,56 @@ def envelope_shape(z: ComplexArray, spectrum: FloatArray, rate: float, shaft_rat
 
     Parameters
     ----------
-    z
-        Analytic signals, shape (record, time).
+    power
+        Squared envelopes ``|z|^2``, shape (record, time).
+    weighted
+        Envelopes under their window, as from `features.spectra.hann_weighted`, shape (record, time).
     spectrum
-        Their `features.spectra.envelope_spectrum`, shape (record, frequency).
+        Their `features.spectra.fine_amplitudes` from 0 to 0.8 order or further, shape (record, frequency).
     rate
         Sample rate of z [Hz].
     shaft_rate
         Shape (record,) [Hz].
     """
-    power = z.real**2 + z.imag**2
-    power /= np.maximum(power.mean(axis=-1, keepdims=True), np.finfo(power.dtype).tiny)
-    impulsiveness = np.log(np.maximum(np.mean(power**2, axis=-1), 1.0))
     span = np.maximum(1, np.rint(SMOOTHING_TURNS * rate / shaft_rate)).astype(np.intp)
-    resolution = 0.5 * rate / (spectrum.shape[-1] - 1)
-    slow_bins = SLOW_ORDERS * shaft_rate / resolution
-    return np.stack([impulsiveness, _fluctuation(power, span), _share_below(spectrum, slow_bins)], axis=-1)
+    n = power.shape[-1]
+    slow_bins = SLOW_ORDERS * shaft_rate * ZERO_PADDING * n / rate
+    return _envelope_shape(power, weighted, spectrum, span, slow_bins)
 
 
-def _fluctuation(power: FloatArray, span: np.ndarray) -> FloatArray:
+@row_kernel
+def _envelope_shape(
+    power: FloatArray, weighted: FloatArray, spectrum: FloatArray, span: np.ndarray, slow_bins: FloatArray
+) -> FloatArray:
+    out = np.empty((len(power), 3))
+    n = power.shape[1]
+    tiny = np.finfo(power.dtype).tiny
+    for row in range(len(power)):
+        mean = max(total(power[row]) / n, tiny)
+        out[row, 0] = np.log(max(_energy(power[row]) / n / mean**2, 1.0))
+        out[row, 1] = _fluctuation(power[row], span[row]) / mean
+        whole = _energy(weighted[row]) * (8 * ZERO_PADDING / n)  # Parseval: that of the spectrum to its end
+        out[row, 2] = _energy(spectrum[row, : int(np.ceil(slow_bins[row]))]) / max(whole, tiny)
+    return out
+
+
+@row_kernel
+def _energy(values: FloatArray) -> float:
+    found = 0.0
+    for i in range(len(values)):
+        found += values[i] * values[i]
+    return found
+
+
+@row_kernel
+def _fluctuation(power: FloatArray, span: int) -> float:
     """Deviation of means over ``span`` samples from one another, taken at every quarter of a span."""
-    step = np.maximum(1, span // 4)
-    count = np.maximum(1, (power.shape[-1] - span) // step + 1)
-    place = np.arange(count.max())
-    start = np.minimum(place, count[:, None] - 1) * step[:, None]
-    stop = np.minimum(start + span[:, None], power.shape[-1])
-    total = np.zeros((len(power), power.shape[-1] + 1))
-    np.cumsum(power, axis=-1, out=total[:, 1:])
-    means = np.take_along_axis(total, stop, axis=-1) - np.take_along_axis(total, start, axis=-1)
-    return np.std(means / (stop - start), axis=-1, where=place < count[:, None])
-
-
-def _share_below(spectrum: FloatArray, bins: FloatArray) -> FloatArray:
-    power = spectrum**2
-    reach = np.arange(min(int(bins.max()) + 1, spectrum.shape[-1]))
-    slow = np.sum(power[:, reach], axis=-1, where=reach < bins[:, None])
-    return slow / np.maximum(power.sum(axis=-1), np.finfo(power.dtype).tiny)
+    step = max(1, span // 4)
+    means = np.empty(max(1, (len(power) - span) // step + 1))
+    for number in range(len(means)):
+        within = power[number * step : number * step + span]
+        means[number] = total(within) / len(within)
+    return np.std(means)
 
 
 def time_statistics(x: FloatArray) -> FloatArray:
@@ -80,18 +96,28 @@ def time_statistics(x: FloatArray) -> FloatArray:
     factor are the rms over the mean modulus, the peak over the mean modulus and the peak over the squared
     mean root of the modulus.
     """
-    centred = x - x.mean(axis=-1, keepdims=True)
-    modulus = np.abs(centred)
-    rms = np.sqrt(np.mean(centred**2, axis=-1))
-    peak, mean = modulus.max(axis=-1), modulus.mean(axis=-1)
-    kurtosis, skewness = standardised_moments(centred)
-    root = np.mean(np.sqrt(modulus), axis=-1) ** 2
-    factors = (rms / mean, peak / mean, peak / root)
-    return np.stack([rms, peak, peak / rms, kurtosis, skewness, *factors], axis=-1)
+    peak, mean, root, square, cube, fourth = moments(x - x.mean(axis=-1, keepdims=True)).T
+    rms = np.sqrt(square)
+    factors = (rms / mean, peak / mean, peak / root**2)
+    return np.stack([rms, peak, peak / rms, fourth / square**2, cube / square**1.5, *factors], axis=-1)
 
 
-def standardised_moments(x: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Kurtosis (3 for Gaussian noise) and skewness of records of zero mean, each of shape (record,)."""
-    square = x * x
-    power = square.mean(axis=-1)
-    return np.mean(square * square, axis=-1) / power**2, np.mean(square * x, axis=-1) / power**1.5
+@row_kernel
+def moments(x: FloatArray) -> FloatArray:
+    """Largest modulus and means of modulus, its root, square, cube and fourth power, shape (record, 6)."""
+    out = np.empty((len(x), 6))
+    for row in range(len(x)):
+        peak, modulus, root, square, cube, fourth = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(x.shape[1]):
+            value = float(x[row, i])
+            size = abs(value)
+            power = value * value
+            peak = max(peak, size)
+            modulus += size
+            root += np.sqrt(size)
+            square += power
+            cube += power * value
+            fourth += power * power
+        out[row, 0] = peak
+        out[row, 1:] = np.array([modulus, root, square, cube, fourth]) / x.shape[1]
+    return out

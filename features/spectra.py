@@ -4,8 +4,9 @@
 
 A band is cut out of the Fourier coefficients of the whole record and transformed back alone, as a complex
 baseband signal at twice the band's width [1]_. Its modulus is the envelope, and nothing in it depends on the
-sample rate of the record. Records are rows: every function works on all of them at once. Cepstral
-pre-whitening is [2]_, the squared envelope spectrum [3]_.
+sample rate of the record. Records are rows: every function works on all of them at once, in the precision it
+is given, and no row knows of the others. Cepstral pre-whitening is [2]_, the squared envelope spectrum [3]_,
+the interpolation between the coefficients of a Fourier transform [4]_.
 
 .. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, section 3.3.
 .. [2] P. Borghesani, P. Pennacchi, R. B. Randall, N. Sawalhi, R. Ricci, "Application of cepstrum
@@ -13,15 +14,18 @@ pre-whitening is [2]_, the squared envelope spectrum [3]_.
        Process.* 36 (2013) 370-384.
 .. [3] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
        Process.* 25 (2011) 485-520.
+.. [4] J. A. Fessler, B. P. Sutton, "Nonuniform fast Fourier transforms using min-max interpolation", *IEEE
+       Trans. Signal Process.* 51 (2003) 560-574.
 """
 
+import math
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.fft import ifft, next_fast_len, rfft, rfftfreq
-from scipy.ndimage import uniform_filter1d
-from scipy.signal import welch
+from numba import njit
+from numpy.typing import ArrayLike, DTypeLike, NDArray
+from scipy.fft import ifft, next_fast_len, rfft
 from scipy.signal.windows import hann, tukey
 
 FloatArray = NDArray[np.floating[Any]]
@@ -29,9 +33,34 @@ ComplexArray = NDArray[np.complexfloating[Any, Any]]
 
 TAPERED = 0.02  # of a record, half of it at each end
 ZERO_PADDING = 4
-FAINTEST = 1e-9  # of the rms coefficient: below, a coefficient is rounding error and is not whitened
+INTERPOLATED = 1.125  # times the length of a signal: what a transform is padded to before it is interpolated
+NEIGHBOURS = 8  # coefficients that a point between them is interpolated from
+FAINTEST = 1e-6  # of the rms coefficient: below, a coefficient is rounding error and is not whitened
 MEDIAN_POINTS = 64  # equally spaced over the window of the running median
 MEDIAN_STEP = 0.25  # of that window
+
+row_kernel = njit(cache=True, error_model="numpy", fastmath={"reassoc", "nnan", "nsz"})
+"""Compiles a loop over records. Sums may be taken in any order, the same for every record of a length."""
+
+
+@row_kernel
+def total(values: FloatArray) -> float:
+    """Sum in double precision; numpy's own is not vectorised in a compiled loop and costs six times as much."""
+    found = 0.0
+    for i in range(len(values)):
+        found += values[i]
+    return found
+
+
+@row_kernel
+def centred(x: FloatArray) -> FloatArray:
+    """Records less their mean, in single precision, shape (record, time)."""
+    out = np.empty(x.shape, np.float32)
+    for row in range(len(x)):
+        mean = total(x[row]) / x.shape[1]
+        for i in range(x.shape[1]):
+            out[row, i] = x[row, i] - mean
+    return out
 
 
 def psd(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:
@@ -52,8 +81,43 @@ def psd(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, Fl
     -------
     Shapes (frequency,) and (record, frequency).
     """
-    length = min(x.shape[-1], max(2, round(segment * fs)))
-    return welch(x, fs, window="hann", nperseg=length, detrend="constant", axis=-1)
+    n = x.shape[-1]
+    length = min(n, max(2, round(segment * fs)))
+    window = _hann(length, x.dtype)
+    transforms = np.asarray(rfft(_segments(x, window), axis=-1))
+    density = _mean_power(transforms) * (2 / (fs * np.sum(window**2)))
+    density[:, 0] *= 0.5
+    if length % 2 == 0:
+        density[:, -1] *= 0.5
+    return np.arange(density.shape[-1]) * (fs / length), density
+
+
+@row_kernel
+def _segments(x: FloatArray, window: FloatArray) -> FloatArray:
+    """Segments overlapping by half, less their mean, under a window, shape (record, segment, time)."""
+    length = len(window)
+    step = length - length // 2
+    out = np.empty((x.shape[0], (x.shape[1] - length) // step + 1, length), x.dtype)
+    for row in range(out.shape[0]):
+        for number in range(out.shape[1]):
+            segment = x[row, number * step : number * step + length]
+            mean = x.dtype.type(total(segment) / length)
+            for i in range(length):
+                out[row, number, i] = (segment[i] - mean) * window[i]
+    return out
+
+
+@row_kernel
+def _mean_power(coefficients: ComplexArray) -> FloatArray:
+    """Mean square over the middle axis, shape (record, frequency)."""
+    out = np.zeros((coefficients.shape[0], coefficients.shape[2]), coefficients.real.dtype)
+    for row in range(coefficients.shape[0]):
+        for number in range(coefficients.shape[1]):
+            for k in range(coefficients.shape[2]):
+                c = coefficients[row, number, k]
+                out[row, k] += c.real**2 + c.imag**2
+    out /= coefficients.shape[1]
+    return out
 
 
 def band_energies(density: FloatArray, frequencies: FloatArray, edges: ArrayLike) -> FloatArray:
@@ -76,22 +140,25 @@ def band_energies(density: FloatArray, frequencies: FloatArray, edges: ArrayLike
     Shape (record, band), one band fewer than edges.
     """
     resolution = frequencies[1] - frequencies[0]
-    below = np.zeros((density.shape[0], density.shape[1] + 1))
-    np.cumsum(density * resolution, axis=-1, out=below[:, 1:])
     bins = np.clip(np.asarray(edges, dtype=float) / resolution + 0.5, 0, density.shape[1])
-    bins = np.broadcast_to(bins, (density.shape[0], bins.shape[-1]))
-    return np.diff(at_bins(below, bins), axis=-1)
+    return _sums_between(density, np.broadcast_to(bins, (len(density), bins.shape[-1]))) * resolution
 
 
-def at_bins(values: FloatArray, bins: FloatArray) -> FloatArray:
-    """Values between bins by linear interpolation, shape (record, point).
-
-    ``values`` has the shape (record, bin), ``bins`` the shape (record, point).
-    """
-    left = np.clip(bins.astype(np.intp), 0, values.shape[-1] - 2)
-    lower = np.take_along_axis(values, left, axis=-1)
-    upper = np.take_along_axis(values, left + 1, axis=-1)
-    return lower + (bins - left) * (upper - lower)
+@row_kernel
+def _sums_between(values: FloatArray, bins: FloatArray) -> FloatArray:
+    """Sums of values from one place between bins to the next, shape (record, place - 1)."""
+    out = np.empty((len(values), bins.shape[1] - 1))
+    for row in range(len(values)):
+        for band in range(out.shape[1]):
+            start, stop = bins[row, band], bins[row, band + 1]
+            first, last = int(start), int(stop)
+            found = total(values[row, first:last])
+            if first < values.shape[1]:
+                found -= (start - first) * values[row, first]
+            if last < values.shape[1]:
+                found += (stop - last) * values[row, last]
+            out[row, band] = found
+    return out
 
 
 def fourier_coefficients(x: FloatArray, fs: float, top: float) -> ComplexArray:
@@ -116,26 +183,74 @@ def fourier_coefficients(x: FloatArray, fs: float, top: float) -> ComplexArray:
     Shape (record, frequency).
     """
     n = x.shape[-1]
-    taper = tukey(n, TAPERED, sym=False)
-    coefficients = np.asarray(rfft((x - x.mean(axis=-1, keepdims=True)) * (taper / taper.sum()), axis=-1))
+    taper = _taper(n, x.dtype)
+    coefficients = np.asarray(rfft((x - x.mean(axis=-1, keepdims=True)) * taper, axis=-1))
     return coefficients[:, : min(int(top * n / fs), n // 2) + 1]
+
+
+@lru_cache(8)
+def _taper(n: int, dtype: DTypeLike) -> FloatArray:
+    taper = tukey(n, TAPERED, sym=False)
+    return (taper / taper.sum()).astype(dtype)
+
+
+@lru_cache(32)
+def _hann(n: int, dtype: DTypeLike) -> FloatArray:
+    return hann(n, sym=False).astype(dtype)
+
+
+@row_kernel
+def squared_modulus(z: ComplexArray) -> FloatArray:
+    """Square of the modulus, in the shape (record, time) or (record, frequency) of its argument."""
+    out = np.empty(z.shape, z.real.dtype)
+    for row in range(z.shape[0]):
+        for i in range(z.shape[1]):
+            out[row, i] = z[row, i].real ** 2 + z[row, i].imag ** 2
+    return out
 
 
 def cepstrally_whitened(coefficients: ComplexArray) -> ComplexArray:
     """Coefficients of modulus one with their phases kept, shape (record, frequency)."""
-    return coefficients / _at_least_faintest(np.abs(coefficients))
+    return _divided(coefficients, squared_modulus(coefficients))
 
 
 def psd_whitened(coefficients: ComplexArray, width: int) -> ComplexArray:
     """Coefficients divided by the root of their mean power over ``width`` bins, shape (record, frequency)."""
-    power = coefficients.real**2 + coefficients.imag**2
-    smooth = uniform_filter1d(power, max(1, width), axis=-1, mode="mirror")
-    return coefficients / _at_least_faintest(np.sqrt(np.maximum(smooth, 0.0)))
+    return _divided(coefficients, _running_mean(squared_modulus(coefficients), max(1, width)))
 
 
-def _at_least_faintest(modulus: FloatArray) -> FloatArray:
-    rms = np.sqrt(np.mean(modulus**2, axis=-1, keepdims=True))
-    return np.maximum(modulus, FAINTEST * rms + np.finfo(modulus.dtype).tiny)
+@row_kernel
+def _divided(coefficients: ComplexArray, power: FloatArray) -> ComplexArray:
+    """Coefficients over the root of a power, which is nowhere taken fainter than `FAINTEST` allows."""
+    out = np.empty(coefficients.shape, coefficients.dtype)
+    tiny = np.finfo(power.dtype).tiny
+    for row in range(len(power)):
+        least = power.dtype.type(FAINTEST * np.sqrt(total(power[row]) / power.shape[1]) + tiny)
+        for k in range(power.shape[1]):
+            out[row, k] = coefficients[row, k] * (1 / max(np.sqrt(power[row, k]), least))
+    return out
+
+
+@row_kernel
+def _running_mean(power: FloatArray, width: int) -> FloatArray:
+    """Mean over ``width`` bins around each, mirrored at the first and the last bin, shape (record, frequency)."""
+    n = power.shape[1]
+    out = np.empty(power.shape, power.dtype)
+    mirrored = np.empty(n + width - 1, power.dtype)
+    for row in range(len(power)):
+        for i in range(len(mirrored)):
+            k = abs(i - width // 2) % max(2 * (n - 1), 1)
+            mirrored[i] = power[row, min(k, 2 * (n - 1) - k)]
+        within = np.zeros(n, power.dtype)
+        done, size, sums = 0, 1, mirrored  # sums over 1, 2, 4 ... bins make up any width in few additions
+        while done < width:
+            if width & size:
+                within += sums[done : done + n]
+                done += size
+            sums = sums[:-size] + sums[size:]
+            size *= 2
+        out[row] = within / width
+    return out
 
 
 def analytic_band(coefficients: ComplexArray, low: int, high: int) -> ComplexArray:
@@ -162,8 +277,8 @@ def analytic_band(coefficients: ComplexArray, low: int, high: int) -> ComplexArr
 def envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and amplitude spectrum of the envelope of analytic signals.
 
-    Less its mean, Hann window, zero-padded to four times its length; a modulation of amplitude a in the
-    envelope reads a.
+    Less its mean, Hann window, on a grid four times as fine as the resolution of a transform; a modulation of
+    amplitude a in the envelope reads a.
 
     Parameters
     ----------
@@ -176,21 +291,103 @@ def envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatAr
     -------
     Shapes (frequency,) and (record, frequency). Divide the frequencies by a shaft rate to have orders.
     """
-    return _amplitude_spectrum(np.abs(z), rate)
+    return _amplitude_spectrum(np.sqrt(squared_modulus(z)), rate)
 
 
 def squared_envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and amplitude spectrum of the squared envelope, otherwise as `envelope_spectrum`."""
-    return _amplitude_spectrum(z.real**2 + z.imag**2, rate)
+    return _amplitude_spectrum(squared_modulus(z), rate)
 
 
 def _amplitude_spectrum(y: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
-    window = hann(y.shape[-1], sym=False).astype(y.dtype)
-    weighted = y * window  # and not y @ window: BLAS rounds a record by the company it is in
-    weighted -= weighted.sum(axis=-1, keepdims=True) / window.sum() * window
-    n = ZERO_PADDING * y.shape[-1]
-    transform = np.asarray(rfft(weighted, n=n, axis=-1))
-    return rfftfreq(n, 1 / rate), np.abs(transform) * (2 / window.sum())
+    bins = ZERO_PADDING * y.shape[-1] // 2 + 1
+    return np.arange(bins) * (rate / (ZERO_PADDING * y.shape[-1])), fine_amplitudes(hann_weighted(y), bins)
+
+
+@row_kernel
+def _less_mean(y: FloatArray, window: FloatArray) -> FloatArray:
+    out = np.empty(y.shape, y.dtype)
+    for row in range(len(y)):
+        product = 0.0
+        for i in range(y.shape[1]):
+            product += y[row, i] * window[i]
+        mean = y.dtype.type(product / total(window))
+        for i in range(y.shape[1]):
+            out[row, i] = (y[row, i] - mean) * window[i]
+    return out
+
+
+def hann_weighted(y: FloatArray) -> FloatArray:
+    """Real signals less their mean under a Hann window, in which they sum to zero, shape (record, time)."""
+    return _less_mean(y, _hann(y.shape[-1], y.dtype))
+
+
+def fine_amplitudes(weighted: FloatArray, bins: int) -> FloatArray:
+    """First bins of the amplitude spectrum that zero-padding to four times the length would give.
+
+    Interpolated by a Kaiser-Bessel kernel between the coefficients of the signals padded to `INTERPOLATED` of
+    their length, within 1e-5 of the rms of the spectrum and in a quarter of the time.
+
+    Parameters
+    ----------
+    weighted
+        Signals under a Hann window, as from `hann_weighted`, shape (record, time).
+    bins
+        How many bins, at most as many as padding would give.
+
+    Returns
+    -------
+    Shape (record, bins), in the unit of the signals.
+    """
+    n = weighted.shape[-1]
+    window, first, weights = _interpolation(n, weighted.dtype)
+    padded = np.zeros((len(weighted), len(window)), weighted.dtype)
+    start = (len(window) - n) // 2
+    np.multiply(weighted, window[start : start + n], out=padded[:, start : start + n])
+    return _interpolated(np.asarray(rfft(padded, axis=-1)), len(window), first[:bins], weights[:bins])
+
+
+@lru_cache(16)
+def _interpolation(n: int, dtype: DTypeLike) -> tuple[FloatArray, np.ndarray, FloatArray]:
+    """What to interpolate the spectrum of signals of length n with.
+
+    The reciprocal of the transform of the kernel, shape (time,), scaled to read amplitudes under a Hann window;
+    the first neighbour of each bin, shape (bin,), and the weights of all its neighbours, shape (bin, neighbour).
+    """
+    padded = next_fast_len(math.ceil(INTERPOLATED * n), real=True)
+    bend = np.pi * NEIGHBOURS * (1 - 0.5 * n / padded)
+    t = np.arange(padded) / padded - 0.5
+    root = np.sqrt(np.maximum(bend**2 - (np.pi * NEIGHBOURS * t) ** 2, 1.0))  # at least 1 over the signal
+    window = 4 / n * root / (NEIGHBOURS * np.sinh(root))
+    place = np.arange(ZERO_PADDING * n // 2 + 1) * (padded / (ZERO_PADDING * n))
+    first = np.floor(place).astype(np.intp) + 1 - NEIGHBOURS // 2
+    neighbour = np.arange(NEIGHBOURS)
+    offset = (place - first)[:, None] - neighbour
+    weights = np.i0(bend * np.sqrt(1 - (2 * offset / NEIGHBOURS) ** 2)) * (-1.0) ** neighbour  # time zero is the middle
+    return window.astype(dtype), first, weights.astype(dtype)
+
+
+@njit(cache=True)  # in the order written: each lane of a vector is a record
+def _interpolated(transform: ComplexArray, n: int, first: np.ndarray, weights: FloatArray) -> FloatArray:
+    """Moduli between the coefficients of real signals of length n, shape (record, bin)."""
+    records, reach = len(transform), first[-1] - first[0] + NEIGHBOURS
+    real, imag = np.empty((reach, records), weights.dtype), np.empty((reach, records), weights.dtype)
+    for row in range(records):
+        for i in range(reach):
+            k = (first[0] + i) % n
+            c = transform[row, min(k, n - k)]
+            real[i, row], imag[i, row] = c.real, c.imag if 2 * k <= n else -c.imag
+    moduli = np.empty((len(first), records), weights.dtype)
+    for k in range(len(first)):
+        place = first[k] - first[0]
+        re_near, im_near = real[place : place + NEIGHBOURS], imag[place : place + NEIGHBOURS]
+        for row in range(records):
+            re, im = weights.dtype.type(0.0), weights.dtype.type(0.0)
+            for j in range(NEIGHBOURS):
+                re += weights[k, j] * re_near[j, row]
+                im += weights[k, j] * im_near[j, row]
+            moduli[k, row] = np.sqrt(re * re + im * im)
+    return moduli.T.copy()
 
 
 def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
@@ -213,13 +410,37 @@ def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatA
     Shape (record, bins).
     """
     last = spectrum.shape[-1] - 1
-    width = np.minimum(width, last)[:, None]
+    width = np.minimum(width, last)
     step = np.maximum(MEDIAN_STEP * width, 1.0)
-    centres = step * np.arange(int(np.max(np.ceil((bins - 1) / step))) + 2)
-    centres = np.clip(centres, width / 2, last - width / 2)
-    spread = np.linspace(-0.5, 0.5, MEDIAN_POINTS)
-    points = np.rint(centres[..., None] + width[..., None] * spread).astype(np.intp)
-    window = np.take_along_axis(spectrum, points.reshape(len(points), -1), axis=-1).reshape(points.shape)
+    knots = int(np.max(np.ceil((bins - 1) / step))) + 2
+    window = _surroundings(spectrum, width, step, knots)
     window.sort(axis=-1)  # np.median costs eight times as much
     half = MEDIAN_POINTS // 2
-    return at_bins(0.5 * (window[..., half - 1] + window[..., half]), np.arange(bins) / step)
+    return _joined(0.5 * (window[..., half - 1] + window[..., half]), step, bins)
+
+
+@row_kernel
+def _surroundings(spectrum: FloatArray, width: FloatArray, step: FloatArray, knots: int) -> FloatArray:
+    """Points of the window around each knot, shape (record, knot, point)."""
+    out = np.empty((len(spectrum), knots, MEDIAN_POINTS), spectrum.dtype)
+    last = spectrum.shape[1] - 1
+    for row in range(len(spectrum)):
+        half = width[row] / 2
+        for knot in range(knots):
+            centre = max(half, min(step[row] * knot, last - half))
+            for point in range(MEDIAN_POINTS):
+                place = centre + width[row] * (point / (MEDIAN_POINTS - 1) - 0.5)
+                out[row, knot, point] = spectrum[row, int(np.rint(place))]
+    return out
+
+
+@row_kernel
+def _joined(values: FloatArray, step: FloatArray, bins: int) -> FloatArray:
+    """Straight lines between values ``step`` bins apart, shape (record, bins)."""
+    out = np.empty((len(values), bins), values.dtype)
+    for row in range(len(values)):
+        for left in range(values.shape[1] - 1):
+            rise = (values[row, left + 1] - values[row, left]) / step[row]
+            for k in range(int(np.ceil(left * step[row])), min(int(np.ceil((left + 1) * step[row])), bins)):
+                out[row, k] = values[row, left] + (k - left * step[row]) * rise
+    return out
