@@ -11,14 +11,14 @@ and say much about the machine itself. The lines are those of [1]_.
        Process.* 25 (2011) 485-520.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len
 
 from features.lines import FAMILIES, LINE_NAMES, Orders, highest_order, read_lines
-from features.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, time_statistics
+from features.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
 from features.spectra import (
     ZERO_PADDING,
     ComplexArray,
@@ -51,7 +51,7 @@ ENERGY_HZ = (20.0, 100.0, 200.0, 400.0, 800.0, 1500.0, 2500.0, 3500.0, TOP)
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 FAINTEST_ENERGY = 1e-12  # of the whole: 120 dB down
 
-BATCH = 16  # records worked on at once: what they need stays in a core's cache
+BATCH = 8  # records worked on at once: what they need stays in a core's cache
 
 VIEWS = ("cepstral", "whitened", "bands_max", "bands_mean")
 RIVALS = tuple(combinations(range(len(FAMILIES)), 2))
@@ -165,7 +165,7 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
         return lines, shape
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
     coefficients = fourier_coefficients(x[long_enough], fs, TOP)
-    read = _read(_signals(coefficients, duration, fs), duration, shaft_rate, orders)
+    read = _read(_bands(coefficients, duration, fs), duration, shaft_rate, orders)
     line_views, shape_views = map(_views, read)
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
     lines[long_enough] = np.concatenate([_flat(line_views), _flat(over)], axis=-1)
@@ -173,33 +173,35 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
     return lines, shape
 
 
-def _signals(coefficients: ComplexArray, duration: float, fs: float) -> Iterator[ComplexArray]:
-    """Yield two broad analytic signals, then the narrow bands of which more than half is below the Nyquist rate."""
+def _bands(coefficients: ComplexArray, duration: float, fs: float) -> list[ComplexArray]:
+    """Two broad bands of whitened coefficients, then the narrow ones of which more than half is below the Nyquist rate."""
     cepstral = cepstrally_whitened(coefficients)
     whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
     narrow = [(whitened, band) for band in NARROW if sum(band) < fs]
     cuts = [(cepstral, BROAD), (whitened, BROAD), *narrow]
-    for source, (low, high) in cuts:
-        yield analytic_band(source, round(low * duration), round(high * duration))
+    return [source[:, round(low * duration) : round(high * duration)] for source, (low, high) in cuts]
 
 
 def _read(
-    signals: Iterable[ComplexArray], duration: float, shaft_rate: FloatArray, orders: Orders
+    bands: list[ComplexArray], duration: float, shaft_rate: FloatArray, orders: Orders
 ) -> tuple[FloatArray, FloatArray]:
-    """Lines and shape of the envelope of each signal, shapes (record, signal, value)."""
+    """Lines and shape of the envelope of each band, shapes (record, band, value)."""
     resolution = 1 / (ZERO_PADDING * duration)
     bins = int(np.max(highest_order(orders) * shaft_rate) / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
-    lines, shapes = [], []
-    for z in signals:
+    level = np.zeros((len(shaft_rate), len(bands), bins), np.float32)  # a line beyond the end of a spectrum reads 0
+    shape = np.empty((len(shaft_rate), len(bands), len(SHAPE_NAMES)))
+    for number, band in enumerate(bands):
+        z = analytic_band(band, 0, band.shape[-1])
         power = squared_modulus(z)
         weighted = hann_weighted(np.sqrt(power))
-        last = ZERO_PADDING * z.shape[-1] // 2
-        spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, last + 1))
-        level = log_level(spectrum, width, min(bins, last + 1))
-        shapes.append(envelope_shape(power, weighted, spectrum, z.shape[-1] / duration, shaft_rate))
-        lines.append(read_lines(level, shaft_rate / resolution, orders))
-    return np.stack(lines, axis=1), np.stack(shapes, axis=1)
+        end = ZERO_PADDING * z.shape[-1] // 2 + 1
+        spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, end))
+        level[:, number, :end] = log_level(spectrum, width, min(bins, end))
+        shape[:, number] = envelope_shape(power, weighted, spectrum, z.shape[-1] / duration, shaft_rate)
+    each = Orders(*(np.repeat(order, len(bands)) for order in orders))
+    lines = read_lines(level.reshape(-1, bins), np.repeat(shaft_rate / resolution, len(bands)), each)
+    return lines.reshape(*level.shape[:2], -1), shape
 
 
 def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
@@ -227,8 +229,8 @@ def _raw_shape(coefficients: ComplexArray) -> FloatArray:
     """Kurtosis and crest factor of what lies below 5 kHz, shape (record, 2)."""
     n = next_fast_len(2 * coefficients.shape[-1])
     raw = np.asarray(irfft(coefficients, n=n, axis=-1, norm="forward")) + coefficients[:, :1].real
-    peak, _, _, square, _, fourth = moments(raw).T
-    return np.stack([fourth / square**2, peak / np.sqrt(square)], axis=-1)
+    _, _, square, _, fourth = moments(raw).T
+    return np.stack([fourth / square**2, peaks(raw) / np.sqrt(square)], axis=-1)
 
 
 def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray) -> FloatArray:

@@ -86,7 +86,7 @@ def _fluctuation(power: FloatArray, span: int) -> float:
     for number in range(len(means)):
         within = power[number * step : number * step + span]
         means[number] = total(within) / len(within)
-    return np.std(means)
+    return float(np.std(means))
 
 
 def time_statistics(x: FloatArray) -> FloatArray:
@@ -96,28 +96,31 @@ def time_statistics(x: FloatArray) -> FloatArray:
     factor are the rms over the mean modulus, the peak over the mean modulus and the peak over the squared
     mean root of the modulus.
     """
-    peak, mean, root, square, cube, fourth = moments(x - x.mean(axis=-1, keepdims=True)).T
-    rms = np.sqrt(square)
-    factors = (rms / mean, peak / mean, peak / root**2)
+    centred = x - x.mean(axis=-1, keepdims=True)
+    modulus, root, square, cube, fourth = moments(centred).T
+    peak, rms = peaks(centred), np.sqrt(square)
+    factors = (rms / modulus, peak / modulus, peak / root**2)
     return np.stack([rms, peak, peak / rms, fourth / square**2, cube / square**1.5, *factors], axis=-1)
+
+
+def peaks(x: FloatArray) -> FloatArray:
+    """Largest modulus of each record, shape (record,)."""
+    return np.maximum(x.max(axis=-1), -x.min(axis=-1))
 
 
 @row_kernel
 def moments(x: FloatArray) -> FloatArray:
-    """Largest modulus and means of modulus, its root, square, cube and fourth power, shape (record, 6)."""
-    out = np.empty((len(x), 6))
+    """Means of the modulus, its root, the square, the cube and the fourth power of records, shape (record, 5)."""
+    out = np.empty((len(x), 5))
     for row in range(len(x)):
-        peak, modulus, root, square, cube, fourth = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        modulus, root, square, cube, fourth = 0.0, 0.0, 0.0, 0.0, 0.0
         for i in range(x.shape[1]):
-            value = float(x[row, i])
-            size = abs(value)
-            power = value * value
-            peak = max(peak, size)
+            size = abs(x[row, i])
+            power = size * size
             modulus += size
             root += np.sqrt(size)
             square += power
-            cube += power * value
+            cube += power * x[row, i]
             fourth += power * power
-        out[row, 0] = peak
-        out[row, 1:] = np.array([modulus, root, square, cube, fourth]) / x.shape[1]
+        out[row] = np.array([modulus, root, square, cube, fourth]) / x.shape[1]
     return out

@@ -235,21 +235,17 @@ def _divided(coefficients: ComplexArray, power: FloatArray) -> ComplexArray:
 def _running_mean(power: FloatArray, width: int) -> FloatArray:
     """Mean over ``width`` bins around each, mirrored at the first and the last bin, shape (record, frequency)."""
     n = power.shape[1]
+    place = np.abs(np.arange(n + width) - width // 2) % max(2 * (n - 1), 1)
+    place = np.minimum(place, 2 * (n - 1) - place)
+    mirrored = np.empty(n + width)
     out = np.empty(power.shape, power.dtype)
-    mirrored = np.empty(n + width - 1, power.dtype)
     for row in range(len(power)):
-        for i in range(len(mirrored)):
-            k = abs(i - width // 2) % max(2 * (n - 1), 1)
-            mirrored[i] = power[row, min(k, 2 * (n - 1) - k)]
-        within = np.zeros(n, power.dtype)
-        done, size, sums = 0, 1, mirrored  # sums over 1, 2, 4 ... bins make up any width in few additions
-        while done < width:
-            if width & size:
-                within += sums[done : done + n]
-                done += size
-            sums = sums[:-size] + sums[size:]
-            size *= 2
-        out[row] = within / width
+        for i in range(n + width):
+            mirrored[i] = power[row, place[i]]
+        within = total(mirrored[:width])
+        for i in range(n):
+            out[row, i] = max(within, 0.0) / width
+            within += mirrored[i + width] - mirrored[i]
     return out
 
 

@@ -13,13 +13,14 @@ from contextlib import AbstractContextManager, ExitStack, nullcontext, suppress
 from functools import partial
 from pathlib import Path
 
+import netCDF4
 import numpy as np
 import xarray as xr
 from distributed import Client, LocalCluster, as_completed
 
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.spectra import FloatArray
-from gen.corpus import SIGNAL, open_corpus, open_part, part_paths
+from gen.corpus import SIGNAL, open_corpus, part_paths
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
@@ -87,16 +88,34 @@ def feature_table(
 
 def part_features(path: Path, groups: Sequence[str] = GROUPS, channel: int = 0) -> FloatArray:
     """Features of the records of one part, shape (record, feature); NaN as in `features.indicators`."""
-    with open_part(path) as part:
-        x = part[SIGNAL].isel(channel=channel).values
-        fs, shaft_rate = part["sample_rate"].values, part["shaft_rate"].values
-        orders = Orders(*(part[name].values for name in Orders._fields))
+    x, (fs, shaft_rate, *nominal) = _read_part(path, channel)
+    orders = Orders(*nominal)
     values = np.full((len(x), len(feature_names(groups))), np.nan)
     for rate in np.unique(fs[fs > 0]):
         rows = np.flatnonzero(fs == rate)
         chosen = Orders(*(order[rows] for order in orders))
         values[rows], _ = indicators(x[rows], float(rate), shaft_rate[rows], chosen, groups)
     return values
+
+
+def _read_part(path: Path, channel: int) -> tuple[FloatArray, list[FloatArray]]:
+    """Signals of one channel in single precision, then sample rate, shaft rate and `Orders` of the records.
+
+    Not by xarray, which takes twice the time: half of it to open variables nobody reads, a quarter to scale in
+    double precision.
+    """
+    try:
+        with netCDF4.Dataset(path) as part:
+            part.set_auto_maskandscale(False)
+            signal = part[SIGNAL]
+            x, attributes = signal[:, channel], signal.__dict__
+            known = [part[name][:] for name in ("sample_rate", "shaft_rate", *Orders._fields)]
+    except OSError as error:
+        raise CorpusError(f"{path}: not a readable netCDF-4 part ({error}); generate or copy it again.") from error
+    if "scale_factor" in attributes:
+        missing = x == attributes["_FillValue"]
+        x = np.where(missing, np.float32(np.nan), x * np.float32(attributes["scale_factor"]))
+    return x, known
 
 
 def _run(

@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.ndimage import uniform_filter1d
+from scipy.signal import welch
 from scipy.signal.windows import hann
 
 from features.spectra import (
@@ -11,7 +13,9 @@ from features.spectra import (
     band_energies,
     cepstrally_whitened,
     envelope_spectrum,
+    fine_amplitudes,
     fourier_coefficients,
+    hann_weighted,
     psd,
     psd_whitened,
     running_median,
@@ -42,6 +46,14 @@ def test_the_psd_of_a_long_record_holds_its_variance(seed, fs):
     x = noise(seed, n=65536)
     frequencies, density = psd(x, fs, segment=512 / fs)
     np.testing.assert_allclose(density.sum(axis=1) * frequencies[1], x.var(axis=1), rtol=0.03)
+
+
+@law
+@given(seeds, st.integers(16, 4000), st.integers(8, 4000))
+def test_the_psd_is_that_of_welch(seed, n, length):
+    x = noise(seed, n=n)
+    for ours, his in zip(psd(x, 1.0, length), welch(x, 1.0, nperseg=min(n, length)), strict=True):
+        np.testing.assert_allclose(ours, his, rtol=1e-9, atol=1e-12)
 
 
 @law
@@ -138,6 +150,24 @@ def test_a_psd_whitened_spectrum_is_as_strong_in_every_band(seed, colour):
     coloured = coefficients * (1.0 + np.arange(coefficients.shape[1])) ** colour
     power = np.abs(psd_whitened(coloured, 100)[:, 500:4500]) ** 2
     np.testing.assert_allclose(power.reshape(3, 4, 1000).mean(axis=2), 1.0, atol=0.1)
+
+
+@law
+@given(seeds, st.integers(3, 500), st.integers(1, 200))
+def test_a_spectrum_is_whitened_by_its_running_mean_mirrored_at_its_ends(seed, bins, width):
+    coefficients = noise(seed, n=bins) * np.exp(1j * noise(seed + 1, n=bins))
+    mean = uniform_filter1d(np.abs(coefficients) ** 2, width, mode="mirror")
+    np.testing.assert_allclose(psd_whitened(coefficients, width), coefficients / np.sqrt(mean), rtol=1e-6)
+
+
+@law
+@given(seeds, st.integers(50, 6000), st.sampled_from([np.float32, np.float64]), st.floats(0.0, 1.0))
+def test_an_interpolated_spectrum_is_that_of_the_padded_signal(seed, n, precision, part):
+    weighted = hann_weighted(np.abs(noise(seed, n=n)).astype(precision))
+    padded = 4 / n * np.abs(np.fft.rfft(weighted, 4 * n))
+    bins = max(1, round(part * padded.shape[1]))
+    near = 5e-5 * np.sqrt(np.mean(padded**2))
+    np.testing.assert_allclose(fine_amplitudes(weighted, bins), padded[:, :bins], rtol=0, atol=near)
 
 
 @pytest.mark.parametrize("whiten", [cepstrally_whitened, lambda c: psd_whitened(c, 25)])
