@@ -63,19 +63,11 @@ def _envelope_shape(
     tiny = np.finfo(power.dtype).tiny
     for row in range(len(power)):
         mean = max(total(power[row]) / n, tiny)
-        out[row, 0] = np.log(max(_energy(power[row]) / n / mean**2, 1.0))
+        out[row, 0] = np.log(max(total(power[row] ** 2) / n / mean**2, 1.0))
         out[row, 1] = _fluctuation(power[row], span[row]) / mean
-        whole = _energy(weighted[row]) * (8 * ZERO_PADDING / n)  # Parseval: that of the spectrum to its end
-        out[row, 2] = _energy(spectrum[row, : int(np.ceil(slow_bins[row]))]) / max(whole, tiny)
+        whole = total(weighted[row] ** 2) * (8 * ZERO_PADDING / n)  # Parseval: that of the spectrum to its end
+        out[row, 2] = total(spectrum[row, : int(np.ceil(slow_bins[row]))] ** 2) / max(whole, tiny)
     return out
-
-
-@row_kernel
-def _energy(values: FloatArray) -> float:
-    found = 0.0
-    for i in range(len(values)):
-        found += values[i] * values[i]
-    return found
 
 
 @row_kernel
