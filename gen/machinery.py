@@ -15,8 +15,9 @@ from gen.physics import motion
 from gen.physics.axial import axial_approach
 from gen.physics.batch import Motion, Record, n_terms
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
-from gen.physics.hertz import contact_exponent, load_deflection_factor
 from gen.physics.decimate import LEAD
+from gen.physics.elementary import exponential, power
+from gen.physics.hertz import contact_exponent, load_deflection_factor
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.profile import mean_share, share_at
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs
@@ -176,7 +177,7 @@ def _processes(bearing: Bearing, shaft_rate: float, rng: np.random.Generator) ->
     lowest, widths, unit = _bands(bearing.n_balls)
     u = rng.random((2, n_terms(bearing.n_balls)))
     units = np.array([1.0, shaft_rate, orders(bearing).ftf * shaft_rate])
-    return lowest * units[unit] * np.exp(widths * u[0]), 2 * np.pi * u[1]
+    return lowest * units[unit] * exponential(widths * u[0]), 2 * np.pi * u[1]
 
 
 @functools.lru_cache(maxsize=64)
@@ -185,7 +186,7 @@ def _bands(n_balls: int) -> tuple[FloatArray, FloatArray, NDArray[np.int_]]:
     bands = np.array([[0.3, 3.0, 0], [0.2, 2, 1], [0.05, 0.6, 1], [0.05, 0.6, 1], [0.3, 3, 2]])
     terms = [motion.SPEED_TERMS, motion.SLIP_TERMS, motion.SPIN_TERMS, motion.AXIS_TERMS, motion.JITTER_TERMS * n_balls]
     low, high, unit = np.repeat(bands, terms, axis=0).T
-    return low, np.log(high / low), unit.astype(int)
+    return low, np.array([math.log(ratio) for ratio in high / low]), unit.astype(int)
 
 
 def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
@@ -204,7 +205,7 @@ def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
         factors[:, 1] = share_at(record.load_profile, times)
     if wander > 0:
         rng, shaft_rate = scenario.rng(Purpose.LOAD_WANDER), record.conditions["shaft"]
-        rates = 2 * np.pi * shaft_rate * 0.05 ** rng.random(LOAD_TERMS)
+        rates = 2 * np.pi * shaft_rate * power(0.05, rng.random(LOAD_TERMS))
         phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
         factors[:, 1] *= np.maximum(1 + wander * math.sqrt(2 / LOAD_TERMS) * cosine_sum(times, rates, phases), 0.0)
     return factors

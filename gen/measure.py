@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from gen.mixing import Lines, Shaft, mix
+from gen.physics.elementary import decibels
 from gen.physics.profile import turned
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario
@@ -105,7 +106,7 @@ def _mixed(
     gain, noise = gains.astype(np.float32)[:, :, None, None]
     mixed = gain * bearing[..., kept]
     mixed += np.multiply(noise, background[..., kept], out=background[..., kept])
-    return mixed, 20 * np.log10(rms[0] * gains[0] / np.maximum(rms[1] * gains[1], 1e-30))
+    return mixed, decibels(rms[0] * gains[0] / np.maximum(rms[1] * gains[1], 1e-30))
 
 
 def _through_paths(acceleration: FloatArray, sounds: Sequence[Sound]) -> Float32Array:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len
 
+from gen.physics.elementary import power
 from gen.scenarios import Background, Mode, Rig
 
 FloatArray = NDArray[np.floating]
@@ -93,8 +94,8 @@ def noise_colour(background: Background, frequency: FloatArray) -> FloatArray:
 
     The PSD falls with ``f^-slope`` above 10 Hz, times the resonances, over a white floor.
     """
-    falling = np.maximum(frequency, 10.0) ** (-background.slope / 2)
+    falling = power(np.maximum(frequency, 10.0), -background.slope / 2)
     falling *= np.abs(1 + base_excited(background.modes, frequency))
     falling[0] = 0.0
-    power = falling**2 / np.mean(falling**2) + background.floor**2
-    return np.sqrt(power / np.mean(power))
+    density = falling**2 / np.mean(falling**2) + background.floor**2
+    return np.sqrt(density / np.mean(density))

@@ -12,13 +12,14 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from gen.physics import decimate, gaps, integrate, kernel, lanes, motion, spall
+from gen.physics import decimate, gaps, integrate, kernel, lanes, motion, spall, step
 from gen.physics.batch import WAVES, Motion, Record, Spall, lay_out, record_shape
 from gen.physics.integrate import prepare, to_next_knot
-from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, STEEPEST, FloatArray, advance, param_rows
+from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, STEEPEST, FloatArray, param_rows
 from gen.physics.lanes import KERNEL, LANES
 from gen.physics.motion import ANGLE_ROWS, STRIDE, slow_rows
 from gen.physics.rotor import Machine
+from gen.physics.step import advance
 
 EVERY_ACCELERATION = np.eye(AXES)
 
@@ -83,7 +84,8 @@ def slow_motion(record: Record, knot: float, n_knots: int) -> Slow:
     balls = np.arange(bearing.n_balls)
     at_nodes = np.stack(
         [
-            drawn.jitter_rms * process(record, motion.JITTER_FIRST + ball * motion.JITTER_TERMS, motion.JITTER_TERMS, nodes)
+            drawn.jitter_rms
+            * process(record, motion.JITTER_FIRST + ball * motion.JITTER_TERMS, motion.JITTER_TERMS, nodes)
             + (drawn.late_by if ball == drawn.late_ball else 0.0)
             for ball in balls
         ],
@@ -166,7 +168,7 @@ def waviness(record: Record, on_inner: FloatArray, on_outer: FloatArray) -> Floa
     if record.waves.size == 0:
         return np.zeros_like(on_outer)
     orders = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1)
-    amplitudes = record.waves[: WAVES].reshape(2, 2, -1)
+    amplitudes = record.waves[:WAVES].reshape(2, 2, -1)
     height = np.zeros_like(on_outer)
     for (real, imaginary), angles in zip(amplitudes, (on_inner, on_outer), strict=True):
         turns = angles[..., None] * orders
@@ -179,7 +181,7 @@ def ball_waviness(record: Record, spin: FloatArray) -> FloatArray:
     orders = 2 * np.arange(1, motion.BALL_ORDERS + 1)
     height = np.zeros((len(spin), record.bearing.n_balls))
     if record.waves.size > WAVES:
-        real, imaginary = record.waves[WAVES :].reshape(len(orders), 2, -1).transpose(1, 0, 2)
+        real, imaginary = record.waves[WAVES:].reshape(len(orders), 2, -1).transpose(1, 0, 2)
         turns = np.outer(spin, orders)
         height += np.cos(turns) @ real - np.sin(turns) @ imaginary
     return height
@@ -311,8 +313,8 @@ def march_twin(record: Record, start: FloatArray, n_knots: int, n_steps: int, kn
     y = np.array(start, dtype=float)
     states, accelerations = [y], []
     for at in range(n_knots):
-        for step in range(n_steps):
-            begin, middle, end = step / n_steps, (step + 0.5) / n_steps, (step + 1) / n_steps
+        for number in range(n_steps):
+            begin, middle, end = number / n_steps, (number + 0.5) / n_steps, (number + 1) / n_steps
             k1 = right_hand_side(record, slow, knot, at, begin, y)
             k2 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k1)
             k3 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k2)
@@ -378,5 +380,7 @@ def _cached(sources: str):
 
 
 _march = _cached(
-    sha256("".join(map(getsource, (lanes, spall, kernel, motion, gaps, decimate, integrate))).encode()).hexdigest()
+    sha256(
+        "".join(map(getsource, (lanes, spall, kernel, step, motion, gaps, decimate, integrate))).encode()
+    ).hexdigest()
 )

@@ -4,35 +4,41 @@ import re
 
 import numpy as np
 import pytest
+from numba import njit
 
-from gen.physics.integrate import integrate_lanes
-from gen.physics.kernel import N_STATE, jitter_row, make_shape
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.kernel import N_STATE, make_shape, param_rows
 from gen.physics.lanes import LANES
-from gen.physics.motion import ANGLE_ROWS, DRIVE_ROWS, JITTER_FIRST, JITTER_TERMS, SPALL_ROWS, TABLE_POINTS, Lanes
+from gen.physics.step import advance
 
-STAGES = 4  # of a Runge-Kutta step, each with the force of every ball
-PACKED_SQUARE_ROOT = re.compile(r"\bv?sqrtpd\b|\bfsqrt\s+v\d+\.2d\b")
-
-
-def standing_still(shape):
-    """A batch of nothing, for the compiler to see."""
-    n_terms = JITTER_FIRST + JITTER_TERMS * len(shape.balls)
-    rows = (N_STATE, jitter_row(shape), DRIVE_ROWS, ANGLE_ROWS, SPALL_ROWS, 4 * n_terms, 0)
-    flat = (np.zeros(n * LANES) for n in rows)
-    return Lanes(*flat, np.zeros((0, 2, LANES)), np.zeros((1, TABLE_POINTS)))
+STAGES = 2  # bodies of the Runge-Kutta step, each with the force of every ball
+# a square root begins with half the exponent: every number of a vector shifted by one bit
+PACKED_ROOT = re.compile(r"\bv?psra[qd]\s+\$1, %[yz]mm|\bv?psr[al]q\s+\$1, %[xyz]mm|\bsshr\s+v\d+\.2d, v\d+\.2d, #1\b")
+SCALAR_ROOT = re.compile(r"\bsarq\s+%|\basr\s+x\d+, x\d+, #1\b")
+EVERYTHING = {"resonator": True, "uneven": True, "jittered": True, "damped": True, "forced": True, "loose": True}
+VARIANTS = [{flag: True} for flag in (*EVERYTHING, "displacement", "roller")] + [{}, EVERYTHING]
 
 
-# what most recipes need, everything at once, and rollers: each takes ten seconds to compile
-@pytest.mark.parametrize(
-    ("n_balls", "flags"),
-    [
-        (9, {"resonator": True, "uneven": True, "jittered": True}),
-        (8, {"resonator": True, "uneven": True, "jittered": True, "damped": True, "forced": True, "loose": True}),
-        (13, {"roller": True, "uneven": True}),
-    ],
-)
-def test_the_force_of_every_ball_is_computed_for_several_records_at_once(n_balls, flags):
-    shape = make_shape(n_balls, 1, **flags)
-    integrate_lanes(shape, standing_still(shape), 1e-5, 1, np.ones(1), 0, 1)
-    assembly = integrate_lanes.inspect_asm()[integrate_lanes.signatures[-1]]
-    assert len(PACKED_SQUARE_ROOT.findall(assembly)) >= STAGES * n_balls
+@njit
+def advance_once(shape, state, params, history):
+    advance(shape, state, params, 1e-6, 1, 0.0, history, 0)
+
+
+def assembly(shape):
+    """Code of a step; each takes three seconds to compile."""
+    advance_once(shape, np.zeros(N_STATE * LANES), np.ones(param_rows(shape, 1) * LANES), np.zeros(LANES))
+    return advance_once.inspect_asm()[advance_once.signatures[-1]]
+
+
+@pytest.mark.parametrize("n_balls", sorted({bearing.n_balls for bearing in CATALOGUE.values()}))
+def test_the_force_of_every_ball_is_computed_for_several_records_at_once(n_balls):
+    code = assembly(make_shape(n_balls, 1, resonator=True, uneven=True, jittered=True, damped=True))
+    assert len(PACKED_ROOT.findall(code)) >= STAGES * n_balls
+
+
+@pytest.mark.parametrize("flags", VARIANTS, ids=lambda flags: "+".join(flags) or "plain")
+def test_every_variant_of_the_model_is_vector_code(flags):
+    roots = 3 if "roller" in flags else 1
+    code = assembly(make_shape(9, 1, **flags))
+    assert len(PACKED_ROOT.findall(code)) >= STAGES * 9 * roots
+    assert len(SCALAR_ROOT.findall(code)) <= STAGES * 9 * roots  # of the loop that runs if arrays should overlap

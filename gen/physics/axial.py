@@ -70,4 +70,5 @@ def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, heav
     found = minimize(
         energy, start, jac=slope, hess=curvature, method="trust-exact", options={"gtol": 1e-6 * axial_load}
     )
-    return float(found.x[2] * _MICROMETRE * sine)
+    # to the picometre: beyond it the digits are those of the processor's linear algebra
+    return round(float(found.x[2] * _MICROMETRE * sine), 12)

@@ -15,7 +15,6 @@ from gen.physics.lanes import LANES
 from gen.physics.rotor import Machine, as_columns, rest
 from gen.physics.spall import PROFILES
 
-
 WAVES = 4 * motion.N_ORDERS  # amplitudes of both races
 
 
@@ -77,8 +76,8 @@ class Record(NamedTuple):
     pickups: FloatArray
     """Weights of the six accelerations in each channel, shape (channel, coordinate) [1]."""
     waves: FloatArray
-    """Waviness amplitudes [m], shape (race, real and imaginary part, order), in a row; (order, part, ball) of the balls after it if they have
-    some; or empty."""
+    """Waviness amplitudes [m], shape (race, real and imaginary part, order), in a row, and if the balls have some those of the balls, shape
+    (order, part, ball); or empty."""
     schedule: FloatArray = np.empty((0, 2))
     """Factors of shaft rate (over the knot) and load (at its start), shape (knot, 2); (0, 2) if both are constant."""
     displacement: bool = False
@@ -149,8 +148,9 @@ def _params(records: list[Record], machine: Machine, shape: Shape) -> FloatArray
     params = np.zeros((kernel.direction_row(shape), LANES))
     with np.errstate(divide="ignore"):
         sensor = np.where(np.asarray(machine.sensor_mass) > 0, 1 / np.asarray(machine.sensor_mass), 0.0)
+    damping = np.divide(machine.contact_damping, machine.load_deflection_factor)
     params[: kernel.N_CONSTANTS] = [
-        machine.load_deflection_factor, np.divide(machine.contact_damping, machine.load_deflection_factor), machine.contact_cosine, machine.half_clearance,
+        machine.load_deflection_factor, damping, machine.contact_cosine, machine.half_clearance,
         1 / np.asarray(machine.shaft_mass), 1 / np.asarray(machine.housing_mass), sensor, machine.ring_damping,
         machine.shaft_damping, machine.shaft_stiffness, machine.ring_stiffness_x, machine.ring_stiffness_y,
         machine.support_stiffness_x, machine.support_stiffness_y, machine.support_damping_x, machine.support_damping_y,
@@ -166,14 +166,16 @@ def _drive(records: list[Record], motions: Motion, machine: Machine, knot: float
     bearings = [record.bearing for record in records]
     gamma = np.array([bearing.gamma for bearing in bearings])
     size = np.array([bearing.pitch_diameter / bearing.ball_diameter for bearing in bearings])
-    twice = np.arctan2(motions.twice_y, motions.twice_x)
+    x, y = np.asarray(motions.twice_x), np.asarray(motions.twice_y)
+    twice_c, twice_s = x * x - y * y, 2 * x * y  # of twice the angle, but for their size
+    size_of_both = np.maximum(x * x + y * y, 1e-300)
     return np.array([
         2 * np.pi * knot * np.asarray(motions.shaft_rate), 0.5 * (1 - gamma), 0.5 * size * (1 - gamma**2), motions.mean_slip,
         motions.speed_rms, motions.slip_rms, motions.spin_rms, motions.jitter_rms, motions.axis_offset, motions.axis_rms,
         motions.axis_limit, motions.unbalance, machine.half_clearance, machine.ball_radius,
         [bearing.inner_radius for bearing in bearings], [bearing.outer_radius for bearing in bearings],
-        machine.load_x, machine.load_y, motions.twice_x, motions.twice_y, np.cos(2 * twice), np.sin(2 * twice), motions.bow, motions.knock, motions.knock_angle,
-        motions.late_ball, motions.late_by, motions.knock_seed,
+        machine.load_x, machine.load_y, motions.twice_x, motions.twice_y, twice_c / size_of_both, twice_s / size_of_both,
+        motions.bow, motions.knock, motions.knock_angle, motions.late_ball, motions.late_by, motions.knock_seed,
     ])  # fmt: skip
 
 
@@ -190,7 +192,11 @@ def _spalls(records: list[Record]) -> tuple[FloatArray, FloatArray]:
         for place, spall in enumerate(record.spalls):
             half, arc = spall_reach(record.bearing, spall)
             profile = PROFILES.index(spall.profile)
-            with_rings = {"inner": (1, -1, 0, -spall.angle), "outer": (1, 0, 0, -spall.angle), "ball": (0, 0, 1, spall.angle)}
+            with_rings = {
+                "inner": (1, -1, 0, -spall.angle),
+                "outer": (1, 0, 0, -spall.angle),
+                "ball": (0, 0, 1, spall.angle),
+            }
             period = np.pi if spall.site == "ball" else 2 * np.pi / record.bearing.n_balls
             spalls[place, :, lane] = (
                 *with_rings[spall.site], period, half + farthest[lane], sites[spall.site], spall.ball, half, arc, spall.depth, profile,

@@ -73,7 +73,13 @@ def _stage(taps: FloatArray, factor: int) -> Stage:
 
 @njit(**INLINE)
 def filter_rows(
-    channels: tuple[None, ...], taps: FloatArray, history: FloatArray, first: int, out: FloatArray, at: int, total: FloatArray
+    channels: tuple[None, ...],
+    taps: FloatArray,
+    history: FloatArray,
+    first: int,
+    out: FloatArray,
+    at: int,
+    total: FloatArray,
 ) -> None:
     """Four rows of ``out`` from row ``at`` on: weighted sums of the rows of ``history`` from row ``first`` on.
 

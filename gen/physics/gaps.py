@@ -49,10 +49,11 @@ from gen.physics.motion import (
 )  # fmt: skip
 from gen.physics.spall import GEOMETRIC, RECTANGULAR, TABLE, drop
 
-
 _TURNS = np.arange(MAX_BALLS)[:, None] * np.arange(MAX_BALLS) / np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None, None]
 COS_OF_TURNS, SIN_OF_TURNS = np.cos(2 * np.pi * _TURNS), np.sin(2 * np.pi * _TURNS)  # (number of balls, ball, order)
-SIN_OF_TURNS[2 * np.arange(MAX_BALLS // 2 + 1), :, np.arange(MAX_BALLS // 2 + 1) % MAX_BALLS] = 0.0  # of half the number of balls
+SIN_OF_TURNS[2 * np.arange(MAX_BALLS // 2 + 1), :, np.arange(MAX_BALLS // 2 + 1) % MAX_BALLS] = (
+    0.0  # of half the number of balls
+)
 DIRECTION, POWER, TURN, N_ROTATIONS = range(4)  # complex numbers of the work array of the waviness, two rows each
 
 
@@ -173,7 +174,9 @@ def ball_gaps(shape: Shape, lanes: Lanes, moves: FloatArray, work: FloatArray, g
 
 
 @njit(**INLINE)
-def move_gaps(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, work: FloatArray, next_gaps: FloatArray) -> None:
+def move_gaps(
+    shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, work: FloatArray, next_gaps: FloatArray
+) -> None:
     """Let the gap of every ball run straight to its value at the next knot; ``next_gaps`` holds those at this one."""
     wide()
     gaps, per_half_step = lanes.params[gap_row(shape) * LANES :], 0.5 / n_steps
@@ -261,7 +264,7 @@ def meet_spall(
     reach = this[REACH * LANES + lane] + 0.5 * abs(slope)
     around = min(int(reach / period + 0.5), n_balls // 2)
     for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
-        ball = (rank - nearest) % n_balls
+        ball = int((rank - nearest) % n_balls)
         offset, passing = start + (rank - nearest) * period, rate
         if len(shape.jittered):
             source = (JITTER + ball) * LANES + lane
@@ -271,7 +274,9 @@ def meet_spall(
 
 
 @njit(**INLINE)
-def move_spalls(shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, work: FloatArray, dropped: FloatArray) -> None:
+def move_spalls(
+    shape: Shape, lanes: Lanes, n_steps: int, moves: FloatArray, work: FloatArray, dropped: FloatArray
+) -> None:
     """Let every ball that meets a spall before the next knot drop.
 
     ``work`` has four rows and room for all half steps; ``dropped`` is 1 in its first place if drops of the last knot are to be cleared.

@@ -12,10 +12,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics import decimate, gaps, kernel, lanes, motion, spall
+from gen.physics import decimate, gaps, kernel, lanes, motion, spall, step
 from gen.physics.decimate import OUTPUTS, Decimation, filter_rows
 from gen.physics.gaps import N_ROTATIONS, ball_gaps, move_gaps, move_spalls
-from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, advance, param_rows
+from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, param_rows
 from gen.physics.lanes import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
 from gen.physics.motion import (
     ANGLE_ROWS,
@@ -29,6 +29,7 @@ from gen.physics.motion import (
     start_processes,
     turn_rings,
 )
+from gen.physics.step import advance
 
 FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
 BLOCK = 8  # knots between two runs of the filters, a multiple of what they give in one pass
@@ -137,12 +138,30 @@ def _cached(sources: str) -> Callable[..., Columns]:
                         diverged[lane] = knot
             if two_stages:
                 for output in range(0, 2 * BLOCK, OUTPUTS):
-                    filter_rows(shape.channels, first_stage.taps, history, output * first_stage.factor, halfway, half_kept + output, work.scratch)
-            out = first - lead - n_settle + BLOCK  # one block later: there is room for what comes out before the first output
+                    filter_rows(
+                        shape.channels,
+                        first_stage.taps,
+                        history,
+                        output * first_stage.factor,
+                        halfway,
+                        half_kept + output,
+                        work.scratch,
+                    )
+            out = (
+                first - lead - n_settle + BLOCK
+            )  # one block later: there is room for what comes out before the first output
             if out >= 0:
                 source = halfway if two_stages else history
                 for output in range(0, BLOCK, OUTPUTS):
-                    filter_rows(shape.channels, filters.last.taps, source, output * filters.last.factor, response, out + output, work.scratch)
+                    filter_rows(
+                        shape.channels,
+                        filters.last.taps,
+                        source,
+                        output * filters.last.factor,
+                        response,
+                        out + output,
+                        work.scratch,
+                    )
             keep(history, kept * width, BLOCK * n_steps * width)
             if two_stages:
                 keep(halfway, half_kept * width, 2 * BLOCK * width)
@@ -158,7 +177,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
 
 integrate_lanes = _cached(
     sha256(
-        "".join([str(LANES), *map(getsource, (lanes, spall, kernel, motion, gaps, decimate))]).encode()
+        "".join([str(LANES), *map(getsource, (lanes, spall, kernel, step, motion, gaps, decimate))]).encode()
     ).hexdigest()
 )
 

@@ -1,9 +1,7 @@
-"""The equations of motion of shaft, housing and sensor, and the Runge-Kutta step that advances them.
+"""The equations of motion of shaft, housing and sensor, lane by lane.
 
-A lane holds one record; the loop over lanes has no branch and no call, and its body is one stage of the classical Runge-Kutta step of
-that record in scalars, so that LLVM turns it into vector instructions. While the forces of one group of lanes add up, the processor is
-at the next; with all four stages in one body it waits, and that body takes three times as long to compile. Between two knots (one per output sample) every slow quantity moves
-along a straight line: cage and shaft turn at a constant rate, ball gaps, ball directions and spall offsets are linear in time.
+A lane holds one record. Between two knots (one per output sample) every slow quantity moves along a straight line: cage and shaft turn
+at a constant rate, ball gaps, ball directions and spall offsets are linear in time.
 
 Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor on its resonance. Balls push along their own
 direction in the frame of the cage, in which they stand still but for their jitter. The system is that of Ophel et al. with its signs
@@ -16,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics.lanes import CALLED, INLINE, LANES, fma, lane_count, square_root, wide
+from gen.physics.lanes import CALLED, INLINE, LANES, fma, square_root
 
 FloatArray = NDArray[np.float64]
 
@@ -45,7 +43,6 @@ N_STATE = SLOPES + N_DYNAMIC
 PICKUPS = N_HELD
 
 Motion = tuple[float, float, float, float]
-State = tuple[float, ...]
 Push = tuple[float, float, float]
 """Force along the axes of the cage's frame, over the load-deflection factor of a ball, and squeeze to the power ``n - 1``."""
 
@@ -126,7 +123,7 @@ class Instant(NamedTuple):
 
 @njit(**INLINE)
 def add_ball(
-    shape: Shape, ball: int, total: Push, motion: Motion, instant: Instant, lane: int, params: FloatArray
+    shape: Shape, ball: int | np.int64, total: Push, motion: Motion, instant: Instant, lane: int, params: FloatArray
 ) -> Push:
     """Add the push of one ball to a sum."""
     if ball >= len(shape.balls):
@@ -153,7 +150,13 @@ def add_ball(
 
 @njit(**INLINE)
 def add_four(
-    shape: Shape, first: int, totals: tuple[Push, ...], motion: Motion, instant: Instant, lane: int, params: FloatArray
+    shape: Shape,
+    first: int | np.int64,
+    totals: tuple[Push, ...],
+    motion: Motion,
+    instant: Instant,
+    lane: int,
+    params: FloatArray,
 ) -> tuple[Push, ...]:
     """Add four balls to four sums; a loop over balls would not be unrolled before LLVM looks at the loop over lanes."""
     return (
@@ -238,141 +241,3 @@ def accelerations(
         f2x, f2y, arx, ary = f2x - rx, f2y - ry, rx * imr, ry * imr
     im1, im2 = params[IM1 * LANES + lane], params[IM2 * LANES + lane]
     return f1x * im1, f1y * im1, f2x * im2, f2y * im2, arx, ary, powers
-
-
-@njit(**INLINE)
-def read(shape: Shape, state: FloatArray, row: int, lane: int) -> State:
-    """Twelve rows of a lane; a sensor that is not there stands still."""
-    i = row * LANES + lane
-    xr = yr = ur = vr = 0.0
-    if len(shape.resonator):
-        xr, yr, ur, vr = state[i + 4 * LANES], state[i + 5 * LANES], state[i + 10 * LANES], state[i + 11 * LANES]
-    return (
-        state[i], state[i + LANES], state[i + 2 * LANES], state[i + 3 * LANES], xr, yr,
-        state[i + 6 * LANES], state[i + 7 * LANES], state[i + 8 * LANES], state[i + 9 * LANES], ur, vr,
-    )  # fmt: skip
-
-
-@njit(**INLINE)
-def write(shape: Shape, state: FloatArray, row: int, lane: int, q: State) -> None:
-    """Twelve rows of a lane, less those of a sensor that is not there; a loop over them would be a branch to LLVM."""
-    i = row * LANES + lane
-    state[i], state[i + LANES], state[i + 2 * LANES], state[i + 3 * LANES] = q[0], q[1], q[2], q[3]
-    state[i + 6 * LANES], state[i + 7 * LANES], state[i + 8 * LANES], state[i + 9 * LANES] = q[6], q[7], q[8], q[9]
-    if len(shape.resonator):
-        state[i + 4 * LANES], state[i + 5 * LANES], state[i + 10 * LANES], state[i + 11 * LANES] = q[4], q[5], q[10], q[11]
-
-
-@njit(**INLINE)
-def moved(shape: Shape, q: State, slope: State, h: float) -> State:
-    """State after ``h`` seconds along a slope."""
-    xr = yr = ur = vr = 0.0
-    if len(shape.resonator):
-        xr, yr, ur, vr = fma(h, slope[4], q[4]), fma(h, slope[5], q[5]), fma(h, slope[10], q[10]), fma(h, slope[11], q[11])
-    return (
-        fma(h, slope[0], q[0]), fma(h, slope[1], q[1]), fma(h, slope[2], q[2]), fma(h, slope[3], q[3]), xr, yr,
-        fma(h, slope[6], q[6]), fma(h, slope[7], q[7]), fma(h, slope[8], q[8]), fma(h, slope[9], q[9]), ur, vr,
-    )  # fmt: skip
-
-
-@njit(**INLINE)
-def half_turn(state: FloatArray, params: FloatArray) -> None:
-    """Turn the directions of cage and shaft by half a step."""
-    wide()
-    for lane in range(lane_count()):
-        for row, turn in ((CAGE_C, CAGE_TURN_C), (SHAFT_C, SHAFT_TURN_C)):
-            c, s = state[row * LANES + lane], state[(row + 1) * LANES + lane]
-            dc, ds = params[turn * LANES + lane], params[(turn + 1) * LANES + lane]
-            state[row * LANES + lane], state[(row + 1) * LANES + lane] = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
-
-
-@njit(**INLINE)
-def slopes_of(
-    shape: Shape, state: FloatArray, params: FloatArray, instant: Instant, lane: int
-) -> tuple[State, State, float]:
-    """State of a lane, its derivative, and the sum of the powers of its balls."""
-    q = read(shape, state, 0, lane)
-    turn = (
-        state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane], state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane],
-    )  # fmt: skip
-    a1x, a1y, a2x, a2y, arx, ary, powers = accelerations(shape, q, turn, instant, lane, params)
-    return q, (q[6], q[7], q[8], q[9], q[10], q[11], a1x, a1y, a2x, a2y, arx, ary), powers
-
-
-@njit(**INLINE)
-def first_stage(shape: Shape, state: FloatArray, params: FloatArray, dt: float, instant: Instant) -> None:
-    """Begin a step: note where and with which slope, and go half a step along it."""
-    wide()
-    for lane in range(LANES):
-        q, slope, powers = slopes_of(shape, state, params, instant, lane)
-        state[STEEPEST * LANES + lane] = max(state[STEEPEST * LANES + lane], powers)
-        write(shape, state, BEGINNING, lane, q)
-        write(shape, state, SLOPES, lane, slope)
-        write(shape, state, 0, lane, moved(shape, q, slope, 0.5 * dt))
-
-
-@njit(**INLINE)
-def later_stage(
-    shape: Shape, state: FloatArray, params: FloatArray, instant: Instant, weight: float, ahead: float, along_all: float
-) -> None:
-    """Add a slope to the sum with its ``weight``; go ``ahead`` of the beginning along it, and ``along_all`` along the sum [s]."""
-    wide()
-    for lane in range(LANES):
-        _, slope, _ = slopes_of(shape, state, params, instant, lane)
-        total = moved(shape, read(shape, state, SLOPES, lane), slope, weight)
-        write(shape, state, SLOPES, lane, total)
-        write(shape, state, 0, lane, moved(shape, moved(shape, read(shape, state, BEGINNING, lane), total, along_all), slope, ahead))
-
-
-@njit(**INLINE)
-def pick_up(shape: Shape, state: FloatArray, params: FloatArray, received: FloatArray) -> None:
-    """Weighted sums of displacements or accelerations at the beginning of a step, one for each channel."""
-    wide()
-    picked = BEGINNING if len(shape.displacement) else SLOPES + AXES
-    for channel in range(len(shape.channels)):
-        weights, there = params[(PICKUPS + channel * AXES) * LANES :], received[channel * LANES :]
-        for lane in range(lane_count()):
-            value = 0.0
-            for axis in range(AXES if len(shape.resonator) else 4):
-                value = fma(weights[axis * LANES + lane], state[(picked + axis) * LANES + lane], value)
-            there[lane] = value
-
-
-@njit(**INLINE)
-def advance(
-    shape: Shape, state: FloatArray, params: FloatArray, dt: float, n_steps: int, since: float, history: FloatArray, at: int
-) -> None:
-    """Advance every lane from one knot to the next by ``n_steps`` classical Runge-Kutta steps.
-
-    Parameters
-    ----------
-    shape : Shape
-        What the kernel contains.
-    state, params : array, shape (row * LANES + lane)
-        What moves, and what holds until the next knot.
-    dt : float
-        Step [s].
-    n_steps : int
-        Steps to the next knot.
-    since : float
-        Half steps since the directions of the balls were laid down.
-    history : array, shape (step * channel * LANES + lane)
-        Receives, from its row ``at`` on, what is picked up at the start of each step [m s-2, or m].
-    at : int
-        First row of ``history`` to fill; a row is a step and a channel.
-    """
-    drops, width = drop_row(shape) * LANES, len(shape.balls) * LANES if len(shape.uneven) else 0
-    for step in range(n_steps):
-        half_step = 2.0 * step
-        # views, since numba would look at every index whether it counts from the end
-        start = Instant(half_step, since + half_step, params[drops + 2 * step * width :])
-        first_stage(shape, state, params, dt, start)
-        pick_up(shape, state, params, history[(at + step * len(shape.channels)) * LANES :])
-        for stage in range(1, 4):
-            passed = 1 if stage < 3 else 2
-            if stage != 2:
-                half_turn(state, params)
-            instant = Instant(half_step + passed, since + half_step + passed, params[drops + (2 * step + passed) * width :])
-            last = stage == 3
-            ahead = 0.0 if last else dt * (0.5 * stage)
-            later_stage(shape, state, params, instant, 1.0 if last else 2.0, ahead, dt / 6 if last else 0.0)

@@ -6,7 +6,8 @@ What differs between compiled variants is passed as the *length of a tuple*: len
 per combination and finds it again in its cache on disk, which it could not for functions built inside functions.
 """
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, cast
 
 import numpy as np
 from llvmlite import ir
@@ -25,8 +26,7 @@ ALLOCATING: dict[str, Any] = {**INLINE, "_nrt": True}
 KERNEL: dict[str, Any] = {"error_model": "numpy", "nogil": True, "cache": True}
 
 
-@intrinsic
-def wide(context: Any) -> Any:  # noqa: ARG001
+def _make_wide(context: Any) -> Any:  # noqa: ARG001
     """Let the loops over lanes of the function that calls this use 512-bit vectors, where LLVM would stop at 256 for a processor's sake.
 
     On such processors (Intel's of 2019 to 2024) half of the arithmetic would lie idle.
@@ -39,8 +39,7 @@ def wide(context: Any) -> Any:  # noqa: ARG001
     return types.void(), generate
 
 
-@intrinsic
-def lane_count(context: Any) -> Any:  # noqa: ARG001
+def _make_lane_count(context: Any) -> Any:  # noqa: ARG001
     """``LANES``, hidden from LLVM, which otherwise unrolls a short loop over lanes before it looks whether it could be vectors."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
@@ -53,8 +52,7 @@ def lane_count(context: Any) -> Any:  # noqa: ARG001
     return types.intp(), generate
 
 
-@intrinsic
-def fma(context: Any, a: Any, b: Any, c: Any) -> Any:  # noqa: ARG001
+def _make_fma(context: Any, a: Any, b: Any, c: Any) -> Any:  # noqa: ARG001
     """``a * b + c``, rounded once."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
@@ -63,20 +61,25 @@ def fma(context: Any, a: Any, b: Any, c: Any) -> Any:  # noqa: ARG001
     return types.float64(types.float64, types.float64, types.float64), generate
 
 
-@intrinsic
-def _bits(context: Any, x: Any) -> Any:  # noqa: ARG001
+def _make_bits(context: Any, x: Any) -> Any:  # noqa: ARG001
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
         return builder.bitcast(arguments[0], ir.IntType(64))
 
     return types.int64(types.float64), generate
 
 
-@intrinsic
-def _number(context: Any, bits: Any) -> Any:  # noqa: ARG001
+def _make_number(context: Any, bits: Any) -> Any:  # noqa: ARG001
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
         return builder.bitcast(arguments[0], ir.DoubleType())
 
     return types.float64(types.int64), generate
+
+
+wide = cast("Callable[[], None]", intrinsic(_make_wide))
+lane_count = cast("Callable[[], int]", intrinsic(_make_lane_count))
+fma = cast("Callable[[float, float, float], float]", intrinsic(_make_fma))
+_bits = cast("Callable[[float], int]", intrinsic(_make_bits))
+_number = cast("Callable[[int], float]", intrinsic(_make_number))
 
 
 @njit(**ALLOCATING)

@@ -106,7 +106,13 @@ def slow_rows(shape: Shape) -> int:
 
 @njit(**INLINE)
 def turn_and_sum(
-    terms: tuple[None, ...], turning: tuple[None, ...], first: int, rms: int, phasors: FloatArray, drive: FloatArray, values: FloatArray
+    terms: tuple[None, ...],
+    turning: tuple[None, ...],
+    first: int,
+    rms: int,
+    phasors: FloatArray,
+    drive: FloatArray,
+    values: FloatArray,
 ) -> None:
     """Turn the phasors of a process by ``STRIDE`` knots, unless ``turning`` is empty, and put its value into ``values``."""
     wide()
@@ -200,7 +206,10 @@ def turn_rings(shape: Shape, lanes: Lanes, knot: int, n_steps: int, dt: float, m
         moves[CAGE * LANES + lane] = cage
         moves[SPIN * LANES + lane] = drive[SPIN_RATIO * LANES + lane] * shaft * wander
         params[CAGE_TURN_C * LANES + lane], params[CAGE_TURN_S * LANES + lane] = cosine(cage * half), sine(cage * half)
-        params[SHAFT_TURN_C * LANES + lane], params[SHAFT_TURN_S * LANES + lane] = cosine(shaft * half), sine(shaft * half)
+        params[SHAFT_TURN_C * LANES + lane], params[SHAFT_TURN_S * LANES + lane] = (
+            cosine(shaft * half),
+            sine(shaft * half),
+        )
         moment = drive[UNBALANCE * LANES + lane] * per_second
         params[UNBALANCE_P * LANES + lane] = fma(moment * shaft, shaft, drive[BOW * LANES + lane])
         params[UNBALANCE_Q * LANES + lane] = moment * quickening
@@ -270,9 +279,7 @@ def knock(lanes: Lanes, knot_seconds: float, ahead: int, lane: int, moves: Float
 
 
 @njit(**INLINE)
-def outer_forces(
-    lanes: Lanes, knot: int, knot_seconds: float, ahead: int, moves: FloatArray, out: FloatArray
-) -> None:
+def outer_forces(lanes: Lanes, knot: int, knot_seconds: float, ahead: int, moves: FloatArray, out: FloatArray) -> None:
     """Forces on shaft and housing ``ahead`` knots from now, x and y of the shaft, then of the housing, into the rows of ``out`` [N].
 
     Misalignment pulls to and fro along its own direction, and most when the shaft's mark points that way or the opposite one.

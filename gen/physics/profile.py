@@ -34,7 +34,7 @@ def share_at(profile: Profile, times: NDArray[np.floating]) -> FloatArray:
     place = np.interp(times, knots, np.arange(len(knots)))
     at = np.minimum(place.astype(int), len(knots) - 2)
     part = place - at
-    return shares[at] + (shares[at + 1] - shares[at]) * part**3 * (10 - 15 * part + 6 * part**2)
+    return shares[at] + (shares[at + 1] - shares[at]) * (part * part * part) * (10 - 15 * part + 6 * part**2)
 
 
 def mean_share(profile: Profile | None, duration: float) -> float:

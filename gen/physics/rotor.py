@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.physics.elementary import power
+
 FloatArray = NDArray[np.float64]
 
 # Heaviest ball load before anything moves, Stribeck: 5 W / Z; three times that covers what spalls were seen to do to it.
@@ -61,8 +63,8 @@ def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> Float
     factor = np.asarray(machine.load_deflection_factor)
     ball_load = DYNAMIC_FACTOR * STRIBECK * load / n_balls
     squeeze = np.maximum(-np.asarray(machine.half_clearance), 0.0)
-    loaded = n * factor ** (1 / n) * LOADED_BALLS * ball_load ** (1 - 1 / n)
-    return loaded + n * factor * n_balls * squeeze ** (n - 1)
+    loaded = n * power(factor, 1 / n) * LOADED_BALLS * power(ball_load, 1 - 1 / n)
+    return loaded + n * factor * n_balls * power(squeeze, n - 1)
 
 
 def fastest_swing(machine: Machine, contact_stiffness: FloatArray | float) -> FloatArray | float:
@@ -113,8 +115,8 @@ def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) 
     cosine = np.asarray(machine.contact_cosine)[:, None]
     squeeze = np.maximum(along * cosine - np.asarray(machine.half_clearance)[:, None], 0.0)
     factor, n = np.asarray(machine.load_deflection_factor)[:, None], np.asarray(machine.contact_exponent)[:, None]
-    power = squeeze ** (n - 1)
-    return factor * squeeze * power * cosine, n * factor * power * cosine**2
+    root = power(squeeze, n - 1)
+    return factor * squeeze * root * cosine, n * factor * root * cosine**2
 
 
 def rest(machine: Machine, angles: FloatArray) -> FloatArray:
@@ -139,7 +141,7 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     ground = np.broadcast_to(np.asarray(machine.shaft_stiffness)[:, None], support.shape)
     play = np.broadcast_to(np.asarray(machine.looseness)[:, None], support.shape)
     reach = np.maximum(machine.half_clearance, 0) / machine.contact_cosine
-    reach = reach + 2 * (weight / machine.load_deflection_factor) ** (1 / np.asarray(machine.contact_exponent))
+    reach = reach + 2 * power(weight / machine.load_deflection_factor, 1 / np.asarray(machine.contact_exponent))
     housing = load / (support + ground) + play * np.sign(load)
     q = np.concatenate([housing + load / weight[:, None] * reach[:, None], housing], axis=1)
     for _ in range(200):
@@ -149,7 +151,7 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
             break
         # a lone ball holds nothing sideways: a soft spring keeps the step finite and vanishes with the residual
         soft = 1e-3 * np.abs(residual).max(axis=1) / 1e-6 + 1e-3
-        step = np.linalg.solve(jacobian + soft[:, None, None] * np.eye(4), residual[..., None])[..., 0]
+        step = _solved(jacobian + soft[:, None, None] * np.eye(4), residual)
         longest = np.abs(step).max(axis=1, keepdims=True)
         step *= np.minimum(1.0, 2e-6 / np.maximum(longest, 1e-30))
         q = np.where(moving[:, None], q + step, q)  # who has arrived does not wait for the others: they must not matter
@@ -180,6 +182,20 @@ def _balance(
     jacobian[:, :2, 2:] = jacobian[:, 2:, :2] = -contact
     jacobian[:, 2:, 2:] = contact + held[:, :, None] * np.eye(2)
     return residual, jacobian
+
+
+def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solution of positive definite systems, shape (record, row), by elimination; LAPACK's bits depend on the processor."""
+    matrix, right = matrix.copy(), right.copy()
+    size = right.shape[1]
+    for pivot in range(size):
+        share = matrix[:, pivot + 1 :, pivot] / matrix[:, pivot, pivot, None]
+        matrix[:, pivot + 1 :] -= share[..., None] * matrix[:, pivot, None]
+        right[:, pivot + 1 :] -= share * right[:, pivot, None]
+    for row in reversed(range(size)):
+        right[:, row] -= np.einsum("rk,rk->r", matrix[:, row, row + 1 :], right[:, row + 1 :])
+        right[:, row] /= matrix[:, row, row]
+    return right
 
 
 def sensor_springs(mass: float, frequency: float, damping_ratio: float) -> tuple[float, float]:
