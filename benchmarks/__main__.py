@@ -15,7 +15,7 @@ from typing import Any
 
 from benchmarks import features, kernel, opening, pipeline, rivals
 from benchmarks.pairs import Line, Row, Skipped
-from raceway.bench import _machine
+from raceway.bench import machine
 
 SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "kernel": kernel.rows,
@@ -28,9 +28,9 @@ RESULTS = Path(__file__).with_name("results.json")
 HEADS = ("", "what", "value", "alternative", "its value", "ratio", "pairs")
 
 
-def machine() -> dict[str, Any]:
+def facts() -> dict[str, Any]:
     """What the figures depend on."""
-    found = _machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
+    found = machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
     for name in ("xarray", "netCDF4", "h5py", "dask", "jax", "tsfel"):
         try:
             found[name] = version(name)
@@ -68,7 +68,7 @@ def main() -> None:
         rows = [line._asdict() for line in lines if isinstance(line, Row)]
         skipped = [line._asdict() for line in lines if isinstance(line, Skipped)]
         RESULTS.write_text(
-            json.dumps({"machine": machine(), "rows": rows, "skipped": skipped}, indent=1) + "\n", encoding="utf-8"
+            json.dumps({"machine": facts(), "rows": rows, "skipped": skipped}, indent=1) + "\n", encoding="utf-8"
         )
 
 

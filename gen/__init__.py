@@ -15,6 +15,8 @@ scenarios     rigs, specimens and records, fully drawn
 damage        spalls and waviness, as the kernel takes them
 machinery     what the kernel needs of a scenario
 simulate      scenarios to accelerations
+sound         what a machine sounds like: paths, noise, lines
+mixing        bearing and background put together, compiled
 measure       accelerations to what a data-acquisition card stores
 labels        what is written beside each record
 generate      a corpus, part by part, with dask

@@ -93,7 +93,7 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
         features_records_per_second=wanted / stages["features"],
         stage_seconds=stages,
         repeats=len(seconds["features"]),
-        machine=_machine(),
+        machine=machine(),
     )
 
 
@@ -128,7 +128,7 @@ def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, response: R
     write_part(part_dataset(measured, scenarios, recipe, response), path, recipe.corpus.codec)
 
 
-def _machine() -> dict[str, Any]:
+def machine() -> dict[str, Any]:
     names = ("raceway", "numba", "numpy", "scipy")
     return {
         "processor": _processor(),

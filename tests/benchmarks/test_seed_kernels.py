@@ -31,7 +31,7 @@ class Case(NamedTuple):
 @pytest.fixture(scope="module", params=PROFILES)
 def case(request: pytest.FixtureRequest) -> Case:
     spall = {"kind": "inner", "width_mm": 2, "depth_um": 5, "angle_deg": 15, "profile": request.param}
-    seed = read_recipe("ophel2025").model_dump(mode="json")
+    seed = read_recipe("ophel2025").model_dump(mode="json", exclude_unset=True)
     seed["recording"].update(RECORDING)
     seed["faults"] = [{"kind": "healthy"} if request.param == "healthy" else spall]
     recipe, profile = Recipe.model_validate(seed), PROFILES[request.param]
