@@ -129,6 +129,7 @@ def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, response: R
 
 
 def machine() -> dict[str, Any]:
+    """Processor, cores and versions that the figures depend on."""
     names = ("raceway", "numba", "numpy", "scipy")
     return {
         "processor": _processor(),

@@ -14,7 +14,7 @@ from gen.physics.step import advance
 STAGES = 2  # bodies of the Runge-Kutta step, each with the force of every ball
 # a square root begins with half the exponent: every number of a vector shifted by one bit
 PACKED_ROOT = re.compile(r"\bv?psra[qd]\s+\$1, %[yz]mm|\bv?psr[al]q\s+\$1, %[xyz]mm|\bsshr\s+v\d+\.2d, v\d+\.2d, #1\b")
-EVERYTHING = {"resonator": True, "uneven": True, "jittered": True, "damped": True, "forced": True, "loose": True}
+EVERYTHING = {"resonator": True, "wavy": True, "spalled": True, "jittered": True, "damped": True, "forced": True, "loose": True}
 VARIANTS = [{flag: True} for flag in (*EVERYTHING, "displacement", "roller")] + [{}, EVERYTHING]
 
 
@@ -31,7 +31,7 @@ def assembly(shape):
 
 @pytest.mark.parametrize("n_balls", sorted({bearing.n_balls for bearing in CATALOGUE.values()}))
 def test_the_force_of_every_ball_is_computed_for_several_records_at_once(n_balls):
-    code = assembly(make_shape(n_balls, 1, resonator=True, uneven=True, jittered=True, damped=True))
+    code = assembly(make_shape(n_balls, 1, resonator=True, wavy=True, spalled=True, jittered=True, damped=True))
     assert len(PACKED_ROOT.findall(code)) >= STAGES * n_balls
 
 

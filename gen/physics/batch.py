@@ -104,7 +104,8 @@ def record_shape(record: Record) -> Shape:
         displacement=record.displacement,
         resonator=record.machine.sensor_mass > 0,
         damped=record.machine.contact_damping > 0,
-        uneven=bool(record.spalls) or record.waves.size > 0,
+        wavy=record.waves.size > 0,
+        spalled=bool(record.spalls) or record.waves.size > 0,  # a wavy bearing shares its kernel with its damaged twins
         jittered=turning.jitter_rms > 0 or turning.late_by != 0,
         forced=record.schedule.size > 0 or bool(turning.twice_x or turning.twice_y or turning.knock),
         loose=record.machine.looseness > 0,

@@ -150,8 +150,6 @@ def ball_gaps(shape: Shape, lanes: Lanes, moves: FloatArray, work: FloatArray, g
     for lane in range(lane_count()):
         for ball in range(n_balls):
             gaps[ball * LANES + lane] = lanes.drive[CLEARANCE * LANES + lane]
-    if not lanes.waves.size:
-        return
     z, folded = work, work[2 * N_ROTATIONS * LANES :]
     for lane in range(lane_count()):
         for row in range(2 * n_balls):

@@ -69,7 +69,7 @@ def prepare(shape: Shape, lanes: Lanes, n_steps: int) -> Work:
     scratch = zeros(rows * LANES + 2 * n_steps + 1)
     work = Work(zeros(ANGLE_ROWS * LANES), zeros(n_balls * LANES), zeros(1), scratch)
     start_processes(shape, lanes)
-    if len(shape.uneven):
+    if len(shape.wavy):
         ball_gaps(shape, lanes, work.moves, work.scratch, work.gaps)
     return work
 
@@ -82,8 +82,9 @@ def to_next_knot(shape: Shape, lanes: Lanes, knot: int, n_steps: int, dt: float,
     turn_rings(shape, lanes, knot, n_steps, dt, work.moves)
     if len(shape.forced):
         move_forces(lanes, knot, n_steps, dt, work.moves, work.scratch)
-    if len(shape.uneven):
+    if len(shape.wavy):
         move_gaps(shape, lanes, n_steps, work.moves, work.scratch, work.gaps)
+    if len(shape.spalled):
         move_spalls(shape, lanes, n_steps, work.moves, work.scratch, work.dropped)
     keep_turning(shape, lanes, work.moves)
 
@@ -121,7 +122,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
         history = zeros((kept + BLOCK * n_steps + 4) * width)
         halfway = zeros((half_kept + 2 * BLOCK + 4) * width)
         lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
-        response = zeros((n_out + 2 * BLOCK) * width)
+        response = np.empty((n_out + 2 * BLOCK) * width)
         diverged = np.full(LANES, -1)
         work = prepare(shape, batch, n_steps)
         for first in range(0, lead + n_settle + n_out, BLOCK):

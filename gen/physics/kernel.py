@@ -56,8 +56,10 @@ class Shape(NamedTuple):
     """Whether channels pick up displacements instead of accelerations."""
     resonator: tuple[None, ...]
     damped: tuple[None, ...]
-    uneven: tuple[None, ...]
-    """Whether gaps differ from ball to ball and in time: spalls, waviness."""
+    wavy: tuple[None, ...]
+    """Whether races or balls are wavy, so that gaps change from knot to knot."""
+    spalled: tuple[None, ...]
+    """Whether balls may drop into spalls."""
     jittered: tuple[None, ...]
     """Whether balls leave their place in the cage."""
     forced: tuple[None, ...]
@@ -87,13 +89,13 @@ def gap_row(shape: Shape) -> int:
 @njit(**CALLED)
 def drop_row(shape: Shape) -> int:
     """First row of the drops into spalls in ``params``: half step after half step, every ball of each."""
-    return gap_row(shape) + (2 * len(shape.balls) if len(shape.uneven) else 0)
+    return gap_row(shape) + (2 * len(shape.balls) if len(shape.wavy) else 0)
 
 
 @njit(**CALLED)
 def param_rows(shape: Shape, n_steps: int) -> int:
     """Number of rows of ``params``."""
-    return drop_row(shape) + ((2 * n_steps + 1) * len(shape.balls) if len(shape.uneven) else 0)
+    return drop_row(shape) + ((2 * n_steps + 1) * len(shape.balls) if len(shape.spalled) else 0)
 
 
 @njit(**INLINE)
@@ -135,9 +137,11 @@ def add_ball(
         c = fma(params[row + 2 * LANES], instant.since, params[row])
         s = fma(params[row + 3 * LANES], instant.since, params[row + LANES])
     gap = params[GAP * LANES + lane]
-    if len(shape.uneven):
+    if len(shape.wavy):
         row = (gap_row(shape) + 2 * ball) * LANES + lane
-        gap = fma(params[row + LANES], instant.half_step, params[row]) + instant.drops[ball * LANES + lane]
+        gap = fma(params[row + LANES], instant.half_step, params[row])
+    if len(shape.spalled):
+        gap += instant.drops[ball * LANES + lane]
     squeeze = max(fma(x, c, fma(y, s, -gap)), 0.0)
     power = ninth_root(squeeze) if len(shape.roller) else square_root(squeeze)
     force = squeeze * power

@@ -174,7 +174,7 @@ def advance(
     at : int
         First row of ``history`` to fill; a row is a step and a channel.
     """
-    drops, width = drop_row(shape) * LANES, len(shape.balls) * LANES if len(shape.uneven) else 0
+    drops, width = drop_row(shape) * LANES, len(shape.balls) * LANES if len(shape.spalled) else 0
     for step in range(n_steps):
         half_step = 2.0 * step
         # views, since numba would look at every index whether it counts from the end
