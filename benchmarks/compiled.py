@@ -15,6 +15,12 @@ from gen.physics.batch import Record
 HERE = Path(__file__).parent
 FLAGS = ("-std=gnu99", "-O3", "-march=native", "-ffast-math", "-fPIC")
 
+SOURCES = {
+    "plain": ("plain.c", ("-DFUSED=0",)),
+    "fused": ("plain.c", ("-DFUSED=1",)),
+    "intrinsics": ("intrinsics.c", ()),
+}
+
 March = Callable[[FloatArray, FloatArray, FloatArray, float, int, int, FloatArray], None]
 
 
@@ -42,11 +48,12 @@ def has_avx512() -> bool:
         return False
 
 
-def compiled(source: str, lanes: int, spall: int, folder: Path) -> March:
-    """A kernel for a number of lanes and a profile of the spall."""
-    library = folder / f"{source}-{lanes}-{spall}.so"
-    sizes = (f"-DLANES={lanes}", f"-DSPALL={spall}")
-    subprocess.run(["cc", *FLAGS, *sizes, "-c", "-o", library.with_suffix(".o"), HERE / f"{source}.c"], check=True)
+def compiled(name: str, lanes: int, spall: int, folder: Path) -> March:
+    """A kernel of ``SOURCES`` for a number of lanes and a profile of the spall."""
+    source, options = SOURCES[name]
+    library = folder / f"{name}-{lanes}-{spall}.so"
+    sizes = (f"-DLANES={lanes}", f"-DSPALL={spall}", *options)
+    subprocess.run(["cc", *FLAGS, *sizes, "-c", "-o", library.with_suffix(".o"), HERE / source], check=True)
     # linked with -ffast-math it would take subnormal numbers away from the whole process
     subprocess.run(["cc", "-shared", "-o", library, library.with_suffix(".o"), "-lm"], check=True)
     march = ctypes.CDLL(str(library)).march

@@ -4,7 +4,8 @@
    Runge-Kutta (docs/model.md). What the recipe of the seed sets to zero is left out. Balls stand still in the frame of the cage, directions
    are turned by half a step at a time, and the spall corrects the force of the one ball nearest to it: no trigonometry in the loop.
 
-   Given from outside: LANES, and SPALL (0 none, 1 rectangular, 2 geometric). */
+   Given from outside: LANES, SPALL (0 none, 1 rectangular, 2 geometric) and FUSED (the balls in one loop over lanes, or a short loop for
+   each). */
 #include <math.h>
 
 enum { BALLS = 9, COORDINATES = 4, STATE = 8 };
@@ -72,7 +73,8 @@ static void accelerations(const row *restrict q, const row *restrict turn, const
         x[i] = dx * turn[CAGE_C][i] + dy * turn[CAGE_S][i];
         y[i] = dy * turn[CAGE_C][i] - dx * turn[CAGE_S][i];
     }
-    EACH { /* nine balls in one loop: a loop for each, with its sums in memory, took a quarter longer */
+#if FUSED
+    EACH {
         double sx = 0, sy = 0;
 #pragma GCC unroll 9
         for (int ball = 0; ball < BALLS; ball++) {
@@ -83,6 +85,15 @@ static void accelerations(const row *restrict q, const row *restrict turn, const
         fx[i] = sx;
         fy[i] = sy;
     }
+#else
+    EACH fx[i] = fy[i] = 0;
+    for (int ball = 0; ball < BALLS; ball++)
+        EACH {
+            double squeeze = fmax(x[i] * COS[ball] + y[i] * SIN[ball] - p[GAP][i], 0), force = squeeze * sqrt(squeeze);
+            fx[i] += force * COS[ball];
+            fy[i] += force * SIN[ball];
+        }
+#endif
 #if SPALL
     EACH {
         double squeeze = x[i] * near->c[i] + y[i] * near->s[i] - p[GAP][i];

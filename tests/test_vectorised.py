@@ -12,9 +12,20 @@ from gen.physics.lanes import LANES
 from gen.physics.step import advance
 
 STAGES = 2  # bodies of the Runge-Kutta step, each with the force of every ball
-# a square root begins with half the exponent: every number of a vector shifted by one bit
-PACKED_ROOT = re.compile(r"\bv?psra[qd]\s+\$1, %[yz]mm|\bv?psr[al]q\s+\$1, %[xyz]mm|\bsshr\s+v\d+\.2d, v\d+\.2d, #1\b")
-EVERYTHING = {"resonator": True, "wavy": True, "spalled": True, "jittered": True, "damped": True, "forced": True, "loose": True}
+# a square root is the processor's or begins with half the exponent: every number of a vector shifted by one bit
+PACKED_ROOT = re.compile(
+    r"\bv?sqrtpd\b|\bfsqrt\s+v\d+\.2d\b|"
+    r"\bv?psra[qd]\s+\$1, %[yz]mm|\bv?psr[al]q\s+\$1, %[xyz]mm|\bsshr\s+v\d+\.2d, v\d+\.2d, #1\b"
+)
+EVERYTHING = {
+    "resonator": True,
+    "wavy": True,
+    "spalled": True,
+    "jittered": True,
+    "damped": True,
+    "forced": True,
+    "loose": True,
+}
 VARIANTS = [{flag: True} for flag in (*EVERYTHING, "displacement", "roller")] + [{}, EVERYTHING]
 
 

@@ -43,7 +43,7 @@ def distance(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
-@pytest.mark.parametrize("source", ["plain", "intrinsics"])
+@pytest.mark.parametrize("source", ["plain", "fused", "intrinsics"])
 def test_a_kernel_in_c_computes_the_motion_of_ours(source: str, case: Case, tmp_path: Path):
     if compiler() is None or (source == "intrinsics" and not has_avx512()):
         pytest.skip("no C compiler, or no AVX-512")

@@ -116,7 +116,9 @@ def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
 def test_everything_at_once_needs_one_kernel_for_healthy_and_damaged(drawn):
     recipe, scenarios = drawn
     shapes = {record_shape(physical_record(scenario, recipe)) for scenario in scenarios}
-    every = make_shape(9, 1, resonator=True, damped=True, wavy=True, spalled=True, jittered=True, forced=True, loose=True)
+    every = make_shape(
+        9, 1, resonator=True, damped=True, wavy=True, spalled=True, jittered=True, forced=True, loose=True
+    )
     assert shapes == {every}
 
 
