@@ -33,6 +33,7 @@ from gen.physics.step import advance
 
 FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
 BLOCK = 8  # knots between two runs of the filters, a multiple of what they give in one pass
+ROOM = 16  # blocks of outputs of the first stage, before the newest are moved to the front
 
 Columns = tuple[FloatArray, NDArray[np.int64], FloatArray]
 
@@ -120,7 +121,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
         first_stage = filters.first if two_stages else filters.last
         kept, half_kept = first_stage.kept, filters.last.kept
         history = zeros((kept + BLOCK * n_steps + 4) * width)
-        halfway = zeros((half_kept + 2 * BLOCK + 4) * width)
+        halfway = zeros((half_kept + 2 * BLOCK * ROOM + 4) * width)
         lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
         response = np.empty((n_out + 2 * BLOCK) * width)
         diverged = np.full(LANES, -1)
@@ -137,17 +138,13 @@ def _cached(sources: str) -> Callable[..., Columns]:
                         inside &= abs(batch.state[row * LANES + lane]) < FAR_OFF
                     if not inside and diverged[lane] < 0:
                         diverged[lane] = knot
+            start = 2 * BLOCK * (first // BLOCK % ROOM) if two_stages else 0
             if two_stages:
                 for output in range(0, 2 * BLOCK, OUTPUTS):
                     filter_rows(
-                        shape.channels,
-                        first_stage.taps,
-                        history,
-                        output * first_stage.factor,
-                        halfway,
-                        half_kept + output,
+                        shape.channels, first_stage.taps, history, output * first_stage.factor, halfway, half_kept + start + output,
                         work.scratch,
-                    )
+                    )  # fmt: skip
             out = (
                 first - lead - n_settle + BLOCK
             )  # one block later: there is room for what comes out before the first output
@@ -155,17 +152,12 @@ def _cached(sources: str) -> Callable[..., Columns]:
                 source = halfway if two_stages else history
                 for output in range(0, BLOCK, OUTPUTS):
                     filter_rows(
-                        shape.channels,
-                        filters.last.taps,
-                        source,
-                        output * filters.last.factor,
-                        response,
-                        out + output,
+                        shape.channels, filters.last.taps, source, start + output * filters.last.factor, response, out + output,
                         work.scratch,
-                    )
+                    )  # fmt: skip
             keep(history, kept * width, BLOCK * n_steps * width)
-            if two_stages:
-                keep(halfway, half_kept * width, 2 * BLOCK * width)
+            if start == 2 * BLOCK * (ROOM - 1):
+                keep(halfway, half_kept * width, 2 * BLOCK * ROOM * width)
         steepest = np.empty(LANES)
         exponent = 10 / 9 if len(shape.roller) else 1.5
         for lane in range(lane_count()):
