@@ -21,9 +21,9 @@ from gen.simulate import kernel_record, lead_samples, steps_per_sample
 MOST_DRAWN = 5000  # records, about 1 s; of a larger corpus as many parts, spread over it
 
 # Rough, so that a plan costs nothing: what raceway bench gave on one core of a shared machine with AVX-512
-LANE_STEPS_PER_SECOND = 10e6  # integration, lanes that pad a batch included
+LANE_STEPS_PER_SECOND = 18e6  # integration, lanes that pad a batch included
 SECONDS_PER_SAMPLE = 1e-7  # path, background, converter, compression, per channel
-COMPILE_SECONDS = 12.0  # per kernel
+COMPILE_SECONDS = 9.0  # per kernel
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
 COMPRESSED = {"zlib": 0.67, "zstd": 0.75, "none": 1.0}  # of vibration that uses a part of the converter's range
