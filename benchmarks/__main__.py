@@ -13,11 +13,12 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from benchmarks import features, kernel, opening, pipeline, rivals
+from benchmarks import features, kernel, opening, pipeline, rivals, roofline
 from benchmarks.pairs import Line, Row, Skipped
 from raceway.bench import machine
 
 SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
+    "roofline": roofline.rows,
     "kernel": kernel.rows,
     "rivals": rivals.rows,
     "pipeline": pipeline.rows,

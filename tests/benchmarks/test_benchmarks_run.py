@@ -3,10 +3,12 @@
 import importlib.util
 import math
 
-from benchmarks import features, kernel, opening, pipeline, rivals
+from benchmarks import features, kernel, opening, pipeline, rivals, roofline
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
+from benchmarks.profile import PARTS, kernel_parts
 from gen.generate import generate
+from gen.recipe import read_recipe
 
 
 def sound(lines) -> dict[str, Row]:
@@ -17,8 +19,20 @@ def sound(lines) -> dict[str, Row]:
 
 def test_the_kernel_is_compared_with_c_and_the_full_model_with_the_seed(brief_seed, brief_full):
     lines = list(kernel.rows(1, recipe=brief_seed, full=brief_full, records=4, samples=20))
-    assert {line.name for line in lines} == {"kernel plain", "kernel intrinsics", "kernel full"}
+    assert {line.name for line in lines} == {"kernel plain", "kernel fused", "kernel intrinsics", "kernel full"}
     assert "kernel full" in sound(lines)
+
+
+def test_the_step_is_compared_with_its_roofline():
+    found = sound(roofline.rows(1, times=1000, shapes=("seed model",)))
+    assert not found or {"roofline seed model", "roofline roots"} == set(found)
+
+
+def test_the_time_of_the_kernel_is_told_part_by_part(brief_full):
+    parts, n_steps = kernel_parts(read_recipe(brief_full))
+    assert set(parts) == set(PARTS)
+    assert n_steps > 1
+    assert 0 < sum(parts.values()) < 1e-4
 
 
 def test_the_kernel_is_compared_with_its_rivals(brief_seed):

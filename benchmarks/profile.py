@@ -1,0 +1,130 @@
+"""Where the time of a record goes in one worker: stages of its making, and the parts of the kernel.
+
+``python -m benchmarks.profile [RECIPE]``, by default the full model. The parts of the kernel are timed one at a time on a batch of the
+recipe's records, over and over from the same knot; what they leave of the whole is memory traffic and whatever they share.
+"""
+
+import sys
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from numba import njit
+
+from benchmarks.kernel import FULL
+from benchmarks.pairs import seconds
+from gen.physics.batch import lay_out, record_shape
+from gen.physics.decimate import OUTPUTS, decimation, filter_rows
+from gen.physics.gaps import ball_gaps, move_spalls
+from gen.physics.integrate import prepare, to_next_knot
+from gen.physics.kernel import param_rows
+from gen.physics.lanes import LANES, copied, zeros
+from gen.physics.motion import STRIDE, Lanes, move_processes, slow_rows, turn_rings
+from gen.physics.step import advance
+from gen.plan import samples_integrated
+from gen.recipe import Recipe, read_recipe
+from gen.scenarios import draw_scenarios
+from gen.simulate import kernel_record, steps_per_sample
+from raceway.bench import bench
+
+KNOTS, TRIES = 400, 25
+STEP, ROTATION, SLOW, WAVES, SPALLS, PREPARED, FIRST_FILTER, LAST_FILTER = range(8)
+PARTS = {
+    "steps": STEP,
+    "rotation of shaft, cage and balls": ROTATION,
+    "speed, slip, spin and jitter": SLOW,
+    "waviness": WAVES,
+    "spalls": SPALLS,
+    "first filter": FIRST_FILTER,
+    "last filter": LAST_FILTER,
+}
+
+
+@njit
+def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters: Any, knots: int) -> None:
+    """One part of the kernel for so many ``knots``."""
+    params = zeros(param_rows(shape, n_steps) * LANES)
+    for i in range(batch.params.size):
+        params[i] = batch.params[i]
+    lanes = Lanes(
+        copied(batch.state), params, copied(batch.drive), copied(batch.angles), copied(batch.spalls), copied(batch.phasors),
+        zeros(2 * slow_rows(shape) * LANES), copied(batch.waves), batch.schedule, batch.tables,
+    )  # fmt: skip
+    work = prepare(shape, lanes, n_steps)
+    width = len(shape.channels) * LANES
+    history, halfway = (
+        zeros((len(filters.first.taps) + 8 * n_steps) * width),
+        zeros((len(filters.last.taps) + 64) * width),
+    )
+    for knot in range(STRIDE):
+        to_next_knot(shape, lanes, knot, n_steps, dt, work)
+    for knot in range(knots):
+        if part == STEP:
+            advance(shape, lanes.state, lanes.params, dt, n_steps, 0.0, history, 0)
+        elif part == ROTATION:
+            turn_rings(shape, lanes, knot, n_steps, dt, work.moves)
+        elif part == SLOW:
+            if knot % STRIDE == 0:
+                move_processes(shape, lanes, n_steps, work.scratch)
+        elif part == WAVES:
+            if len(shape.wavy):
+                ball_gaps(shape, lanes, work.moves, work.scratch, work.gaps)
+        elif part == SPALLS:
+            if len(shape.spalled):
+                move_spalls(shape, lanes, n_steps, work.moves, work.scratch, work.dropped)
+                for i in range(lanes.angles.size):
+                    lanes.angles[i] += work.moves[i]
+        elif part == FIRST_FILTER:
+            if knot % 2 == 0 and len(filters.first.taps):
+                filter_rows(shape.channels, filters.first.taps, history, 0, halfway, 0, work.scratch)
+        elif part == LAST_FILTER and knot % OUTPUTS == 0:
+            filter_rows(shape.channels, filters.last.taps, halfway, 0, history, 0, work.scratch)
+
+
+def kernel_parts(recipe: Recipe) -> tuple[dict[str, float], int]:
+    """Time of each part for each record and knot [s], on the commonest batch of a recipe, and its steps per knot."""
+    scenarios = draw_scenarios(recipe, 0, recipe.corpus.records_per_part)
+    records = [kernel_record(scenario, recipe) for scenario in scenarios]
+    needs = [
+        (record_shape(record), steps_per_sample(record, scenario, recipe))
+        for record, scenario in zip(records, scenarios, strict=True)
+    ]
+    (shape, n_steps), _ = Counter(needs).most_common(1)[0]
+    some = [record for record, need in zip(records, needs, strict=True) if need == (shape, n_steps)][:LANES]
+    knot = 1 / recipe.recording.sample_rate_hz
+    given: Any = (shape, lay_out(some, shape, knot), n_steps, knot / n_steps, decimation(n_steps))
+    repeat(STEP, *given, 1)
+    nothing = min(seconds(repeat, PREPARED, *given, KNOTS) for _ in range(TRIES))
+    times = {
+        name: min(seconds(repeat, part, *given, KNOTS) for _ in range(TRIES)) - nothing for name, part in PARTS.items()
+    }
+    return {name: max(time, 0.0) / KNOTS / LANES for name, time in times.items()}, n_steps
+
+
+def main() -> None:
+    path = Path(sys.argv[1]) if len(sys.argv) > 1 else FULL
+    recipe = read_recipe(path)
+    made = bench(path)
+    whole = 1e6 / made.records
+    parts, n_steps = kernel_parts(recipe)
+    total = sum(made.stage_seconds.values()) - made.stage_seconds["features"]
+    print(
+        f"{recipe.name}: {recipe.recording.duration_s:g} s at {recipe.recording.sample_rate_hz:g} Hz, {made.records} records\n"
+    )
+    for stage, time in made.stage_seconds.items():
+        share = "" if stage == "features" else f"{time / total:6.0%}"
+        print(f"{stage:36}{time * whole:8.0f} us{share}")
+        if stage == "integrate":
+            knots = samples_integrated(recipe) * 1e6
+            for name, part in parts.items():
+                print(f"  {name:34}{part * knots:8.0f} us")
+            rest = time * whole - sum(parts.values()) * knots
+            print(f"  {'idle lanes, copies, the rest':34}{rest:8.0f} us")
+    steps = parts["steps"] / n_steps
+    print(
+        f"\n{n_steps} steps per sample of {steps * 1e9:.1f} ns: {1e-6 / steps:.1f} million record-steps/s in the steps alone"
+    )
+
+
+if __name__ == "__main__":
+    main()

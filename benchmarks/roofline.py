@@ -1,0 +1,106 @@
+"""How far the step is from what the processor can do: its multiplications and additions, counted in the assembly, at the measured rate.
+
+The bound counts every arithmetic vector instruction of a step as one multiplication and addition, and nothing else: no loads, no waiting.
+"""
+
+import ctypes
+import re
+import subprocess
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numba import njit
+
+from benchmarks.compiled import HERE, compiler, has_avx512
+from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
+from gen.physics.kernel import N_STATE, Shape, make_shape, param_rows
+from gen.physics.lanes import LANES, copied, square_root, wide, zeros
+from gen.physics.step import advance
+
+FLAGS = (
+    "-O3",
+    "-march=native",
+    "-fno-math-errno",
+    "-ffp-contract=fast",
+    "-mprefer-vector-width=512",
+    "-shared",
+    "-fPIC",
+)
+STEPS, STAGES, IN_FLIGHT = 8, 4, 12  # steps per call of advance, stages per step, vectors per pass of the C loops
+TIMES = 200_000
+ARITHMETIC = re.compile(r"\bv(?:fn?m(?:add|sub)\w+|mul|add|sub|max|min|sqrt)pd\b|\bvp(?:sra|srl|sub)q\b")
+SHAPES = {
+    "seed model": make_shape(9, 1),
+    "full model": make_shape(9, 1, resonator=True, damped=True, wavy=True, spalled=True, jittered=True),
+}
+
+
+@njit
+def take_steps(shape: Shape, state: Any, params: Any, times: int) -> None:
+    """Nothing but steps, ``STEPS * times`` of them."""
+    state, params, history = copied(state), copied(params), zeros(STEPS * LANES)
+    for _ in range(times):
+        advance(shape, state, params, 1e-9, STEPS, 0.0, history, 0)
+
+
+@njit
+def take_roots(values: Any, times: int) -> None:
+    """Square roots of all ``values``, in place."""
+    wide()
+    for _ in range(times):
+        for i in range(values.size):
+            values[i] = square_root(values[i])
+
+
+def rows(pairs: int = 15, *, times: int = TIMES, shapes: tuple[str, ...] = tuple(SHAPES)) -> Iterator[Line]:
+    """Lines of the table: steps against their bound, and our square root against the processor's."""
+    if compiler() is None:
+        yield Skipped("roofline", "there is no C compiler (cc) on this machine.")
+        return
+    lanes = 8 if has_avx512() else 4
+    with tempfile.TemporaryDirectory() as folder:
+        library = _compiled(lanes, Path(folder))
+        additions = _rate(library.multiply_and_add, IN_FLIGHT * times, times)
+        roots = _rate(library.roots, IN_FLIGHT * lanes * (times // 8), times // 8)
+        for name in shapes:
+            shape = SHAPES[name]
+            found = interleaved(pairs, step=_step_rate(shape, times // 1000), vectors=additions)
+            vectors = operations(shape) * STAGES / lanes
+            bound = [rate / vectors for rate in found["vectors"]]
+            what = f"step of the {name} alone, {operations(shape)} operations a stage"
+            yield row(f"roofline {name}", what, "record-steps/s", found["step"], f"vectors of {lanes} added", bound)
+        found = interleaved(pairs, ours=_root_rate(times // 8), processor=roots)
+    yield row("roofline roots", "our square root", "1/s", found["ours"], "the processor's", found["processor"])
+
+
+def operations(shape: Shape) -> int:
+    """Arithmetic vector instructions in the longest loop over lanes: a stage of the step."""
+    take_steps(shape, np.zeros(N_STATE * LANES), np.zeros(param_rows(shape, STEPS) * LANES), 0)
+    assembly = take_steps.inspect_asm()[take_steps.signatures[-1]]
+    return max(len(ARITHMETIC.findall(block)) for block in re.split(r"\n\S+:", assembly))
+
+
+def _compiled(lanes: int, folder: Path) -> ctypes.CDLL:
+    library = folder / "roofline.so"
+    subprocess.run(["cc", *FLAGS, f"-DLANES={lanes}", "-o", library, HERE / "roofline.c", "-lm"], check=True)
+    return ctypes.CDLL(str(library))
+
+
+def _rate(function: Any, done: int, times: int) -> Callable[[], float]:
+    function.argtypes, function.restype = [ctypes.c_long], ctypes.c_double
+    return lambda: done / seconds(function, times)
+
+
+def _step_rate(shape: Shape, times: int) -> Callable[[], float]:
+    state, params = np.zeros(N_STATE * LANES), np.zeros(param_rows(shape, STEPS) * LANES)
+    take_steps(shape, state, params, 1)
+    return lambda: times * STEPS * LANES / seconds(take_steps, shape, state, params, times)
+
+
+def _root_rate(times: int) -> Callable[[], float]:
+    values = np.linspace(1.0, 2.0, 96)
+    take_roots(values, 1)
+    return lambda: values.size * times / seconds(take_roots, values, times)
