@@ -109,10 +109,10 @@ def _read_part(path: Path, channel: int) -> tuple[FloatArray, list[FloatArray]]:
             signal = part[SIGNAL]
             x, attributes = signal[:, channel], signal.__dict__
             known = [part[name][:] for name in ("sample_rate", "shaft_rate", *Orders._fields)]
-    except OSError as error:
+    except (OSError, RuntimeError, IndexError) as error:  # no such file, damaged bytes, no such variable
         raise CorpusError(f"{path}: not a readable netCDF-4 part ({error}); generate or copy it again.") from error
     if "scale_factor" in attributes:
-        missing = x == attributes["_FillValue"]
+        missing = x == attributes.get("_FillValue")
         x = np.where(missing, np.float32(np.nan), x * np.float32(attributes["scale_factor"]))
     return x, known
 

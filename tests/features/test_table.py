@@ -236,3 +236,17 @@ def test_a_channel_that_does_not_exist_is_refused(corpus, channel):
 def test_a_corpus_that_does_not_exist_is_refused(tmp_path):
     with pytest.raises(CorpusError, match="no such folder"):
         feature_table(tmp_path / "nowhere")
+
+
+@pytest.mark.parametrize("damage", ["missing", "cut short", "no netCDF", "no signal"])
+def test_a_part_that_cannot_be_read_is_named_in_a_sentence(tmp_path, damage):
+    part = tmp_path / "part-00000.nc"
+    if damage == "no signal":
+        xr.Dataset({"sample_rate": ("record", [12_000.0])}).to_netcdf(part)
+    elif damage == "cut short":
+        xr.Dataset({"acceleration": (("record", "channel", "time"), np.ones((2, 1, 9999)))}).to_netcdf(part)
+        part.write_bytes(part.read_bytes()[:5000])
+    elif damage == "no netCDF":
+        part.write_bytes(b"not a corpus")
+    with pytest.raises(CorpusError, match=re.escape(f"{part}: not a readable netCDF-4 part")):
+        part_features(part)
