@@ -7,7 +7,9 @@ It knows the format of a corpus and not the simulator, so that recordings of rea
 ============ =================================================================================
 module       responsibility
 ============ =================================================================================
-spectra      power spectra, whitened bands as analytic signals, envelope spectra [pure]
+rows         what loops over records share: compilation, sums, windows [pure]
+spectra      power spectra, Fourier coefficients, whitening [pure]
+demodulation bands as analytic signals, envelope spectra and their floor [pure]
 lines        levels of fault lines and combs at orders of the shaft [pure]
 shape        impulsiveness, slow fluctuation, time statistics [pure]
 indicators   the feature vector of records, in four groups [pure]

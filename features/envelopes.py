@@ -9,8 +9,10 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
+from features.demodulation import analytic_band, envelope_spectrum
 from features.pictures import COLOURS, FAINT, INK, STYLE, TOLERANCE, WIDTH, Shown, fault_lines, squared_envelope
-from features.spectra import FloatArray, analytic_band, envelope_spectrum, fourier_coefficients
+from features.rows import FloatArray
+from features.spectra import fourier_coefficients
 
 PIECE = 0.5  # s
 OVERLAP = 0.75

@@ -17,24 +17,11 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.fft import irfft, next_fast_len
 
+from features.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted, running_median
 from features.lines import FAMILIES, LINE_NAMES, Orders, highest_order, read_lines
+from features.rows import ComplexArray, FloatArray, centred, squared_modulus
 from features.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
-from features.spectra import (
-    ZERO_PADDING,
-    ComplexArray,
-    FloatArray,
-    analytic_band,
-    band_energies,
-    centred,
-    cepstrally_whitened,
-    fine_amplitudes,
-    fourier_coefficients,
-    hann_weighted,
-    psd,
-    psd_whitened,
-    running_median,
-    squared_modulus,
-)
+from features.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
 
 __all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
 

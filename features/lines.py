@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.spectra import FloatArray, row_kernel
+from features.rows import FloatArray, row_kernel
 
 LINE_TOLERANCE = 0.015
 COMB_TOLERANCE = 0.02

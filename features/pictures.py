@@ -19,15 +19,10 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.baselines import Baseline, Scores
 from features.baselines.records import IntArray
+from features.demodulation import analytic_band, squared_envelope_spectrum
 from features.indicators import BROAD, WHITENING_WIDTH, Orders
-from features.spectra import (
-    FloatArray,
-    analytic_band,
-    fourier_coefficients,
-    psd,
-    psd_whitened,
-    squared_envelope_spectrum,
-)
+from features.rows import FloatArray
+from features.spectra import fourier_coefficients, psd, psd_whitened
 from gen.corpus import FAULTS
 
 PictureFormat = Literal["png", "svg", "pdf"]

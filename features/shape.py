@@ -8,7 +8,8 @@ makes its power wander slowly against the turn of the shaft [1]_.
 
 import numpy as np
 
-from features.spectra import ZERO_PADDING, FloatArray, row_kernel, total
+from features.demodulation import ZERO_PADDING
+from features.rows import FloatArray, row_kernel, total
 
 SHAPE_NAMES = ("impulsiveness", "slow_fluctuation", "slow_share")
 SMOOTHING_TURNS = 0.5
@@ -40,9 +41,9 @@ def envelope_shape(
     power
         Squared envelopes ``|z|^2``, shape (record, time).
     weighted
-        Envelopes under their window, as from `features.spectra.hann_weighted`, shape (record, time).
+        Envelopes under their window, as from `features.demodulation.hann_weighted`, shape (record, time).
     spectrum
-        Their `features.spectra.fine_amplitudes` from 0 to 0.8 order or further, shape (record, frequency).
+        Their `features.demodulation.fine_amplitudes` from 0 to 0.8 order or further, shape (record, frequency).
     rate
         Sample rate of z [Hz].
     shaft_rate

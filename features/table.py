@@ -19,7 +19,7 @@ import xarray as xr
 from distributed import Client, LocalCluster, as_completed
 
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
-from features.spectra import FloatArray
+from features.rows import FloatArray
 from gen.corpus import SIGNAL, open_corpus, part_paths
 from gen.errors import CorpusError
 

@@ -4,8 +4,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from features.demodulation import fine_amplitudes, hann_weighted
 from features.shape import envelope_shape
-from features.spectra import fine_amplitudes, hann_weighted
 
 law = settings(deadline=None, max_examples=25)
 

@@ -8,19 +8,15 @@ from scipy.ndimage import uniform_filter1d
 from scipy.signal import welch
 from scipy.signal.windows import hann
 
-from features.spectra import (
+from features.demodulation import (
     analytic_band,
-    band_energies,
-    cepstrally_whitened,
     envelope_spectrum,
     fine_amplitudes,
-    fourier_coefficients,
     hann_weighted,
-    psd,
-    psd_whitened,
     running_median,
     squared_envelope_spectrum,
 )
+from features.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
 
 law = settings(deadline=None, max_examples=25)
 seeds = st.integers(0, 2**32 - 1)

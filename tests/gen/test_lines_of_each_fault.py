@@ -7,7 +7,8 @@ run. Rates are steady here, so that a line is as narrow as the record is long.
 import numpy as np
 import pytest
 
-from features.spectra import analytic_band, envelope_spectrum, fourier_coefficients
+from features.demodulation import analytic_band, envelope_spectrum
+from features.spectra import fourier_coefficients
 from gen.measure import measure
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
