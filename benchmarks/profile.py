@@ -16,10 +16,9 @@ from benchmarks.pairs import seconds
 from gen.physics.batch import lay_out, record_shape
 from gen.physics.decimate import OUTPUTS, decimation, filter_rows
 from gen.physics.gaps import ball_gaps, move_spalls
-from gen.physics.integrate import prepare, to_next_knot
-from gen.physics.kernel import param_rows
-from gen.physics.lanes import LANES, copied, zeros
-from gen.physics.motion import STRIDE, Lanes, move_processes, slow_rows, turn_rings
+from gen.physics.integrate import prepare, set_out, to_next_knot
+from gen.physics.lanes import LANES, zeros
+from gen.physics.motion import STRIDE, Lanes, move_processes, turn_rings
 from gen.physics.step import advance
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
@@ -43,13 +42,7 @@ PARTS = {
 @njit
 def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters: Any, knots: int) -> None:
     """One part of the kernel for so many ``knots``."""
-    params = zeros(param_rows(shape, n_steps) * LANES)
-    for i in range(batch.params.size):
-        params[i] = batch.params[i]
-    lanes = Lanes(
-        copied(batch.state), params, copied(batch.drive), copied(batch.angles), copied(batch.spalls), copied(batch.phasors),
-        zeros(2 * slow_rows(shape) * LANES), copied(batch.waves), batch.schedule, batch.tables,
-    )  # fmt: skip
+    lanes = set_out(shape, batch, n_steps)
     work = prepare(shape, lanes, n_steps)
     width = len(shape.channels) * LANES
     history, halfway = (

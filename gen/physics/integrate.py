@@ -63,6 +63,18 @@ class Work(NamedTuple):
 
 
 @njit(**ALLOCATING)
+def set_out(shape: Shape, batch: Lanes, n_steps: int) -> Lanes:
+    """The batch on its way: copies of what it was laid out in, and room for what holds between two knots."""
+    params = zeros(param_rows(shape, n_steps) * LANES)
+    for i in range(batch.params.size):
+        params[i] = batch.params[i]
+    return Lanes(
+        copied(batch.state), params, copied(batch.drive), copied(batch.angles), copied(batch.spalls), copied(batch.phasors),
+        zeros(2 * slow_rows(shape) * LANES), copied(batch.waves), batch.schedule, batch.tables,
+    )  # fmt: skip
+
+
+@njit(**ALLOCATING)
 def prepare(shape: Shape, lanes: Lanes, n_steps: int) -> Work:
     """Work arrays, and what moves at its first knot."""
     n_balls = len(shape.balls)
@@ -109,13 +121,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
         shape: Shape, batch: Lanes, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
     ) -> Columns:
         _ = sources
-        params = zeros(param_rows(shape, n_steps) * LANES)
-        for i in range(batch.params.size):
-            params[i] = batch.params[i]
-        batch = Lanes(
-            copied(batch.state), params, copied(batch.drive), copied(batch.angles), copied(batch.spalls), copied(batch.phasors),
-            zeros(2 * slow_rows(shape) * LANES), copied(batch.waves), batch.schedule, batch.tables,
-        )  # fmt: skip
+        batch = set_out(shape, batch, n_steps)
         n_channels, width = len(shape.channels), len(shape.channels) * LANES
         two_stages = len(filters.first.taps) > 0
         first_stage = filters.first if two_stages else filters.last
