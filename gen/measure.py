@@ -79,12 +79,12 @@ def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Me
 
 def compile_mixing(scenario: Scenario, recipe: Recipe) -> None:
     """Compile what puts records together, or fetch it from numba's cache on disk."""
-    silence = np.zeros((1, len(recipe.recording.channels), lead_samples(recipe) + recipe.n_samples))
+    silence = np.zeros((1, len(recipe.recording.channels), lead_samples(recipe) + recipe.n_samples), np.float32)
     measure(Response(silence, np.ones(1, np.int64), np.zeros(1), {}, [None]), [scenario], recipe)
 
 
 def _mixed(
-    acceleration: FloatArray, scenarios: Sequence[Scenario], sounds: Sequence[Sound], recipe: Recipe
+    acceleration: Float32Array, scenarios: Sequence[Scenario], sounds: Sequence[Sound], recipe: Recipe
 ) -> tuple[Float32Array, FloatArray]:
     """Bearing over background at the drawn levels, shape (record, channel, time) [m s-2], and the ratio of the two [dB]."""
     lead, (n_records, n_channels, length) = lead_samples(recipe), acceleration.shape
@@ -109,9 +109,9 @@ def _mixed(
     return mixed, decibels(rms[0] * gains[0] / np.maximum(rms[1] * gains[1], 1e-30))
 
 
-def _through_paths(acceleration: FloatArray, sounds: Sequence[Sound]) -> Float32Array:
+def _through_paths(acceleration: Float32Array, sounds: Sequence[Sound]) -> Float32Array:
     """Accelerations behind the paths, shape (record, channel, time); the lead takes up what runs around the ends [m s-2]."""
-    heard = acceleration.astype(np.float32)
+    heard = acceleration.copy()
     resonant = [row for row, sound in enumerate(sounds) if sound.direct is None]
     for row, sound in enumerate(sounds):
         if sound.direct is not None:

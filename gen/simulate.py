@@ -37,7 +37,7 @@ CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # in one part of so many the share of a
 class Response:
     """What the channels' bodies do, from ``LEAD_S`` before the record on."""
 
-    acceleration: FloatArray
+    acceleration: NDArray[np.float32]
     """Shape (record, channel, time), NaN where a record diverged [m s-2]."""
     oversampling: NDArray[np.int64]
     """Steps per sample, shape (record,)."""
@@ -93,7 +93,7 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
                 f"record {number}: its contacts became stiffer than {factor} steps per sample can follow; "
                 f"set recording.oversampling to {need}."
             )
-    acceleration = np.full((len(scenarios), *made.response.shape[1:]), np.nan)
+    acceleration = np.full((len(scenarios), *made.response.shape[1:]), np.nan, np.float32)
     acceleration[list(possible)] = made.response
     acceleration[list(failures)] = np.nan
     step_phase = np.full(len(scenarios), np.nan)
@@ -109,7 +109,7 @@ def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tu
     batches: dict[tuple[Shape, int], list[int]] = defaultdict(list)
     for place, record in enumerate(records):
         batches[record_shape(record), factors[place]].append(place)
-    response = np.empty((len(records), len(recipe.recording.channels), n_out))
+    response = np.empty((len(records), len(recipe.recording.channels), n_out), np.float32)
     diverged, steepest = np.empty(len(records), np.int64), np.empty(len(records))
     for (shape, factor), places in batches.items():
         for first in range(0, len(places), LANES):
@@ -139,7 +139,8 @@ def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -
     finer, _ = _integrated([fine[place] for place in tried], [2 * groups[place][1] for place in tried], recipe)
     lead = lead_samples(recipe)
     coarse, halved = response.acceleration[tried][..., lead:], finer.response[..., lead:]
-    errors[tried] = np.sqrt(np.sum((coarse - halved) ** 2, axis=(1, 2)) / np.sum(halved**2, axis=(1, 2)))
+    change, whole = (np.sum(some**2, axis=(1, 2), dtype=np.float64) for some in (coarse - halved, halved))
+    errors[tried] = np.sqrt(change / whole)
     return errors
 
 

@@ -1,7 +1,8 @@
 """From the rate of the steps down to the sample rate: linear-phase low-passes over lanes, in two stages where that is cheaper.
 
 The first stage comes down to twice the sample rate with a short filter, for what it lets through above the band the second, sharp one
-still takes out [1]_. Each pass over the history serves four outputs, so that the sums are bound by arithmetic and not by memory.
+still takes out [1]_. Each pass over the history serves four outputs, so that the sums are bound by arithmetic and not by memory. All is
+in single precision, whose rounding lies 120 dB below the largest input and which takes half the time.
 
 .. [1] R. E. Crochiere, L. R. Rabiner, *Multirate Digital Signal Processing*, Prentice-Hall, 1983, chapter 5.
 """
@@ -15,7 +16,7 @@ from scipy.signal import firwin
 
 from gen.physics.lanes import INLINE, LANES, fma, lane_count, wide
 
-FloatArray = NDArray[np.float64]
+Single = NDArray[np.float32]
 
 HALF_TAPS = 26  # samples on either side of an output
 FIRST_HALF_TAPS = 6  # of the first stage, in its outputs: 80 dB from 1.4 times the sample rate on, flat to half of it
@@ -27,14 +28,14 @@ BETA = 7.857  # of the Kaiser windows
 class Stage(NamedTuple):
     """A low-pass and how many of its inputs there are to an output."""
 
-    taps: FloatArray
+    taps: Single
     """Shape (input, output) for ``OUTPUTS`` successive outputs, zero where an output does not reach."""
     factor: int
     kept: int
     """Inputs that an output needs before its newest."""
 
 
-NO_STAGE = Stage(np.empty((0, OUTPUTS)), 1, 0)
+NO_STAGE = Stage(np.empty((0, OUTPUTS), np.float32), 1, 0)
 
 
 class Decimation(NamedTuple):
@@ -59,13 +60,13 @@ def decimation(n_steps: int) -> Decimation:
     return Decimation(_stage(_low_pass(FIRST_HALF_TAPS, ratio, 0.96 / ratio), ratio), _stage(last, factor))
 
 
-def _low_pass(half_taps: int, factor: int, cutoff: float) -> FloatArray:
+def _low_pass(half_taps: int, factor: int, cutoff: float) -> NDArray[np.float64]:
     return firwin(2 * half_taps * factor + 1, cutoff, window=("kaiser", BETA))
 
 
-def _stage(taps: FloatArray, factor: int) -> Stage:
+def _stage(taps: NDArray[np.float64], factor: int) -> Stage:
     rows = len(taps) + (OUTPUTS - 1) * factor
-    shifted = np.zeros((rows + -rows % 4, OUTPUTS))
+    shifted = np.zeros((rows + -rows % 4, OUTPUTS), np.float32)
     for output in range(OUTPUTS):
         shifted[output * factor : output * factor + len(taps), output] = taps
     return Stage(shifted, factor, len(taps) - 1)
@@ -74,12 +75,12 @@ def _stage(taps: FloatArray, factor: int) -> Stage:
 @njit(**INLINE)
 def filter_rows(
     channels: tuple[None, ...],
-    taps: FloatArray,
-    history: FloatArray,
+    taps: Single,
+    history: Single,
     first: int,
-    out: FloatArray,
+    out: Single,
     at: int,
-    total: FloatArray,
+    total: Single,
 ) -> None:
     """Four rows of ``out`` from row ``at`` on: weighted sums of the rows of ``history`` from row ``first`` on.
 

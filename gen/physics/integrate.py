@@ -13,7 +13,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gen.physics import decimate, gaps, kernel, lanes, motion, spall, step
-from gen.physics.decimate import OUTPUTS, Decimation, filter_rows
+from gen.physics.decimate import OUTPUTS, Decimation, Single, filter_rows
 from gen.physics.gaps import N_ROTATIONS, ball_gaps, move_gaps, move_spalls
 from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, param_rows
 from gen.physics.lanes import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
@@ -35,13 +35,13 @@ FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft suppo
 BLOCK = 8  # knots between two runs of the filters, a multiple of what they give in one pass
 ROOM = 16  # blocks of outputs of the first stage, before the newest are moved to the front
 
-Columns = tuple[FloatArray, NDArray[np.int64], FloatArray]
+Columns = tuple[Single, NDArray[np.int64], FloatArray]
 
 
 class Integral(NamedTuple):
     """What comes out of a batch."""
 
-    response: FloatArray
+    response: Single
     """What the pickups give at the knots, shape (knot, channel, lane) [m s-2, or m]."""
     diverged: NDArray[np.int64]
     """Knot at which a record left the finite range, -1 if it never did, shape (lane,)."""
@@ -78,7 +78,7 @@ def set_out(shape: Shape, batch: Lanes, n_steps: int) -> Lanes:
 def prepare(shape: Shape, lanes: Lanes, n_steps: int) -> Work:
     """Work arrays, and what moves at its first knot."""
     n_balls = len(shape.balls)
-    rows = 2 * N_ROTATIONS + 2 * n_balls + JITTER + OUTPUTS * len(shape.channels)
+    rows = 2 * N_ROTATIONS + 2 * n_balls + JITTER
     scratch = zeros(rows * LANES + 2 * n_steps + 1)
     work = Work(zeros(ANGLE_ROWS * LANES), zeros(n_balls * LANES), zeros(1), scratch)
     start_processes(shape, lanes)
@@ -103,7 +103,7 @@ def to_next_knot(shape: Shape, lanes: Lanes, knot: int, n_steps: int, dt: float,
 
 
 @njit(**INLINE)
-def keep(history: FloatArray, size: int, start: int) -> None:
+def keep(history: Single, size: int, start: int) -> None:
     """Move ``size`` values from ``start`` on to the front."""
     newest = history[start:]
     for i in range(size):
@@ -126,10 +126,11 @@ def _cached(sources: str) -> Callable[..., Columns]:
         two_stages = len(filters.first.taps) > 0
         first_stage = filters.first if two_stages else filters.last
         kept, half_kept = first_stage.kept, filters.last.kept
-        history = zeros((kept + BLOCK * n_steps + 4) * width)
-        halfway = zeros((half_kept + 2 * BLOCK * ROOM + 4) * width)
+        history = zeros((kept + BLOCK * n_steps + 4) * width, np.float32)
+        halfway = zeros((half_kept + 2 * BLOCK * ROOM + 4) * width, np.float32)
         lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
-        response = np.empty((n_out + 2 * BLOCK) * width)
+        response = np.empty((n_out + 2 * BLOCK) * width, np.float32)
+        totals = zeros(OUTPUTS * width, np.float32)
         diverged = np.full(LANES, -1)
         work = prepare(shape, batch, n_steps)
         for first in range(0, lead + n_settle + n_out, BLOCK):
@@ -149,7 +150,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
                 for output in range(0, 2 * BLOCK, OUTPUTS):
                     filter_rows(
                         shape.channels, first_stage.taps, history, output * first_stage.factor, halfway, half_kept + start + output,
-                        work.scratch,
+                        totals,
                     )  # fmt: skip
             out = (
                 first - lead - n_settle + BLOCK
@@ -159,7 +160,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
                 for output in range(0, BLOCK, OUTPUTS):
                     filter_rows(
                         shape.channels, filters.last.taps, source, start + output * filters.last.factor, response, out + output,
-                        work.scratch,
+                        totals,
                     )  # fmt: skip
             keep(history, kept * width, BLOCK * n_steps * width)
             if start == 2 * BLOCK * (ROOM - 1):

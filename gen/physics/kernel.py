@@ -20,9 +20,11 @@ from gen.physics.lanes import CALLED, INLINE, LANES, fma, square_root
 FloatArray = NDArray[np.float64]
 
 MAX_BALLS = 24
-_COUNT = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None]
-COS = np.cos(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)  # (number of balls, ball): direction in the cage's frame
-SIN = np.sin(2 * np.pi * np.arange(MAX_BALLS) / _COUNT)
+_COUNT, _BALL = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None], np.arange(MAX_BALLS)
+_ANGLE = (
+    2 * np.pi * np.where(2 * _BALL > _COUNT, _BALL - _COUNT, _BALL) / _COUNT
+)  # so that cosines of mirror images are the same bits
+COS, SIN = np.cos(_ANGLE), np.sin(_ANGLE)  # (number of balls, ball): direction in the cage's frame
 
 AXES = 6
 # Rows of ``state``: coordinates x1 y1 x2 y2 xr yr, their rates, the directions of cage and shaft, the largest sum over all balls of
@@ -141,9 +143,14 @@ def add_ball(
     if len(shape.wavy):
         row = (gap_row(shape) + 2 * ball) * LANES + lane
         gap = fma(params[row + LANES], instant.half_step, params[row])
+    # in this order a ball and its mirror image share the inner part if their gaps are the same
+    squeeze = fma(x, c, -gap)
+    ahead = ball == 0 and len(shape.jittered) == 0  # in the direction of the cage: its sine is zero
+    if not ahead:
+        squeeze = fma(y, s, squeeze)
     if len(shape.spalled):
-        gap += instant.drops[ball * LANES + lane]
-    squeeze = max(fma(x, c, fma(y, s, -gap)), 0.0)
+        squeeze -= instant.drops[ball * LANES + lane]
+    squeeze = max(squeeze, 0.0)
     if len(shape.roller):
         power = ninth_root(squeeze)
     elif ball % 4 == 3:  # the divider, which would lie idle, takes some of the roots: 8 % of the time of a step
@@ -155,7 +162,7 @@ def add_ball(
         damped = max(fma(params[DAMPING * LANES + lane], fma(u, c, v * s), force), 0.0)
         force = damped if squeeze > 0.0 else 0.0
     along, across, powers = total
-    return fma(force, c, along), fma(force, s, across), powers + power
+    return fma(force, c, along), across if ahead else fma(force, s, across), powers + power
 
 
 @njit(**INLINE)
@@ -189,7 +196,7 @@ def contact_force(
     x, y, u, v = motion
     c, s = cosa * c, cosa * s
     seen = (fma(x, c, y * s), fma(y, c, -(x * s)), fma(u, c, v * s), fma(v, c, -(u * s)))
-    nothing = (0.0, 0.0, 0.0)
+    nothing = (-0.0, -0.0, -0.0)  # to add it takes no instruction: it leaves zeros their sign
     sums = (nothing, nothing, nothing, nothing)
     # numbers that numba does not take for types: it would compile the four balls once for each
     sums = add_four(shape, np.int64(0), sums, seen, instant, lane, params)

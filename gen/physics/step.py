@@ -134,14 +134,14 @@ def later_stage(
 def pick_up(shape: Shape, state: FloatArray, params: FloatArray, received: FloatArray) -> None:
     """Weighted sums of displacements or accelerations at the beginning of a step, one for each channel."""
     wide()
-    picked = BEGINNING if len(shape.displacement) else SLOPES + AXES
-    for channel in range(len(shape.channels)):
-        weights, there = params[(PICKUPS + channel * AXES) * LANES :], received[channel * LANES :]
-        for lane in range(lane_count()):
+    picked = state[(BEGINNING if len(shape.displacement) else SLOPES + AXES) * LANES :]
+    weights = params[PICKUPS * LANES :]
+    for lane in range(lane_count()):
+        for channel in range(len(shape.channels)):
             value = 0.0
             for axis in range(AXES if len(shape.resonator) else 4):
-                value = fma(weights[axis * LANES + lane], state[(picked + axis) * LANES + lane], value)
-            there[lane] = value
+                value = fma(weights[(channel * AXES + axis) * LANES + lane], picked[axis * LANES + lane], value)
+            received[channel * LANES + lane] = value
 
 
 @njit(**INLINE)
