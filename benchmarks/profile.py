@@ -19,7 +19,7 @@ from gen.physics.decimate import OUTPUTS, decimation, filter_rows
 from gen.physics.gaps import ball_gaps, move_spalls
 from gen.physics.integrate import prepare, set_out, to_next_knot
 from gen.physics.lanes import LANES, zeros
-from gen.physics.motion import STRIDE, Lanes, move_processes, turn_rings
+from gen.physics.motion import STRIDE, Lanes, move_forces, move_processes, turn_rings
 from gen.physics.step import advance
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
@@ -28,11 +28,12 @@ from gen.simulate import kernel_record, steps_per_sample
 from raceway.bench import bench
 
 KNOTS, TRIES = 400, 25
-STEP, ROTATION, SLOW, WAVES, SPALLS, PREPARED, FIRST_FILTER, LAST_FILTER = range(8)
+STEP, ROTATION, SLOW, FORCES, WAVES, SPALLS, PREPARED, FIRST_FILTER, LAST_FILTER = range(9)
 PARTS = {
     "steps": STEP,
     "rotation of shaft, cage and balls": ROTATION,
     "speed, slip, spin and jitter": SLOW,
+    "forces from outside": FORCES,
     "waviness": WAVES,
     "spalls": SPALLS,
     "first filter": FIRST_FILTER,
@@ -61,6 +62,11 @@ def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters
         elif part == SLOW:
             if knot % STRIDE == 0:
                 move_processes(shape, lanes, n_steps, work.scratch)
+        elif part == FORCES:
+            if len(shape.forced):
+                move_forces(lanes, knot, n_steps, dt, work.moves, work.scratch)
+                for i in range(lanes.angles.size):
+                    lanes.angles[i] += work.moves[i]
         elif part == WAVES:
             if len(shape.wavy):
                 ball_gaps(shape, lanes, work.moves, work.scratch, work.gaps)

@@ -134,9 +134,8 @@ def take_ball_waviness(shape: Shape, lanes: Lanes, moves: FloatArray, z: FloatAr
             real = imag = 0.0
             for order in range(BALL_ORDERS):
                 row = 2 * (BALL_ORDERS - 1 - order) * n_balls * LANES + lane
-                a, b = real + waves[row], imag + waves[row + LANES]
-                real, imag = fma(a, c, -(b * s)), fma(a, s, b * c)
-            here[lane] -= real
+                real, imag = fma(real, c, fma(-imag, s, waves[row])), fma(real, s, fma(imag, c, waves[row + LANES]))
+            here[lane] -= fma(real, c, -(imag * s))
 
 
 @njit(**INLINE)
