@@ -115,12 +115,19 @@ def test_a_record_does_not_depend_on_the_batch_it_is_in(seed, records, size):
 @law
 @given(st.sampled_from(FAMILIES), st.floats(15.0, 50.0), st.floats(-0.015, 0.015), st.integers(0, 99))
 def test_the_comb_of_a_ringing_fault_is_the_highest_whatever_the_speed_label(family, rate, error, seed):
+    """And higher than noise alone has any.
+
+    An envelope has no line above the width of its band, and ever less of them on the way there: in bands of 1 kHz a comb sinks as its third
+    harmonic rises from 600 to 800 Hz, in the broad one it hardly does. Of the narrow bands one rings, the mean is over all.
+    """
     order = {"bpfo": BPFO, "bpfi": BPFI, "2bsf": 2 * BSF}[family]
     values = named(features(ringing(order, rate, seed=seed), 12_000.0, rate * (1 + error)))
-    for view in ("whitened", "bands_max", "bands_mean"):  # cepstral whitening flattens a train without jitter
+    within = 3 * order * rate < 600
+    least = {"whitened": 1.5, "bands_max": 1.3 if within else 0.8, "bands_mean": 1.3 if within else 0.8}
+    for view in least:  # cepstral whitening flattens a train without jitter
         combs = {name: values[f"{view}_{name}_comb"][0] for name in FAMILIES}
         assert max(combs, key=combs.__getitem__) == family
-        assert combs[family] > 1.2
+        assert combs[family] > least[view]
 
 
 @law
@@ -129,6 +136,7 @@ def test_noise_has_no_comb_and_no_impulsiveness(seed, rate):
     values = named(features(noise(seed), 12_000.0, rate))
     for family in FAMILIES:
         assert values[f"whitened_{family}_comb"].max() < 1.2
+        assert values[f"bands_mean_{family}_comb"].max() < 0.8
     np.testing.assert_allclose(values["whitened_impulsiveness"], np.log(2), atol=0.15)
 
 
