@@ -8,12 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.spall import GEOMETRIC, PROFILES, RECTANGULAR, drop, largest_drop
+from gen.physics.gaps import tabulated
+from gen.physics.motion import TABLE_POINTS
+from gen.physics.spall import GEOMETRIC, PROFILES, RECTANGULAR, TABLE, drop, largest_drop
 from tests.reference import rigid_path
 from tests.strategies import depths
 
 law = settings(deadline=None, max_examples=100)
-every_profile = pytest.mark.parametrize("profile", range(len(PROFILES)), ids=PROFILES)
+every_profile = pytest.mark.parametrize("profile", range(TABLE), ids=PROFILES[:TABLE])  # that :func:`drop` knows
 BEARING = CATALOGUE["6205"]
 BALL = BEARING.ball_diameter / 2
 RACES = {"inner": BEARING.inner_radius, "outer": -BEARING.outer_radius}
@@ -75,6 +77,17 @@ def test_drops_have_no_jump_but_those_of_the_rectangular_profile(profile, share,
     there = fall(profile, (share + step) * half, half, race, depth)
     steepest = max(10 * depth, abs(race) * half)
     assert abs(there - here) < step * steepest
+
+
+@law
+@given(st.floats(-1.2, 1.2), halves, st.integers(0, 2**32 - 1))
+def test_a_tabulated_drop_runs_straight_between_its_points_and_is_none_off_the_spall(share, half, seed):
+    tables = np.random.default_rng(seed).uniform(0, 1e-4, (2, TABLE_POINTS))
+    found = [tabulated.py_func(tables, row, share * half, half) for row in (0, 1)]
+    points = np.linspace(-half, half, TABLE_POINTS)
+    inside = abs(share * half) < half
+    expected = [np.interp(share * half, points, table) if inside else 0.0 for table in tables]
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-12 * 1e-4 * TABLE_POINTS)
 
 
 @law
