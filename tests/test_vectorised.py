@@ -37,7 +37,7 @@ def advance_once(shape, state, params, history):
 def assembly(shape):
     """Code of a step; each takes three seconds to compile."""
     advance_once(shape, np.zeros(N_STATE * LANES), np.ones(param_rows(shape, 1) * LANES), np.zeros(LANES))
-    return advance_once.inspect_asm()[advance_once.signatures[-1]]
+    return advance_once.inspect_asm(advance_once.signatures[-1])
 
 
 @pytest.mark.parametrize("n_balls", sorted({bearing.n_balls for bearing in CATALOGUE.values()}))
