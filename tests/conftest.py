@@ -8,13 +8,14 @@ from gen import generate
 
 TINY = """\
 # Tiny: four classes on two machines, for tests.
-# Two kernels, which other tests use too.
+# All share the kernel of the small recipe of tests/gen.
 name: tiny
 title: Tiny corpus
 seed: 3
 corpus: {rigs: 2, specimens_per_rig: 8, records_per_specimen: 3, records_per_part: 12, split: {test: 0.25}}
 recording: {sample_rate_hz: 12000, duration_s: 0.1, settle_s: 0.05}
 bearing: {kind: catalogue, designations: ["6205"]}
+specimen: {waviness_nm: 20}
 operation: {shaft_rpm: {kind: uniform, low: 4500, high: 6000}}
 faults:
   - {kind: healthy}

@@ -83,7 +83,7 @@ RECIPES = {
     "hasty": ("operation: {", "operation: {load_profile: {kind: steps, levels_percent: [50, 99]}, "),
     "twice": ("{kind: healthy}", "{kind: compound, parts: [{kind: cage}, {kind: cage}]}"),
     "straight": ("operation: {", "operation: {axial_load_n: 100, "),
-    "coming_loose": ("operation: {", "specimen: {contact_angle_deg: 10}\noperation: {axial_load_n: 10, "),
+    "coming_loose": ("20}\noperation: {", "20, contact_angle_deg: 10}\noperation: {axial_load_n: 10, "),
     "wide": ("{kind: healthy}", "{kind: ball, width_mm: 6}"),
 }
 

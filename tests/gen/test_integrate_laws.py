@@ -17,7 +17,7 @@ FS = 12_000
 Y_OF_SENSOR = np.eye(6)[[5, 4]]
 ORDERS = orders(CATALOGUE["6205"])
 LINES = {"inner": ORDERS.bpfi, "outer": ORDERS.bpfo, "ball": 2 * ORDERS.bsf}
-EVEN = 1e-12  # jitter: one kernel for every test here, with damped contacts, jitter and spalls
+EVEN = 1e-12  # jitter, and waviness [m]: one kernel for every test here, with damped contacts, jitter, waves and spalls
 
 
 def responses(records, n_steps, n_settle, n_out):
@@ -62,7 +62,7 @@ def turning(site, shaft_rate, rng, *, mean_slip=0.0, load=100.0):
         shaft_rate, mean_slip=mean_slip, jitter_rms=EVEN, shaft_angle=start[0], cage_angle=start[1], spin_angle=start[2]
     )
     tight = RIG._replace(half_clearance=-5e-6, contact_damping=50.0, load_x=0.0, load_y=-load)
-    return record(tight, motion, [Spall(site, 0.5e-3, 3e-4, rng.uniform(-np.pi, np.pi))])
+    return record(tight, motion, [Spall(site, 0.5e-3, 3e-4, rng.uniform(-np.pi, np.pi))], waviness=EVEN)
 
 
 def envelope(signal):

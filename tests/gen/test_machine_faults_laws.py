@@ -153,10 +153,13 @@ def test_knocks_scatter_log_normally_and_differ_from_cage_to_cage():
 
 @pytest.mark.parametrize("late_by", [0.0, 0.1, 0.3, 0.6])
 def test_a_ball_meets_a_spall_wherever_it_is_in_its_pocket(late_by):
-    """One ball far out of place, at a stand: it lies in the spall that is put under it."""
-    motion = Motion(1e-6, late_ball=0, late_by=late_by)
-    spall = Spall("outer", 0.5e-3, 1e-3, late_by)
-    machine = TIGHT._replace(load_x=300 * math.cos(late_by), load_y=300 * math.sin(late_by), half_clearance=0.0)
-    records = [record(machine, motion, some)._replace(schedule=CONSTANT) for some in ((), (spall,))]
-    sound, spalled = (march_lanes([each], 600, 8, KNOT)[0].states[-1] for each in records)
+    """One ball far out of place, at a stand: it lies in the spall that is put under it.
+
+    Jitter and damping that are all but none, and a spall of no depth, leave one kernel for both, which other tests use too.
+    """
+    motion = Motion(1e-6, jitter_rms=1e-12, late_ball=0, late_by=late_by)
+    across = {"load_x": 300 * math.cos(late_by), "load_y": 300 * math.sin(late_by)}
+    machine = RIG._replace(half_clearance=0.0, contact_damping=1e-3, **across)
+    records = [record(machine, motion, [Spall("outer", 0.5e-3, depth, late_by)]) for depth in (0.0, 1e-3)]
+    sound, spalled = (trip.states[-1] for trip in march_lanes(records, 600, 8, KNOT))
     assert (spalled - sound)[:2] @ [math.cos(late_by), math.sin(late_by)] > 1e-6
