@@ -29,7 +29,7 @@ lint: $(VENV)/installed
 	$(BIN)/basedpyright
 
 test: lint
-	$(BIN)/python -m pytest -n logical --dist loadfile
+	$(BIN)/python -m pytest -n logical --dist worksteal
 
 generated: $(VENV)/installed
 	$(BIN)/python -m gen.recipe.reference .
