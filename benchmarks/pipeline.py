@@ -70,11 +70,13 @@ def throughput_rows(pairs: int, recipe: Path = FULL, kernel_records: int = 32) -
         yield row(f"pipeline {codec}", what, "records/s", found[codec], "the kernel alone", found["kernel"])
 
 
-def worker_rows(pairs: int, recipe: Path = FULL, records: int = 384, records_per_part: int = 32) -> Iterator[Line]:
+def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_per_part: int = 32) -> Iterator[Line]:
     """Two workers against one, on clusters that are running already and with the start of the cluster."""
     with tempfile.TemporaryDirectory() as temporary, _cluster(1) as one, _cluster(2) as two:
         folder = Path(temporary)
-        small = variant(recipe, folder / "small.yaml", corpus={"records_per_part": records_per_part})
+        small = variant(
+            recipe, folder / "small.yaml", corpus={"records_per_part": records_per_part, "specimens_per_rig": 256}
+        )
 
         def running(cluster: LocalCluster) -> float:
             return speed(small, folder, records=records, scheduler=cluster.scheduler_address)
@@ -88,7 +90,7 @@ def worker_rows(pairs: int, recipe: Path = FULL, records: int = 384, records_per
             started=lambda: speed(small, folder, records=records, workers=2),
             here=lambda: speed(small, folder, records=records),
         )
-    what = "recipe to parts on disk, full model, two workers"
+    what = f"recipe to {records:,} records on disk, full model, two workers"
     yield row("pipeline workers", f"{what}, running", "records/s", found["two"], "one worker, running", found["one"])
     yield row(
         "pipeline started", f"{what} to be started", "records/s", found["started"], "in this process", found["here"]
