@@ -20,7 +20,7 @@ from numba.extending import intrinsic
 LANES = 16
 
 
-class _Apart(Compiler):
+class _NoAlias(Compiler):
     """Compiles a function for arrays that do not overlap where it writes.
 
     LLVM would make every loop twice, as vectors and one by one, and ask each time which it may take.
@@ -40,7 +40,7 @@ INLINE: dict[str, Any] = {
     "no_cpython_wrapper": True,
     "no_cfunc_wrapper": True,
     "_nrt": False,
-    "pipeline_class": _Apart,
+    "pipeline_class": _NoAlias,
 }
 ALLOCATING: dict[str, Any] = {**INLINE, "_nrt": True}
 # All the rest is inlined into it: a function left on its own is optimised apart in the process that compiles the kernel, and that process
