@@ -6,6 +6,7 @@
 module        responsibility
 ============= ==================================================================
 errors        what can go wrong, one sentence each
+limits        how much a file from elsewhere may ask for
 physics       pure: bearing, Hertz contact, spalls, machine, kernel
 corpus        the netCDF format: write, index, open, validate
 importers     real recordings into the same format

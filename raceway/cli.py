@@ -38,7 +38,14 @@ class Raceway(click.Group):
 
 @click.group(cls=Raceway, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
 @click.version_option(package_name="raceway", message="%(package)s %(version)s")
-def cli() -> None:
+@click.option(
+    "--limit",
+    "limits",
+    multiple=True,
+    metavar="NAME=NUMBER",
+    help="Raise a limit on what a file may ask for, by the name its error gives.",
+)
+def cli(limits: tuple[str, ...]) -> None:
     """Make labelled vibration corpora of healthy and cracked rolling bearings, and find out what they are worth.
 
     A first round, about a minute:
@@ -62,6 +69,11 @@ def cli() -> None:
       eval "$(_RACEWAY_COMPLETE=zsh_source raceway)"      in ~/.zshrc
       _RACEWAY_COMPLETE=fish_source raceway | source      in config.fish
     """
+    if limits:
+        from gen.limits import VARIABLE, parse_limits
+
+        parse_limits(",".join(limits))
+        os.environ[VARIABLE] = ",".join(filter(None, (os.environ.get(VARIABLE), *limits)))  # workers inherit it
 
 
 def keep_examples(command: click.Command) -> None:
