@@ -28,7 +28,7 @@ from features.pictures import (
     draw_scores,
     picture,
 )
-from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, read_manifest, write_durably, write_text_durably
+from gen.corpus import FAULTS, SIGNAL, SPLITS, Manifest, open_corpus, read_manifest, write_durably, write_text_durably
 from gen.errors import CorpusError
 
 CANDIDATES = 15  # records of a class among which an example is chosen
@@ -285,9 +285,9 @@ def _findings(results: Results, chance: float) -> list[str]:
     return sentences
 
 
-def _facts(manifest: Mapping[str, Any], results: Results) -> list[tuple[str, str]]:
+def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Where the numbers come from: the manifest without its parts, and the settings of the benchmark."""
-    facts = {key: value for key, value in manifest.items() if key not in ("parts", "complete", "records", "title")}
+    facts = manifest.model_dump(exclude={"parts_", "index", "complete", "records", "title"}, exclude_unset=True)
     benchmark = {
         "cross-validation": f"{results.folds} folds by {results.by}",
         "features": f"{results.features} ({', '.join(results.groups)})",
@@ -300,7 +300,7 @@ def _facts(manifest: Mapping[str, Any], results: Results) -> list[tuple[str, str
 def _told(value: object) -> str:
     if isinstance(value, Mapping):
         return _text(", ".join(f"{key} {item}" for key, item in value.items()))
-    if isinstance(value, list):
+    if isinstance(value, list | tuple):
         return f"{len(value)}"
     return _text(value)
 

@@ -7,20 +7,19 @@ carried along untouched. A task returns numbers only, so that memory does not gr
 corpus, and since a task is a part, the numbers are the same for every number of workers.
 """
 
-import os
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, ExitStack, nullcontext, suppress
+from contextlib import AbstractContextManager, nullcontext
 from functools import partial
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 import xarray as xr
-from distributed import Client, LocalCluster, as_completed
+from distributed import Client
 
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.rows import FloatArray
-from gen.corpus import SIGNAL, open_corpus, part_paths
+from gen.cluster import client_of, local_client, run_tasks
+from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, whole_or_not_at_all
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
@@ -57,7 +56,8 @@ def feature_table(
     -------
     Dataset
         ``features (record, feature)``, coordinates ``feature`` (names) and ``group``, all per-record
-        variables and the attributes of the corpus, and ``records_with_missing_features``, the number of rows
+        variables but ``draws``, which would be most of the table, the attributes of the corpus, and
+        ``records_with_missing_features``, the number of rows
         that hold a NaN.
 
     Raises
@@ -73,7 +73,8 @@ def feature_table(
             last = opened.sizes["channel"] - 1
             message = f"{corpus}: no channel {channel}; give one of 0 to {last}."
             raise CorpusError(message)
-        table = opened.drop_dims(["channel", "elapsed_time"]).load().drop_encoding()
+        described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
+        table = described.load().drop_encoding()
     paths = part_paths(corpus, check="size")
     small = len(paths) == 1 or table.sizes["record"] <= INLINE_RECORDS
     blocks: list[FloatArray] = [np.empty((0, len(names)))] * len(paths)
@@ -88,7 +89,7 @@ def feature_table(
 
 def part_features(path: Path, groups: Sequence[str] = GROUPS, channel: int = 0) -> FloatArray:
     """Features of the records of one part, shape (record, feature); NaN as in `features.indicators`."""
-    x, (fs, shaft_rate, *nominal) = _read_part(path, channel)
+    x, (fs, shaft_rate, *nominal) = read_channel(path, channel, ("sample_rate", "shaft_rate", *Orders._fields))
     orders = Orders(*nominal)
     values = np.full((len(x), len(feature_names(groups))), np.nan)
     for rate in np.unique(fs[fs > 0]):
@@ -98,46 +99,27 @@ def part_features(path: Path, groups: Sequence[str] = GROUPS, channel: int = 0) 
     return values
 
 
-def _read_part(path: Path, channel: int) -> tuple[FloatArray, list[FloatArray]]:
-    """Signals of one channel in single precision, then sample rate, shaft rate and `Orders` of the records.
-
-    Not by xarray, which takes 1.6 times as long: it opens variables nobody reads and scales in double precision.
-    """
-    try:
-        with netCDF4.Dataset(path) as part:
-            part.set_auto_maskandscale(False)
-            signal = part[SIGNAL]
-            x, attributes = signal[:, channel], signal.__dict__
-            known = [part[name][:] for name in ("sample_rate", "shaft_rate", *Orders._fields)]
-    except (OSError, RuntimeError, IndexError) as error:  # no such file, damaged bytes, no such variable
-        raise CorpusError(f"{path}: not a readable netCDF-4 part ({error}); generate or copy it again.") from error
-    if "scale_factor" in attributes:
-        missing = x == attributes.get("_FillValue")
-        x = np.where(missing, np.float32(np.nan), x * np.float32(attributes["scale_factor"]))
-    return x, known
-
-
 def _run(
     compute: Callable[[Path], FloatArray], paths: list[Path], scheduler: Client | str | None
 ) -> Iterator[tuple[int, FloatArray]]:
     """Yield number and features of each part as they come."""
+    numbered = partial(_numbered, compute)
     if scheduler is None:
-        yield from enumerate(map(compute, paths))
+        yield from map(numbered, enumerate(paths))
         return
-    with ExitStack() as stack:
-        client = stack.enter_context(_client(scheduler, stack))
-        numbers = {future: number for number, future in enumerate(client.map(compute, paths, pure=False))}
-        for future in as_completed(numbers):
-            yield numbers[future], future.result()
+    with _client(scheduler) as client:
+        yield from run_tasks(client, numbered, enumerate(path.absolute() for path in paths))
 
 
-def _client(scheduler: Client | str | None, stack: ExitStack) -> AbstractContextManager[Client]:
+def _numbered(compute: Callable[[Path], FloatArray], task: tuple[int, Path]) -> tuple[int, FloatArray]:
+    number, path = task
+    return number, compute(path)
+
+
+def _client(scheduler: Client | str) -> AbstractContextManager[Client]:
     if isinstance(scheduler, Client):
         return nullcontext(scheduler)
-    if scheduler != "local":
-        return Client(scheduler)
-    cluster = LocalCluster(threads_per_worker=1, dashboard_address="127.0.0.1:0")
-    return Client(stack.enter_context(cluster))
+    return local_client() if scheduler == "local" else client_of(scheduler)
 
 
 def _assemble(table: xr.Dataset, values: FloatArray, groups: Sequence[str]) -> xr.Dataset:
@@ -167,16 +149,8 @@ def write_table(table: xr.Dataset, path: Path | str) -> None:
     if path.suffix not in writers:
         message = f"{path}: {path.suffix or 'no suffix'} is no format of feature tables; use .nc or .parquet."
         raise CorpusError(message)
-    temporary = path.with_name(f".{path.stem}.{os.getpid()}{path.suffix}")
-    try:
+    with whole_or_not_at_all(path) as temporary:
         writers[path.suffix](table, temporary)
-        temporary.replace(path)
-    except (OSError, RuntimeError) as error:
-        message = f"{path}: could not be written ({error}); free some space or choose another folder."
-        raise CorpusError(message) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
 
 
 def _write_netcdf(table: xr.Dataset, path: Path) -> None:

@@ -7,6 +7,7 @@ module        responsibility
 ============= ==================================================================
 errors        what can go wrong, one sentence each
 limits        how much a file from elsewhere may ask for
+cluster       independent tasks on dask
 physics       pure: bearing, Hertz contact, spalls, machine, kernel
 corpus        the netCDF format: write, index, open, validate
 importers     real recordings into the same format
@@ -30,7 +31,7 @@ Data flows down this list; a module imports only modules above it.
 """
 
 from gen.corpus import open_corpus, validate_corpus
-from gen.errors import CorpusError, RacewayError, RecipeError, SimulationError
+from gen.errors import ClusterError, CorpusError, RacewayError, RecipeError, SimulationError
 from gen.generate import generate
 from gen.recipe import read_recipe
 from gen.replay import replay
@@ -38,6 +39,7 @@ from gen.scenarios import draw_scenarios
 from gen.simulate import simulate
 
 __all__ = [
+    "ClusterError",
     "CorpusError",
     "RacewayError",
     "RecipeError",

@@ -18,3 +18,7 @@ class SimulationError(RacewayError):
 
 class CorpusError(RacewayError):
     """A corpus that is missing, damaged or not in the format."""
+
+
+class ClusterError(RacewayError):
+    """A dask cluster that does not answer, or has lost its scheduler or its workers."""

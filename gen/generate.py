@@ -1,38 +1,38 @@
 """A recipe becomes a corpus, part by part, on one machine or many.
 
-One task draws, simulates, measures and writes one part and returns its row of the manifest. A part that is there and whole is kept, so
-that a task may run twice and an interrupted corpus is completed by the same call. At most a few parts per worker are under way at a
-time: memory does not grow with the corpus.
+One task draws, simulates, measures and writes one part and returns its row of the manifest. An interrupted corpus is completed by the
+same call: a part that the manifest lists and that is the file it lists is kept, and every other one is made again.
 """
 
+import fcntl
 import functools
 import json
-import shutil
+import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
-from itertools import islice
 from pathlib import Path
 from typing import Any
 
-from distributed import Client, LocalCluster, as_completed
-
+from gen.cluster import client_of, local_client, run_tasks
 from gen.corpus import (
     PartRow,
     data_card,
-    describe_part,
     open_corpus,
     open_part,
     part_name,
     read_manifest,
+    remove_left_behind,
     sha256,
+    write_durably,
     write_index,
     write_manifest,
     write_part,
     write_text_durably,
-)  # fmt: skip
-from gen.errors import CorpusError, RacewayError, RecipeError, SimulationError
+)
+from gen.errors import CorpusError, RecipeError, SimulationError
 from gen.labels import part_dataset
 from gen.measure import compile_mixing, measure
 from gen.physics.batch import record_shape
@@ -107,59 +107,86 @@ def generate(
     checked = read_recipe(recipe, seed=seed, records=records)
     directory = Path(directory)
     facts = _facts(checked, seed, records)
-    known = _prepare(directory, Path(find_recipe(recipe)), facts)
-    outcomes: dict[int, Outcome] = {}
-    counts = [min((part + 1) * checked.corpus.records_per_part, checked.n_records) for part in range(checked.n_parts)]
-    done = 0
-    with _map(workers, scheduler, checked) as run:
-        for part, outcome in run(range(checked.n_parts), directory, known):
-            outcomes[part] = outcome
-            done += counts[part] - (counts[part - 1] if part else 0)
-            rows = [outcomes[number].row for number in sorted(outcomes)]
-            if len(outcomes) < checked.n_parts:
-                write_manifest(directory, rows, complete=False, **facts)
-            if progress is not None:
-                progress(done, checked.n_records)
-    ordered = [outcomes[number] for number in sorted(outcomes)]
-    rows = [outcome.row for outcome in ordered if outcome.row.records]
+    with _claimed(directory):
+        known = _prepare(directory, Path(find_recipe(recipe)), facts)
+        outcomes: dict[int, Outcome] = {}
+        done = 0
+        with _making(workers, scheduler, checked) as run:
+            for part, outcome in run(directory, known):
+                outcomes[part] = outcome
+                done += min(checked.corpus.records_per_part, checked.n_records - part * checked.corpus.records_per_part)
+                rows = [outcomes[number].row for number in sorted(outcomes) if outcomes[number].row.records]
+                if len(outcomes) < checked.n_parts:
+                    write_manifest(directory, rows, complete=False, **facts)
+                if progress is not None:
+                    progress(done, checked.n_records)
+        return _finished(directory, [outcomes[number] for number in sorted(outcomes)], checked, facts)
+
+
+def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: dict[str, Any]) -> Generated:
+    """Write index, manifest and data card over the parts."""
+    rows = [outcome.row for outcome in outcomes if outcome.row.records]
     if not rows:
-        raise CorpusError(f"{directory}: no record could be simulated; {ordered[0].failures[0]}")
-    failures = tuple(sentence for outcome in ordered for sentence in outcome.failures)
+        raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
+    failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
     write_index(directory, rows)
-    write_manifest(directory, rows, complete=True, failures=list(failures), **facts)
+    write_manifest(directory, rows, complete=True, failures=failures, **facts)
     with open_corpus(directory, check="size") as corpus:
-        write_text_durably(data_card(corpus, _HOW.format(recipe=checked.name)), directory / "README.md")
-    return Generated(directory, sum(row.records for row in rows), len(rows), sum(o.kept for o in ordered), failures)
+        write_text_durably(data_card(corpus, _HOW.format(recipe=recipe.name)), directory / "README.md")
+    return Generated(directory, sum(row.records for row in rows), len(rows), sum(o.kept for o in outcomes), failures)
 
 
-def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, str]:
-    """Make the folder ready, and return the hashes of the parts it already has.
+@contextmanager
+def _claimed(directory: Path) -> Iterator[None]:
+    """Make the folder, and keep every other call out of it."""
+    if directory.exists() and not directory.is_dir():
+        raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        handle = os.open(directory, os.O_RDONLY)
+    except OSError as error:
+        raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise CorpusError(
+            f"{directory}: another raceway generate is at work in it; wait until it ends, or choose another folder."
+        ) from None
+    except OSError:  # a file system without locks
+        pass
+    try:
+        yield
+    finally:
+        os.close(handle)
+
+
+def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, PartRow]:
+    """Make the folder ready, and return the rows of the parts that may be kept.
 
     The manifest comes first: with it, a corpus of which nothing else is there yet can be told from a folder of something else.
     """
-    known: dict[str, str] = {}
+    known: dict[str, PartRow] = {}
     begun = (directory / "manifest.json").exists()
     try:
-        if directory.exists() and not directory.is_dir():
-            raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
-        manifest = read_manifest(directory) if begun else {}
-        if begun and any((directory / "parts").glob("*.nc")):
-            if manifest.get("recipe_sha256") != facts["recipe_sha256"]:
+        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
+            remove_left_behind(directory, name)
+        manifest = read_manifest(directory) if begun else None
+        if manifest is not None and any((directory / "parts").glob("*.nc")):
+            if manifest.recipe_sha256 != facts["recipe_sha256"]:
                 raise CorpusError(
                     f"{directory}: holds a corpus of another recipe, seed or size; choose another folder."
                 )
-            known = {row.name: row.sha256 for row in manifest["parts"]}
-        elif not begun and directory.exists() and any(directory.iterdir()):
+            if manifest.versions == facts["versions"]:  # else the bytes of new parts may differ from those of old ones
+                known = {row.name: row for row in manifest.parts}
+        elif manifest is None and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
         else:
-            directory.mkdir(parents=True, exist_ok=True)
             write_manifest(directory, [], complete=False, **facts)
-            shutil.copyfile(recipe_path, directory / "recipe.yaml")
-        if not (directory / "recipe.yaml").exists():
-            shutil.copyfile(recipe_path, directory / "recipe.yaml")
+        if not known:
+            write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
-        for left_behind in (directory / "parts").glob(".*.tmp"):  # by a process that was killed while it wrote
-            left_behind.unlink()
+        remove_left_behind(directory / "parts", "part-*.nc")
     except OSError as error:
         raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
     return known
@@ -181,65 +208,36 @@ def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, A
     }
 
 
-Run = Callable[[range, Path, dict[str, str]], Iterator[tuple[int, Outcome]]]
+Run = Callable[[Path, dict[str, PartRow]], Iterator[tuple[int, Outcome]]]
 
 
 @contextmanager
-def _map(workers: int, scheduler: str | None, recipe: Recipe) -> Iterator[Run]:
-    """Something that makes parts and yields them as they are done: this process, its own cluster, or a given one."""
+def _making(workers: int, scheduler: str | None, recipe: Recipe) -> Iterator[Run]:
+    """Something that makes all parts and yields them as they are done: this process, its own cluster, or a given one."""
     if workers < 1:
         raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
+    parts = range(recipe.n_parts)
     if scheduler is None and workers == 1:
-        yield lambda parts, directory, known: (
-            (part, make_part(recipe, part, directory, known.get(part_name(part)))) for part in parts
-        )
+        yield lambda directory, known: map(partial(_numbered_part, recipe, directory), _tasks(parts, known))
         return
     if scheduler is None:
         compile_kernels(recipe)
-        with (
-            LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
-            Client(cluster) as client,
-        ):
-            yield lambda parts, directory, known: _on_cluster(client, recipe, parts, directory, known)
-        return
-    try:
-        # asked by a client that is not the default one: if nobody answers, that would stay, and xarray ask it for locks
-        Client(scheduler, timeout="10s", set_as_default=False).close()
-    except (OSError, ValueError, TimeoutError) as error:
-        reason = " ".join(str(error).split())
-        raise RecipeError(
-            f"scheduler {scheduler}: does not answer ({reason}); give the address dask scheduler printed."
-        ) from None
-    with Client(scheduler) as client:
-        try:
-            client.wait_for_workers(1, timeout=10)
-        except TimeoutError:
-            raise RecipeError(
-                f"scheduler {scheduler}: has no workers; start some with dask worker {scheduler}."
-            ) from None
-        yield lambda parts, directory, known: _on_cluster(client, recipe, parts, directory.resolve(), known)
+    with local_client(workers) if scheduler is None else client_of(scheduler) as client:
+        yield lambda directory, known: run_tasks(
+            client, partial(_numbered_part, recipe, directory.resolve()), _tasks(parts, known)
+        )
 
 
-def _on_cluster(
-    client: Client, recipe: Recipe, parts: range, directory: Path, known: dict[str, str]
-) -> Iterator[tuple[int, Outcome]]:
-    waiting = iter(parts)
-    directory = directory.resolve()
-
-    def submit(part: int) -> Any:
-        return client.submit(_numbered_part, recipe, part, directory, known.get(part_name(part)), pure=False)
-
-    threads: Any = client.nthreads()
-    width = 2 * max(sum(threads.values()), 1)
-    running = as_completed([submit(part) for part in islice(waiting, width)])
-    for future in running:
-        yield future.result()
-        following = next(waiting, None)
-        if following is not None:
-            running.add(submit(following))
+Task = tuple[int, PartRow | None]
+"""Number of a part, and its row of the manifest if it is there already."""
 
 
-def _numbered_part(recipe: Recipe, part: int, directory: Path, known: str | None) -> tuple[int, Outcome]:
+def _tasks(parts: range, known: dict[str, PartRow]) -> Iterator[Task]:
+    return ((part, known.get(part_name(part))) for part in parts)
+
+
+def _numbered_part(recipe: Recipe, directory: Path, task: Task) -> tuple[int, Outcome]:
+    part, known = task
     return part, make_part(recipe, part, directory, known)
 
 
@@ -258,10 +256,10 @@ def compile_kernels(recipe: Recipe) -> None:
                 compile_kernel(record)
 
 
-def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = None) -> Outcome:
-    """Write one part, unless it is there and whole; ``known`` is the hash the manifest has of it."""
+def make_part(recipe: Recipe, part: int, directory: Path, known: PartRow | None = None) -> Outcome:
+    """Write one part, unless it is there as ``known``, its row of the manifest, says."""
     path = directory / "parts" / part_name(part)
-    kept = _whole_part(path, recipe, known)
+    kept = None if known is None else _kept_part(path, known)
     if kept is not None:
         return kept
     first = part * recipe.corpus.records_per_part
@@ -284,16 +282,9 @@ def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = No
     return Outcome(write_part(dataset, path, recipe.corpus.codec), kept=False, failures=failures)
 
 
-def _whole_part(path: Path, recipe: Recipe, known: str | None) -> Outcome | None:
-    if not path.is_file() or (known is not None and sha256(path) != known):
+def _kept_part(path: Path, known: PartRow) -> Outcome | None:
+    if not path.is_file() or path.stat().st_size != known.bytes or sha256(path) != known.sha256:
         return None
-    try:
-        with open_part(path) as dataset:
-            if dataset.attrs.get("recipe_sha256") != recipe_hash(recipe):
-                return None
-            if dataset.attrs.get("versions") != json.dumps(_versions()):
-                return None
-            failures = tuple(json.loads(dataset.attrs["failures"]))
-        return Outcome(describe_part(path), kept=True, failures=failures)
-    except (RacewayError, KeyError, ValueError):
-        return None
+    with open_part(path) as dataset:
+        failures = tuple(json.loads(dataset.attrs["failures"]))
+    return Outcome(known, kept=True, failures=failures)

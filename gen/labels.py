@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import FAULTS, SPLITS, Variable, make_dataset
+from gen.corpus import DRAWS, FAULTS, SPLITS, Variable, make_dataset
 from gen.damage import deepest
 from gen.machinery import true_motion
 from gen.measure import Measured
@@ -42,7 +42,7 @@ EXTRA = (
     Variable("oversampling", "i4", "1", "provenance", "integration steps per sample"),
     Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
     Variable("step_error", "f8", "1", "provenance", "relative rms change of the bodies' motion at half the step, NaN if not tried"),
-    Variable("draws", "str", "1", "provenance", "every drawn value of the record, as JSON"),
+    Variable(DRAWS, "str", "1", "provenance", "every drawn value of the record, as JSON"),
 )  # fmt: skip
 
 
@@ -107,7 +107,7 @@ def _columns(scenario: Scenario, recipe: Recipe, drawn: dict[int, str]) -> dict[
         "last_shaft_rate": conditions["shaft"] * speeds[1],
         **{f"true_{name}": value for name, value in true_orders._asdict().items()},
         "diametral_clearance": specimen.properties["diametral_clearance"],
-        "draws": f'{{"rig": {drawn[id(rig)]}, "specimen": {drawn[id(specimen)]}, "record": {json.dumps(record, default=vars)}}}',
+        DRAWS: f'{{"rig": {drawn[id(rig)]}, "specimen": {drawn[id(specimen)]}, "record": {json.dumps(record, default=vars)}}}',
     }
 
 

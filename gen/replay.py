@@ -25,10 +25,10 @@ def corpus_recipe(directory: Path) -> Recipe:
     """
     manifest = read_manifest(directory)
     path = directory / "recipe.yaml"
-    if not path.is_file() or "overrides" not in manifest:
+    if not path.is_file() or manifest.overrides is None:
         raise CorpusError(f"{directory}: holds no recipe.yaml, so it was not generated and cannot be replayed.")
-    recipe = read_recipe(path, **manifest["overrides"])
-    if recipe_hash(recipe) != manifest["recipe_sha256"]:
+    recipe = read_recipe(path, seed=manifest.overrides.seed, records=manifest.overrides.records)
+    if recipe_hash(recipe) != manifest.recipe_sha256:
         raise CorpusError(f"{path}: is not the recipe the corpus was made from; restore it to replay.")
     return recipe
 
@@ -60,10 +60,10 @@ def replay(directory: Path | str, record: int) -> Replayed:
         if not 0 <= record < n_records:
             raise CorpusError(f"{directory}: record {record} is not in it; it has records 0 to {n_records - 1}.")
         number = int(corpus["recording"][record])
+        stored = corpus[SIGNAL][record].values
     scenarios = draw_scenarios(recipe, number, number + 1)
     response = simulate(scenarios, recipe)
     measured = measure(response, scenarios, recipe)
     dataset = part_dataset(measured, scenarios, recipe, response)
-    with xr.open_dataset(directory / "corpus.nc", mask_and_scale=False, decode_times=False, engine="netcdf4") as raw:
-        stored = raw[SIGNAL][record].values
-    return Replayed(dataset, bool(np.array_equal(stored, measured.signal[0], equal_nan=stored.dtype.kind == "f")))
+    again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values
+    return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))

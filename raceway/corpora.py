@@ -160,7 +160,13 @@ def generate(
 
 
 def _kept(corpus: Path, recipe: "Recipe") -> str:
-    parts = len(list((corpus / "parts").glob("part-*.nc")))
+    from gen.corpus import read_manifest
+    from gen.errors import RacewayError
+
+    try:
+        parts = len(read_manifest(corpus).parts)
+    except RacewayError:  # before the first part
+        parts = 0
     return (
         f"interrupted; {parts} of {recipe.n_parts} parts are kept in {corpus}, and the same command goes on from there."
     )

@@ -1,13 +1,14 @@
 """Ctrl-C and SIGTERM end a command with one line and exit code 130, without a word from its workers.
 
 A terminal sends Ctrl-C to every process of a command, and each worker of a dask cluster would show a traceback. So both signals are
-blocked, which threads and processes started later inherit, and one thread waits for them. It wakes the main thread to clean up behind
-itself, unless a cluster is at work: closing that takes seconds and is loud, and its workers end by themselves when this process does.
+blocked, which threads and processes started later inherit, and one thread waits for them. It removes the files under way, says its sentence
+and ends the process at once. The main thread is not interrupted: an exception raised in it at any moment could crash compiled code, and
+nothing is left for it to do, since finished files have their names already. Workers of a cluster end when this process does.
 """
 
-import multiprocessing
 import os
 import signal
+import sys
 import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
@@ -15,8 +16,7 @@ from multiprocessing import resource_tracker
 
 INTERRUPTED = 130
 
-_PATIENCE_S = 3.0  # for the main thread; an exception raised inside a callback of a library is lost
-_came, _cleaned = threading.Event(), threading.Event()
+_came = threading.Event()
 _sentences: list[Callable[[], str]] = [lambda: "interrupted; nothing is left half done, the same command starts again."]
 
 
@@ -39,25 +39,24 @@ def listen_for_signals() -> None:
     if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # as it is in the background of a script
         awaited.add(signal.SIGINT)
     signal.pthread_sigmask(signal.SIG_BLOCK, awaited)
-    signal.signal(signal.SIGUSR1, signal.default_int_handler)
     threading.Thread(target=_end, args=(awaited,), daemon=True).start()
 
 
 def leave_if_interrupted() -> None:
     """Let the thread that waits for signals end this process, if one has come: whatever went wrong is its doing."""
     if _came.is_set():
-        _cleaned.set()
         threading.Event().wait()
 
 
 def _end(awaited: set[signal.Signals]) -> None:
     signal.sigwait(awaited)
     _came.set()
-    sentence, terminal = _sentences[-1], os.dup(2)
+    sentence, terminal = _sentences[-1](), os.dup(2)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-    if not multiprocessing.active_children():
-        signal.pthread_kill(threading.main_thread().ident or 0, signal.SIGUSR1)
-        _cleaned.wait(_PATIENCE_S)
+    files = sys.modules.get("gen.corpus.files")  # not imported before anything is written
+    remove = (lambda: None) if files is None else files.remove_unfinished
+    remove()
     below_the_bar = "\n\x1b[?25h" if os.isatty(terminal) else ""  # where a cursor is shown again
-    os.write(terminal, f"{below_the_bar}{sentence()}\n".encode())
+    os.write(terminal, f"{below_the_bar}{sentence}\n".encode())
+    remove()  # the main thread may have begun another file meanwhile
     os._exit(INTERRUPTED)

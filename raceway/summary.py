@@ -9,7 +9,21 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, open_part, read_manifest
+from gen.corpus import FAULTS, SPLITS, Manifest, open_corpus, open_part, plain_file, read_manifest
+
+_TOLD = [
+    "sample_rate",
+    "fault",
+    "split",
+    "bearing",
+    "rig",
+    "specimen",
+    "recording",
+    "shaft_rate",
+    "load",
+    "channel",
+    "elapsed_time",
+]
 
 
 def describe(directory: Path) -> dict[str, Any]:
@@ -21,29 +35,29 @@ def describe(directory: Path) -> dict[str, Any]:
         If it is no corpus, or a part is missing or altered.
     """
     manifest = read_manifest(directory)
-    known = {key: manifest[key] for key in manifest if key not in ("parts", "complete", "records")}
+    known = manifest.model_dump(exclude={"parts_", "complete", "records", "index"}, exclude_unset=True)
     about = {
         "corpus": directory,
-        "complete": manifest["complete"],
-        "records": manifest["records"],
-        "parts": len(manifest["parts"]),
+        "complete": manifest.complete,
+        "records": manifest.records,
+        "parts": len(manifest.parts),
         "bytes": sum(path.stat().st_size for path in directory.rglob("*") if path.is_file()),
         "failures": [],
         "warnings": [],
         "skipped": [],
     }
-    return about | known | (_content(_labels(directory, manifest)) if manifest["parts"] else {})
+    return about | known | (_content(_labels(directory, manifest)) if manifest.parts else {})
 
 
-def _labels(directory: Path, manifest: dict[str, Any]) -> xr.Dataset:
-    """Every variable but the signal; of an unfinished corpus those of the parts there are."""
-    if manifest["complete"]:
+def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
+    """The variables that ``info`` tells of; of an unfinished corpus those of the parts there are."""
+    if manifest.complete:
         with open_corpus(directory, check="size") as corpus:
-            return corpus.drop_vars(SIGNAL).load()
+            return corpus[_TOLD].load()
     found = []
-    for row in manifest["parts"]:
-        with open_part(directory / "parts" / row.name) as part:
-            found.append(part.drop_vars(SIGNAL).load())
+    for row in manifest.parts:
+        with open_part(plain_file(directory, f"parts/{row.name}")) as part:
+            found.append(part[_TOLD].load())
     whole: Any = xr.concat(found, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
     return whole
 

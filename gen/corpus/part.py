@@ -1,13 +1,6 @@
-"""One part of a corpus: a complete netCDF-4 file of some hundred records, there whole or not there at all.
+"""One part of a corpus: a complete netCDF-4 file of some hundred records, there whole or not there at all."""
 
-A part is written to a temporary name, flushed to disk and renamed, so that a killed writer leaves no half file under a part's name.
-"""
-
-import hashlib
-import os
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, Literal, NamedTuple
 
@@ -17,8 +10,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gen.corpus.files import sha256, whole_or_not_at_all
+from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
-from gen.errors import CorpusError
 
 Codec = Literal["zlib", "zstd", "none"]
 _CODECS: dict[Codec, dict[str, Any]] = {
@@ -47,39 +41,6 @@ def part_name(number: int) -> str:
     return f"part-{number:05d}.nc"
 
 
-def describe_part(path: Path) -> PartRow:
-    """Row of the manifest for a part on disk; ``records`` is read from the file.
-
-    Raises
-    ------
-    CorpusError
-        If the file is no netCDF-4 file.
-    """
-    with open_part(path) as dataset:
-        records = dataset.sizes["record"]
-    return PartRow(path.name, records, path.stat().st_size, sha256(path))
-
-
-def sha256(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal."""
-    with path.open("rb") as stream:
-        return hashlib.file_digest(stream, "sha256").hexdigest()
-
-
-def open_part(path: Path) -> xr.Dataset:
-    """Records of one part, decoded to m s-2 and read when touched.
-
-    Raises
-    ------
-    CorpusError
-        If the file is missing or no netCDF-4 file.
-    """
-    try:
-        return xr.open_dataset(path, engine="netcdf4", decode_times=False)
-    except (OSError, ValueError, KeyError) as error:
-        raise CorpusError(f"{path}: not a readable netCDF-4 part ({error}); generate or copy it again.") from error
-
-
 def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRow:
     """Write records as a part, whole or not at all, one chunk per record and channel.
 
@@ -90,7 +51,9 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
     CorpusError
         If the disk refuses the file, with the reason it gives.
     """
-    with whole_or_not_at_all(path) as temporary:
+    signal = dataset[SIGNAL].values
+    chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
+    with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
             file.setncatts(dataset.attrs)
             for dimension, size in dataset.sizes.items():
@@ -98,10 +61,10 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
             # all is declared before anything is written: to and fro costs a third of the time
             declared = [_declare(file, str(name), dataset, codec) for name in dataset.variables]
             for stored, values in declared:
-                if stored.name != SIGNAL or codec != "zlib":
+                if stored.name != SIGNAL or not chunks:
                     stored[:] = values
-        if codec == "zlib":
-            _write_deflated(dataset[SIGNAL].values, temporary)
+        if chunks:
+            _write_chunks(chunks, temporary)
     return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path))
 
 
@@ -137,12 +100,12 @@ def _declare(
     return stored, values
 
 
-def _write_deflated(signal: NDArray[Any], path: Path) -> None:
-    """Write the chunks of the signal, compressed here: HDF5's own way through zlib takes more than twice as long."""
+def _write_chunks(chunks: dict[tuple[int, ...], bytes], path: Path) -> None:
+    """Write the chunks of the signal as they are: HDF5's own way through zlib takes more than twice as long."""
     with h5py.File(path, "r+") as file:
         stored: Any = file[SIGNAL]
-        for record, channel in np.ndindex(signal.shape[:2]):
-            stored.id.write_direct_chunk((record, channel, 0), deflated(signal[record, channel]))
+        for (record, channel), chunk in chunks.items():
+            stored.id.write_direct_chunk((record, channel, 0), chunk)
 
 
 def deflated(samples: NDArray[Any]) -> bytes:
@@ -168,43 +131,3 @@ def _entropy(values: NDArray[np.uint8]) -> float:
     counts = np.bincount(values)
     shares = counts[counts > 0] / len(values)
     return -float(shares @ np.log2(shares))
-
-
-@contextmanager
-def whole_or_not_at_all(path: Path) -> Iterator[Path]:
-    """Temporary path to write to; flushed to disk it takes the place of ``path`` in one step, or is removed if anything fails.
-
-    Raises
-    ------
-    CorpusError
-        If the disk refuses the file, with the reason it gives.
-    """
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        yield temporary
-        with temporary.open("rb+") as stream:
-            os.fsync(stream.fileno())
-        temporary.replace(path)
-        folder = os.open(path.parent, os.O_RDONLY)
-        try:
-            os.fsync(folder)
-        finally:
-            os.close(folder)
-    except (OSError, RuntimeError) as error:
-        raise CorpusError(
-            f"{path}: could not be written ({error}); free some space or choose another folder."
-        ) from error
-    finally:
-        with suppress(OSError):
-            temporary.unlink()
-
-
-def write_durably(content: bytes, path: Path) -> None:
-    """Write a file, whole or not at all; CorpusError if the disk refuses it."""
-    with whole_or_not_at_all(path) as temporary:
-        temporary.write_bytes(content)
-
-
-def write_text_durably(text: str, path: Path) -> None:
-    """Write a text file, whole or not at all; CorpusError if the disk refuses it."""
-    write_durably(text.encode(), path)

@@ -14,11 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from gen.errors import CorpusError
 
-FORMAT = 1
+FORMAT = 2
 FAULTS = ("healthy", "inner", "outer", "ball", "cage", "compound")
 SPLITS = ("train", "validation", "test")
 ROLES = ("operating", "label", "latent", "provenance")
 SIGNAL = "acceleration"
+DRAWS = "draws"  # of simulated corpora: everything drawn for a record, as JSON of some kilobytes
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
 MISSING_COUNT = -32768  # what a missing part reads as, and therefore not a count the converter gives
 

@@ -4,8 +4,6 @@ Files are read one after the other, and their records are written part by part i
 one, which takes its name when index, data card and manifest are written.
 """
 
-import os
-import shutil
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
@@ -20,6 +18,7 @@ from gen.corpus import (
     Variable,
     make_dataset,
     part_name,
+    temporary_beside,
     write_index,
     write_manifest,
     write_part,
@@ -106,19 +105,18 @@ def import_recordings(
         message = f"window: {window} s holds no signal; give the length of a record in seconds, such as 0.5."
         raise CorpusError(message)
     log = _Log(Counter(), Counter(), list(skipped), list(warnings))
-    temporary = output.with_name(f".{output.name}.{os.getpid()}.tmp")
     try:
-        (temporary / "parts").mkdir(parents=True)
-        rows = _write_parts(_records(candidates, collection, length, log, progress), collection, temporary / "parts")
-        if not rows:
-            raise CorpusError(_nothing_usable(collection.importer, log.skipped))
-        _finish(collection, rows, log, length, temporary)
-        temporary.replace(output)
+        with temporary_beside(output) as temporary:
+            (temporary / "parts").mkdir(parents=True)
+            records = _records(candidates, collection, length, log, progress)
+            rows = _write_parts(records, collection, temporary / "parts")
+            if not rows:
+                raise CorpusError(_nothing_usable(collection.importer, log.skipped))
+            _finish(collection, rows, log, length, temporary)
+            temporary.replace(output)
     except OSError as error:
         message = f"{output}: could not be written ({error.strerror or error}); choose another folder."
         raise CorpusError(message) from error
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
     return Import(output, log.recordings.total(), log.records.total(), tuple(log.skipped), tuple(log.warnings))
 
 
@@ -170,8 +168,8 @@ def _finish(collection: Collection, rows: list[PartRow], log: _Log, length: int,
         complete=True,
         importer=collection.importer,
         recordings=log.recordings.total(),
-        skipped=log.skipped,
-        warnings=log.warnings,
+        skipped=tuple(log.skipped),
+        warnings=tuple(log.warnings),
     )
 
 

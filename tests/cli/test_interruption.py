@@ -1,5 +1,6 @@
 """Whatever stops a command, what is finished stays, nothing half done stands under its name, and the same command goes on."""
 
+import json
 import os
 import re
 import signal
@@ -32,6 +33,13 @@ def part_bytes(folder):
     return {path.name: path.read_bytes() for path in sorted((folder / "parts").iterdir())}
 
 
+def listed(folder):
+    """Names of the parts in the manifest."""
+    if not (folder / "manifest.json").exists():
+        return []
+    return [row["name"] for row in json.loads((folder / "manifest.json").read_text())["parts"]]
+
+
 def wait_for(found, process, pause=5e-3):
     """Return as soon as ``found()`` is true; the process must be at work until then."""
     stop = time.monotonic() + PATIENCE_S
@@ -51,7 +59,7 @@ def a_file(folder, pattern):
 def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_path, number, workers):
     folder = tmp_path / "corpus"
     process = start("generate", recipe, "-o", folder, "--workers", workers)
-    wait_for(a_file(folder, r"part-\d+\.nc"), process)
+    wait_for(lambda: listed(folder), process)
     os.killpg(process.pid, number)
     output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, output) == (130, "")
@@ -60,9 +68,10 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
         errors,
     )
     assert said, errors
-    kept = {name: content for name, content in part_bytes(folder).items() if not name.startswith(".")}
+    kept = listed(folder)
     assert 1 <= int(said[1]) <= len(kept) < N_PARTS
-    assert kept.items() <= whole.items()
+    assert {name: (folder / "parts" / name).read_bytes() for name in kept}.items() <= whole.items()
+    assert not list(folder.glob("**/.*"))
     assert generate(recipe, folder).kept == len(kept)
     assert part_bytes(folder) == whole
     assert validate_corpus(folder) == []
@@ -71,13 +80,15 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
 def test_a_process_killed_while_it_writes_leaves_no_half_part(start, recipe, whole, tmp_path):
     folder = tmp_path / "corpus"
     process = start("generate", recipe, "-o", folder, "--workers", 1)
-    wait_for(a_file(folder, r"\.part-00003\.nc\.\d+\.tmp"), process, pause=1e-4)
+    wait_for(a_file(folder, r"\.part-00003\.nc\.\d+\.\d+\.tmp"), process, pause=1e-4)
     process.kill()
     assert process.wait(PATIENCE_S) == -signal.SIGKILL
-    (folder / "parts" / ".part-00009.nc.1.tmp").write_bytes(b"half a part")
+    (folder / "parts" / ".part-00009.nc.1.1.tmp").write_bytes(b"half a part")
+    (folder / ".manifest.json.1.1.tmp").write_bytes(b"half a manifest")
     made = generate(recipe, folder)
     assert made.kept >= 3
     assert part_bytes(folder) == whole
+    assert not list(folder.glob("**/.*"))
     assert validate_corpus(folder) == []
 
 

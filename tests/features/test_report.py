@@ -59,7 +59,7 @@ def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, cl
     )
     rows = [write_part(dataset, directory / "parts" / part_name(0))]
     write_index(directory, rows)
-    write_manifest(directory, rows, complete=True, recipe=title, versions={title: title}, warnings=[title])
+    write_manifest(directory, rows, complete=True, recipe=title, versions={title: title}, warnings=(title,))
     return directory
 
 

@@ -1,5 +1,6 @@
 """Laws of damage: what happens to a corpus on its way does not go unnoticed, and a failed write leaves nothing behind."""
 
+import hashlib
 import json
 import os
 import resource
@@ -70,6 +71,37 @@ def swap_sources(index, parts):
         fresh.dims[axis].attach_scale(index[name])
 
 
+def seal(folder):
+    """Let the manifest name the index as it is now: damage done by someone who knows the format."""
+    index = folder / "corpus.nc"
+    edit_manifest(
+        folder, index={"bytes": index.stat().st_size, "sha256": hashlib.sha256(index.read_bytes()).hexdigest()}
+    )
+
+
+def edit_manifest(folder, parts=(), **changes):
+    manifest = json.loads((folder / "manifest.json").read_text()) | changes
+    for number, change in dict(parts).items():
+        manifest["parts"][number] |= change
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+
+
+def other_index(folder):
+    other = folder.with_name("other")
+    write_corpus(other, SIZES[::-1])
+    shutil.copyfile(other / "corpus.nc", folder / "corpus.nc")
+
+
+def link_out(path):
+    path.rename(path.parents[1 + (path.suffix == ".nc" and path.parent.name == "parts")] / f"moved-{path.name}")
+    path.symlink_to(path.parents[1 + (path.suffix == ".nc" and path.parent.name == "parts")] / f"moved-{path.name}")
+
+
+def make_pipe(path):
+    path.unlink()
+    os.mkfifo(path)
+
+
 PARTS = [(f"parts/{part_name(number)}", size) for number, size in enumerate(SIZES)]
 REFUSED = {
     "a part is missing": (lambda c: (c / "parts" / part_name(1)).unlink(), r"part-00001\.nc: missing; copy it again"),
@@ -84,16 +116,37 @@ REFUSED = {
     "the manifest lists no parts": (lambda c: (c / "manifest.json").write_text("{}"), r"manifest\.json: not a corpus manifest"),
     "a part name leads out": (lambda c: rename_in_manifest(c, "../x"), r"'\.\./x' is not the name of a part"),
     "a part name is a path": (lambda c: rename_in_manifest(c, "/etc/passwd"), r"is not the name of a part"),
-    "a part name is no text": (lambda c: rename_in_manifest(c, 7), r"7 is not the name of a part"),
-    "the index is gone": (lambda c: (c / "corpus.nc").unlink(), r"corpus\.nc: not a corpus index"),
-    "the index is cut short": (lambda c: os.truncate(c / "corpus.nc", 900), r"corpus\.nc: not a corpus index"),
-    "the index has no signal": (lambda c: edit_index(c, lambda i: i.pop(SIGNAL)), r"corpus\.nc: not a corpus index"),
-    "the index reads files elsewhere": (
-        lambda c: edit_index(c, lambda i: swap_sources(i, [("../secret.nc", 3), *PARTS[1:]])), r"index and manifest disagree about",
+    "a part name is no text": (lambda c: rename_in_manifest(c, 7), r"manifest\.json: not a corpus manifest \(parts\.1\.name"),
+    "the index is gone": (lambda c: (c / "corpus.nc").unlink(), r"corpus\.nc: missing; copy it again"),
+    "the index is cut short": (lambda c: os.truncate(c / "corpus.nc", 900), r"corpus\.nc: altered, it is not the file"),
+    "the index is that of another corpus": (other_index, r"corpus\.nc: altered, it is not the file"),
+    "a byte of the index is flipped": (lambda c: flip(c / "corpus.nc"), r"corpus\.nc: altered, it is not the file"),
+    "a part is a link out of the corpus": (
+        lambda c: link_out(c / "parts" / part_name(1)), r"part-00001\.nc: is a link out of the corpus; copy the file itself",
     ),
-    "the index leaves a part out": (
-        lambda c: edit_index(c, lambda i: swap_sources(i, [PARTS[0], (PARTS[1][0], 6)])), r"index and manifest disagree about",
+    "the index is a link out of the corpus": (lambda c: link_out(c / "corpus.nc"), r"corpus\.nc: is a link out of the corpus"),
+    "the folder of the parts is a link": (
+        lambda c: link_out(c / "parts"), r"part-00000\.nc: is a link out of the corpus; copy the file itself",
     ),
+    "a part is a pipe": (lambda c: make_pipe(c / "parts" / part_name(0)), r"part-00000\.nc: is no plain file; copy it again"),
+    "the manifest is a pipe": (lambda c: make_pipe(c / "manifest.json"), r"manifest\.json: is no plain file"),
+    "the manifest counts other records": (lambda c: edit_manifest(c, records=8), r"it counts 8 records, its parts 9"),
+    "the manifest counts a part wrongly": (
+        lambda c: edit_manifest(c, records=10, parts={0: {"records": 4}}), r"9 records, the parts hold 10|disagree about parts",
+    ),
+    "the manifest lists a part twice": (
+        lambda c: edit_manifest(c, parts={1: {"name": part_name(0)}}), r"it lists part-00000\.nc more than once",
+    ),
+    "the manifest has no hash of the index": (lambda c: edit_manifest(c, index=None), r"without a hash of corpus\.nc"),
+    "the manifest holds lists for objects": (lambda c: (c / "manifest.json").write_text("[[]]"), r"not a corpus manifest"),
+    "the manifest is nested without end": (
+        lambda c: (c / "manifest.json").write_text("[" * 100_000), r"not a corpus manifest",
+    ),
+    "a number of the manifest has 5000 digits": (
+        lambda c: (c / "manifest.json").write_text('{"records": ' + "9" * 5000 + "}"), r"not a corpus manifest",
+    ),
+    "the manifest is no UTF-8": (lambda c: (c / "manifest.json").write_bytes(b'{"title": "\xff"}'), r"not a corpus manifest"),
+    "the manifest is huge": (lambda c: os.truncate(c / "manifest.json", 60_000_000), r"raceway --limit manifest_bytes=NUMBER"),
 }  # fmt: skip
 
 
@@ -104,25 +157,66 @@ def test_a_damaged_corpus_is_refused_with_the_file_named_and_found_by_validation
     with pytest.raises(CorpusError, match=sentence):
         open_corpus(copied)
     problems = validate_corpus(copied)
-    assert len(problems) == 1
+    assert len(problems) == (3 if "parts is a link" in damage else 1)
     assert str(copied) in problems[0]
     with pytest.raises(CorpusError, match=sentence):
         raise CorpusError(problems[0])
 
 
-def set_value(index, name, value):
-    index[name][2] = value
+def set_value(index, place, name, value):
+    index[name][place] = value
+
+
+def plain_signal(index):
+    attributes, values = dict(index[SIGNAL].attrs), index[SIGNAL][:]
+    del index[SIGNAL]
+    index.create_dataset(SIGNAL, data=values).attrs.update(
+        {k: v for k, v in attributes.items() if k != "DIMENSION_LIST"}
+    )
+
+
+def external_link(index):
+    del index["load"]
+    index["load"] = h5py.ExternalLink("/etc/passwd", "load")
+
+
+def external_storage(index):
+    del index["load"]
+    index.create_dataset("load", (9,), "f8", external=[("/etc/passwd", 0, 72)])
+
+
+def virtual_label(index):
+    del index["load"]
+    layout = h5py.VirtualLayout((9,), "f8")
+    layout[:] = h5py.VirtualSource("/etc/secret.nc", "load", (9,), "f8")
+    index.create_virtual_dataset("load", layout)
 
 
 FOUND = {
-    "a label differs from its part": (lambda i: set_value(i, "fault", 0), "fault differs from corpus.nc"),
-    "a shaft rate differs": (lambda i: set_value(i, "shaft_rate", 99.0), "shaft_rate differs from corpus.nc"),
+    "a label differs from its part": (lambda i: set_value(i, 2, "fault", 0), "fault differs from corpus.nc"),
+    "a shaft rate differs": (lambda i: set_value(i, 2, "shaft_rate", 99.0), "shaft_rate differs from corpus.nc"),
     "the signal is scaled otherwise": (
         lambda i: i[SIGNAL].attrs.modify("scale_factor", 1.0), "acceleration differs from corpus.nc",
     ),
     "parts of the signal are swapped": (
-        lambda i: swap_sources(i, [PARTS[1], PARTS[0], PARTS[2]]), "acceleration differs from corpus.nc",
+        lambda i: swap_sources(i, [PARTS[1], PARTS[0], PARTS[2]]), "index and manifest disagree about parts/part-00000.nc",
     ),
+    "labels are permuted": (
+        lambda i: set_value(i, slice(None), "fault", i["fault"][:][::-1]), "fault differs from corpus.nc",
+    ),
+    "the signal is read from files elsewhere": (
+        lambda i: swap_sources(i, [("../secret.nc", 3), *PARTS[1:]]), "index and manifest disagree about ../secret.nc",
+    ),
+    "a part is left out of the signal": (
+        lambda i: swap_sources(i, [PARTS[0], (PARTS[1][0], 6)]), "index and manifest disagree about parts/part-00001.nc",
+    ),
+    "there is no signal": (lambda i: i.pop(SIGNAL), "not a corpus index"),
+    "the signal is a plain dataset": (plain_signal, "acceleration is no virtual dataset"),
+    "a label is an external link": (external_link, "load is a link to somewhere else"),
+    "a label is stored in another file": (external_storage, "the values of load are in another file"),
+    "a label is a virtual dataset": (virtual_label, "load is a virtual dataset"),
+    "a variable of no known dimension": (lambda i: i.create_dataset("x", data=np.zeros(4)), "x is of type"),
+    "a group": (lambda i: i.create_group("x"), "x"),
 }  # fmt: skip
 
 
@@ -130,6 +224,7 @@ FOUND = {
 def test_validation_finds_an_index_that_does_not_say_what_its_parts_say(copied, damage):
     break_it, sentence = FOUND[damage]
     edit_index(copied, break_it)
+    seal(copied)
     assert any(sentence in problem for problem in validate_corpus(copied))
 
 
@@ -138,6 +233,7 @@ def test_validation_finds_an_index_that_does_not_say_what_its_parts_say(copied, 
 )
 def test_validation_finds_an_index_whose_attributes_are_not_those_of_its_parts(copied, name, key, value):
     edit_index(copied, lambda index: index[name].attrs.modify(key, value))
+    seal(copied)
     assert any(name in problem for problem in validate_corpus(copied))
 
 
@@ -189,7 +285,7 @@ def test_validation_finds_a_part_that_is_not_in_the_format(tmp_path, damage):
 
 
 def test_a_corpus_under_way_is_refused_until_it_is_complete(copied):
-    write_manifest(copied, read_manifest(copied)["parts"][:2], complete=False)
+    write_manifest(copied, read_manifest(copied).parts[:2], complete=False)
     with pytest.raises(CorpusError, match="unfinished; the raceway generate command that began it completes it"):
         open_corpus(copied)
 
@@ -197,7 +293,7 @@ def test_a_corpus_under_way_is_refused_until_it_is_complete(copied):
 def test_a_corpus_of_another_format_version_is_refused(copied):
     manifest = json.loads((copied / "manifest.json").read_text()) | {"raceway_format": 99}
     (copied / "manifest.json").write_text(json.dumps(manifest))
-    with pytest.raises(CorpusError, match="corpus format 99, this version of raceway reads format 1"):
+    with pytest.raises(CorpusError, match="corpus format 99, this version of raceway reads format 2"):
         open_corpus(copied)
 
 
@@ -231,7 +327,7 @@ def test_a_full_disk_leaves_the_last_manifest_as_it_was(copied, request):
     request.getfixturevalue("small_disk")  # after the copy
     before = (copied / "manifest.json").read_bytes()
     with pytest.raises(CorpusError, match=r"manifest\.json: could not be written"):
-        write_manifest(copied, read_manifest(copied)["parts"], complete=True, notes="x" * 30_000)
+        write_manifest(copied, read_manifest(copied).parts, complete=True, notes="x" * 30_000)
     assert (copied / "manifest.json").read_bytes() == before
     assert validate_corpus(copied) == []
 
@@ -241,6 +337,6 @@ def test_a_full_disk_leaves_the_last_index_as_it_was(copied, request):
     assert len(before) > 20_000
     request.getfixturevalue("small_disk")
     with pytest.raises(CorpusError, match=r"corpus\.nc: could not be written"):
-        write_index(copied, read_manifest(copied)["parts"])
+        write_index(copied, read_manifest(copied).parts)
     assert (copied / "corpus.nc").read_bytes() == before
     assert {path.name for path in copied.iterdir()} == {"corpus.nc", "manifest.json", "parts"}

@@ -16,7 +16,6 @@ from gen.corpus import (
     FAULTS,
     SCHEMA,
     SIGNAL,
-    describe_part,
     make_dataset,
     open_corpus,
     open_part,
@@ -129,7 +128,7 @@ def test_every_codec_gives_back_what_it_was_given(tmp_path, codec):
 def test_the_same_records_give_the_same_bytes(tmp_path):
     one, other = (write_part(dataset(0, 3), tmp_path / name) for name in ("part-00000.nc", "part-00001.nc"))
     assert (one.bytes, one.sha256) == (other.bytes, other.sha256)
-    assert describe_part(tmp_path / "part-00000.nc") == one
+    assert (tmp_path / "part-00000.nc").stat().st_size == one.bytes
 
 
 @pytest.mark.parametrize("columns_change", [lambda c: c.pop("bpfi"), lambda c: c.update(colour=np.zeros(2))])

@@ -176,7 +176,7 @@ def test_records_of_every_class_replay_bit_for_bit(whole, drawn):
 def test_two_workers_make_the_same_corpus_of_everything(recipe_file, whole, tmp_path):
     generate(recipe_file, tmp_path / "two", workers=2)
     assert validate_corpus(tmp_path / "two") == []
-    one, two = (read_manifest(folder)["parts"] for folder in (whole.directory, tmp_path / "two"))
+    one, two = (read_manifest(folder).parts for folder in (whole.directory, tmp_path / "two"))
     assert [row.sha256 for row in one] == [row.sha256 for row in two]
     with open_corpus(whole.directory) as corpus, open_corpus(tmp_path / "two") as other:
         np.testing.assert_array_equal(corpus[SIGNAL].values, other[SIGNAL].values)

@@ -35,7 +35,7 @@ class InterruptedAt:
 
 
 def hashes(folder):
-    return {row.name: row.sha256 for row in read_manifest(folder)["parts"]}
+    return {row.name: row.sha256 for row in read_manifest(folder).parts}
 
 
 def counts(folder):
@@ -72,9 +72,9 @@ def test_one_call_makes_a_complete_and_valid_corpus(whole):
     assert (whole.records, whole.parts, whole.kept, whole.failures) == (24, 3, 0, ())
     assert validate_corpus(whole.directory) == []
     manifest = read_manifest(whole.directory)
-    assert manifest["complete"]
-    assert manifest["recipe"] == "small"
-    assert [row.records for row in manifest["parts"]] == [8, 8, 8]
+    assert manifest.complete
+    assert manifest.recipe == "small"
+    assert [row.records for row in manifest.parts] == [8, 8, 8]
     assert "A small corpus for tests" in (whole.directory / "README.md").read_text()
     leftovers = [path.name for path in whole.directory.rglob(".*")]
     assert leftovers == []
@@ -228,7 +228,7 @@ def test_records_that_diverge_are_left_out_and_named_and_the_rest_is_a_valid_cor
     assert (made.records, made.parts) == (16, 2)
     assert [sentence.split(" diverged")[0] for sentence in made.failures] == [f"record {n}" for n in range(8, 16)]
     assert validate_corpus(made.directory) == []
-    assert read_manifest(made.directory)["failures"] == list(made.failures)
+    assert read_manifest(made.directory).failures == made.failures
     with open_corpus(made.directory) as corpus:
         assert corpus["recording"].values.tolist() == [*range(8), *range(16, 24)]
     assert replay(made.directory, 8).identical

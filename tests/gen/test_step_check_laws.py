@@ -173,7 +173,7 @@ def test_records_whose_contacts_outgrow_the_step_are_left_out_with_a_sentence(wr
     for sentence in made.failures:
         assert grown in sentence
         assert int(sentence.rstrip(".").split()[-1]) > 1 / FINE_STEP
-    assert read_manifest(made.directory)["failures"] == list(made.failures)
+    assert read_manifest(made.directory).failures == made.failures
     assert validate_corpus(made.directory) == []
     with open_corpus(made.directory) as corpus:
         assert corpus["recording"].values.tolist() == [*range(8), *range(16, 24)]

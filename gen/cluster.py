@@ -1,0 +1,130 @@
+"""Independent tasks on dask, their results as they come, and a sentence when the cluster is lost.
+
+A few tasks for each thread of the workers are under way at a time, so that memory does not grow with their number. A task may run twice, as
+dask repeats what a lost worker was doing.
+"""
+
+import time
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import CancelledError
+from contextlib import contextmanager
+from itertools import islice
+from typing import Any, TypeVar
+
+from distributed import Client, Future, KilledWorker, LocalCluster, wait
+from distributed import TimeoutError as DaskTimeoutError
+
+from gen.errors import ClusterError
+
+Item = TypeVar("Item")
+Result = TypeVar("Result")
+
+POLL_S = 2.0
+PATIENCE_S = 60.0
+"""How long a cluster may have no workers before the work is given up."""
+
+
+@contextmanager
+def local_client(workers: int | None = None) -> Iterator[Client]:
+    """Client of a cluster of processes on this machine, by default one for each core."""
+    with (
+        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
+        Client(cluster) as client,
+    ):
+        yield client
+
+
+@contextmanager
+def client_of(scheduler: str) -> Iterator[Client]:
+    """Client of the dask scheduler at an address, which must have workers.
+
+    Raises
+    ------
+    ClusterError
+        If nobody answers there, or no worker comes within ten seconds.
+    """
+    try:
+        # asked by a client that is not the default one: if nobody answers, that would stay, and xarray ask it for locks
+        Client(scheduler, timeout="10s", set_as_default=False).close()
+    except (OSError, ValueError, TimeoutError) as error:
+        reason = " ".join(str(error).split())
+        raise ClusterError(
+            f"scheduler {scheduler}: does not answer ({reason}); give the address dask scheduler printed."
+        ) from None
+    with Client(scheduler) as client:
+        try:
+            client.wait_for_workers(1, timeout=10)
+        except TimeoutError:
+            raise ClusterError(
+                f"scheduler {scheduler}: has no workers; start some with dask worker {scheduler}."
+            ) from None
+        yield client
+
+
+def run_tasks(client: Client, task: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
+    """Results of ``task`` on every item, in the order in which they are done.
+
+    Raises
+    ------
+    ClusterError
+        If the scheduler is gone, no worker is left, or workers die on the same task again and again.
+    """
+    waiting = iter(items)
+    width = 2 * max(sum(_threads(client).values()), 1)
+    running = {client.submit(task, item, pure=False) for item in islice(waiting, width)}
+    alone_since: float | None = None
+    while running:
+        try:
+            waited: Any = wait(running, timeout=POLL_S, return_when="FIRST_COMPLETED")
+        except (TimeoutError, DaskTimeoutError):
+            alone_since = _alone_since(client, alone_since)
+            continue
+        except (CancelledError, OSError) as error:
+            raise _lost(client) from error
+        alone_since = None
+        for future in waited.done:
+            running.remove(future)
+            yield _result(client, future)
+            running |= {client.submit(task, item, pure=False) for item in islice(waiting, 1)}
+
+
+def _result(client: Client, future: Future) -> Any:
+    try:
+        return future.result()
+    except KilledWorker:
+        raise ClusterError(
+            "the workers of the cluster died again and again on one task; use fewer workers, or fewer records per part."
+        ) from None
+    except (CancelledError, OSError) as error:
+        raise _lost(client) from error
+
+
+def _threads(client: Client) -> dict[str, int]:
+    try:
+        found: Any = client.nthreads()
+    except (CancelledError, OSError, ValueError, RuntimeError) as error:
+        raise _lost(client) from error
+    return found
+
+
+def _alone_since(client: Client, before: float | None) -> float | None:
+    """Since when there has been no worker, None if there is one."""
+    if client.status != "running":
+        raise _lost(client)
+    if _threads(client):
+        return None
+    since = time.monotonic() if before is None else before
+    if time.monotonic() - since > PATIENCE_S:
+        raise ClusterError(
+            f"{_name(client)}: has had no worker for {PATIENCE_S:g} s; start workers and run the same command again, "
+            "finished parts are kept."
+        )
+    return since
+
+
+def _lost(client: Client) -> ClusterError:
+    return ClusterError(f"{_name(client)}: is gone; start it and run the same command again, finished parts are kept.")
+
+
+def _name(client: Client) -> str:
+    return f"scheduler {client.scheduler.address if client.scheduler else 'of the cluster'}"

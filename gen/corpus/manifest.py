@@ -1,0 +1,193 @@
+"""The manifest of a corpus: which files belong to it, with size and hash, and whether they are all there.
+
+``manifest.json`` is the root of every check: a part or an index that is not the file it names is refused before anything is read from it.
+"""
+
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+
+from gen.corpus.files import plain_file, sha256, stamp, write_text_durably
+from gen.corpus.part import PartRow
+from gen.corpus.schema import FORMAT
+from gen.errors import CorpusError
+from gen.limits import check_limit
+
+Check = Literal["sha256", "size"]
+
+INDEX_NAME = "corpus.nc"
+_PART_NAME = re.compile(r"part-\d{5,9}\.nc")
+
+_Count = Annotated[int, Field(ge=0, lt=2**63)]
+_Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+_Texts = tuple[str, ...]
+
+
+class _Section(BaseModel):
+    model_config = ConfigDict(strict=True, frozen=True, extra="allow")
+
+
+class FileRow(_Section):
+    """What the manifest says of a file: its size and its SHA-256."""
+
+    bytes: _Count
+    sha256: _Hash
+
+
+class _Part(FileRow):
+    name: str
+    records: _Count
+
+
+class Overrides(_Section):
+    """What was given in place of the recipe's own seed and number of records."""
+
+    seed: int | None = None
+    records: int | None = None
+
+
+class Manifest(_Section):
+    """``manifest.json``, read and checked; what only simulated or only imported corpora have is None in the others."""
+
+    raceway_format: int
+    complete: bool
+    records: _Count
+    index: FileRow | None = None
+    """``corpus.nc``; there is none before the corpus is complete."""
+    parts_: Annotated[tuple[_Part, ...], Field(alias="parts")]
+    title: str | None = None
+    recipe: str | None = None
+    recipe_sha256: str | None = None
+    overrides: Overrides | None = None
+    versions: dict[str, str] = {}
+    failures: _Texts = ()
+    importer: str | None = None
+    recordings: _Count | None = None
+    skipped: _Texts = ()
+    warnings: _Texts = ()
+
+    @property
+    def parts(self) -> list[PartRow]:
+        """Rows of the parts, in the order of their records."""
+        return [PartRow(part.name, part.records, part.bytes, part.sha256) for part in self.parts_]
+
+
+def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, **facts: Any) -> None:
+    """Write ``manifest.json``: the parts so far, whether they are all, and ``facts`` such as recipe hash and versions.
+
+    The index of a complete corpus must have been written before.
+    """
+    parts = tuple(_Part(**row._asdict()) for row in rows)
+    index = directory / INDEX_NAME
+    manifest = Manifest(
+        raceway_format=FORMAT,
+        complete=complete,
+        records=sum(part.records for part in parts),
+        index=FileRow(bytes=stamp(index)[0], sha256=sha256(index)) if complete else None,
+        parts=parts,  # pyright: ignore[reportCallIssue] - the alias
+        **facts,
+    )
+    text = manifest.model_dump_json(by_alias=True, exclude_unset=True, indent=1)
+    write_text_durably(text + "\n", directory / "manifest.json")
+
+
+def read_manifest(directory: Path) -> Manifest:
+    """Read and check ``manifest.json``; its part names cannot lead out of the corpus.
+
+    Raises
+    ------
+    CorpusError
+        If it is missing, unreadable, of another format version, names a part that is no part or names one twice, or its counts disagree.
+    """
+    path = directory / "manifest.json"
+    if not directory.is_dir():
+        raise CorpusError(
+            f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."
+        )
+    if not path.exists():
+        raise CorpusError(f"{directory}: holds no manifest.json, so it is no corpus; make one with raceway generate.")
+    plain_file(directory, path.name)
+    try:
+        check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
+        manifest = Manifest.model_validate_json(path.read_bytes())
+    except OSError as error:
+        raise CorpusError(f"{path}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
+    except ValidationError as error:
+        raise CorpusError(
+            f"{path}: not a corpus manifest ({_first(error)}); generate or copy the corpus again."
+        ) from None
+    if manifest.raceway_format != FORMAT:
+        found = manifest.raceway_format
+        raise CorpusError(
+            f"{path}: corpus format {found}, this version of raceway reads format {FORMAT}; make it again."
+        )
+    problem = _inconsistency(manifest)
+    if problem is not None:
+        raise CorpusError(f"{path}: {problem}; do not trust this corpus.")
+    return manifest
+
+
+def _first(error: ValidationError) -> str:
+    """Where the first thing is wrong, and what."""
+    item = error.errors(include_url=False, include_input=False)[0]
+    place = ".".join(str(step) for step in item["loc"])
+    reason = item["msg"][0].lower() + item["msg"][1:]
+    return f"{place}: {reason}" if place else reason
+
+
+def _inconsistency(manifest: Manifest) -> str | None:
+    names = [row.name for row in manifest.parts]
+    for name in names:
+        if not _PART_NAME.fullmatch(name):
+            return f"{name!r} is not the name of a part (part-00000.nc, ...)"
+    if len(set(names)) < len(names):
+        return f"it lists {next(name for name in names if names.count(name) > 1)} more than once"
+    records = sum(row.records for row in manifest.parts)
+    if manifest.records != records:
+        return f"it counts {manifest.records} records, its parts {records}"
+    if manifest.complete and (manifest.index is None or not names):
+        return "it calls the corpus complete without a hash of corpus.nc, or without parts"
+    check_limit("records", records, str(names and "the corpus holds"), CorpusError)
+    return None
+
+
+def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str]:
+    """Missing and altered files, one sentence each; the index counts once the corpus is complete."""
+    wanted = {f"parts/{row.name}": FileRow(bytes=row.bytes, sha256=row.sha256) for row in manifest.parts}
+    if manifest.complete and manifest.index is not None:
+        wanted[INDEX_NAME] = manifest.index
+    problems: list[str] = []
+    for name, row in wanted.items():
+        try:
+            path = plain_file(directory, name)
+        except CorpusError as error:
+            problems.append(str(error))
+            continue
+        if path.stat().st_size != row.bytes or (check == "sha256" and sha256(path) != row.sha256):
+            problems.append(
+                f"{path}: altered, it is not the file the manifest names; copy it again or delete it and make the corpus again."
+            )
+    return problems
+
+
+def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
+    """Paths of all parts of a finished corpus, each there and unaltered.
+
+    ``check="size"`` looks at sizes only: for a corpus too large to be hashed again.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus is unfinished, or a file of it is missing, altered or outside its folder.
+    """
+    directory = Path(directory)
+    manifest = read_manifest(directory)
+    if not manifest.complete:
+        raise CorpusError(f"{directory}: unfinished; the raceway generate command that began it completes it.")
+    problems = file_problems(directory, manifest, check)
+    if problems:
+        raise CorpusError(problems[0])
+    return [directory / "parts" / row.name for row in manifest.parts]

@@ -1,0 +1,344 @@
+"""Records read when touched, straight from the files that hold them, a few of which are open at a time.
+
+Every reader of the project comes through here. A signal is read from the part that stores it, never through the virtual dataset of
+``corpus.nc``: HDF5 keeps every part of such a dataset open, and returns missing values without an error when it can open no more files.
+Datasets hold paths and no handles, so they can be pickled, sent to dask workers and shared with forked processes.
+"""
+
+import math
+from collections import OrderedDict
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from functools import partial
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import netCDF4  # noqa: F401 - tells HDF5 where its zstd filter is
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+from xarray.backends import BackendArray, BackendEntrypoint
+from xarray.core import indexing
+
+from gen.corpus.files import Stamp, stamp
+from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
+from gen.errors import CorpusError
+from gen.limits import check_limit
+
+MOST_OPEN = 32
+"""Files that are open at a time. A process may open some thousand; opening one takes 0.2 ms."""
+
+_HDF5_OWN = {
+    "CLASS",
+    "NAME",
+    "DIMENSION_LIST",
+    "REFERENCE_LIST",
+    "_Netcdf4Dimid",
+    "_Netcdf4Coordinates",
+    "_NCProperties",
+}
+PACKING = ("scale_factor", "add_offset", "_FillValue")
+
+
+class Source(NamedTuple):
+    """A file as it was when it was checked."""
+
+    path: str
+    stamp: Stamp
+
+
+class _OpenFile(NamedTuple):
+    """Handle of a file, and of its datasets that have been checked."""
+
+    handle: h5py.File
+    checked: dict[object, h5py.Dataset]
+
+
+_open_files: OrderedDict[Source, _OpenFile] = OrderedDict()
+
+
+def source_of(path: Path | str) -> Source:
+    """File as it is now; CorpusError if there is none."""
+    try:
+        return Source(str(Path(path).absolute()), stamp(path))
+    except OSError as error:
+        raise CorpusError(
+            f"{path}: not a readable netCDF-4 part ({error.strerror}); generate or copy it again."
+        ) from None
+
+
+@contextmanager
+def _opened(source: Source) -> Iterator[_OpenFile]:
+    """Open file behind a source, with the libraries to oneself; whatever they raise becomes a sentence."""
+    with LIBRARY_LOCK:
+        try:
+            yield _open_file(source)
+        except CorpusError:
+            raise
+        except Exception as error:  # damaged bytes make h5py raise a dozen unrelated types
+            reason = (str(error) or type(error).__name__).splitlines()[0]
+            raise CorpusError(
+                f"{source.path}: not a readable netCDF-4 part or index ({reason}); generate or copy it again."
+            ) from error
+
+
+def _open_file(source: Source) -> _OpenFile:
+    """A file, from those that are open or opened in place of the one used longest ago."""
+    if stamp(source.path) != source.stamp:
+        raise CorpusError(f"{source.path}: changed since the corpus was opened; open the corpus again.")
+    if source not in _open_files:
+        while len(_open_files) >= MOST_OPEN:
+            _open_files.popitem(last=False)[1].handle.close()
+        _open_files[source] = _OpenFile(h5py.File(source.path, "r", locking=False), {})
+    _open_files.move_to_end(source)
+    return _open_files[source]
+
+
+def _close(sources: Sequence[Source]) -> None:
+    with LIBRARY_LOCK:
+        for source in sources:
+            if source in _open_files:
+                _open_files.pop(source).handle.close()
+
+
+class _Column(BackendArray):
+    """Values of a per-record variable or of an axis, as they are stored."""
+
+    def __init__(self, source: Source, name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
+        self.source, self.name, self.shape, self.dtype = source, name, shape, dtype
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> NDArray[Any]:
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.BASIC, self._read)
+
+    def _read(self, key: tuple[int | slice, ...]) -> NDArray[Any]:
+        counts = [
+            len(range(*item.indices(size))) if isinstance(item, slice) else 1
+            for item, size in zip(key, self.shape, strict=True)
+        ]
+        check_limit(
+            "file_bytes", self.dtype.itemsize * math.prod(counts), f"{self.source.path}: {self.name} has", CorpusError
+        )
+        with _opened(self.source) as file:
+            if self.name not in file.checked:
+                file.checked[self.name] = own_dataset(file.handle, self.name)
+            return np.asarray(file.checked[self.name][key])
+
+
+class _Packing(NamedTuple):
+    """How a signal is stored: in which type, and by which factor counts become m s-2."""
+
+    dtype: np.dtype[Any]
+    scale: float | None
+    fill: int | None
+
+    @property
+    def decoded(self) -> np.dtype[Any]:
+        """Type of the decoded signal."""
+        return self.dtype if self.scale is None else np.dtype(np.float64)
+
+    def decode(self, stored: NDArray[Any], out: NDArray[Any]) -> None:
+        """Write the signal in m s-2 into ``out``; a missing sample is NaN."""
+        if self.scale is None:
+            out[...] = stored
+            return
+        np.multiply(stored, self.scale, out=out, casting="same_kind")
+        missing = stored == self.fill
+        if missing.any():
+            out[missing] = np.nan
+
+
+class _Signal(BackendArray):
+    """Signal (record, channel, elapsed_time) of parts one after the other, decoded."""
+
+    def __init__(self, parts: Sequence[Source], counts: Sequence[int], row: tuple[int, int], packing: _Packing) -> None:
+        self.parts, self.packing = tuple(parts), packing
+        self.starts = np.concatenate([[0], np.cumsum(counts)])
+        self.shape, self.dtype = (int(self.starts[-1]), *row), packing.decoded
+
+    def __getitem__(self, key: indexing.ExplicitIndexer) -> NDArray[Any]:
+        return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER, self._read)
+
+    def _read(self, key: tuple[int | slice | NDArray[np.integer[Any]], ...]) -> NDArray[Any]:
+        chosen = [np.arange(size)[item] for size, item in zip(self.shape, key, strict=True)]
+        records, channels, samples = map(np.atleast_1d, chosen)
+        parts = np.searchsorted(self.starts, records, side="right") - 1
+        ends = np.flatnonzero((np.diff(records) != 1) | (np.diff(parts) != 0)) + 1
+        whole = len(samples) == self.shape[2] and bool((np.diff(samples) == 1).all())
+        single = len(channels) == 1
+        wanted = slice(channels[0], channels[0] + 1) if single else slice(None)
+        values = np.empty((len(records), 1 if single else self.shape[1], self.shape[2]), self.dtype)
+        for start, stop in zip([0, *ends], [*ends, len(records)], strict=True):
+            if start == stop:
+                continue
+            part, first = parts[start], records[start] - self.starts[parts[start]]
+            with self._stored(part) as stored:
+                found = stored[first : first + stop - start, wanted]
+            self.packing.decode(found, values[start:stop])
+        values = values if single else values[:, channels]
+        values = values if whole else values[:, :, samples]
+        return values.reshape([len(item) for item in chosen if item.ndim])
+
+    @contextmanager
+    def _stored(self, part: int) -> Iterator[h5py.Dataset]:
+        """Stored signal of a part, which must be of the shape and packing of the corpus."""
+        with _opened(self.parts[part]) as file:
+            expected = (int(self.starts[part + 1] - self.starts[part]), *self.shape[1:]), self.packing
+            if expected not in file.checked:
+                stored = own_dataset(file.handle, SIGNAL)
+                if (_checked_shape(stored), _packing(stored)) != expected:
+                    raise CorpusError(
+                        f"{self.parts[part].path}: its signal is not of the shape or type that the corpus says; do not trust this corpus."
+                    )
+                file.checked[expected] = stored
+            yield file.checked[expected]
+
+
+def _packing(stored: h5py.Dataset) -> _Packing:
+    attributes: Any = stored.attrs
+    if "scale_factor" not in attributes:
+        return _Packing(stored.dtype, None, None)
+    scale, offset, fill = (attributes[name].item() for name in ("scale_factor", "add_offset", "_FillValue"))
+    if offset != 0:
+        raise ValueError(f"{SIGNAL} has an add_offset of {offset}, not 0")
+    return _Packing(stored.dtype, float(scale), int(fill))
+
+
+class _Records(BackendEntrypoint):
+    """How xarray opens the records of a part, or of the index of a corpus and its parts."""
+
+    open_dataset_parameters = ("filename_or_obj", "drop_variables", "parts", "counts")
+
+    def open_dataset(  # type: ignore[override]
+        self,
+        filename_or_obj: Any,
+        *,
+        drop_variables: Any = None,  # noqa: ARG002 - xarray hands it over
+        parts: Sequence[Path],
+        counts: Sequence[int] | None,
+    ) -> xr.Dataset:
+        """Variables of one file, with the signal of ``parts``, each of which holds as many records as ``counts`` says."""
+        source, sources = source_of(filename_or_obj), [source_of(path) for path in parts]
+        variables: dict[str, xr.Variable] = {}
+        with _opened(source) as opened_file:
+            file = opened_file.handle
+            stored = own_dataset(file, SIGNAL, virtual=counts is not None)
+            records, *row = _checked_shape(stored)
+            found = list(counts) if counts is not None else [records]
+            if sum(found) != records:
+                raise CorpusError(
+                    f"{source.path}: {records} records, the parts hold {sum(found)}; do not trust this corpus."
+                )
+            packing = _packing(stored)
+            signal = _Signal(sources, found, (row[0], row[1]), packing)
+            attributes = _attributes(stored)
+            encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
+            attributes.pop("coordinates", None)
+            for name in map(str, file):
+                if name != SIGNAL and not _is_bare_dimension(file, name):
+                    variables[name] = _variable(
+                        source, own_dataset(file, name), name, dict(zip(SIGNAL_DIMS, (records, *row), strict=True))
+                    )
+            facts = _attributes(file)
+        described = xr.decode_cf(xr.Dataset(variables, attrs=facts), decode_times=False)
+        lazy = indexing.LazilyIndexedArray(signal)
+        opened = described.assign(
+            {SIGNAL: xr.Variable(SIGNAL_DIMS, lazy, attributes, {"dtype": packing.dtype, **encoding})}
+        )
+        opened.set_close(partial(_close, (source, *sources)))
+        return opened
+
+
+def open_records(path: Path, parts: Sequence[Path], counts: Sequence[int] | None = None) -> xr.Dataset:
+    """Open the per-record variables of ``path`` with the signal of ``parts``, read when touched.
+
+    ``counts`` are the records of each part if ``path`` is the index over them; without, ``path`` is a part itself.
+
+    Raises
+    ------
+    CorpusError
+        If a file is missing, unreadable, or holds what no corpus holds: links, values in other files, unknown dimensions.
+    """
+    opened: Any = xr.open_dataset(path, engine=_Records, parts=parts, counts=counts)
+    return opened
+
+
+def open_part(path: Path) -> xr.Dataset:
+    """Records of one part, decoded to m s-2 and read when touched.
+
+    Raises
+    ------
+    CorpusError
+        If the file is missing or no part.
+    """
+    return open_records(path, [path])
+
+
+def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
+    """Signal of one channel of a part in single precision, shape (record, elapsed_time) [m s-2], and columns by name.
+
+    For features: in half the time of :func:`open_part`, which decodes in double precision.
+    """
+    with _opened(source_of(path)) as file:
+        stored = own_dataset(file.handle, SIGNAL)
+        _checked_shape(stored)
+        packing, counts = _packing(stored), stored[:, channel]
+        columns = [np.asarray(own_dataset(file.handle, name)[:]) for name in names]
+    if packing.scale is None:
+        return counts, columns
+    signal = np.multiply(counts, np.float32(packing.scale), dtype=np.float32)
+    signal[counts == packing.fill] = np.nan
+    return signal, columns
+
+
+def _checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
+    """Shape of a signal: three dimensions, of a type and a size that a corpus may have."""
+    if stored.ndim != 3 or stored.dtype not in (np.dtype(np.int16), np.dtype(np.float32)):
+        raise ValueError(f"{SIGNAL} is of type {stored.dtype} and shape {stored.shape}")
+    records, channels, samples = stored.shape
+    check_limit("records", records, f"{stored.file.filename}: holds", CorpusError)
+    check_limit("record_samples", channels * samples, f"{stored.file.filename}: a record has", CorpusError)
+    if not stored.is_virtual:
+        check_limit("part_samples", records * channels * samples, f"{stored.file.filename}: holds", CorpusError)
+        if stored.chunks != (1, 1, samples) or stored.id.get_num_chunks() != records * channels:
+            raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
+    return stored.shape
+
+
+def _is_bare_dimension(file: h5py.File, name: str) -> bool:
+    """Whether netCDF keeps a dataset for the size of a dimension alone."""
+    label = own_dataset(file, name).attrs.get("NAME", b"")
+    return bytes(label).startswith(b"This is a netCDF dimension but not a netCDF variable")
+
+
+def _variable(source: Source, stored: h5py.Dataset, name: str, sizes: dict[str, int]) -> xr.Variable:
+    """Variable of one value per record, or an axis of the signal; text is stored as one character per column."""
+    dimension = name if name in SIGNAL_DIMS else "record"
+    text = stored.dtype == np.dtype("S1") and stored.ndim == 2
+    if (
+        stored.shape[:1] != (sizes[dimension],)
+        or stored.ndim != 1 + text
+        or (not text and stored.dtype.kind not in "iuf")
+    ):
+        raise ValueError(
+            f"{name} is of type {stored.dtype} and shape {stored.shape}, not one value for each {dimension}"
+        )
+    dimensions = (dimension, f"{name}_length") if text else (dimension,)
+    array = indexing.LazilyIndexedArray(_Column(source, name, stored.shape, stored.dtype))
+    return xr.Variable(dimensions, array, _attributes(stored))
+
+
+def _attributes(node: h5py.Dataset | h5py.File) -> dict[str, Any]:
+    """Attributes of a netCDF variable or file, without those by which HDF5 ties dimensions to variables."""
+    return {name: _plain(node.attrs[name]) for name in node.attrs if name not in _HDF5_OWN}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, bytes):
+        return value.decode()
+    if isinstance(value, h5py.Empty):
+        return ""
+    if isinstance(value, np.ndarray):
+        return value[0] if value.shape == (1,) else value
+    return value
