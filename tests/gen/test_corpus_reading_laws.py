@@ -1,0 +1,218 @@
+"""Laws of reading: the same records however many files may be open, whatever the environment says, in threads and in other processes."""
+
+import multiprocessing
+import os
+import pickle
+import resource
+import shutil
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import h5py
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+
+from gen.corpus import SIGNAL, open_corpus, open_part, part_name, read_channel, reading, validate_corpus
+from gen.errors import CorpusError
+from tests.corpora import physical, write_corpus
+
+MANY = (1,) * 90
+
+
+def open_handles():
+    return len(list(Path("/proc/self/fd").iterdir()))
+
+
+@pytest.fixture(scope="module")
+def many(tmp_path_factory):
+    """A corpus of more parts than are open at a time, and its signal."""
+    folder = tmp_path_factory.mktemp("many") / "c"
+    parts = write_corpus(folder, MANY)
+    return folder, np.concatenate([physical(part) for part in parts])
+
+
+@pytest.fixture
+def few_files():
+    """Let this process open few more files than it has open."""
+    before = resource.getrlimit(resource.RLIMIT_NOFILE)
+    resource.setrlimit(resource.RLIMIT_NOFILE, (open_handles() + reading.MOST_OPEN + 12, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_NOFILE, before)
+
+
+@pytest.mark.usefixtures("few_files")
+def test_more_parts_than_a_process_may_open_are_read_whole(many):
+    folder, signal = many
+    with open_corpus(folder) as corpus:
+        np.testing.assert_allclose(corpus[SIGNAL], signal)
+    assert validate_corpus(folder) == []
+
+
+def test_a_few_files_are_open_at_a_time_and_none_when_the_corpus_is_closed(many):
+    folder, _ = many
+    before = open_handles()
+    with open_corpus(folder) as corpus:
+        for record in range(len(MANY)):
+            corpus[SIGNAL][record].load()
+        assert open_handles() <= before + reading.MOST_OPEN
+    assert open_handles() <= before
+
+
+def test_nothing_in_the_environment_or_the_current_folder_redirects_the_signal(tmp_path):
+    parts = write_corpus(tmp_path / "c", (2, 3))
+    write_corpus(tmp_path / "other", (3, 2))
+    code = f"""
+from gen.corpus import open_corpus
+with open_corpus({str(tmp_path / "c")!r}) as corpus: print(float((corpus["acceleration"] ** 2).sum()))
+"""
+    redirected = dict.fromkeys(("HDF5_VDS_PREFIX", "HDF5_EXTFILE_PREFIX", "HDF5_EXT_PREFIX"), str(tmp_path / "other"))
+    run = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | redirected,
+        cwd=tmp_path / "other",
+        capture_output=True,
+        check=True,
+    )
+    np.testing.assert_allclose(float(run.stdout), sum((physical(part) ** 2).sum() for part in parts))
+
+
+def test_a_missing_part_is_never_taken_from_the_current_folder(tmp_path, monkeypatch):
+    write_corpus(tmp_path / "c", (2, 3))
+    shutil.copytree(tmp_path / "c", tmp_path / "other")
+    with open_corpus(tmp_path / "c") as corpus:
+        (tmp_path / "c" / "parts" / part_name(1)).unlink()
+        monkeypatch.chdir(tmp_path / "other")
+        with pytest.raises(CorpusError, match=r"part-00001\.nc: not a readable netCDF-4 part"):
+            corpus[SIGNAL][3].load()
+
+
+def test_a_part_that_changes_after_the_corpus_was_opened_is_refused(tmp_path):
+    write_corpus(tmp_path / "c", (2, 3))
+    with open_corpus(tmp_path / "c") as corpus:
+        corpus[SIGNAL][0].load()
+        shutil.copyfile(tmp_path / "c" / "parts" / part_name(1), tmp_path / "c" / "parts" / part_name(0))
+        with pytest.raises(
+            CorpusError, match=r"part-00000\.nc: changed since the corpus was opened; open the corpus again"
+        ):
+            corpus[SIGNAL][1].load()
+
+
+KEYS = (
+    np.s_[5], np.s_[-1], np.s_[2:7], np.s_[::-4], np.s_[[7, 0, 7, 88]], np.s_[3, 1], np.s_[3, 1, 10], np.s_[:4, :, 10:20:3],
+    np.s_[:2, [1, 0, 1], ::-1], np.s_[:0], np.s_[[1, 80], 0, [5, 1]], np.s_[..., 3], np.s_[:, :, -5:],
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("key", KEYS, ids=str)
+def test_any_piece_of_the_signal_is_that_piece_of_the_whole(many, key):
+    folder, signal = many
+    whole = xr.DataArray(signal, dims=("record", "channel", "elapsed_time"))
+    with open_corpus(folder) as corpus:
+        np.testing.assert_allclose(corpus[SIGNAL][key], whole[key])
+
+
+def test_a_missing_sample_is_nan_and_no_other_is(tmp_path):
+    write_corpus(tmp_path / "c", (2,))
+    path = tmp_path / "c" / "parts" / part_name(0)
+    with h5py.File(path, "r+") as part:
+        values = part[SIGNAL][:]
+        values[1, 0, 7] = -32768
+        part[SIGNAL][...] = values
+    for found in (open_part(path)[SIGNAL].values[:, 0], read_channel(path, 0, ())[0]):
+        assert np.argwhere(np.isnan(found)).tolist() == [[1, 7]]
+        np.testing.assert_allclose(np.delete(found, 7, 1), np.delete(values[:, 0] / 65.534, 7, 1), rtol=1e-6)
+
+
+@pytest.mark.parametrize("codec", ["zlib", "zstd", "none"])
+@pytest.mark.parametrize("kind", ["counts", "float32"])
+def test_xarray_alone_decodes_a_part_to_the_same_bits(tmp_path, kind, codec):
+    write_corpus(tmp_path / "c", kind=kind, codec=codec)
+    path = tmp_path / "c" / "parts" / part_name(1)
+    with open_part(path) as ours, xr.open_dataset(path, engine="netcdf4", decode_times=False) as plain:
+        assert set(ours.variables) == set(plain.variables)
+        for name in plain.variables:
+            assert ours[name].variable.identical(plain[name].variable)
+        np.testing.assert_allclose(read_channel(path, 1, ())[0], plain[SIGNAL][:, 1], rtol=2e-7)
+
+
+def test_a_pickled_corpus_reads_the_same(many):
+    folder, signal = many
+    with open_corpus(folder) as corpus:
+        corpus[SIGNAL][0].load()
+        again = pickle.loads(pickle.dumps(corpus))  # noqa: S301 - our own
+    np.testing.assert_allclose(again[SIGNAL][40:50], signal[40:50])
+    assert again["fault"].identical(corpus["fault"])
+
+
+def test_dask_reads_the_same_in_threads(many):
+    folder, signal = many
+    with open_corpus(folder) as corpus:
+        chunked = corpus.chunk({"record": 7})
+        assert chunked[SIGNAL].chunks[0][0] == 7
+        np.testing.assert_allclose(chunked[SIGNAL].compute(scheduler="threads", num_workers=8), signal)
+
+
+def _sum(corpus, records):
+    return float(corpus[SIGNAL].isel(record=records).sum())
+
+
+@pytest.mark.parametrize("method", ["fork", "spawn"])
+@pytest.mark.filterwarnings("ignore:This process .* is multi-threaded:DeprecationWarning")
+def test_processes_of_a_data_loader_read_the_same_while_the_parent_reads_too(many, method):
+    folder, signal = many
+    with open_corpus(folder) as corpus:
+        corpus[SIGNAL][:40].load()
+        stop = threading.Event()
+
+        def keep_reading():
+            while not stop.is_set():
+                corpus[SIGNAL][13].load()
+
+        reader = threading.Thread(target=keep_reading)
+        reader.start()
+        try:
+            with multiprocessing.get_context(method).Pool(2) as pool:
+                blocks = [slice(start, start + 9) for start in range(0, 90, 9)]
+                sums = pool.starmap(_sum, [(corpus, block) for block in blocks])
+        finally:
+            stop.set()
+            reader.join()
+    np.testing.assert_allclose(sums, [signal[block].sum() for block in blocks])
+
+
+def test_threads_write_and_read_at_once(tmp_path):
+    wrong = []
+
+    def work(number):
+        try:
+            for turn in range(3):
+                folder = tmp_path / f"{number}-{turn}"
+                signal = np.concatenate([physical(part) for part in write_corpus(folder, (3, 2, 2))])
+                with open_corpus(folder) as corpus:
+                    np.testing.assert_allclose(corpus[SIGNAL], signal)
+                    corpus.drop_vars(SIGNAL).load()
+        except Exception as error:  # noqa: BLE001 - of a thread, told below
+            wrong.append(error)
+
+    threads = [threading.Thread(target=work, args=(number,)) for number in range(6)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert wrong == []
+
+
+def test_the_same_parts_give_the_same_index(tmp_path):
+    for name in ("one", "two"):
+        write_corpus(tmp_path / name)
+    one, two = (tmp_path / name / "corpus.nc" for name in ("one", "two"))
+    assert one.read_bytes() == two.read_bytes()
+
+
+def test_the_index_tells_other_readers_what_to_heed(many):
+    with netCDF4.Dataset(many[0] / "corpus.nc") as index:
+        assert "HDF5 reads a part that it cannot open as missing values" in index.comment
