@@ -75,7 +75,8 @@ def run_tasks(client: Client, task: Callable[[Item], Result], items: Iterable[It
     alone_since: float | None = None
     while running:
         try:
-            waited: Any = wait(running, timeout=POLL_S, return_when="FIRST_COMPLETED")
+            with client.as_current():
+                waited: Any = wait(running, timeout=POLL_S, return_when="FIRST_COMPLETED")
         except (TimeoutError, DaskTimeoutError):
             alone_since = _alone_since(client, alone_since)
             continue

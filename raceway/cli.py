@@ -1,6 +1,7 @@
 """The group of all commands, and the entry point ``raceway``."""
 
 import inspect
+import logging
 import os
 import re
 import sys
@@ -107,5 +108,6 @@ keep_examples(cli)
 def main() -> NoReturn:
     """Run the command line of this process."""
     os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # what matters of it comes as an exception
+    logging.getLogger("distributed.client").disabled = True
     listen_for_signals()
     cli.main(prog_name="raceway")

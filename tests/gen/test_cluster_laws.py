@@ -1,0 +1,68 @@
+"""Laws of clusters: workers with threads give the same bytes, and a lost cluster ends in a sentence."""
+
+import threading
+import time
+
+import dask
+import pytest
+from distributed import Client, LocalCluster
+
+from gen import cluster, generate
+from gen.corpus import read_manifest, validate_corpus
+from gen.errors import ClusterError
+
+
+@pytest.fixture
+def threaded():
+    """A cluster whose workers are threads of this process, four each."""
+    found = LocalCluster(n_workers=2, threads_per_worker=4, processes=False, dashboard_address="127.0.0.1:0")
+    with dask.config.set({"distributed.comm.timeouts.connect": "1s"}):
+        yield found
+        found.close(timeout=2)
+
+
+@pytest.mark.parametrize("turn", range(3))
+def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, tmp_path, turn):
+    recipe = tmp_path / "many.yaml"
+    recipe.write_text(tiny_recipe.read_text().replace("records_per_part: 12", f"records_per_part: {2 + turn}"))
+    alone = generate(recipe, tmp_path / "alone")
+    made = generate(recipe, tmp_path / "threads", scheduler=threaded.scheduler_address)
+    assert read_manifest(made.directory).parts == read_manifest(alone.directory).parts
+    assert validate_corpus(made.directory) == []
+
+
+def _slow(number):
+    time.sleep(0.2)
+    return number
+
+
+@pytest.mark.parametrize(
+    ("lose", "sentence"),
+    [
+        (lambda c: c.scale(0), r"has had no worker for 1 s; start workers and run the same command again"),
+        (lambda c: c.sync(c.scheduler.close), r"is gone; start it and run the same command again"),
+    ],
+    ids=["all workers", "the scheduler"],
+)
+def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, lose, sentence):
+    monkeypatch.setattr(cluster, "POLL_S", 0.2)
+    monkeypatch.setattr(cluster, "PATIENCE_S", 1.0)
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _slow, range(10_000))
+        assert next(tasks) < 10_000
+        loser = threading.Timer(0.5, lose, [threaded])
+        loser.start()
+        with pytest.raises(ClusterError, match=sentence):
+            list(tasks)
+        loser.join()
+
+
+def test_every_item_is_worked_on_once(threaded):
+    with Client(threaded, set_as_default=False) as client:
+        assert sorted(cluster.run_tasks(client, abs, range(-50, 0))) == list(range(1, 51))
+        assert list(cluster.run_tasks(client, abs, [])) == []
+
+
+def test_an_error_of_a_task_comes_through(threaded):
+    with Client(threaded, set_as_default=False) as client, pytest.raises(ZeroDivisionError):
+        list(cluster.run_tasks(client, (1).__truediv__, [1, 0]))
