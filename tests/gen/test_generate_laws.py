@@ -1,8 +1,10 @@
 """Laws of generation: whoever makes a corpus, in how many goes, it is the same corpus."""
 
+import fcntl
 import importlib
 import json
 import math
+import os
 import shutil
 
 import h5py
@@ -64,7 +66,7 @@ def assert_the_same_corpus(folder, whole):
     assert validate_corpus(folder) == []
     assert hashes(folder) == hashes(whole.directory)
     np.testing.assert_array_equal(counts(folder), counts(whole.directory))
-    for name in ("recipe.yaml", "README.md", "manifest.json"):  # corpus.nc holds the time it was written
+    for name in ("recipe.yaml", "README.md", "manifest.json", "corpus.nc"):
         assert (folder / name).read_bytes() == (whole.directory / name).read_bytes()
 
 
@@ -116,6 +118,51 @@ def test_a_corpus_interrupted_before_its_first_part_was_done_is_completed_too(
             generate(recipe_file, tmp_path / "c")
     generate(recipe_file, tmp_path / "c")
     assert_the_same_corpus(tmp_path / "c", whole)
+
+
+UNLISTED = {
+    "a copy of another part": lambda parts: shutil.copyfile(parts / part_name(0), parts / part_name(2)),
+    "a part with a flipped byte": lambda parts: (parts / part_name(1)).write_bytes(
+        (parts / part_name(1)).read_bytes()[:-100] + b"x" + (parts / part_name(1)).read_bytes()[-99:]
+    ),
+    "the right part": lambda _: None,
+}
+
+
+@pytest.mark.parametrize("left", UNLISTED)
+def test_a_part_that_the_manifest_does_not_list_is_made_again(recipe_file, whole, copied, left):
+    manifest = json.loads((copied / "manifest.json").read_text())
+    manifest |= {"complete": False, "index": None, "records": 8, "parts": manifest["parts"][:1]}
+    (copied / "manifest.json").write_text(json.dumps(manifest))
+    UNLISTED[left](copied / "parts")
+    assert generate(recipe_file, copied).kept == 1
+    assert_the_same_corpus(copied, whole)
+
+
+def test_no_part_of_other_library_versions_is_kept(recipe_file, whole, copied):
+    manifest = json.loads((copied / "manifest.json").read_text())
+    manifest["versions"]["numpy"] = "1.0"
+    (copied / "manifest.json").write_text(json.dumps(manifest))
+    assert generate(recipe_file, copied).kept == 0
+    assert_the_same_corpus(copied, whole)
+
+
+def test_a_second_call_in_the_same_folder_is_told_so(recipe_file, copied):
+    handle = os.open(copied, os.O_RDONLY)
+    fcntl.flock(handle, fcntl.LOCK_EX)
+    with pytest.raises(CorpusError, match="another raceway generate is at work in it; wait until it ends"):
+        generate(recipe_file, copied)
+    os.close(handle)
+    assert generate(recipe_file, copied).kept == 3
+
+
+def test_what_a_killed_call_left_is_removed_and_nothing_of_the_user(recipe_file, whole, copied):
+    for name in (".manifest.json.1.1.tmp", ".corpus.nc.22.33.tmp", "parts/.part-00001.nc.4.5.tmp"):
+        (copied / name).write_bytes(b"half")
+    (copied / ".notes.tmp").write_text("mine")
+    generate(recipe_file, copied)
+    assert [path.name for path in copied.rglob(".*")] == [".notes.tmp"]
+    assert_the_same_corpus(copied, whole)
 
 
 def test_a_second_call_keeps_every_part(recipe_file, whole, copied):
