@@ -14,7 +14,8 @@ lines        levels of fault lines and combs at orders of the shaft [pure]
 shape        impulsiveness, slow fluctuation, time statistics [pure]
 indicators   the feature vector of records, in four groups [pure]
 transformer  the same as a scikit-learn transformer
-table        corpus -> feature table (record, feature), part by part; reading and writing
+table        corpus -> feature table (record, feature), part by part
+table_files  feature tables on disk
 baselines    classifiers on a feature table, scored by specimen or rig beside their controls
 pictures     records, corpora and scores as figures
 envelopes    envelope spectra in pictures of many: faults side by side, run-ups

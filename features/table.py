@@ -19,7 +19,7 @@ from distributed import Client
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.rows import FloatArray
 from gen.cluster import client_of, local_client, run_tasks
-from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, whole_or_not_at_all
+from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
@@ -77,14 +77,16 @@ def feature_table(
         table = described.load().drop_encoding()
     paths = part_paths(corpus, check="size")
     small = len(paths) == 1 or table.sizes["record"] <= INLINE_RECORDS
-    blocks: list[FloatArray] = [np.empty((0, len(names)))] * len(paths)
+    values = np.empty((table.sizes["record"], len(names)))
+    counts = [row.records for row in read_manifest(Path(corpus)).parts]
+    starts = np.concatenate([[0], np.cumsum(counts)])
     compute = partial(part_features, groups=tuple(groups), channel=channel)
     runs = _run(compute, paths, None if scheduler == "local" and small else scheduler)
     for done, (number, block) in enumerate(runs, start=1):
-        blocks[number] = block
+        values[starts[number] : starts[number + 1]] = block
         if progress is not None:
             progress(done, len(paths))
-    return _assemble(table, np.concatenate(blocks), groups)
+    return _assemble(table, values, groups)
 
 
 def part_features(path: Path, groups: Sequence[str] = GROUPS, channel: int = 0) -> FloatArray:
@@ -132,68 +134,3 @@ def _assemble(table: xr.Dataset, values: FloatArray, groups: Sequence[str]) -> x
         group=("feature", group, {"long_name": "group of the feature"}),
     )
     return described.assign_attrs(records_with_missing_features=int(np.isnan(values).any(axis=1).sum()))
-
-
-def write_table(table: xr.Dataset, path: Path | str) -> None:
-    """Write a feature table as netCDF (``.nc``) or Parquet (``.parquet``), whole or not at all.
-
-    Parquet gets a column per feature and per variable, with the attributes as metadata of the column.
-
-    Raises
-    ------
-    CorpusError
-        For another suffix, for Parquet without pyarrow, or if the disk refuses the file.
-    """
-    path = Path(path)
-    writers = {".nc": _write_netcdf, ".parquet": _write_parquet}
-    if path.suffix not in writers:
-        message = f"{path}: {path.suffix or 'no suffix'} is no format of feature tables; use .nc or .parquet."
-        raise CorpusError(message)
-    with whole_or_not_at_all(path) as temporary:
-        writers[path.suffix](table, temporary)
-
-
-def _write_netcdf(table: xr.Dataset, path: Path) -> None:
-    encoding = {}
-    for name, variable in table.variables.items():
-        text = variable.dtype.kind in "OUT"
-        # fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed
-        encoding[name] = {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None}
-    table.to_netcdf(path, engine="netcdf4", format="NETCDF4", encoding=encoding)
-
-
-def _write_parquet(table: xr.Dataset, path: Path) -> None:
-    try:
-        import pyarrow as pa
-        from pyarrow import parquet
-    except ImportError as error:
-        message = f"{path}: Parquet needs pyarrow; install raceway[parquet], or write .nc instead."
-        raise CorpusError(message) from error
-    columns = {str(name): table[name] for name, known in table.variables.items() if known.dims == ("record",)}
-    columns |= {str(name): table["features"].sel(feature=name) for name in table["feature"].values}
-    arrays = {name: pa.array(column.values) for name, column in columns.items()}
-    fields = [
-        pa.field(name, arrays[name].type, metadata={key: str(value) for key, value in column.attrs.items()})
-        for name, column in columns.items()
-    ]
-    metadata = {key: str(value) for key, value in table.attrs.items()}
-    parquet.write_table(pa.table(list(arrays.values()), schema=pa.schema(fields, metadata)), path)
-
-
-def read_table(path: Path | str) -> xr.Dataset:
-    """Read a feature table written as netCDF.
-
-    Raises
-    ------
-    CorpusError
-        If the file is missing, unreadable or no feature table.
-    """
-    try:
-        table = xr.load_dataset(path, engine="netcdf4", decode_times=False).drop_encoding()
-    except (OSError, ValueError) as error:
-        message = f"{path}: not a readable netCDF file ({error}); write it with raceway features."
-        raise CorpusError(message) from error
-    if not {"features", "feature", "group"} <= set(table.variables):
-        message = f"{path}: holds no features (record, feature); write a feature table with raceway features."
-        raise CorpusError(message)
-    return table

@@ -65,7 +65,7 @@ def features(corpus: Path, output: Path, as_json: bool) -> None:
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
     """
-    from features.table import write_table
+    from features.table_files import write_table
 
     table = _table(corpus)
     write_table(table, output)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gen.corpus import FAULTS, SPLITS, Manifest, open_corpus, open_part, plain_file, read_manifest
+from gen.corpus import DRAWS, FAULTS, SPLITS, Manifest, open_corpus, open_part, plain_file, read_manifest
 
 _TOLD = [
     "sample_rate",
@@ -53,11 +53,11 @@ def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
     """The variables that ``info`` tells of; of an unfinished corpus those of the parts there are."""
     if manifest.complete:
         with open_corpus(directory, check="size") as corpus:
-            return corpus[_TOLD].load()
+            return corpus.drop_vars(DRAWS, errors="ignore")[_TOLD].load()
     found = []
     for row in manifest.parts:
         with open_part(plain_file(directory, f"parts/{row.name}")) as part:
-            found.append(part[_TOLD].load())
+            found.append(part.drop_vars(DRAWS, errors="ignore")[_TOLD].load())
     whole: Any = xr.concat(found, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
     return whole
 

@@ -25,6 +25,7 @@ from gen.corpus.files import (
     write_durably,
     write_text_durably,
 )
+from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.index import open_corpus, write_index
 from gen.corpus.manifest import Manifest, part_paths, read_manifest, write_manifest
 from gen.corpus.part import Codec, PartRow, part_name, write_part
@@ -47,6 +48,7 @@ __all__ = [
     "DRAWS",
     "FAULTS",
     "FORMAT",
+    "LIBRARY_LOCK",
     "MISSING_COUNT",
     "ROLES",
     "SCHEMA",

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
-from features.table import read_table
+from features.table_files import read_table
 from gen.corpus import SIGNAL, open_corpus
 from raceway import learning
 from raceway.cli import cli

@@ -3,6 +3,7 @@
 import re
 import sys
 
+import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,7 +11,8 @@ from distributed import Client
 
 from features import feature_table
 from features.indicators import GROUPS, feature_names
-from features.table import part_features, read_table, write_table
+from features.table import part_features
+from features.table_files import read_table, write_table
 from gen.corpus import (
     ROLES,
     SCHEMA,
@@ -183,6 +185,31 @@ def test_a_table_survives_netcdf(tmp_path, table):
     assert again["fault"].attrs["flag_meanings"] == "healthy inner outer ball cage compound"
     assert again.attrs == table.attrs
     assert [file.name for file in tmp_path.iterdir()] == ["table.nc"]
+
+
+def test_an_altered_table_is_refused_or_reads_the_same(tmp_path, table):
+    path, rng = tmp_path / "table.nc", np.random.default_rng(5)
+    write_table(table, path)
+    content, refused = path.read_bytes(), 0
+    for _ in range(200):
+        altered = bytearray(content)
+        for place in rng.integers(0, len(content), rng.integers(1, 4)):
+            altered[place] ^= int(rng.integers(1, 256))
+        path.write_bytes(altered)
+        try:
+            xr.testing.assert_identical(read_table(path), table)
+        except CorpusError:
+            refused += 1
+    assert refused > 20
+
+
+@pytest.mark.parametrize("change", [{"title": "another"}, {"records_with_missing_features": 1}], ids=["title", "count"])
+def test_a_table_with_other_attributes_is_refused(tmp_path, table, change):
+    write_table(table, tmp_path / "table.nc")
+    with netCDF4.Dataset(tmp_path / "table.nc", "r+") as file:
+        file.setncatts(change)
+    with pytest.raises(CorpusError, match=r"table\.nc: altered, its content is not what its digest says"):
+        read_table(tmp_path / "table.nc")
 
 
 def test_a_table_survives_parquet_as_columns(tmp_path, table):

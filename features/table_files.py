@@ -1,0 +1,113 @@
+"""Feature tables on disk: netCDF with a digest of everything in it, or Parquet."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from gen.corpus import LIBRARY_LOCK, whole_or_not_at_all
+from gen.errors import CorpusError
+from gen.limits import check_limit
+
+DIGEST = "sha256"
+
+
+def write_table(table: xr.Dataset, path: Path | str) -> None:
+    """Write a feature table as netCDF (``.nc``) or Parquet (``.parquet``), whole or not at all.
+
+    The netCDF file says the digest of its content. Parquet gets a column per feature and per variable, with the attributes as metadata of
+    the column.
+
+    Raises
+    ------
+    CorpusError
+        For another suffix, for Parquet without pyarrow, or if the disk refuses the file.
+    """
+    path = Path(path)
+    writers = {".nc": _write_netcdf, ".parquet": _write_parquet}
+    if path.suffix not in writers:
+        message = f"{path}: {path.suffix or 'no suffix'} is no format of feature tables; use .nc or .parquet."
+        raise CorpusError(message)
+    with whole_or_not_at_all(path) as temporary:
+        writers[path.suffix](table, temporary)
+
+
+def read_table(path: Path | str) -> xr.Dataset:
+    """Read a feature table written as netCDF.
+
+    Raises
+    ------
+    CorpusError
+        If the file is missing, unreadable, altered or no feature table.
+    """
+    path = Path(path)
+    try:
+        check_limit("file_bytes", path.stat().st_size, f"{path}: holds", CorpusError)
+        with LIBRARY_LOCK:
+            table = xr.load_dataset(path, engine="netcdf4", decode_times=False).drop_encoding()
+    except CorpusError:
+        raise
+    except Exception as error:  # damaged bytes make netCDF4 and xarray raise a dozen unrelated types
+        reason = (str(error) or type(error).__name__).splitlines()[0]
+        message = f"{path}: not a readable netCDF file ({reason}); write it with raceway features."
+        raise CorpusError(message) from error
+    if not {"features", "feature", "group"} <= set(table.variables):
+        message = f"{path}: holds no features (record, feature); write a feature table with raceway features."
+        raise CorpusError(message)
+    if table.attrs.pop(DIGEST, None) != _digest(table):
+        message = f"{path}: altered, its content is not what its digest says; write it again with raceway features."
+        raise CorpusError(message)
+    return table
+
+
+def _digest(table: xr.Dataset) -> str:
+    """SHA-256 of names, dimensions, types, values and attributes of a table."""
+    whole = hashlib.sha256(_told(table.attrs))
+    for name in sorted(map(str, table.variables)):
+        variable = table[name].variable
+        texts = variable.dtype.kind in "OUT"
+        whole.update(repr((name, variable.dims, variable.shape, "text" if texts else variable.dtype.str)).encode())
+        whole.update(_told(variable.attrs))
+        if texts:
+            whole.update("\0".join(map(str, variable.values.flat)).encode())
+        else:
+            whole.update(np.ascontiguousarray(variable.values).reshape(-1).view(np.uint8))
+    return whole.hexdigest()
+
+
+def _told(attributes: dict) -> bytes:
+    """Attributes as text that a file gives back unchanged."""
+    plain = {str(key): np.atleast_1d(np.asarray(value)).tolist() for key, value in attributes.items()}
+    return json.dumps(plain, sort_keys=True, default=str).encode()
+
+
+def _write_netcdf(table: xr.Dataset, path: Path) -> None:
+    encoding = {}
+    for name, variable in table.variables.items():
+        text = variable.dtype.kind in "OUT"
+        # fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed
+        encoding[name] = {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None}
+    with LIBRARY_LOCK:
+        table.assign_attrs({DIGEST: _digest(table)}).to_netcdf(
+            path, engine="netcdf4", format="NETCDF4", encoding=encoding
+        )
+
+
+def _write_parquet(table: xr.Dataset, path: Path) -> None:
+    try:
+        import pyarrow as pa
+        from pyarrow import parquet
+    except ImportError as error:
+        message = f"{path}: Parquet needs pyarrow; install raceway[parquet], or write .nc instead."
+        raise CorpusError(message) from error
+    columns = {str(name): table[name] for name, known in table.variables.items() if known.dims == ("record",)}
+    columns |= {str(name): table["features"].sel(feature=name) for name in table["feature"].values}
+    arrays = {name: pa.array(column.values) for name, column in columns.items()}
+    fields = [
+        pa.field(name, arrays[name].type, metadata={key: str(value) for key, value in column.attrs.items()})
+        for name, column in columns.items()
+    ]
+    metadata = {key: str(value) for key, value in table.attrs.items()}
+    parquet.write_table(pa.table(list(arrays.values()), schema=pa.schema(fields, metadata)), path)
