@@ -73,7 +73,7 @@ def _digest(table: xr.Dataset) -> str:
         if texts:
             whole.update("\0".join(map(str, variable.values.flat)).encode())
         else:
-            whole.update(np.ascontiguousarray(variable.values).reshape(-1).view(np.uint8))
+            whole.update(np.ascontiguousarray(variable.values).data)
     return whole.hexdigest()
 
 

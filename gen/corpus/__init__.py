@@ -5,6 +5,7 @@ module     responsibility
 ========== =====================================================
 schema     dimensions, variables, units and roles
 hdf5       one thread at a time, values of the file itself only
+layout     what a file of a corpus may hold
 files      written whole or not at all, known by their hash
 part       one self-describing netCDF-4 file of records
 manifest   which files belong to a corpus, with size and hash

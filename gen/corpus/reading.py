@@ -23,23 +23,22 @@ from xarray.core import indexing
 
 from gen.corpus.files import Stamp, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
+from gen.corpus.layout import (
+    PACKING,
+    Packing,
+    attributes_of,
+    checked_shape,
+    is_bare_dimension,
+    is_text,
+    packing_of,
+    plain_attributes,
+)
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
 MOST_OPEN = 32
 """Files that are open at a time. A process may open some thousand; opening one takes 0.2 ms."""
-
-_HDF5_OWN = {
-    "CLASS",
-    "NAME",
-    "DIMENSION_LIST",
-    "REFERENCE_LIST",
-    "_Netcdf4Dimid",
-    "_Netcdf4Coordinates",
-    "_NCProperties",
-}
-PACKING = ("scale_factor", "add_offset", "_FillValue")
 
 
 class Source(NamedTuple):
@@ -126,33 +125,10 @@ class _Column(BackendArray):
             return np.asarray(file.checked[self.name][key])
 
 
-class _Packing(NamedTuple):
-    """How a signal is stored: in which type, and by which factor counts become m s-2."""
-
-    dtype: np.dtype[Any]
-    scale: float | None
-    fill: int | None
-
-    @property
-    def decoded(self) -> np.dtype[Any]:
-        """Type of the decoded signal."""
-        return self.dtype if self.scale is None else np.dtype(np.float64)
-
-    def decode(self, stored: NDArray[Any], out: NDArray[Any]) -> None:
-        """Write the signal in m s-2 into ``out``; a missing sample is NaN."""
-        if self.scale is None:
-            out[...] = stored
-            return
-        np.multiply(stored, self.scale, out=out, casting="same_kind")
-        missing = stored == self.fill
-        if missing.any():
-            out[missing] = np.nan
-
-
 class _Signal(BackendArray):
     """Signal (record, channel, elapsed_time) of parts one after the other, decoded."""
 
-    def __init__(self, parts: Sequence[Source], counts: Sequence[int], row: tuple[int, int], packing: _Packing) -> None:
+    def __init__(self, parts: Sequence[Source], counts: Sequence[int], row: tuple[int, int], packing: Packing) -> None:
         self.parts, self.packing = tuple(parts), packing
         self.starts = np.concatenate([[0], np.cumsum(counts)])
         self.shape, self.dtype = (int(self.starts[-1]), *row), packing.decoded
@@ -187,22 +163,12 @@ class _Signal(BackendArray):
             expected = (int(self.starts[part + 1] - self.starts[part]), *self.shape[1:]), self.packing
             if expected not in file.checked:
                 stored = own_dataset(file.handle, SIGNAL)
-                if (_checked_shape(stored), _packing(stored)) != expected:
+                if (checked_shape(stored), packing_of(stored)) != expected:
                     raise CorpusError(
                         f"{self.parts[part].path}: its signal is not of the shape or type that the corpus says; do not trust this corpus."
                     )
                 file.checked[expected] = stored
             yield file.checked[expected]
-
-
-def _packing(stored: h5py.Dataset) -> _Packing:
-    attributes: Any = stored.attrs
-    if "scale_factor" not in attributes:
-        return _Packing(stored.dtype, None, None)
-    scale, offset, fill = (attributes[name].item() for name in ("scale_factor", "add_offset", "_FillValue"))
-    if offset != 0:
-        raise ValueError(f"{SIGNAL} has an add_offset of {offset}, not 0")
-    return _Packing(stored.dtype, float(scale), int(fill))
 
 
 class _Records(BackendEntrypoint):
@@ -224,24 +190,23 @@ class _Records(BackendEntrypoint):
         with _opened(source) as opened_file:
             file = opened_file.handle
             stored = own_dataset(file, SIGNAL, virtual=counts is not None)
-            records, *row = _checked_shape(stored)
+            records, *row = checked_shape(stored)
             found = list(counts) if counts is not None else [records]
             if sum(found) != records:
                 raise CorpusError(
                     f"{source.path}: {records} records, the parts hold {sum(found)}; do not trust this corpus."
                 )
-            packing = _packing(stored)
+            packing = packing_of(stored)
             signal = _Signal(sources, found, (row[0], row[1]), packing)
-            attributes = _attributes(stored)
+            attributes, sizes = attributes_of(stored), dict(zip(SIGNAL_DIMS, (records, *row), strict=True))
             encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
             attributes.pop("coordinates", None)
             for name in map(str, file):
-                if name != SIGNAL and not _is_bare_dimension(file, name):
-                    variables[name] = _variable(
-                        source, own_dataset(file, name), name, dict(zip(SIGNAL_DIMS, (records, *row), strict=True))
-                    )
-            facts = _attributes(file)
-        described = xr.decode_cf(xr.Dataset(variables, attrs=facts), decode_times=False)
+                if name != SIGNAL and not is_bare_dimension(file, name):
+                    variables[name] = _variable(source, own_dataset(file, name), name, sizes)
+            facts = attributes_of(file)
+        texts = [name for name, variable in variables.items() if variable.ndim == 2]
+        described = xr.decode_cf(xr.Dataset(variables, attrs=facts), decode_times=False).set_coords(texts)
         lazy = indexing.LazilyIndexedArray(signal)
         opened = described.assign(
             {SIGNAL: xr.Variable(SIGNAL_DIMS, lazy, attributes, {"dtype": packing.dtype, **encoding})}
@@ -282,9 +247,9 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
     """
     with _opened(source_of(path)) as file:
         stored = own_dataset(file.handle, SIGNAL)
-        _checked_shape(stored)
-        packing, counts = _packing(stored), stored[:, channel]
-        columns = [np.asarray(own_dataset(file.handle, name)[:]) for name in names]
+        checked_shape(stored)
+        packing, counts = packing_of(stored), stored[:, channel]
+        columns = [_numbers(own_dataset(file.handle, name), name, stored.shape[0]) for name in names]
     if packing.scale is None:
         return counts, columns
     signal = np.multiply(counts, np.float32(packing.scale), dtype=np.float32)
@@ -292,53 +257,16 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
     return signal, columns
 
 
-def _checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
-    """Shape of a signal: three dimensions, of a type and a size that a corpus may have."""
-    if stored.ndim != 3 or stored.dtype not in (np.dtype(np.int16), np.dtype(np.float32)):
-        raise ValueError(f"{SIGNAL} is of type {stored.dtype} and shape {stored.shape}")
-    records, channels, samples = stored.shape
-    check_limit("records", records, f"{stored.file.filename}: holds", CorpusError)
-    check_limit("record_samples", channels * samples, f"{stored.file.filename}: a record has", CorpusError)
-    if not stored.is_virtual:
-        check_limit("part_samples", records * channels * samples, f"{stored.file.filename}: holds", CorpusError)
-        if stored.chunks != (1, 1, samples) or stored.id.get_num_chunks() != records * channels:
-            raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
-    return stored.shape
-
-
-def _is_bare_dimension(file: h5py.File, name: str) -> bool:
-    """Whether netCDF keeps a dataset for the size of a dimension alone."""
-    label = own_dataset(file, name).attrs.get("NAME", b"")
-    return bytes(label).startswith(b"This is a netCDF dimension but not a netCDF variable")
+def _numbers(stored: h5py.Dataset, name: str, records: int) -> NDArray[Any]:
+    if not is_text(stored, name, "record", records):
+        return np.asarray(stored[:])
+    raise ValueError(f"{name} is text, not numbers")
 
 
 def _variable(source: Source, stored: h5py.Dataset, name: str, sizes: dict[str, int]) -> xr.Variable:
-    """Variable of one value per record, or an axis of the signal; text is stored as one character per column."""
+    """Variable of one value per record, or an axis of the signal."""
     dimension = name if name in SIGNAL_DIMS else "record"
-    text = stored.dtype == np.dtype("S1") and stored.ndim == 2
-    if (
-        stored.shape[:1] != (sizes[dimension],)
-        or stored.ndim != 1 + text
-        or (not text and stored.dtype.kind not in "iuf")
-    ):
-        raise ValueError(
-            f"{name} is of type {stored.dtype} and shape {stored.shape}, not one value for each {dimension}"
-        )
-    dimensions = (dimension, f"{name}_length") if text else (dimension,)
+    text = is_text(stored, name, dimension, sizes[dimension])
+    attributes = plain_attributes(stored, name)
     array = indexing.LazilyIndexedArray(_Column(source, name, stored.shape, stored.dtype))
-    return xr.Variable(dimensions, array, _attributes(stored))
-
-
-def _attributes(node: h5py.Dataset | h5py.File) -> dict[str, Any]:
-    """Attributes of a netCDF variable or file, without those by which HDF5 ties dimensions to variables."""
-    return {name: _plain(node.attrs[name]) for name in node.attrs if name not in _HDF5_OWN}
-
-
-def _plain(value: Any) -> Any:
-    if isinstance(value, bytes):
-        return value.decode()
-    if isinstance(value, h5py.Empty):
-        return ""
-    if isinstance(value, np.ndarray):
-        return value[0] if value.shape == (1,) else value
-    return value
+    return xr.Variable((dimension, f"{name}_length") if text else (dimension,), array, attributes)

@@ -8,8 +8,9 @@ import xarray as xr
 
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.index import open_corpus
+from gen.corpus.layout import PACKING
 from gen.corpus.manifest import INDEX_NAME, Manifest, file_problems, read_manifest
-from gen.corpus.reading import PACKING, open_part
+from gen.corpus.reading import open_part
 from gen.corpus.schema import SIGNAL, schema_problems
 from gen.errors import CorpusError
 

@@ -1,0 +1,123 @@
+"""What a file of a corpus may hold: shapes, types and attributes of the signal and of the variables beside it.
+
+Files come from elsewhere: whatever the format does not know is refused here, before xarray could act on it.
+"""
+
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.corpus.hdf5 import own_dataset
+from gen.corpus.schema import SIGNAL
+from gen.errors import CorpusError
+from gen.limits import check_limit
+
+PACKING = ("scale_factor", "add_offset", "_FillValue")
+"""Attributes by which readers decode a signal; only the signal may have them."""
+
+_HDF5_OWN = {
+    "CLASS", "NAME", "DIMENSION_LIST", "REFERENCE_LIST", "_Netcdf4Dimid", "_Netcdf4Coordinates", "_NCProperties", "_nc3_strict",
+}  # fmt: skip
+_ACTED_ON = (*PACKING, "missing_value", "_Unsigned", "dtype", "calendar", "bounds", "grid_mapping")
+
+
+class Packing(NamedTuple):
+    """How a signal is stored: in which type, and by which factor counts become m s-2."""
+
+    dtype: np.dtype[Any]
+    scale: float | None
+    fill: int | None
+
+    @property
+    def decoded(self) -> np.dtype[Any]:
+        """Type of the decoded signal."""
+        return self.dtype if self.scale is None else np.dtype(np.float64)
+
+    def decode(self, stored: NDArray[Any], out: NDArray[Any]) -> None:
+        """Write the signal in m s-2 into ``out``; a missing sample is NaN."""
+        if self.scale is None:
+            out[...] = stored
+            return
+        np.multiply(stored, self.scale, out=out, casting="same_kind")
+        missing = stored == self.fill
+        if missing.any():
+            out[missing] = np.nan
+
+
+def packing_of(stored: h5py.Dataset) -> Packing:
+    """How a signal is stored; ValueError if it is packed in a way that the format does not know."""
+    attributes = attributes_of(stored)
+    if stored.dtype == np.dtype(np.float32):
+        if attributes.keys() & {"scale_factor", "add_offset"}:
+            raise ValueError(f"{SIGNAL} is floating point and has a scale_factor or an add_offset")
+        return Packing(stored.dtype, None, None)
+    scale, offset, fill = (attributes[name] for name in PACKING)
+    if not (
+        isinstance(scale, np.floating)
+        and np.isfinite(scale)
+        and scale > 0
+        and offset == 0
+        and isinstance(fill, np.int16)
+    ):
+        raise ValueError(f"{SIGNAL} has scale_factor {scale!r}, add_offset {offset!r}, _FillValue {fill!r}")
+    return Packing(stored.dtype, float(scale), int(fill))
+
+
+def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
+    """Shape of a signal: three dimensions, of a type and a size that a corpus may have."""
+    if stored.ndim != 3 or stored.dtype not in (np.dtype(np.int16), np.dtype(np.float32)):
+        raise ValueError(f"{SIGNAL} is of type {stored.dtype} and shape {stored.shape}")
+    records, channels, samples = stored.shape
+    check_limit("records", records, f"{stored.file.filename}: holds", CorpusError)
+    check_limit("record_samples", channels * samples, f"{stored.file.filename}: a record has", CorpusError)
+    if not stored.is_virtual:
+        check_limit("part_samples", records * channels * samples, f"{stored.file.filename}: holds", CorpusError)
+        if stored.chunks != (1, 1, samples) or stored.id.get_num_chunks() != records * channels:
+            raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
+    return stored.shape
+
+
+def is_bare_dimension(file: h5py.File, name: str) -> bool:
+    """Whether netCDF keeps a dataset for the size of a dimension alone."""
+    label = own_dataset(file, name).attrs.get("NAME", b"")
+    return bytes(label).startswith(b"This is a netCDF dimension but not a netCDF variable")
+
+
+def is_text(stored: h5py.Dataset, name: str, dimension: str, size: int) -> bool:
+    """Whether a variable is text, stored as one character per column, and not numbers; ValueError if it is neither."""
+    text = stored.dtype == np.dtype("S1") and stored.ndim == 2
+    if stored.shape[:1] != (size,) or stored.ndim != 1 + text or (not text and stored.dtype.kind not in "iuf"):
+        raise ValueError(
+            f"{name} is of type {stored.dtype} and shape {stored.shape}, not one value for each {dimension}"
+        )
+    return text
+
+
+def plain_attributes(stored: h5py.Dataset, name: str) -> dict[str, Any]:
+    """Attributes of a variable that is not packed."""
+    attributes = attributes_of(stored)
+    attributes.pop("coordinates", None)
+    wrong = next((key for key in _ACTED_ON if key in attributes), None)
+    if wrong is not None or attributes.get("_Encoding", "utf-8") != "utf-8":
+        raise ValueError(f"{name} has the attribute {wrong or '_Encoding'}, which only {SIGNAL} may have")
+    return attributes
+
+
+def attributes_of(node: h5py.Dataset | h5py.File) -> dict[str, Any]:
+    """Attributes of a netCDF variable or file, without those by which HDF5 ties dimensions to variables."""
+    return {name: _plain(node.attrs[name], name) for name in node.attrs if name not in _HDF5_OWN}
+
+
+def _plain(value: Any, name: str) -> Any:
+    """Text, a number, or a row of numbers; ValueError for anything else."""
+    if isinstance(value, h5py.Empty):
+        return ""
+    if isinstance(value, bytes):
+        return value.decode()
+    if isinstance(value, np.ndarray) and value.ndim == 1 and value.dtype.kind in "iuf":
+        return value[0] if value.shape == (1,) else value
+    if isinstance(value, str | np.integer | np.floating):
+        return value
+    raise ValueError(f"the attribute {name} is neither text nor numbers")
