@@ -6,7 +6,7 @@ path from the root ends at a leaf.
 """
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any, NoReturn
 
 import numpy as np
@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from features.baselines.model_file import State, plain
 from gen.errors import CorpusError
+from gen.limits import check_limit
 
 Rule = Callable[[str, State, State], None]  # where it is, the state trained here, and that of the file
 Array = NDArray[Any]
@@ -102,7 +103,10 @@ def forest(where: str, expected: State, found: State) -> None:  # noqa: ARG001
     """Require as many trees as the forest says it has; one that is not fitted has none."""
     its = attributes(found)
     if "estimators_" in its:
-        _require_count(f"{where}.n_estimators", its["n_estimators"], len(its["estimators_"].parts["content"]))
+        members = its["estimators_"].parts["content"]
+        _require_count(f"{where}.n_estimators", its["n_estimators"], len(members))
+        trees = [attributes(member)["tree_"] for member in members]
+        _check_nodes(where, (_array(where, attributes(one)["nodes"]) for one in trees))
 
 
 def tree(where: str, expected: State, found: State) -> None:
@@ -124,6 +128,8 @@ def boosting(where: str, expected: State, found: State) -> None:
     its, features = attributes(found), attributes(expected)["n_features_in_"]
     rounds = its["_predictors"].parts["content"]
     _require_count(f"{where}.max_iter", its["max_iter"], len(rounds))
+    predictors = [item for round_ in rounds for item in round_.parts["content"]]
+    _check_nodes(where, (_array(where, attributes(item)["nodes"]) for item in predictors))
     for number, round_ in enumerate(rounds):
         for item in round_.parts["content"]:
             place = f"{where}._predictors[{number}].nodes"
@@ -147,6 +153,11 @@ def support_vectors(where: str, expected: State, found: State) -> None:
         _require_shape(f"{where}.{name}", _array(where, its[name]), shape)
     records = its["shape_fit_"].parts["content"][0]
     _require_below(f"{where}.support_", _array(where, its["support_"]), _number(where, records))
+
+
+def _check_nodes(where: str, trees: Iterable[Array]) -> None:
+    """Refuse more nodes than the limit: a file may refer to one tree many times, and each is followed for each record."""
+    check_limit("model_nodes", sum(len(nodes) for nodes in trees), f"{where} has", CorpusError)
 
 
 def _require_descent(where: str, inner: Array, left: Array, right: Array) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 from pandas import DataFrame, Index
-from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
@@ -212,19 +212,27 @@ def load_model(path: Path | str) -> Model:
     return model
 
 
+def _encodable(text: str) -> str:
+    text.encode()  # raises ValueError for half of a surrogate pair, which JSON can hold and a terminal cannot
+    return text
+
+
+Text = Annotated[str, AfterValidator(_encodable)]
+
+
 class _About(BaseModel):
     """What a model file says beside the estimator: the fields of `Model` that are plain values."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
-    name: str
+    name: Text
     classes: tuple[Literal[FAULTS], ...] = Field(min_length=1)  # pyright: ignore[reportInvalidTypeForm]
-    features: tuple[str, ...] = Field(min_length=1)
-    groups: tuple[str, ...]
-    corpus: str
+    features: tuple[Text, ...] = Field(min_length=1)
+    groups: tuple[Text, ...]
+    corpus: Text
     records: Annotated[int, Field(ge=1)]
     seed: Annotated[int, Field(ge=0, lt=2**32)]
-    versions: dict[str, str]
+    versions: dict[Text, Text]
 
     @field_validator("name")
     @classmethod

@@ -139,6 +139,8 @@ WRONG_FIELDS = [
     ("features", (1, 2, 3, 4, 5, 6), "features"),
     ("groups", 5, "groups"),
     ("corpus", None, "corpus"),
+    ("corpus", "\ud800", "corpus: "),
+    ("groups", ("\ud800",), "groups[0]: "),
     ("records", "24", "records"),
     ("records", True, "records"),
     ("records", 10**12, "digests must be 1000000000000 of 64 bits"),
@@ -259,10 +261,12 @@ def test_foreign_and_double_members_are_refused(files, tmp_path):
     assert "two members have the same name" in refusal(path)
 
 
-@pytest.mark.parametrize("limit", ["file_bytes=5000", "schema_bytes=1000", "model_objects=10", "model_features=5"])
+@pytest.mark.parametrize(
+    "limit", ["file_bytes=5000", "schema_bytes=1000", "model_objects=10", "model_features=5", "model_nodes=10"]
+)
 def test_a_model_larger_than_a_limit_is_refused(files, monkeypatch, limit):
     monkeypatch.setenv("RACEWAY_LIMITS", limit)
-    assert f"raceway --limit {limit.partition('=')[0]}=NUMBER" in refusal(files["majority"])
+    assert f"raceway --limit {limit.partition('=')[0]}=NUMBER" in refusal(files["extra_trees"])
 
 
 def test_a_folder_is_no_model(tmp_path):
