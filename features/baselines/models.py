@@ -199,6 +199,9 @@ def load_model(path: Path | str) -> Model:
     path, known = Path(path), Known()
     held = _contents(path, read_state(path, known))
     about = _about(path, {name: plain(held[name]) for name in _About.model_fields})
+    theirs, mine = about.versions.get("scikit-learn", "of another version"), version("scikit-learn")
+    if theirs != mine:
+        refuse(f"{path}:", f"made with scikit-learn {brief(theirs)}, and {mine} is installed")
     check_limit("model_features", len(about.features), f"{path}: has", CorpusError)
     digests = held["digests"].array
     if digests is None or digests.dtype != np.uint64 or digests.shape != (about.records,):
@@ -226,7 +229,7 @@ class _About(BaseModel):
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     name: Text
-    classes: tuple[Literal[FAULTS], ...] = Field(min_length=1)  # pyright: ignore[reportInvalidTypeForm]
+    classes: tuple[Literal[FAULTS], ...] = Field(min_length=2)  # pyright: ignore[reportInvalidTypeForm]
     features: tuple[Text, ...] = Field(min_length=1)
     groups: tuple[Text, ...]
     corpus: Text

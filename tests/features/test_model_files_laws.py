@@ -132,6 +132,7 @@ WRONG_FIELDS = [
     ("classes", ("healthy", "healthy", "inner"), "two names are the same"),
     ("classes", ("healthy", "cracked"), "classes"),
     ("classes", ("inner", "healthy", "outer"), "classes are not those"),
+    ("classes", ("healthy",), "classes"),
     ("classes", (), "classes"),
     ("features", NAMES[:-1], "estimator"),
     ("features", NAMES[::-1], "estimator"),
@@ -151,6 +152,7 @@ WRONG_FIELDS = [
     ("digests", np.zeros(24), "digests"),
     ("digests", np.zeros(3, dtype=np.uint64), "digests"),
     ("versions", {"numpy": 2}, "versions"),
+    ("versions", {"scikit-learn": "0.1"}, "made with scikit-learn 0.1, and "),
     ("raceway_model", [1], "not a model of this version"),
     ("estimator", 5, "estimator"),
 ]
