@@ -5,6 +5,7 @@ import json
 import zipfile
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 from unittest import mock
 
 import numpy as np
@@ -50,14 +51,13 @@ class Archive:
         self.schema = json.loads(self.members.pop("schema.json"))
 
     def places(self, key: str) -> list[dict]:
-        """Every JSON object that stands under a key."""
-        found, left = [], [self.schema]
-        while left:
-            value = left.pop(0)
-            if isinstance(value, dict) and isinstance(value.get(key), dict):
-                found.append(value[key])
-            left += list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else []
-        return found
+        """Every JSON object that stands under a key, the outermost first."""
+        return [value[key] for value in self._values() if isinstance(value, dict) and isinstance(value.get(key), dict)]
+
+    def objects(self, name: str) -> list[dict]:
+        """Attributes of every object of a class."""
+        found = [value for value in self._values() if isinstance(value, dict) and value.get("__class__") == name]
+        return [value["content"]["content"] for value in found if "content" in value]
 
     def array(self, place: str | dict) -> np.ndarray:
         """Copy of the array at a place, or of the first that stands under a key."""
@@ -69,6 +69,12 @@ class Archive:
         np.save(file, array)
         found["file"] = f"{1000 + len(self.members)}.npy"  # others may share the old one
         self.members[found["file"]] = file.getvalue()
+
+    def _values(self) -> list[Any]:
+        found: list[Any] = [self.schema]
+        for value in found:
+            found += list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else []
+        return found
 
     def _found(self, place: str | dict) -> dict:
         return self.places(place)[0] if isinstance(place, str) else place

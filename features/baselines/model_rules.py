@@ -84,19 +84,19 @@ def above_zero(where: str, expected: State, found: State) -> None:
 
 def thresholds(where: str, expected: State, found: State) -> None:
     """Accept a list of as many arrays, each of any length."""
-    mine, theirs = expected.parts["content"], found.parts["content"]
-    if found.kind != expected.kind or len(theirs) != len(mine):
+    mine = expected.parts["content"]
+    if found.kind != expected.kind or len(found.parts["content"]) != len(mine):
         refuse(where, f"must be a list of {len(mine)} arrays")
-    for number, item in enumerate(theirs):
+    for number, item in enumerate(found.parts["content"]):
         numbers(f"{where}[{number}]", mine[0], item)
 
 
 def fitted_shape(where: str, expected: State, found: State) -> None:
     """Accept a pair of the number of records and the number of features."""
-    mine, theirs = expected.parts["content"], found.parts["content"]
-    if found.kind != expected.kind or len(theirs) != 2 or theirs[1] is not mine[1]:
+    mine = expected.parts["content"]
+    if found.kind != expected.kind or len(found.parts["content"]) != 2 or found.parts["content"][1] is not mine[1]:
         refuse(where, "must be the numbers of records and features")
-    integer(f"{where}[0]", mine[0], theirs[0])
+    integer(f"{where}[0]", mine[0], found.parts["content"][0])
 
 
 def forest(where: str, expected: State, found: State) -> None:  # noqa: ARG001

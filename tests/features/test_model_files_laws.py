@@ -9,6 +9,7 @@ import pytest
 
 from features.baselines import evaluate, load_model
 from features.baselines.model_file import pack
+from features.baselines.model_rules import LEARNED, LISTS
 from gen.errors import CorpusError
 from tests.model_files import NAMES, Archive, make_table, write_models
 
@@ -169,6 +170,35 @@ def test_a_field_of_another_type_is_refused(files, tmp_path, name, value, senten
         state["file"] = "999.npy"
     archive.schema["content"][name] = state
     assert sentence in refusal(archive.write(tmp_path / "m"))
+
+
+def some_states(folder: Path) -> list[dict]:
+    """One state of each simple kind, of values that no estimator learns."""
+    values = {
+        "a": "text",
+        "b": None,
+        "c": [],
+        "d": (),
+        "e": {},
+        "f": np.zeros(0, dtype="<c16"),
+        "g": [None],
+        "h": np.array([None]),
+    }
+    (folder / "simple").write_bytes(pack(values))
+    archive = Archive(folder / "simple")
+    found = [archive.field(key) for key in values]
+    return [*(state for state in found if "file" not in state), *archive.places("key_types")[0]["content"]]
+
+
+@pytest.mark.parametrize("attribute", [*LEARNED, *LISTS])
+def test_a_learned_attribute_of_another_type_is_refused(files, tmp_path, attribute):
+    owner, _, name = attribute.partition(".")
+    path = next(path for path in files.values() if any(name in held for held in Archive(path).objects(owner)))
+    for state in some_states(tmp_path):
+        archive = Archive(path)
+        held = [held for held in archive.objects(owner) if name in held]
+        held[-1][name] = state  # the first may be one that is not fitted
+        assert name in refusal(archive.write(tmp_path / "m"))
 
 
 def test_a_model_is_refused_if_its_rule_has_not_the_features_it_needs(files, tmp_path):
