@@ -250,6 +250,31 @@ def test_objects_that_double_at_each_level_are_refused(files, tmp_path):
     assert "raceway --limit model_objects=NUMBER" in refusal(archive.write(tmp_path / "m"))
 
 
+@pytest.mark.parametrize(
+    ("key", "content"),
+    [
+        ("corpus", 5),
+        ("corpus", "half a word"),
+        ("corpus", "[1]"),
+        ("features", {}),
+        ("features", [3]),
+        ("versions", []),
+    ],
+)
+def test_an_object_with_content_of_another_form_is_refused(files, tmp_path, key, content):
+    archive = Archive(files["majority"])
+    archive.field(key)["content"] = content
+    assert "not a readable model" in refusal(archive.write(tmp_path / "m"))
+
+
+@pytest.mark.parametrize("name", ["coef_", "_dual_coef_"])
+def test_an_array_with_its_axes_in_the_wrong_order_is_refused(files, tmp_path, name):
+    archive = Archive(files["svm" if name == "_dual_coef_" else "logistic_regression"])
+    array = archive.array(name)
+    archive.put(name, np.array(array, order="F" if array.flags.c_contiguous else "C"))
+    assert f"{name} has its axes in the wrong order" in refusal(archive.write(tmp_path / "m"))
+
+
 def test_objects_nested_without_end_are_refused(tmp_path):
     with zipfile.ZipFile(tmp_path / "m", "w") as archive:
         archive.writestr("schema.json", "[" * 100_000)
