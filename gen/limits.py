@@ -30,6 +30,10 @@ LIMITS: Mapping[str, Limit] = {
     "part_samples": Limit(400_000_000, "samples", "samples of all records of a part, over all channels"),
     "file_bytes": Limit(2_000_000_000, "bytes", "bytes of values in one file of recordings, of a corpus or of a model, unpacked"),
     "manifest_bytes": Limit(50_000_000, "bytes", "size of the manifest of a corpus"),
+    "schema_bytes": Limit(50_000_000, "bytes", "size of the description of the objects in a model file"),
+    "model_objects": Limit(1_000_000, "objects", "objects in a model file, one that is referred to twice counted twice"),
+    "model_features": Limit(1_000, "features", "features of a model"),
+    "model_nodes": Limit(50_000_000, "nodes", "nodes of all trees of a forest in a model, one that is referred to twice counted twice"),
 }  # fmt: skip
 
 

@@ -2,16 +2,20 @@
 
 ``feature table -> labelled_records -> splits by specimen or rig -> probabilities -> Scores``
 
-=========== ============================================================================
-module      responsibility
-=========== ============================================================================
-records     the rows of a feature table as a classifier sees them, and their groups
-estimators  the registry of baselines, from majority class to ensemble
-scores      figures over the classes present, by record and by recording, with intervals
-splits      grouped cross-validation and its guards
-models      training, model files, evaluation
-benchmark   every baseline, its controls, and another corpus
-=========== ============================================================================
+============= ==================================================================================
+module        responsibility
+============= ==================================================================================
+records       the rows of a feature table as a classifier sees them, and their groups
+estimators    the registry of baselines, from majority class to ensemble
+scores        figures over the classes present, by record and by recording, with intervals
+splits        grouped cross-validation and its guards
+model_members the zip of a model file and its arrays, checked before they are read
+model_file    what a model file holds as plain values; the one place that reads and writes skops
+model_rules   what training may put into the attributes of an estimator
+model_check   the estimator of a model file against one trained here
+models        training, saving, loading, evaluation
+benchmark     every baseline, its controls, and another corpus
+============= ==================================================================================
 """
 
 from features.baselines.benchmark import Baseline, Results, benchmark

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
 
 Estimator = Any  # a scikit-learn classifier of indices into FAULTS; its stubs agree on no common type
 
-TREES = 200
+TREES = 200  # of each forest
+ROUNDS = 40  # of boosting
 COMBS = {"inner": "whitened_bpfi_comb", "outer": "whitened_bpfo_comb", "ball": "whitened_2bsf_comb"}
 CAGE_LINES = ("whitened_ftf", "whitened_2ftf")
 RIVAL_SHARE = 0.5  # of the highest series: below that a second one may be its sidebands or some of its harmonics
@@ -155,7 +156,7 @@ def _extra_trees(seed: int) -> Pipeline:
 
 def _gradient_boosting(seed: int) -> Pipeline:
     boosting = HistGradientBoostingClassifier(
-        max_iter=40,
+        max_iter=ROUNDS,
         max_leaf_nodes=8,
         min_samples_leaf=5,
         max_bins=32,  # weighted classes make each bin cost 0.1 ms per feature and fit

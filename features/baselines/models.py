@@ -1,36 +1,41 @@
 """A trained baseline with all it needs to be used again: its features by name, its classes, and its training.
 
-Model files are written by skops and hold no pickle: loading one runs no code from it, and makes only the types
-named in ``TRUSTED`` and those skops knows.
+Model files hold no pickle, and loading one runs no code from it. `load_model` checks all that a file says before it makes anything of it:
+see `features.baselines.model_file` and `features.baselines.model_check`.
 """
 
 import hashlib
-import zipfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from pathlib import Path
+from typing import Annotated, Any, Literal
 
 import numpy as np
-import skops.io
 import xarray as xr
 from numpy.typing import NDArray
+from pandas import DataFrame, Index
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from features.baselines.estimators import DEFAULT_ESTIMATOR, Estimator, class_probabilities, make_estimator
+from features.baselines.estimators import (
+    DEFAULT_ESTIMATOR,
+    ESTIMATORS,
+    Estimator,
+    class_probabilities,
+    make_estimator,
+)
+from features.baselines.model_check import check_estimator
+from features.baselines.model_file import Known, State, pack, plain, read_state, unpack
+from features.baselines.model_rules import brief, refuse
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
 from features.baselines.scores import Scores, score
+from features.indicators import GROUPS
 from features.table import feature_table
 from gen.corpus import FAULTS, write_durably
 from gen.errors import CorpusError
+from gen.limits import check_limit
 
 FORMAT = 1
-TRUSTED = (
-    "features.baselines.estimators.EnvelopeRule",
-    "numpy.dtype",
-    "sklearn.ensemble._hist_gradient_boosting.predictor.TreePredictor",
-    "sklearn.tree._tree.Tree",
-    "sklearn.utils._bunch.Bunch",
-)
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 
 
@@ -120,10 +125,42 @@ def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: 
         If corpus or model cannot be read, or the table lacks a feature of the model.
     """
     model = model if isinstance(model, Model) else load_model(model)
-    table = data if isinstance(data, xr.Dataset) else feature_table(data, model.groups)
+    table = data if isinstance(data, xr.Dataset) else _features_for(model, data)
     records = labelled_records(table, model.features)
-    scores = score(records, class_probabilities(model.estimator, records.features), model.estimator.classes_, seed)
+    probabilities = _probabilities(model, records.features, records.title)
+    scores = score(records, probabilities, model.estimator.classes_, seed)
     return replace(scores, seen=seen_records(records.features.to_numpy(), model.digests))
+
+
+def _features_for(model: Model, corpus: Path | str) -> xr.Dataset:
+    unknown = [group for group in model.groups if group not in GROUPS]
+    if unknown:
+        message = (
+            f"{corpus}: the model wants features of the group {brief(unknown[0])!r}; there are {', '.join(GROUPS)}."
+        )
+        raise CorpusError(message)
+    return feature_table(corpus, model.groups)
+
+
+def _probabilities(model: Model, features: DataFrame, where: str) -> FloatArray:
+    """Probability of each class, shape (record, class).
+
+    Raises
+    ------
+    CorpusError
+        If features or model hold numbers too large to compute with.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            found = class_probabilities(model.estimator, features)
+    except ValueError as error:  # scikit-learn refuses numbers that are infinite, or too large for single precision
+        reason = str(error).splitlines()[0]
+        raise CorpusError(
+            f"{where}: {model.name} cannot judge its records ({reason}); train the model again."
+        ) from error
+    if not np.isfinite(found).all():
+        raise CorpusError(f"{where}: {model.name} gives probabilities that are not finite; train the model again.")
+    return found
 
 
 def record_digests(features: FloatArray) -> NDArray[np.uint64]:
@@ -140,50 +177,100 @@ def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
 
 
 def save_model(model: Model, path: Path | str) -> None:
-    """Write a model file, whole or not at all.
+    """Write a model file, whole or not at all; the same model gives the same bytes.
 
     Raises
     ------
     CorpusError
         If the disk refuses the file.
     """
-    path = Path(path)
     content = {field.name: getattr(model, field.name) for field in fields(model)}
-    write_durably(skops.io.dumps({"raceway_model": FORMAT, **content}), path)
+    write_durably(pack({"raceway_model": FORMAT, **content}), Path(path))
 
 
 def load_model(path: Path | str) -> Model:
-    """Read a model file.
+    """Read a model file; no object is made of it before all of it has been checked.
 
     Raises
     ------
     CorpusError
-        If the file is missing, damaged, holds types that are not trusted, or is no model of this package.
+        If the file is missing, damaged, larger than the limits, or could not have been written by this version.
     """
-    path = Path(path)
+    path, known = Path(path), Known()
+    held = _contents(path, read_state(path, known))
+    about = _about(path, {name: plain(held[name]) for name in _About.model_fields})
+    theirs, mine = about.versions.get("scikit-learn", "of another version"), version("scikit-learn")
+    if theirs != mine:
+        refuse(f"{path}:", f"made with scikit-learn {brief(theirs)}, and {mine} is installed")
+    check_limit("model_features", len(about.features), f"{path}: has", CorpusError)
+    digests = held["digests"].array
+    if digests is None or digests.dtype != np.uint64 or digests.shape != (about.records,):
+        refuse(f"{path}: digests", f"must be {about.records} of 64 bits, one for each record")
+    expected = {"name": about.name, "seed": about.seed, "classes": about.classes, "features": about.features}
+    check_estimator(str(path), held["estimator"], known, **expected)
+    model = Model(estimator=unpack(held["estimator"]), digests=digests, **dict(about))
+    if tuple(FAULTS[c] for c in model.estimator.classes_) != model.classes:
+        refuse(f"{path}: classes", "are not those that the estimator can name")
+    _probabilities(model, _made_up_records(len(model.features)).set_axis(Index(model.features), axis=1), str(path))
+    return model
+
+
+def _encodable(text: str) -> str:
+    text.encode()  # raises ValueError for half of a surrogate pair, which JSON can hold and a terminal cannot
+    return text
+
+
+Text = Annotated[str, AfterValidator(_encodable)]
+
+
+class _About(BaseModel):
+    """What a model file says beside the estimator: the fields of `Model` that are plain values."""
+
+    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
+
+    name: Text
+    classes: tuple[Literal[FAULTS], ...] = Field(min_length=2)  # pyright: ignore[reportInvalidTypeForm]
+    features: tuple[Text, ...] = Field(min_length=1)
+    groups: tuple[Text, ...]
+    corpus: Text
+    records: Annotated[int, Field(ge=1)]
+    seed: Annotated[int, Field(ge=0, lt=2**32)]
+    versions: dict[Text, Text]
+
+    @field_validator("name")
+    @classmethod
+    def _is_a_baseline(cls, name: str) -> str:
+        if name not in ESTIMATORS:
+            raise ValueError(f"{brief(name)!r} is no baseline; there are {', '.join(ESTIMATORS)}")
+        return name
+
+    @field_validator("classes", "features", "groups")
+    @classmethod
+    def _names_are_distinct(cls, names: tuple[str, ...]) -> tuple[str, ...]:
+        if len(set(names)) < len(names):
+            raise ValueError("two names are the same")
+        return names
+
+
+def _about(path: Path, values: dict[str, Any]) -> _About:
     try:
-        with zipfile.ZipFile(path) as archive:
-            damaged = archive.testzip()
-        foreign = [] if damaged else sorted(set(skops.io.get_untrusted_types(file=path)) - set(TRUSTED))
-        content = None if damaged or foreign else skops.io.load(path, trusted=list(TRUSTED))
-    except FileNotFoundError:
-        message = f"{path}: no such file; give a model made with raceway train."
-        raise CorpusError(message) from None
-    except Exception as error:
-        # a foreign file can trip the readers of zip, JSON, NumPy and scikit-learn in any way
-        message = f"{path}: not a readable model ({_first_line(error)}); train it again."
-        raise CorpusError(message) from error
-    if foreign:
-        message = f"{path}: holds {foreign[0]}, which no model of raceway holds; use only models you trust."
-        raise CorpusError(message)
-    if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
-        message = f"{path}: not a model of this version of raceway; make one with raceway train."
-        raise CorpusError(message)
-    if set(content) != {field.name for field in fields(Model)}:
-        message = f"{path}: not a complete model; make it again with raceway train."
-        raise CorpusError(message)
-    return Model(**content)
+        return _About.model_validate(values)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = "".join(f"[{part}]" if isinstance(part, int) else str(part) for part in first["loc"])
+        refuse(f"{path}: {place}:", f"{first['msg'].removeprefix('Value error, ')}")
 
 
-def _first_line(error: Exception) -> str:
-    return (str(error) or type(error).__name__).splitlines()[0]
+def _contents(path: Path, root: State) -> Mapping[str, State]:
+    """Fields of a model file by name."""
+    held = root.parts["content"] if root.kind[2] == "DictNode" else {}
+    if "raceway_model" not in held or plain(held["raceway_model"]) != FORMAT:
+        raise CorpusError(f"{path}: not a model of this version of raceway; make one with raceway train.")
+    if set(held) != {"raceway_model", *(field.name for field in fields(Model))}:
+        raise CorpusError(f"{path}: not a complete model; make it again with raceway train.")
+    return held
+
+
+def _made_up_records(features: int) -> DataFrame:
+    """Records to try a model on: zeros, ones, and one without any feature."""
+    return DataFrame(np.repeat([[0.0], [1.0], [-1.0], [np.nan]], features, axis=1))

@@ -93,3 +93,14 @@ def test_more_records_of_the_same_specimens_do_not_narrow_the_interval(case):
     thrice = bootstrap_interval(*(np.repeat(values, 3) for values in (fault, predicted == fault, specimen)), 0)
     assert once == pytest.approx(thrice)
     assert 0 <= once[0] <= once[1] <= 1
+
+
+@pytest.mark.parametrize(("specimens", "share"), [(40, 0.5), (100, 0.5), (100, 0.2), (400, 0.9)])
+def test_the_interval_is_as_wide_as_that_of_as_many_independent_specimens(specimens, share):
+    correct = np.arange(2 * specimens) % specimens < share * specimens
+    fault = np.repeat([1, 2], specimens)
+    low, high = bootstrap_interval(fault, correct, np.arange(2 * specimens), 0)
+    # each class is a binomial share of variance p (1 - p) / n, and the balanced accuracy is the mean of both
+    width = 2 * 1.96 * np.sqrt(share * (1 - share) / specimens / 2)
+    # 1000 draws tell a quantile to about 5 %; half as many specimens would make it 41 % wider
+    assert high - low == pytest.approx(width, rel=0.15)

@@ -1,0 +1,89 @@
+"""Small feature tables to train models on, and model files taken apart."""
+
+import io
+import json
+import zipfile
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+from unittest import mock
+
+import numpy as np
+import xarray as xr
+
+from features.baselines import ESTIMATORS, estimators, save_model, train
+from features.baselines.estimators import CAGE_LINES, COMBS
+
+NAMES = (*COMBS.values(), *CAGE_LINES, "raw_kurtosis")
+
+
+def make_table(classes: int = 3, records: int = 24, seed: int = 0, names: Sequence[str] = NAMES) -> xr.Dataset:
+    """Feature table of records that tell their class a little, each of a specimen of its own."""
+    rng = np.random.default_rng(seed)
+    fault = (np.arange(records) % classes).astype(np.int8)
+    features = rng.standard_normal((records, len(names))) + fault[:, None]
+    known = dict.fromkeys(("rig", "specimen", "recording"), ("record", np.arange(records)))
+    return xr.Dataset(
+        {"features": (("record", "feature"), features), "fault": ("record", fault), **known},
+        {
+            "feature": np.array(names, dtype=object),
+            "group": ("feature", np.array(["lines"] * (len(names) - 1) + ["shape"], dtype=object)),
+        },
+        {"title": "a made-up corpus"},
+    )
+
+
+def write_models(folder: Path, classes: int, seed: int = 0) -> dict[str, Path]:
+    """Write a model file of every estimator, of two trees or two rounds."""
+    paths = {name: folder / f"{name}_{classes}.skops" for name in ESTIMATORS}
+    with mock.patch.multiple(estimators, TREES=2, ROUNDS=2):
+        for name, path in paths.items():
+            save_model(train(make_table(classes), name, seed=seed), path)
+    return paths
+
+
+class Archive:
+    """A model file taken apart, to be changed and put together again with the right checksums."""
+
+    def __init__(self, path: Path) -> None:
+        with zipfile.ZipFile(path) as archive:
+            self.members = {name: archive.read(name) for name in archive.namelist()}
+        self.schema = json.loads(self.members.pop("schema.json"))
+
+    def places(self, key: str) -> list[dict]:
+        """Every JSON object that stands under a key, the outermost first."""
+        return [value[key] for value in self._values() if isinstance(value, dict) and isinstance(value.get(key), dict)]
+
+    def objects(self, name: str) -> list[dict]:
+        """Attributes of every object of a class."""
+        found = [value for value in self._values() if isinstance(value, dict) and value.get("__class__") == name]
+        return [value["content"]["content"] for value in found if "content" in value]
+
+    def array(self, place: str | dict) -> np.ndarray:
+        """Copy of the array at a place, or of the first that stands under a key."""
+        return np.load(io.BytesIO(self.members[self._found(place)["file"]]))
+
+    def put(self, place: str | dict, array: np.ndarray) -> None:
+        """Exchange the array at a place, or the first that stands under a key."""
+        file, found = io.BytesIO(), self._found(place)
+        np.save(file, array)
+        found["file"] = f"{1000 + len(self.members)}.npy"  # others may share the old one
+        self.members[found["file"]] = file.getvalue()
+
+    def _values(self) -> list[Any]:
+        found: list[Any] = [self.schema]
+        for value in found:
+            found += list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else []
+        return found
+
+    def _found(self, place: str | dict) -> dict:
+        return self.places(place)[0] if isinstance(place, str) else place
+
+    def field(self, name: str) -> dict:
+        return self.schema["content"][name]
+
+    def write(self, path: Path, compression: int = zipfile.ZIP_STORED) -> Path:
+        with zipfile.ZipFile(path, "w", compression) as archive:
+            for name, content in {**self.members, "schema.json": json.dumps(self.schema).encode()}.items():
+                archive.writestr(name, content)
+        return path
