@@ -18,12 +18,11 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from gen.errors import CorpusError
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
+from gen.yaml_files import read_yaml
 
 Fault = Literal["healthy", "inner", "outer", "ball", "cage", "compound"]
 Finite = Annotated[float, Field(allow_inf_nan=False)]
@@ -120,7 +119,11 @@ def read_mapping(path: Path) -> Mapping:
     CorpusError
         If it is missing, no YAML, or says something that cannot be.
     """
-    raw = _read_yaml(path)
+    if not path.is_file():
+        raise CorpusError(f"{path}: no such file; give the YAML file that describes the recordings.")
+    raw = read_yaml(path, CorpusError)
+    if not isinstance(raw, dict):
+        raise CorpusError(f"{path}: holds no keys; it must have files, a list of path, fault, specimen and so on.")
     try:
         top = _Top.model_validate(raw)
     except ValidationError as error:
@@ -149,25 +152,6 @@ def bearing_of(entry: Entry) -> Bearing:
         geometry.ball_diameter_mm * 1e-3,
         math.radians(geometry.contact_angle_deg),
     )
-
-
-def _read_yaml(path: Path) -> dict[str, Any]:
-    if not path.is_file():
-        message = f"{path}: no such file; give the YAML file that describes the recordings."
-        raise CorpusError(message)
-    try:
-        raw = YAML(typ="safe", pure=True).load(path)
-    except MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else 1
-        message = f"{path}: line {line}: not YAML, {error.problem}; correct the line."
-        raise CorpusError(message) from None
-    except (YAMLError, UnicodeDecodeError, RecursionError, OSError) as error:
-        message = f"{path}: not a readable YAML file ({str(error).splitlines()[0]})."
-        raise CorpusError(message) from None
-    if not isinstance(raw, dict):
-        message = f"{path}: holds no keys; it must have files, a list of path, fault, specimen and so on."
-        raise CorpusError(message)
-    return raw
 
 
 def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: dict[str, Any] | None) -> str:

@@ -184,8 +184,8 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
 REFUSED = {
     "no_files": (COMMON, "mapping.yaml: files is missing; give it there."),
     "files_empty": (COMMON + "files: []", "files: [] is not allowed; list should have at least 1 item"),
-    "not_yaml": ("files: [", "mapping.yaml: line 1: not YAML"),
-    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "not YAML"),
+    "not_yaml": ("files: [", "mapping.yaml: line 1: is not valid YAML ("),
+    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit is there twice)"),
     "a_list": ("- 1\n- 2", "mapping.yaml: holds no keys"),
     "missing_key": (
         "bearing: '6205'\nunit: g\nfiles: [{path: a.npy, sample_rate_hz: 9, shaft_rpm: 9, specimen: A}]",

@@ -220,11 +220,25 @@ def test_every_thing_that_is_wrong_gets_a_sentence_of_its_own(tmp_path):
 def test_a_recipe_that_swells_is_refused(tmp_path):
     layers = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
     layers += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 9)]
-    assert "values once aliases are written out" in sentence_of(tmp_path, "\n".join([*layers, WHOLE]))
+    assert "up to line 5, aliases written out, holds 23457 values" in sentence_of(tmp_path, "\n".join([*layers, WHOLE]))
 
 
 def test_a_recipe_of_a_megabyte_is_refused(tmp_path):
-    assert "is no recipe; at most 1000000 are read." in sentence_of(tmp_path, "#" * 1_000_001)
+    said = sentence_of(tmp_path, "#" * 1_000_001)
+    assert said.startswith(
+        "is 1000001 bytes, and the limit is 1000000; if that is meant, raise it with raceway --limit yaml_bytes="
+    )
+
+
+def test_a_thousand_things_that_are_wrong_are_not_all_told(tmp_path):
+    said = sentence_of(tmp_path, WHOLE + "path: {" + ", ".join(f"odd{n}: 1" for n in range(1000)) + "}\n").splitlines()
+    assert len(said) == 21
+    assert said[-1] == "up to 980 more things are wrong; correct these first."
+
+
+def test_a_key_of_a_thousand_letters_is_shown_in_part(tmp_path):
+    said = sentence_of(tmp_path, WHOLE + "? " + "k" * 1000 + "\n: 1\n")
+    assert len(said) < 300
 
 
 @settings(deadline=None)
