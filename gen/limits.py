@@ -33,6 +33,7 @@ LIMITS: Mapping[str, Limit] = {
     "record_samples": Limit(25_000_000, "samples", "samples of a record over all its channels, those that settle included"),
     # responses, counts and the paths of every rig: 8 to 12 bytes a sample were measured, so 1.8 GB beside the batch
     "part_samples": Limit(150_000_000, "samples", "samples of all records of a part, other memory a record needs counted in samples"),
+    "recording_files": Limit(100_000, "files", "files of recordings that one import looks at"),
     "file_bytes": Limit(2_000_000_000, "bytes", "bytes of values in one file of recordings, of a corpus or of a model, unpacked"),
     "manifest_bytes": Limit(50_000_000, "bytes", "size of the manifest of a corpus"),
 }  # fmt: skip

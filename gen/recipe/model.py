@@ -11,7 +11,7 @@ from pydantic import Field, StrictInt, StringConstraints, model_validator
 from gen.corpus import Codec
 from gen.distributions import Number
 from gen.limits import check_limit
-from gen.recipe.faults import Fault, fault_class
+from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
 from gen.recipe.machine import CatalogueBearing, Contact, GeometryBearing, Machine, Specimen
 from gen.recipe.operation import Operation, Steps, Table
 from gen.recipe.section import Count, Name, Section
@@ -105,11 +105,12 @@ class Recipe(Section):
         """How many numbers of profiles and traces every record is given."""
         profiles = (self.operation.speed_profile, self.operation.load_profile)
         tables = sum(2 * len(profile.times_s) for profile in profiles if isinstance(profile, Table))
-        spalls = [part for fault in self.faults for part in getattr(fault, "parts", (fault,))]
-        traces = [
-            round(part.spalls.support()[1]) * len(part.trace_um or ()) for part in spalls if hasattr(part, "trace_um")
-        ]
-        return tables + max(traces, default=0)
+        traces = [0]
+        for fault in self.faults:
+            parts = fault.parts if isinstance(fault, CompoundFault) else (fault,)
+            spalled = [part for part in parts if isinstance(part, RaceFault | BallFault)]
+            traces.append(sum(round(part.spalls.support()[1]) * len(part.trace_um or ()) for part in spalled))
+        return tables + max(traces)
 
     @model_validator(mode="after")
     def _can_be_made(self) -> Self:

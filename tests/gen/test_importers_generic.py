@@ -207,7 +207,7 @@ REFUSED = {
     ),
     "speed": (
         COMMON + "files: [{path: a.npy, shaft_rpm: 0}]",
-        "files[0].shaft_rpm: 0 is not allowed; input should be greater than 0",
+        "files[0].shaft_rpm: 0 is not allowed; input should be greater than or equal to 0.001",
     ),
     "not_a_number": (COMMON + "files: [{path: a.npy, load_n: .nan}]", "files[0].load_n: nan is not allowed"),
     "bearing": (
