@@ -88,9 +88,10 @@ def plain_text(text: object) -> str:
     "a/b (script) [x] (http://y) 'z'"
     """
     shown = " ".join(str(text).translate(_HARMLESS).split())
+    shown = "".join(letter if letter.isprintable() else "?" for letter in shown)
     for link in ("](", "][", "]:"):
         shown = shown.replace(link, f"] {link[1]}")
     return shown
 
 
-_HARMLESS = str.maketrans({"|": "/", "<": "(", ">": ")", "`": "'", "\\": "/", "\0": " "})
+_HARMLESS = str.maketrans({"|": "/", "<": "(", ">": ")", "`": "'", "\\": "/"})

@@ -186,5 +186,5 @@ def _values(array: _Array, variable: str, order: str) -> NDArray[Any]:
 
 def listing(names: list[str]) -> str:
     """First names of a list, and how many more there are."""
-    shown = ", ".join(names[:6]) or "nothing"
+    shown = ", ".join(name[:63] for name in names[:6]) or "nothing"
     return f"{shown} and {len(names) - 6} more" if len(names) > 6 else shown

@@ -1,10 +1,12 @@
 """One variable of a MATLAB file, level 5 or 7.3 (HDF5), whatever state the file is in."""
 
+import os
 from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
 
+from gen.importers.apart import read_apart
 from gen.importers.files import UnusableError, guarded
 from gen.importers.level_5 import BYTE_ORDERS, HEADER, read_level_5
 from gen.importers.level_7_3 import read_level_7_3
@@ -30,4 +32,5 @@ def read_matlab(path: Path, variable: str) -> NDArray[Any]:
             if head[HEADER - 2 : HEADER] not in BYTE_ORDERS:
                 raise UnusableError("is no MATLAB file of level 5 or 7.3")
             return guarded("MATLAB", lambda: read_level_5(stream, variable))
-    return guarded("MATLAB 7.3", lambda: read_level_7_3(path, variable))
+        size = os.fstat(stream.fileno()).st_size
+    return guarded("MATLAB 7.3", lambda: read_apart(lambda: read_level_7_3(path, variable), size))
