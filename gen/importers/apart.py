@@ -4,6 +4,7 @@ The HDF5 library can turn in circles on a damaged file, or end the process; no P
 pipe.
 """
 
+import faulthandler
 import json
 import os
 import resource
@@ -54,11 +55,12 @@ def _serve(read: Callable[[], NDArray[Any]], sending: int, seconds: int) -> None
     """Read, send and end; what was begun in the parent is not ended a second time here."""
     try:
         signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent is interrupted, and ends this process
+        faulthandler.disable()
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
         with os.fdopen(sending, "wb") as stream:
             try:
-                values = np.ascontiguousarray(read())
+                values = np.asarray(read(), order="C")
                 head = {"dtype": values.dtype.str, "shape": values.shape}
             except UnusableError as reason:
                 values, head = np.empty(0), {"unusable": str(reason)}
