@@ -8,6 +8,8 @@ module        responsibility
 errors        what can go wrong, one sentence each
 limits        how much a file from elsewhere may ask for
 cluster       independent tasks on dask
+plain_files   files opened only if they are no pipes or devices
+yaml_files    recipes and mapping files, read within the limits
 physics       pure: bearing, Hertz contact, spalls, machine, kernel
 corpus        the netCDF format: write, index, open, validate
 importers     real recordings into the same format

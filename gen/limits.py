@@ -25,9 +25,15 @@ class Limit(NamedTuple):
 LIMITS: Mapping[str, Limit] = {
     "yaml_bytes": Limit(1_000_000, "bytes", "size of a recipe or mapping file"),
     "yaml_values": Limit(20_000, "values", "values of a recipe or mapping file, aliases written out"),
+    # the classes and splits of all rigs are drawn before the first record: 10 million records take some 0.5 GB
     "records": Limit(10_000_000, "records", "records of a corpus"),
-    "record_samples": Limit(50_000_000, "samples", "samples of a record over all its channels, those that settle included"),
-    "part_samples": Limit(400_000_000, "samples", "samples of all records of a part, over all channels"),
+    # drawn anew for every part: 10 million specimens took 4 s each time
+    "rig_specimens": Limit(100_000, "specimens", "specimens of a rig"),
+    # a batch of the kernel has 16 lanes of single precision even for one record: 94 bytes a sample were measured, so 2.4 GB
+    "record_samples": Limit(25_000_000, "samples", "samples of a record over all its channels, those that settle included"),
+    # responses, counts and the paths of every rig: 8 to 12 bytes a sample were measured, so 1.8 GB beside the batch
+    "part_samples": Limit(150_000_000, "samples", "samples of all records of a part, other memory a record needs counted in samples"),
+    "recording_files": Limit(100_000, "files", "files of recordings that one import looks at"),
     "file_bytes": Limit(2_000_000_000, "bytes", "bytes of values in one file of recordings, of a corpus or of a model, unpacked"),
     "manifest_bytes": Limit(50_000_000, "bytes", "size of the manifest of a corpus"),
     "schema_bytes": Limit(50_000_000, "bytes", "size of the description of the objects in a model file"),

@@ -9,11 +9,11 @@ from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS
 def data_card(corpus: xr.Dataset, origin: str) -> str:
     """Markdown page about a corpus; ``origin`` is a paragraph on where it comes from and what one may do with it."""
     records, samples = corpus.sizes["record"], corpus.sizes["elapsed_time"]
-    names = ", ".join(_plain(name) for name in corpus["channel"].values)
+    names = ", ".join(plain_text(name) for name in corpus["channel"].values)
     fs = float(corpus["sample_rate"][0])
     fault, split = corpus["fault"].values, corpus["split"].values
     lines = [
-        f"# {_plain(corpus.attrs['title'])}",
+        f"# {plain_text(corpus.attrs['title'])}",
         "",
         origin,
         "",
@@ -34,7 +34,7 @@ def data_card(corpus: xr.Dataset, origin: str) -> str:
     for name, variable in corpus.variables.items():
         if name != SIGNAL and variable.dims == ("record",):
             attributes = (variable.attrs.get(key, "") for key in ("units", "role", "long_name"))
-            lines.append(f"| `{name}` | " + " | ".join(_plain(value) for value in attributes) + " |")
+            lines.append(f"| `{name}` | " + " | ".join(plain_text(value) for value in attributes) + " |")
     return "\n".join([*lines, "", "Open it with `gen.open_corpus(folder)` or any netCDF-4 reader on `corpus.nc`.", ""])
 
 
@@ -81,6 +81,17 @@ def format_page() -> str:
     return _FORMAT + "\n".join(rows) + "\n"
 
 
-def _plain(text: object) -> str:
-    """Text that cannot break out of its place in the page."""
-    return " ".join(str(text).replace("|", "/").replace("<", "(").replace(">", ")").split())
+def plain_text(text: object) -> str:
+    """Text from elsewhere as one line that stays text in a page: no tag, link, picture, code or cell of a table.
+
+    >>> plain_text("a|b <script> [x](http://y)  `z` ")
+    "a/b (script) [x] (http://y) 'z'"
+    """
+    shown = " ".join(str(text).translate(_HARMLESS).split())
+    shown = "".join(letter if letter.isprintable() else "?" for letter in shown)
+    for link in ("](", "][", "]:"):
+        shown = shown.replace(link, f"] {link[1]}")
+    return shown
+
+
+_HARMLESS = str.maketrans({"|": "/", "<": "(", ">": ")", "`": "'", "\\": "/"})

@@ -198,7 +198,8 @@ class _Records(BackendEntrypoint):
                 )
             packing = packing_of(stored)
             signal = _Signal(sources, found, (row[0], row[1]), packing)
-            attributes, sizes = attributes_of(stored), dict(zip(SIGNAL_DIMS, (records, *row), strict=True))
+            sizes: dict[str, int] = {name: size for name, size in zip(SIGNAL_DIMS, (records, *row), strict=True)}
+            attributes = attributes_of(stored)
             encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
             attributes.pop("coordinates", None)
             for name in map(str, file):

@@ -8,6 +8,10 @@ mfpt       MFPT fault data set of Bechhoefer
 generic    one's own recordings, described by a mapping file
 mapping    the mapping file: keys, units, checks
 matlab     one variable of a MATLAB file in whatever state
+level_7_3  MATLAB files of level 7.3, which are HDF5 files
+level_5    MATLAB files of level 5
+apart      reading in a process apart, which a library may crash
+unfolding  compressed values, unfolded within bounds
 files      columns of numbers out of text and NumPy files
 recordings what a recording is, what it must be, how it is cut into records
 assemble   the files of a set into a corpus, whole or not at all

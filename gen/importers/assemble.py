@@ -4,6 +4,7 @@ Files are read one after the other, and their records are written part by part i
 one, which takes its name when index, data card and manifest are written.
 """
 
+import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
@@ -24,9 +25,11 @@ from gen.corpus import (
     write_part,
     write_text_durably,
 )
+from gen.corpus.card import plain_text
 from gen.errors import CorpusError
 from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
+from gen.limits import check_limit
 
 Progress = Callable[[int, int], None]
 
@@ -100,10 +103,12 @@ def import_recordings(
     if output.exists() and (not output.is_dir() or any(output.iterdir())):
         message = f"{output}: exists and is not an empty folder; give a new one, or remove it first."
         raise CorpusError(message)
-    length = round(window * collection.fs) if np.isfinite(window) else 0
+    samples = window * collection.fs
+    length = round(samples) if math.isfinite(samples) else 0
     if length < 2:
         message = f"window: {window} s holds no signal; give the length of a record in seconds, such as 0.5."
         raise CorpusError(message)
+    check_limit("record_samples", length, f"window: {window:g} s are", CorpusError)
     log = _Log(Counter(), Counter(), list(skipped), list(warnings))
     try:
         with temporary_beside(output) as temporary:
@@ -182,16 +187,16 @@ def _nothing_usable(importer: str, skipped: list[str]) -> str:
 def _data_card(collection: Collection, log: _Log, length: int) -> str:
     fs = collection.fs
     lines = [
-        f"# {collection.title}",
+        f"# {plain_text(collection.title)}",
         "",
-        collection.origin,
+        f"Origin: {plain_text(collection.origin)}",
         "",
-        f"Records of {length / fs:g} s at {fs:g} Hz, channel {collection.channel}, in m/s^2.",
+        f"Records of {length / fs:g} s at {fs:g} Hz, channel {plain_text(collection.channel)}, in m/s^2.",
         "",
         "| fault | recordings | records |",
         "|---|---|---|",
         *(f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |" for fault in FAULTS if log.recordings[fault]),
     ]
     for heading, sentences in (("What was done or assumed", log.warnings), ("What was skipped", log.skipped)):
-        lines += ["", f"## {heading}", "", *(f"- {sentence}" for sentence in sentences or ("Nothing.",))]
+        lines += ["", f"## {heading}", "", *(f"- {plain_text(sentence)}" for sentence in sentences or ("Nothing.",))]
     return "\n".join(lines) + "\n"

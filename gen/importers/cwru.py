@@ -22,7 +22,7 @@ from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, Progress, import_recordings
 from gen.importers.files import FloatArray, UnusableError, one_column
 from gen.importers.matlab import read_matlab
-from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below
+from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below, name_of
 from gen.physics.catalogue import CATALOGUE
 
 Subset = Literal["all", "wang"]
@@ -136,7 +136,7 @@ def import_cwru(
     found: dict[int, Candidate] = {}
     skipped: list[str] = []
     for path in files_below(source, ".mat"):
-        name, number = path.relative_to(source).as_posix(), recording_number(path.stem)
+        name, number = name_of(path, source), recording_number(path.stem)
         if number not in published:
             skipped.append(f"{name}: has no number of a drive-end recording at 12 kHz in its name; skipped.")
         elif number in found:

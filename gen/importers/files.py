@@ -4,19 +4,25 @@ Whatever goes wrong becomes an :class:`UnusableError`, which says why without na
 knows the name that the user knows.
 """
 
+import io
+import os
 import warnings
 from collections.abc import Callable
 from itertools import islice
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, BinaryIO, TextIO, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+
+from gen.limits import check_limit
+from gen.plain_files import open_plain
 
 FloatArray = NDArray[np.floating]
 Value = TypeVar("Value")
 
 _HEAD_LINES = 100
+_LONGEST_LINE = 2_000_000  # characters; a recording may stand on one line
 
 
 class UnusableError(Exception):
@@ -34,8 +40,11 @@ def read_text(path: Path, column: int | str | None = None, delimiter: str | None
     UnusableError
         If the file is no such text or has no such column.
     """
-    with path.open(encoding="utf-8-sig", errors="replace") as stream:
-        head = [line.rstrip("\r\n").lstrip("#") for line in islice(stream, _HEAD_LINES)]
+    with open_plain(path) as stream:
+        check_limit("file_bytes", os.fstat(stream.fileno()).st_size, "is", UnusableError)
+        _check_lines(stream)
+        text = io.TextIOWrapper(stream, encoding="utf-8-sig", errors="replace")
+        head = [line.rstrip("\r\n").lstrip("#") for line in _head(text)]
     separator = delimiter or next((mark for mark in "\t;," if any(mark in line for line in head)), None)
     lines = [[field.strip() for field in line.split(separator)] for line in head]
     index, first = _locate(lines, column)
@@ -46,6 +55,25 @@ def read_text(path: Path, column: int | str | None = None, delimiter: str | None
     return guarded("delimited text", load)
 
 
+def _check_lines(stream: BinaryIO) -> None:
+    """Refuse a text with an endless line, each number of which takes ten times its letters while the line is taken apart."""
+    while block := stream.read(_LONGEST_LINE):
+        if len(block) == _LONGEST_LINE and b"\n" not in block and b"\r" not in block:
+            message = f"has a line of more than {_LONGEST_LINE} characters"
+            raise UnusableError(message)
+    stream.seek(0)
+
+
+def _head(text: TextIO) -> list[str]:
+    """First lines of a text, which are looked at for a header."""
+    head: list[str] = []
+    for line in islice(text, _HEAD_LINES):
+        head.append(line)
+        if sum(map(len, head)) > _LONGEST_LINE:
+            break
+    return head
+
+
 def read_numpy(path: Path) -> NDArray[Any]:
     """Array in a NumPy ``.npy`` file; pickled objects are refused.
 
@@ -54,6 +82,8 @@ def read_numpy(path: Path) -> NDArray[Any]:
     UnusableError
         If the file is no such file.
     """
+    with open_plain(path) as stream:
+        check_limit("file_bytes", os.fstat(stream.fileno()).st_size, "is", UnusableError)
     # a memory map refuses a header that promises more than the file holds before anything is allocated
     return guarded("NumPy", lambda: np.array(np.lib.format.open_memmap(path, mode="r")))
 
@@ -84,7 +114,7 @@ def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
     if not 0 <= chosen < columns.shape[0]:
         message = f"has columns 0 to {columns.shape[0] - 1} there, not {chosen}"
         raise UnusableError(message)
-    return columns[chosen].astype(np.float64)
+    return columns[chosen].astype(np.float64, copy=False)
 
 
 def guarded(kind: str, read: Callable[[], Value]) -> Value:

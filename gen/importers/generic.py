@@ -13,7 +13,7 @@ from gen.importers.assemble import Collection, Import, Progress, import_recordin
 from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text
 from gen.importers.mapping import Entry, bearing_of, read_mapping
 from gen.importers.matlab import read_matlab
-from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording
+from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, name_of, some_files
 
 _METRES_PER_SECOND_SQUARED = {"g": STANDARD_GRAVITY, "m/s2": 1.0}
 _TEXT = (".csv", ".txt", ".tsv", ".dat")
@@ -47,12 +47,14 @@ def import_generic(source: Path, output: Path, *, window: float = 0.5, progress:
     specimens = _numbered((entry.rig, entry.specimen) for entry in mapping.entries)
     candidates: dict[str, Candidate] = {}
     skipped: list[str] = []
+    looked_at = 0
     for position, entry in enumerate(mapping.entries):
-        paths = _matches(source, position, entry.path)
+        paths = _matches(source, position, entry.path, looked_at)
+        looked_at += len(paths)
         if not paths:
             skipped.append(f"{entry.path}: no such file beside {source.name}; skipped.")
         for path in paths:
-            name = _name(path.relative_to(source.parent).as_posix(), entry)
+            name = _name(name_of(path, source.parent), entry)
             if name in candidates:
                 skipped.append(f"{name}: is listed once more by files[{position}]; skipped.")
                 continue
@@ -81,20 +83,26 @@ def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
     return {key: number for number, key in enumerate(dict.fromkeys(keys))}
 
 
-def _matches(source: Path, position: int, pattern: str) -> list[Path]:
+def _matches(source: Path, position: int, pattern: str, looked_at: int) -> list[Path]:
     """Files that a pattern names, sorted; none may lie outside the folder of the mapping file."""
     folder, where = source.parent, f"{source}: files[{position}].path: {pattern}"
-    if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
+    parts = Path(pattern).parts
+    if Path(pattern).is_absolute() or ".." in parts:
         message = f"{where} leads out of the folder of the mapping file; put the mapping above the data."
+        raise CorpusError(message)
+    if not parts or parts.count("**") > 1:  # each further ** looks at every folder once more
+        message = f"{where} is no pattern of file names; write it like data/*.mat, with ** at most once."
         raise CorpusError(message)
     exact = folder / pattern
     try:
-        paths = [exact] if exact.is_file() else sorted(filter(Path.is_file, folder.glob(pattern)))
-    except ValueError as error:
+        found = [exact] if exact.is_file() else filter(Path.is_file, folder.glob(pattern))
+        paths = some_files(found, looked_at, f"{where} and those before name")
+    except (ValueError, OSError) as error:
         message = f"{where} is no pattern of file names ({error}); write it like data/*.mat."
         raise CorpusError(message) from None
+    root = folder.resolve()
     for path in paths:
-        if not path.resolve().is_relative_to(folder.resolve()):
+        if not path.resolve().is_relative_to(root):
             message = f"{where} is or leads to a link out of the folder; copy the files into it."
             raise CorpusError(message)
     return paths

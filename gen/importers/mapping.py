@@ -5,10 +5,13 @@ Every key that describes a file may be given once at the top for all of them, an
 
 import difflib
 import math
+import reprlib
+import unicodedata
 from pathlib import Path
 from typing import Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -18,17 +21,60 @@ from pydantic import (
     ValidationError,
     model_validator,
 )
-from ruamel.yaml import YAML
-from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
 from gen.errors import CorpusError
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
+from gen.yaml_files import read_yaml
 
 Fault = Literal["healthy", "inner", "outer", "ball", "cage", "compound"]
-Finite = Annotated[float, Field(allow_inf_nan=False)]
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Name = Annotated[str, BeforeValidator(lambda value: str(value) if type(value) is int else value), Field(min_length=1)]
+_MOST_COLUMNS = 1_000_000
+Millimetres = Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
+
+
+def _checked(text: str) -> str:
+    """Text that can be stored and shown; a control character in a name is damage or mischief."""
+    odd = next(
+        (letter for letter in text if unicodedata.category(letter) in ("Cc", "Cs") and letter not in "\t\n\r"), None
+    )
+    if odd is not None:
+        message = f"{odd!r} is a control character; leave it out"
+        raise ValueError(message)
+    return text
+
+
+def _on_one_line(text: str) -> str:
+    if set(text) & set("\t\n\r"):
+        message = f"{text[:60]!r} has a tab or goes over several lines; write it on one"
+        raise ValueError(message)
+    return text
+
+
+def _as_text(value: Any) -> Any:
+    return str(value) if type(value) is int else value
+
+
+def _column(column: int | str | None) -> int | str | None:
+    if isinstance(column, int) and not 0 <= column < _MOST_COLUMNS:
+        message = f"is not in 0 to {_MOST_COLUMNS - 1}"
+        raise ValueError(message)
+    return _on_one_line(_checked(column)) if isinstance(column, str) else column
+
+
+Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1, max_length=5000), AfterValidator(_checked)]
+Line = Annotated[str, BeforeValidator(_as_text), AfterValidator(_checked), AfterValidator(_on_one_line)]
+Name = Annotated[Line, Field(min_length=1, max_length=200)]
+Pattern = Annotated[Line, Field(min_length=1, max_length=1000)]
+
+
+def _separates(mark: str) -> str:
+    if mark in '\r\n#"' or mark.isalnum() or mark in "+-." or unicodedata.category(mark) == "Cs":
+        message = f"{mark!r} separates no columns"
+        raise ValueError(message)
+    return mark
+
+
+Delimiter = Annotated[str, Field(min_length=1, max_length=1), AfterValidator(_separates)]
 
 
 class Geometry(BaseModel):
@@ -37,9 +83,9 @@ class Geometry(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     designation: Name = "own"
-    n_balls: Annotated[int, Field(ge=3)]
-    pitch_diameter_mm: Positive
-    ball_diameter_mm: Positive
+    n_balls: Annotated[int, Field(ge=3, le=1000)]
+    pitch_diameter_mm: Annotated[Millimetres, Field(ge=1)]
+    ball_diameter_mm: Annotated[Millimetres, Field(ge=0.01)]
     contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
 
     @model_validator(mode="after")
@@ -55,25 +101,25 @@ class Entry(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    path: Name
+    path: Pattern
     bearing: Annotated[
         Annotated[Name, Tag("name")] | Annotated[Geometry, Tag("geometry")],
         Discriminator(lambda value: "geometry" if isinstance(value, dict) else "name"),
     ]
     unit: Literal["g", "m/s2"]
-    sample_rate_hz: Positive
-    shaft_rpm: Positive
+    sample_rate_hz: Annotated[float, Field(ge=1, le=1e8, allow_inf_nan=False)]
+    shaft_rpm: Annotated[float, Field(ge=0.001, le=1e7, allow_inf_nan=False)]
     fault: Fault
     specimen: Name
     rig: Name = "1"
     variable: Name | None = None
-    column: int | str | None = None
-    delimiter: Name | None = None
-    load_n: Annotated[float, Field(ge=0, allow_inf_nan=False)] | None = None
-    width_mm: Positive | None = None
-    depth_mm: Positive | None = None
-    angle_deg: Finite | None = None
-    n_spalls: Annotated[int, Field(ge=1)] | None = None
+    column: Annotated[int | str | None, AfterValidator(_column)] = None
+    delimiter: Delimiter | None = None
+    load_n: Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)] | None = None
+    width_mm: Millimetres | None = None
+    depth_mm: Millimetres | None = None
+    angle_deg: Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)] | None = None
+    n_spalls: Annotated[int, Field(ge=1, le=1000)] | None = None
 
     @model_validator(mode="after")
     def _bearing_is_known(self) -> Self:
@@ -97,8 +143,8 @@ class _Top(BaseModel):
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
-    title: Name = "Own recordings"
-    origin: Name = "Origin and licence are not stated."
+    title: Text = "Own recordings"
+    origin: Text = "Origin and licence are not stated."
     channel: Name = "sensor"
     files: Annotated[list[dict[str, Any]], Field(min_length=1)]
 
@@ -120,7 +166,11 @@ def read_mapping(path: Path) -> Mapping:
     CorpusError
         If it is missing, no YAML, or says something that cannot be.
     """
-    raw = _read_yaml(path)
+    if not path.is_file():
+        raise CorpusError(f"{path}: no such file; give the YAML file that describes the recordings.")
+    raw = read_yaml(path, CorpusError)
+    if not isinstance(raw, dict):
+        raise CorpusError(f"{path}: holds no keys; it must have files, a list of path, fault, specimen and so on.")
     try:
         top = _Top.model_validate(raw)
     except ValidationError as error:
@@ -151,25 +201,6 @@ def bearing_of(entry: Entry) -> Bearing:
     )
 
 
-def _read_yaml(path: Path) -> dict[str, Any]:
-    if not path.is_file():
-        message = f"{path}: no such file; give the YAML file that describes the recordings."
-        raise CorpusError(message)
-    try:
-        raw = YAML(typ="safe", pure=True).load(path)
-    except MarkedYAMLError as error:
-        line = error.problem_mark.line + 1 if error.problem_mark else 1
-        message = f"{path}: line {line}: not YAML, {error.problem}; correct the line."
-        raise CorpusError(message) from None
-    except (YAMLError, UnicodeDecodeError, RecursionError, OSError) as error:
-        message = f"{path}: not a readable YAML file ({str(error).splitlines()[0]})."
-        raise CorpusError(message) from None
-    if not isinstance(raw, dict):
-        message = f"{path}: holds no keys; it must have files, a list of path, fault, specimen and so on."
-        raise CorpusError(message)
-    return raw
-
-
 def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: dict[str, Any] | None) -> str:
     """Say the most telling complaint, at the place where the user wrote the value."""
     # a mistyped key comes before the missing one it causes, a part of the geometry before "not a string"
@@ -190,4 +221,6 @@ def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: d
         case "value_error":
             return f"{where}{key}{': ' if key else ''}{message}."
         case _:
-            return f"{where}{key}: {complaint['input']!r} is not allowed; {message[0].lower()}{message[1:]}."
+            return (
+                f"{where}{key}: {reprlib.repr(complaint['input'])} is not allowed; {message[0].lower()}{message[1:]}."
+            )

@@ -17,7 +17,7 @@ import scipy.signal
 from gen.importers.assemble import Collection, Import, Progress, import_recordings
 from gen.importers.files import UnusableError, one_column
 from gen.importers.matlab import read_matlab
-from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below
+from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below, name_of
 from gen.physics.catalogue import CATALOGUE
 
 FS = 48_828.0
@@ -60,7 +60,7 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
     candidates: dict[str, Candidate] = {}
     skipped: list[str] = []
     for path in files_below(source, ".mat"):
-        name, stem = path.relative_to(source).as_posix(), path.stem.lower()
+        name, stem = name_of(path, source), path.stem.lower()
         fault = next((fault for prefix, fault in _FAULT_OF_PREFIX.items() if stem.startswith(prefix)), None)
         if fault is None:
             skipped.append(f"{name}: begins with none of baseline, InnerRaceFault, OuterRaceFault; skipped.")

@@ -4,7 +4,9 @@ A recording is refused if it is shorter than a window, constant, not finite or b
 take; else it is cut into consecutive windows of one length, and the last incomplete one is dropped.
 """
 
-from collections.abc import Callable, Mapping
+import unicodedata
+from collections.abc import Callable, Iterable, Mapping
+from itertools import islice
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,6 +16,7 @@ from numpy.typing import NDArray
 from gen.corpus import FAULTS, SPLITS
 from gen.errors import CorpusError
 from gen.importers.files import FloatArray, UnusableError
+from gen.limits import check_limit, limit
 from gen.physics.bearing import Bearing, orders
 
 STANDARD_GRAVITY = 9.80665  # m s-2, by definition
@@ -115,6 +118,24 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
     return [Record(signal[start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
 
 
+def some_files(found: Iterable[Path], already: int, what: str) -> list[Path]:
+    """Files found, sorted; CorpusError, which begins with ``what``, if they and those found ``already`` are too many."""
+    paths = list(islice(found, limit("recording_files") + 1))
+    check_limit("recording_files", already + len(paths), what, CorpusError)
+    return sorted(paths)
+
+
+def name_of(path: Path, folder: Path) -> str:
+    r"""Name of a file relative to a folder, as text that can be stored: bytes that are no UTF-8 are written out.
+
+    >>> name_of(Path("set/Pr\udcfcfstand/1.mat"), Path("set"))
+    'Pr\\xfcfstand/1.mat'
+    """
+    name = path.relative_to(folder).as_posix()
+    name = name.encode("utf-8", "surrogateescape").decode("utf-8", "backslashreplace")
+    return "".join(letter if unicodedata.category(letter) != "Cc" else "?" for letter in name)
+
+
 def files_below(folder: Path, suffix: str) -> list[Path]:
     """Files of one kind in a folder and below it, sorted by path.
 
@@ -126,7 +147,8 @@ def files_below(folder: Path, suffix: str) -> list[Path]:
     if not folder.is_dir():
         message = f"{folder}: no such folder; give the folder that holds the {suffix} files."
         raise CorpusError(message)
-    paths = sorted(path for path in folder.rglob("*") if path.suffix.lower() == suffix and path.is_file())
+    found = (path for path in folder.rglob("*") if path.suffix.lower() == suffix and path.is_file())
+    paths = some_files(found, 0, f"{folder}: holds")
     if not paths:
         message = f"{folder}: no {suffix} file in it or below; give the folder that holds the recordings."
         raise CorpusError(message)

@@ -10,11 +10,15 @@ from pydantic import Field, StrictInt, StringConstraints, model_validator
 
 from gen.corpus import Codec
 from gen.distributions import Number
-from gen.recipe.faults import Fault, fault_class
+from gen.limits import check_limit
+from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
 from gen.recipe.machine import CatalogueBearing, Contact, GeometryBearing, Machine, Specimen
-from gen.recipe.operation import Operation, Steps
+from gen.recipe.operation import Operation, Steps, Table
 from gen.recipe.section import Count, Name, Section
 from gen.recipe.sensing import Background, Path, PhysicalLevel, Recording, SnrLevel
+
+# what a record takes beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace
+_SAMPLES_OF_A_RECORD, _SAMPLES_OF_A_NUMBER = 4000, 12
 
 
 class Split(Section):
@@ -77,6 +81,36 @@ class Recipe(Section):
     def n_parts(self) -> int:
         """Number of parts of the corpus."""
         return -(-self.n_records // self.corpus.records_per_part)
+
+    @model_validator(mode="after")
+    def _within_limits(self) -> Self:
+        """Check counts and sizes before anything is drawn: the limits keep what a part takes to a few gigabytes."""
+        corpus, recording = self.corpus, self.recording
+        whole = corpus.rigs * corpus.specimens_per_rig * corpus.records_per_specimen
+        # also where records: ends the corpus early, since the splits are drawn over all of its rigs
+        place = "corpus: rigs * specimens_per_rig * records_per_specimen"
+        check_limit("records", whole, f"{place} are", ValueError)
+        check_limit("rig_specimens", corpus.specimens_per_rig, "corpus.specimens_per_rig: asks for", ValueError)
+        seconds = recording.settle_s + recording.duration_s
+        samples = round(seconds * recording.sample_rate_hz) * len(recording.channels)
+        check_limit(
+            "record_samples", samples, "recording: a record of all channels, what settles included, has", ValueError
+        )
+        records = min(self.n_records, corpus.records_per_part)
+        needed = samples + _SAMPLES_OF_A_RECORD + _SAMPLES_OF_A_NUMBER * self._numbers_of_a_record()
+        check_limit("part_samples", records * needed, f"corpus.records_per_part: {records} records need", ValueError)
+        return self
+
+    def _numbers_of_a_record(self) -> int:
+        """How many numbers of profiles and traces every record is given."""
+        profiles = (self.operation.speed_profile, self.operation.load_profile)
+        tables = sum(2 * len(profile.times_s) for profile in profiles if isinstance(profile, Table))
+        traces = [0]
+        for fault in self.faults:
+            parts = fault.parts if isinstance(fault, CompoundFault) else (fault,)
+            spalled = [part for part in parts if isinstance(part, RaceFault | BallFault)]
+            traces.append(sum(round(part.spalls.support()[1]) * len(part.trace_um or ()) for part in spalled))
+        return tables + max(traces)
 
     @model_validator(mode="after")
     def _can_be_made(self) -> Self:

@@ -1,6 +1,6 @@
 """From a YAML file to a :class:`Recipe`, or to a sentence that says where the file is wrong.
 
-A recipe is given as a path or by the name of one that ships with Raceway. YAML 1.2 is read without tags, so a recipe can run no code.
+A recipe is given as a path or by the name of one that ships with Raceway. Checks of counts and sizes against the limits are in the model.
 """
 
 import difflib
@@ -12,14 +12,13 @@ from pathlib import Path
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from gen.errors import RecipeError
 from gen.recipe.model import Recipe
+from gen.yaml_files import read_yaml
 
-_LARGEST = 1_000_000  # bytes; a recipe is some kilobytes
-_MOST_NODES = 20_000  # values once aliases are written out
+_MOST_SENTENCES = 20
+_LONGEST_KEY = 60  # characters shown
 
 
 def shipped_recipes() -> dict[str, Path]:
@@ -97,36 +96,26 @@ def recipe_schema() -> str:
 
 
 def _load(path: Path) -> dict[str, Any]:
-    try:
-        if path.stat().st_size > _LARGEST:
-            raise RecipeError(f"{path}: {path.stat().st_size} bytes is no recipe; at most {_LARGEST} are read.")
-        data = YAML(typ="safe", pure=True).load(path.read_text(encoding="utf-8"))
-    except (OSError, UnicodeDecodeError) as error:
-        raise RecipeError(f"{path}: cannot be read ({error}); give a YAML file in UTF-8.") from None
-    except (YAMLError, RecursionError, ValueError) as error:
-        reason = " ".join(str(error).split())
-        raise RecipeError(f"{path}: is not valid YAML ({reason}); correct it there.") from None
+    data = read_yaml(path, RecipeError)
     if not isinstance(data, dict) or not all(isinstance(key, str) for key in data):
         raise RecipeError(
             f"{path}: a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes."
         )
-    left = [data]
-    for _ in range(_MOST_NODES):
-        if not left:
-            return data
-        node = left.pop()
-        left += node.values() if isinstance(node, dict) else node if isinstance(node, list) else []
-    raise RecipeError(
-        f"{path}: more than {_MOST_NODES} values once aliases are written out; a recipe has some hundred."
-    )
+    return data
 
 
 def _sentences(error: ValidationError) -> list[str]:
     """One sentence per thing that is wrong; a key that is missing because it is misspelt is one thing."""
     items = error.errors()
     meant = {(*item["loc"][:-1], _guess(item["loc"])) for item in items if item["type"] == "extra_forbidden"}
-    sentences = [_sentence(item) for item in items if item["loc"] not in meant]
-    return list(dict.fromkeys(sentence for sentence in sentences if sentence))
+    sentences: dict[str, None] = {}
+    for place, item in enumerate(items):
+        sentence = None if item["loc"] in meant else _sentence(item)
+        if sentence and len(sentences) == _MOST_SENTENCES:
+            return [*sentences, f"up to {len(items) - place} more things are wrong; correct these first."]
+        if sentence:
+            sentences[sentence] = None
+    return list(sentences)
 
 
 def _sentence(item: Any) -> str | None:
@@ -138,14 +127,12 @@ def _sentence(item: Any) -> str | None:
             guess, allowed = _guess(item["loc"]), ", ".join(_siblings(item["loc"]))
             return f"{place}: no such key; " + (f"did you mean {guess}?" if guess else f"allowed are {allowed}.")
         case "invalid_key":
-            return (
-                f"{_place(item['loc'][:-1])}: {value!r} is no key; keys are words, and decimals have a point, no comma."
-            )
+            return f"{_place(item['loc'][:-1])}: {reprlib.repr(value)} is no key; keys are words, and decimals have a point, no comma."
         case "missing":
             return f"{place}: is missing; give it."
         case "union_tag_invalid":
             expected = context["expected_tags"].replace("'", "")
-            return f"{place}.kind: {context['tag']!r} is not one of {expected}."
+            return f"{place}.kind: {reprlib.repr(context['tag'])} is not one of {expected}."
         case "union_tag_not_found":
             return f"{place}: {shown} needs a kind, such as kind: {_first_kind(item)}."
         case "value_error":
@@ -198,7 +185,7 @@ def _place(location: tuple[int | str, ...]) -> str:
         if isinstance(step, int):
             place += f"[{step}]"
         elif node.knows(step) or (step != "[key]" and not node.models) or step not in _BRANCHES:
-            shown = step if step.isprintable() else repr(step)
+            shown = step if step.isprintable() and len(step) <= _LONGEST_KEY else reprlib.repr(step)
             place += f".{shown}" if place else shown
             node = node.into(step)
     return place

@@ -89,6 +89,45 @@ def test_the_published_tables_tell_fault_size_place_and_load(source, output):
     assert np.isnan(corpus["load"]).all()
 
 
+# Case Western Reserve University Bearing Data Center, tables "Normal Baseline Data" and "12k Drive End Bearing Fault Data"; the
+# published copies carry number and load in their names, such as 12k_drive_end/B/014/187_2.mat. Per row: fault, diameter [mil],
+# position on the outer race, and the recording at 0, 1, 2 and 3 hp.
+PUBLISHED = """
+normal   0  -  97   98   99   100
+inner    7  -  105  106  107  108
+inner   14  -  169  170  171  172
+inner   21  -  209  210  211  212
+inner   28  -  3001 3002 3003 3004
+ball     7  -  118  119  120  121
+ball    14  -  185  186  187  188
+ball    21  -  222  223  224  225
+ball    28  -  3005 3006 3007 3008
+outer    7  6  130  131  132  133
+outer   14  6  197  198  199  200
+outer   21  6  234  235  236  237
+outer    7  3  144  145  146  147
+outer   21  3  246  247  248  249
+outer    7  12 156  158  159  160
+outer   21  12 258  259  260  261
+"""
+
+
+def test_every_recording_has_the_fault_and_the_load_of_the_published_tables():
+    published = {}
+    for row in PUBLISHED.split("\n")[1:-1]:
+        fault, diameter, clock, *numbers = row.split()
+        for load, number in enumerate(numbers):
+            place = None if clock == "-" else int(clock)
+            published[int(number)] = (fault.replace("normal", "healthy"), int(diameter), place, load)
+    found = {
+        number: (specimen.fault, specimen.diameter, specimen.clock, load)
+        for specimen in SPECIMENS
+        for load, number in enumerate(specimen.numbers)
+    }
+    assert found == published
+    assert len(published) == 64
+
+
 def test_the_loads_of_one_fault_are_one_specimen_and_another_fault_is_another(source, output):
     for number in (105, 106, 169, 130, 144):
         published(source, number)

@@ -184,8 +184,8 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
 REFUSED = {
     "no_files": (COMMON, "mapping.yaml: files is missing; give it there."),
     "files_empty": (COMMON + "files: []", "files: [] is not allowed; list should have at least 1 item"),
-    "not_yaml": ("files: [", "mapping.yaml: line 1: not YAML"),
-    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "not YAML"),
+    "not_yaml": ("files: [", "mapping.yaml: line 1: is not valid YAML ("),
+    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit is there twice)"),
     "a_list": ("- 1\n- 2", "mapping.yaml: holds no keys"),
     "missing_key": (
         "bearing: '6205'\nunit: g\nfiles: [{path: a.npy, sample_rate_hz: 9, shaft_rpm: 9, specimen: A}]",
@@ -207,7 +207,7 @@ REFUSED = {
     ),
     "speed": (
         COMMON + "files: [{path: a.npy, shaft_rpm: 0}]",
-        "files[0].shaft_rpm: 0 is not allowed; input should be greater than 0",
+        "files[0].shaft_rpm: 0 is not allowed; input should be greater than or equal to 0.001",
     ),
     "not_a_number": (COMMON + "files: [{path: a.npy, load_n: .nan}]", "files[0].load_n: nan is not allowed"),
     "bearing": (
@@ -236,6 +236,58 @@ REFUSED = {
     ),
     "above": (COMMON + "files: [{path: data/../../a.npy}]", "leads out of the folder of the mapping file"),
     "pattern": (COMMON + "files: [{path: 'a**b'}]", "files[0].path: a**b is no pattern of file names"),
+    "folder_itself": (
+        COMMON + "files: [{path: '.'}]",
+        "files[0].path: . is no pattern of file names; write it like data/*.mat",
+    ),
+    "every_folder_twice": (COMMON + "files: [{path: '**/**/a'}]", "write it like data/*.mat, with ** at most once."),
+    "control_character": (
+        COMMON + 'files: [{path: "a\\0b"}]',
+        "files[0].path: '\\x00' is a control character; leave it out.",
+    ),
+    "specimen_on_two_lines": (
+        COMMON + 'files: [{path: a, specimen: "b\\nc"}]',
+        "goes over several lines; write it on one.",
+    ),
+    "control_character_in_a_title": (
+        COMMON + 'title: "a\\e[2J"\nfiles: [{path: a}]',
+        "title: '\\x1b' is a control character",
+    ),
+    "half_a_character": (
+        COMMON + 'origin: "\\ud800"\nfiles: [{path: a}]',
+        "is not valid YAML (half a character (a lone surrogate))",
+    ),
+    "long_title": (
+        COMMON + f"title: {'t' * 6000}\nfiles: [{{path: a}}]",
+        "title: 'tttttttttttt...ttttttttttttt' is not allowed;",
+    ),
+    "spalls": (
+        COMMON + "n_spalls: 40000\nfiles: [{path: a}]",
+        "n_spalls: 40000 is not allowed; input should be less than or equal to",
+    ),
+    "rate_of_1e308": (
+        COMMON + "files: [{path: a, sample_rate_hz: 1e308}]",
+        "files[0].sample_rate_hz: 1e+308 is not allowed;",
+    ),
+    "rate_of_1e_300": (
+        COMMON + "files: [{path: a, sample_rate_hz: 1e-300}]",
+        "files[0].sample_rate_hz: 1e-300 is not allowed;",
+    ),
+    "speed_of_1e_300": (COMMON + "files: [{path: a, shaft_rpm: 1e-300}]", "files[0].shaft_rpm: 1e-300 is not allowed;"),
+    "column_beyond": (
+        COMMON + "files: [{path: a, column: 99999999999999999999}]",
+        "files[0].column: is not in 0 to 999999.",
+    ),
+    "column_below": (COMMON + "files: [{path: a, column: -1}]", "files[0].column: is not in 0 to 999999."),
+    "delimiter_of_two": (COMMON + "files: [{path: a, delimiter: ';;'}]", "files[0].delimiter: ';;' is not allowed;"),
+    "delimiter_of_numbers": (
+        COMMON + "files: [{path: a, delimiter: '5'}]",
+        "files[0].delimiter: '5' separates no columns.",
+    ),
+    "tiny_balls": (
+        COMMON + "files: [{path: a, bearing: {n_balls: 9, pitch_diameter_mm: 40, ball_diameter_mm: 1e-308}}]",
+        "files[0].bearing.ball_diameter_mm: 1e-308 is not allowed;",
+    ),
     "nothing_usable": (
         COMMON + "files: [{path: a.npy}]",
         "no recording can be used; the first of 1 skipped: a.npy",
@@ -246,6 +298,21 @@ REFUSED = {
 @pytest.mark.parametrize(("mapping", "sentence"), REFUSED.values(), ids=REFUSED)
 def test_a_mapping_that_cannot_be_meant_is_refused_with_a_sentence(tmp_path, mapping, sentence):
     assert sentence in refusal(tmp_path, mapping)
+
+
+@pytest.mark.parametrize(
+    ("window", "sentence"),
+    [
+        (1e300, "window: 1e+300 s are 1e18 or more samples, and the limit is 25000000;"),
+        (1e306, "window: 1e+306 s holds no signal"),
+        (math.nan, "window: nan s holds no signal"),
+        (1e5, "window: 100000 s are 200000000 samples, and the limit is 25000000;"),
+    ],
+)
+def test_a_window_that_cannot_be_meant_is_refused(tmp_path, window, sentence):
+    (tmp_path / "mapping.yaml").write_text(COMMON + "files: [{path: a.npy}]")
+    with pytest.raises(CorpusError, match=re.escape(sentence)):
+        import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", window=window)
 
 
 def test_a_missing_mapping_and_a_folder_in_its_place_are_refused(tmp_path):

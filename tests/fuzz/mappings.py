@@ -1,0 +1,80 @@
+"""Mapping files altered as a stranger may alter them: each is read, or refused in a sentence.
+
+The changes are those of :mod:`recipes`, with values that only a mapping file has.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from gen.errors import RacewayError
+from gen.importers.mapping import bearing_of, read_mapping
+from gen.physics.bearing import orders
+from tests.fuzz import recipes
+
+SEEDS = {
+    "common.yaml": """\
+title: Pump 7, drive side
+origin: "A. Miller, CC BY 4.0"
+channel: drive side
+bearing: "6205"
+unit: g
+sample_rate_hz: 25600
+shaft_rpm: 1480
+files:
+  - {path: healthy/*.csv, fault: healthy, specimen: new, column: 1}
+  - {path: outer/*.csv, fault: outer, specimen: worn, width_mm: 0.5, angle_deg: -90, n_spalls: 2, delimiter: ";"}
+""",
+    "geometry.yaml": """\
+variable: &v run.x
+rig: 1
+files:
+  - &first
+    path: a.mat
+    unit: m/s2
+    sample_rate_hz: 1.2e4
+    shaft_rpm: 1800.5
+    fault: ball
+    specimen: 3
+    load_n: 50
+    depth_mm: 0.02
+    bearing: {designation: L8, n_balls: 8, pitch_diameter_mm: 40, ball_diameter_mm: 8, contact_angle_deg: 15}
+  - {<<: *first, path: b.mat, variable: *v, column: ax}
+""",
+}
+VALUES = (
+    "40000", "-1", "18446744073709551616", "1e308", "1e-300", ".nan", ".", "..", "/etc/passwd", "'**/**/*'", "'a**b'", "'*'", "'['",
+    '"\\0"', '"a\\tb"', "<script>alert(1)</script>", "'[x](javascript:y)'", "'|'", "';;'", "'\\n'", "6205", "NU206", "{n_balls: 9}",
+    "{n_balls: 9, pitch_diameter_mm: 1e308, ball_diameter_mm: 1e-308}", "compound", "m/s2", "\u202ex", "a" * 3000,
+)  # fmt: skip
+
+
+def seeds(folder: Path) -> list[Path]:
+    """Valid mapping files, written into a folder."""
+    for name, text in SEEDS.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return [folder / name for name in SEEDS]
+
+
+def mutate(content: bytes, rng: np.random.Generator) -> bytes:
+    """Changes as of a recipe, or a value that only a mapping file has."""
+    if rng.random() < 0.4:
+        found = list(recipes.VALUE.finditer(content))
+        if found:
+            start, stop = found[int(rng.integers(len(found)))].span()
+            content = content[:start] + VALUES[int(rng.integers(len(VALUES)))].encode() + content[stop:]
+        if rng.random() < 0.5:
+            return content
+    return recipes.mutate(content, rng)
+
+
+def check(path: Path) -> None:
+    """Read a mapping file, and the bearing of each of its entries; whatever is raised but a RacewayError is a finding."""
+    try:
+        mapping = read_mapping(path)
+    except RacewayError:
+        return
+    for entry in mapping.entries:
+        if not np.isfinite(orders(bearing_of(entry))).all():
+            message = f"orders of {entry.bearing} are not finite"
+            raise ValueError(message)
