@@ -35,6 +35,7 @@ from gen.corpus import (
 from gen.errors import CorpusError, RacewayError, RecipeError, SimulationError
 from gen.labels import part_dataset
 from gen.measure import compile_mixing, measure
+from gen.outline import outlined_record
 from gen.physics.batch import record_shape
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
@@ -250,12 +251,12 @@ def compile_kernels(recipe: Recipe) -> None:
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
             try:
-                record = kernel_record(scenario, recipe)
+                shape = record_shape(outlined_record(scenario, recipe))
             except SimulationError:  # left out when its part is made
                 continue
-            if record_shape(record) not in done:
-                done.add(record_shape(record))
-                compile_kernel(record)
+            if shape not in done:
+                done.add(shape)
+                compile_kernel(kernel_record(scenario, recipe))
 
 
 def make_part(recipe: Recipe, part: int, directory: Path, known: str | None = None) -> Outcome:

@@ -79,11 +79,12 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
 def _show_plan(planned: "Plan") -> None:
     steps = list(planned.steps_per_sample)
     about = "" if planned.drawn == planned.records else f" (scaled up from {planned.drawn:,} that were drawn)"
+    without = f", without {planned.left_out:,} that cannot be simulated{about}" if planned.left_out else ""
     show.text(planned.title, "")
     show.facts(
         {
             "recipe": f"{planned.recipe}, seed {planned.seed}",
-            "records": f"{planned.records:,} of {planned.duration:g} s at {planned.sample_rate:g} Hz",
+            "records": f"{planned.records:,} of {planned.duration:g} s at {planned.sample_rate:g} Hz{without}",
             "channels": ", ".join(planned.channels),
             "rigs": f"{planned.rigs:,}",
             "specimens": f"{planned.specimens:,}",
@@ -96,6 +97,8 @@ def _show_plan(planned: "Plan") -> None:
             "kernels": f"{planned.kernels}, to be compiled once per machine in about {show.duration(planned.compile_seconds)}",
         }
     )
+    if planned.first_left_out is not None:
+        show.text("", f"The first that is left out: {planned.first_left_out}")
 
 
 @click.command()
