@@ -20,6 +20,7 @@ from gen.physics.elementary import exponential, power
 from gen.physics.hertz import contact_exponent, load_deflection_factor
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.profile import mean_share, share_at
+from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario, stream
@@ -58,6 +59,7 @@ def bare_record(scenario: Scenario, recipe: Recipe) -> Record:
     """
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
     drawn, conditions = rig.machine, record.conditions
+    check_load(scenario)
     start = _start(scenario)
     # a balance grade is that of the highest speed a machine is made for (ISO 21940-11)
     highest_rate = recipe.operation.shaft_rpm.support()[1] / 60
@@ -89,6 +91,19 @@ def bare_record(scenario: Scenario, recipe: Recipe) -> Record:
         row[_BODIES[body] : _BODIES[body] + 2] = math.cos(angle), math.sin(angle)
     machine = _machine(scenario, start.cage)
     return Record(specimen.bearing, machine, turning, (), start.frequencies, start.phases, pickups, np.empty(0))
+
+
+def check_load(scenario: Scenario) -> None:
+    """Raise ValueError if the equivalent static load of a record is absurd for the bearing on the drawing."""
+    drawing, conditions, profile = scenario.rig.bearing, scenario.record.conditions, scenario.record.load_profile
+    radial = conditions["load"] * (1.0 if profile is None else max(profile.shares))
+    load = equivalent_load(radial, conditions["axial_load"], scenario.specimen.bearing.contact_angle)
+    rating = static_rating(drawing)
+    if load * LEAST_SAFETY > rating:
+        raise ValueError(
+            f"an equivalent static load of {load:.4g} N is more than {1 / LEAST_SAFETY:g} times the static rating of its bearing "
+            f"{drawing.designation}, {rating:.4g} N; lower operation.load_n and axial_load_n, or take a larger bearing."
+        )
 
 
 class Start(NamedTuple):

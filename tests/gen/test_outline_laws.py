@@ -98,10 +98,11 @@ def test_shape_and_steps_of_a_record_with_everything_are_those_of_the_whole_reco
 @pytest.mark.parametrize(
     "changes",
     [
+        {"operation.load_n": {"kind": "grid", "values": [20_000, 500]}},
         {"operation.axial_load_n": 1, "specimen.contact_angle_deg": 10},
         {"contact.lubricant": {"viscosity_40_mm2_s": 2000, "viscosity_100_mm2_s": 200}, "operation.shaft_rpm": 60_000},
     ],
-    ids=["axial load", "oil"],
+    ids=["load", "axial load", "oil"],
 )
 def test_a_record_that_cannot_be_has_no_outline_for_the_same_reason(recipe_with, changes):
     recipe = recipe_with(changes)
