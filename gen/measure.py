@@ -66,7 +66,9 @@ def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Me
     counts_per_unit = None if converter.kind == "float32" else LARGEST_COUNT / converter.full_scale_m_s2
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, snr = np.zeros(shape[0], np.int32), np.empty(shape[0])
-    rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))  # rms of an error within half a count
+    rounding = (
+        0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
+    )  # rms of an error within half a count
     several = max(1, _ROWS // shape[1])
     for first in range(0, shape[0], several):
         some = slice(first, first + several)

@@ -4,6 +4,7 @@
 module   responsibility
 ======== =====================================================
 schema   dimensions, variables, units and roles
+signals  whether a stored signal can be used
 part     one self-describing netCDF-4 file of records
 index    manifest, ``corpus.nc`` over the parts, opening, checks
 card     the data card of a corpus, and the page about the format

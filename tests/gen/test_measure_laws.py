@@ -177,7 +177,7 @@ def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with
     recipe = recipe_with(PLAIN | converter)
     found = measure(pure_tone(recipe, amplitude), plain(recipe, background_rms=background), recipe)
     assert np.isnan(found.snr[0])
-    assert found.signal.any() == (background > 0 or bool(converter) and amplitude > 0)
+    assert found.signal.any() == (background > 0 or (bool(converter) and amplitude > 0))
 
 
 def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
