@@ -20,6 +20,7 @@ from distributed import Client, LocalCluster, as_completed
 
 from gen.corpus import (
     PartRow,
+    SignalCounts,
     data_card,
     describe_part,
     open_corpus,
@@ -27,6 +28,7 @@ from gen.corpus import (
     part_name,
     read_manifest,
     sha256,
+    summed,
     write_index,
     write_manifest,
     write_part,
@@ -60,6 +62,8 @@ class Generated:
     """Parts that were there already."""
     failures: tuple[str, ...]
     """A sentence for each record that could not be simulated and is left out."""
+    signals: SignalCounts
+    """Records that cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -126,11 +130,13 @@ def generate(
     if not rows:
         raise CorpusError(f"{directory}: no record could be simulated; {ordered[0].failures[0]}")
     failures = tuple(sentence for outcome in ordered for sentence in outcome.failures)
+    signals = summed(row.signals for row in rows)
     write_index(directory, rows)
     write_manifest(directory, rows, complete=True, failures=list(failures), **facts)
     with open_corpus(directory, check="size") as corpus:
-        write_text_durably(data_card(corpus, _HOW.format(recipe=checked.name)), directory / "README.md")
-    return Generated(directory, sum(row.records for row in rows), len(rows), sum(o.kept for o in ordered), failures)
+        write_text_durably(data_card(corpus, _HOW.format(recipe=checked.name), signals), directory / "README.md")
+    kept = sum(outcome.kept for outcome in ordered)
+    return Generated(directory, sum(row.records for row in rows), len(rows), kept, failures, signals)
 
 
 def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, str]:

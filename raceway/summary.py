@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, open_part, read_manifest
+from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, open_part, read_manifest, summed
 
 
 def describe(directory: Path) -> dict[str, Any]:
@@ -32,6 +32,8 @@ def describe(directory: Path) -> dict[str, Any]:
         "warnings": [],
         "skipped": [],
     }
+    if "signals" in manifest:  # corpora of earlier versions do not count them
+        known["signals"] = summed(row.signals for row in manifest["parts"])._asdict()
     return about | known | (_content(_labels(directory, manifest)) if manifest["parts"] else {})
 
 

@@ -42,6 +42,7 @@ from gen.corpus.schema import (
     Variable,
     make_dataset,
 )
+from gen.corpus.signals import SignalCounts, complaint, described, summed
 
 __all__ = [
     "FAULTS",
@@ -53,9 +54,12 @@ __all__ = [
     "SPLITS",
     "Codec",
     "PartRow",
+    "SignalCounts",
     "Variable",
+    "complaint",
     "data_card",
     "describe_part",
+    "described",
     "format_page",
     "make_dataset",
     "open_corpus",
@@ -64,6 +68,7 @@ __all__ = [
     "part_paths",
     "read_manifest",
     "sha256",
+    "summed",
     "validate_corpus",
     "write_durably",
     "write_index",

@@ -16,6 +16,7 @@ import xarray as xr
 
 from gen.corpus.part import PartRow, open_part, sha256, whole_or_not_at_all, write_text_durably
 from gen.corpus.schema import FORMAT, MISSING_COUNT, SIGNAL, schema_problems
+from gen.corpus.signals import SignalCounts, summed
 from gen.errors import CorpusError
 
 _PART_NAME = re.compile(r"part-\d{5,}\.nc")
@@ -27,8 +28,9 @@ def write_manifest(directory: Path, rows: list[PartRow], *, complete: bool, **fa
         "raceway_format": FORMAT,
         "complete": complete,
         "records": sum(row.records for row in rows),
+        "signals": summed(row.signals for row in rows)._asdict(),
         **facts,
-        "parts": [row._asdict() for row in rows],
+        "parts": [row._asdict() | {"signals": row.signals._asdict()} for row in rows],
     }
     write_text_durably(json.dumps(manifest, indent=1) + "\n", directory / "manifest.json")
 
@@ -49,14 +51,20 @@ def read_manifest(directory: Path) -> dict[str, Any]:
     try:
         manifest = json.loads(path.read_text(encoding="utf-8"))
         rows = [
-            PartRow(row["name"], int(row["records"]), int(row["bytes"]), str(row["sha256"]))
+            PartRow(
+                row["name"],
+                int(row["records"]),
+                int(row["bytes"]),
+                str(row["sha256"]),
+                SignalCounts(**{kind: int(n) for kind, n in row.get("signals", {}).items()}),
+            )
             for row in manifest["parts"]
         ]
     except FileNotFoundError:
         raise CorpusError(
             f"{directory}: holds no manifest.json, so it is no corpus; make one with raceway generate."
         ) from None
-    except (ValueError, TypeError, KeyError, UnicodeDecodeError) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, UnicodeDecodeError) as error:
         raise CorpusError(f"{path}: not a corpus manifest ({error!r}); generate or copy the corpus again.") from error
     if manifest.get("raceway_format") != FORMAT:
         found = manifest.get("raceway_format")

@@ -18,6 +18,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.schema import SIGNAL
+from gen.corpus.signals import SignalCounts, counted, judge
 from gen.errors import CorpusError
 
 Codec = Literal["zlib", "zstd", "none"]
@@ -36,6 +37,8 @@ class PartRow(NamedTuple):
     records: int
     bytes: int
     sha256: str
+    signals: SignalCounts = SignalCounts()
+    """Records that cannot be used."""
 
 
 def part_name(number: int) -> str:
@@ -48,16 +51,20 @@ def part_name(number: int) -> str:
 
 
 def describe_part(path: Path) -> PartRow:
-    """Row of the manifest for a part on disk; ``records`` is read from the file.
+    """Row of the manifest for a part on disk; its signals are read and judged again.
 
     Raises
     ------
     CorpusError
         If the file is no netCDF-4 file.
     """
-    with open_part(path) as dataset:
-        records = dataset.sizes["record"]
-    return PartRow(path.name, records, path.stat().st_size, sha256(path))
+    try:
+        with netCDF4.Dataset(path) as part:
+            part.set_auto_maskandscale(False)
+            signal = part[SIGNAL][:]
+    except (OSError, RuntimeError, IndexError) as error:
+        raise CorpusError(f"{path}: not a readable netCDF-4 part ({error}); generate or copy it again.") from error
+    return PartRow(path.name, len(signal), path.stat().st_size, sha256(path), counted(judge(signal)))
 
 
 def sha256(path: Path) -> str:
@@ -102,7 +109,8 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
                     stored[:] = values
         if codec == "zlib":
             _write_deflated(dataset[SIGNAL].values, temporary)
-    return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path))
+    signals = counted(judge(dataset[SIGNAL].values))
+    return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path), signals)
 
 
 def _declare(

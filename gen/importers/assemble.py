@@ -17,9 +17,12 @@ import numpy as np
 from gen.corpus import (
     FAULTS,
     PartRow,
+    SignalCounts,
     Variable,
+    described,
     make_dataset,
     part_name,
+    summed,
     write_index,
     write_manifest,
     write_part,
@@ -163,7 +166,8 @@ def _write_parts(records: Iterator[Record], collection: Collection, folder: Path
 
 def _finish(collection: Collection, rows: list[PartRow], log: _Log, length: int, directory: Path) -> None:
     write_index(directory, rows)
-    write_text_durably(_data_card(collection, log, length), directory / "README.md")
+    signals = summed(row.signals for row in rows)
+    write_text_durably(_data_card(collection, log, length, signals), directory / "README.md")
     write_manifest(
         directory,
         rows,
@@ -181,7 +185,7 @@ def _nothing_usable(importer: str, skipped: list[str]) -> str:
     return f"import {importer}: no recording can be used; the first of {len(skipped)} skipped: {skipped[0]}"
 
 
-def _data_card(collection: Collection, log: _Log, length: int) -> str:
+def _data_card(collection: Collection, log: _Log, length: int, signals: SignalCounts) -> str:
     fs = collection.fs
     lines = [
         f"# {collection.title}",
@@ -189,6 +193,7 @@ def _data_card(collection: Collection, log: _Log, length: int) -> str:
         collection.origin,
         "",
         f"Records of {length / fs:g} s at {fs:g} Hz, channel {collection.channel}, in m/s^2.",
+        f"Records that cannot be used: {described(signals)}.",
         "",
         "| fault | recordings | records |",
         "|---|---|---|",
