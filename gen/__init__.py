@@ -19,6 +19,7 @@ scenarios     rigs, specimens and records, fully drawn
 damage        spalls and waviness, as the kernel takes them
 machinery     what the kernel needs of a scenario
 simulate      scenarios to accelerations
+outline       kernel shape and steps of a record, without building it
 sound         what a machine sounds like: paths, noise, lines
 mixing        bearing and background put together, compiled
 measure       accelerations to what a data-acquisition card stores

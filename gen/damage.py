@@ -22,13 +22,21 @@ FASTEST_WAVE = 0.4
 
 def kernel_spalls(scenario: Scenario, ball_load: float) -> tuple[KernelSpall, ...]:
     """Spalls as the kernel knows them; outer race angles count from x there, and rough or wide contacts make tables."""
+    return tuple(
+        _tabulated(scenario, number, plain, ball_load) if _needs_table(scenario, spall) else plain
+        for number, (spall, plain) in enumerate(zip(scenario.specimen.spalls, plain_spalls(scenario), strict=True))
+    )
+
+
+def plain_spalls(scenario: Scenario) -> tuple[KernelSpall, ...]:
+    """Spalls as the kernel knows those that need no table."""
     shift = scenario.rig.machine["load_angle"]
-    found = []
-    for number, spall in enumerate(scenario.specimen.spalls):
-        angle = spall.angle + (shift if spall.site == "outer" else 0.0)
-        plain = KernelSpall(spall.site, spall.width, spall.depth, angle, spall.ball, spall.profile)
-        found.append(_tabulated(scenario, number, plain, ball_load) if _needs_table(scenario, spall) else plain)
-    return tuple(found)
+    return tuple(
+        KernelSpall(
+            spall.site, spall.width, spall.depth, spall.angle + (shift if spall.site == "outer" else 0.0), spall.ball, spall.profile
+        )
+        for spall in scenario.specimen.spalls
+    )  # fmt: skip
 
 
 def _needs_table(scenario: Scenario, spall: Spall) -> bool:
@@ -85,11 +93,17 @@ def _paths(
     return tuple(rolled(depths, spall.width, ball, race) for race in races)
 
 
+def is_wavy(scenario: Scenario) -> bool:
+    """Whether races or balls of a specimen are wavy, as made or as worn."""
+    properties = scenario.specimen.properties
+    return bool(properties["waviness"] or properties["ball_waviness"] or scenario.specimen.wear is not None)
+
+
 def waviness(scenario: Scenario, fs: float) -> FloatArray:
     """Fourier amplitudes of both races, and of the balls if they have some, shape (row,) [m]: the specimen's own, phases random."""
     specimen, properties = scenario.specimen, scenario.specimen.properties
     rms, of_balls = properties["waviness"], properties["ball_waviness"]
-    if rms == 0 and of_balls == 0 and specimen.wear is None:
+    if not is_wavy(scenario):
         return np.empty(0)
     place = scenario.seed, scenario.rig.number, specimen.number, 0
     rows, orders_at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)

@@ -19,6 +19,7 @@ from typing import Any
 from gen.cluster import client_of, local_client, run_tasks
 from gen.corpus import (
     PartRow,
+    SignalCounts,
     data_card,
     open_corpus,
     open_part,
@@ -26,6 +27,7 @@ from gen.corpus import (
     read_manifest,
     remove_left_behind,
     sha256,
+    summed,
     write_durably,
     write_index,
     write_manifest,
@@ -35,6 +37,7 @@ from gen.corpus import (
 from gen.errors import CorpusError, RecipeError, SimulationError
 from gen.labels import part_dataset
 from gen.measure import compile_mixing, measure
+from gen.outline import outlined_record
 from gen.physics.batch import record_shape
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
@@ -59,6 +62,8 @@ class Generated:
     """Parts that were there already."""
     failures: tuple[str, ...]
     """A sentence for each record that could not be simulated and is left out."""
+    signals: SignalCounts
+    """Records that cannot be used."""
 
 
 @dataclass(frozen=True)
@@ -129,11 +134,13 @@ def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: d
     if not rows:
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
+    signals = summed(row.signals for row in rows)
     write_index(directory, rows)
     write_manifest(directory, rows, complete=True, failures=failures, **facts)
     with open_corpus(directory, check="size") as corpus:
-        write_text_durably(data_card(corpus, _HOW.format(recipe=recipe.name)), directory / "README.md")
-    return Generated(directory, sum(row.records for row in rows), len(rows), sum(o.kept for o in outcomes), failures)
+        write_text_durably(data_card(corpus, _HOW.format(recipe=recipe.name), signals), directory / "README.md")
+    kept = sum(outcome.kept for outcome in outcomes)
+    return Generated(directory, sum(row.records for row in rows), len(rows), kept, failures, signals)
 
 
 @contextmanager
@@ -248,12 +255,12 @@ def compile_kernels(recipe: Recipe) -> None:
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
             try:
-                record = kernel_record(scenario, recipe)
+                shape = record_shape(outlined_record(scenario, recipe))
             except SimulationError:  # left out when its part is made
                 continue
-            if record_shape(record) not in done:
-                done.add(record_shape(record))
-                compile_kernel(record)
+            if shape not in done:
+                done.add(shape)
+                compile_kernel(kernel_record(scenario, recipe))
 
 
 def make_part(recipe: Recipe, part: int, directory: Path, known: PartRow | None = None) -> Outcome:

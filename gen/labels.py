@@ -35,7 +35,7 @@ EXTRA = (
     Variable("true_bpfo", "f8", "1", "latent", "mean ball pass frequency of the outer race in shaft orders, slip included"),
     Variable("true_bpfi", "f8", "1", "latent", "mean ball pass frequency of the inner race in shaft orders, slip included"),
     Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders"),
-    Variable("snr", "f8", "dB", "latent", "bearing over background"),
+    Variable("snr", "f8", "dB", "latent", "bearing over background or rounding of the converter, NaN without either or in silence"),
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),
     Variable("operating_clearance", "f8", "m", "latent", "the same as warm, oiled and axially loaded as it runs"),
     Variable("clipped", "i4", "1", "latent", "samples at the limits of the converter"),

@@ -20,6 +20,7 @@ from gen.physics.elementary import exponential, power
 from gen.physics.hertz import contact_exponent, load_deflection_factor
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.profile import mean_share, share_at
+from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario, stream
@@ -33,9 +34,32 @@ _BODIES = {"shaft": 0, "housing": 2, "sensor": 4}
 
 
 def physical_record(scenario: Scenario, recipe: Recipe) -> Record:
-    """What the kernel needs of a scenario; the recipe gives the times of the knots."""
+    """What the kernel needs of a scenario; the recipe gives the times of the knots.
+
+    Raises
+    ------
+    ValueError
+        If no such machine can stand.
+    """
+    bare = bare_record(scenario, recipe)
+    return bare._replace(
+        spalls=kernel_spalls(scenario, heaviest_ball_load(scenario)),
+        waves=waviness(scenario, recipe.recording.sample_rate_hz),
+        schedule=schedule(scenario, recipe),
+    )
+
+
+def bare_record(scenario: Scenario, recipe: Recipe) -> Record:
+    """What the kernel needs of a scenario but for its spalls, waviness and schedule, which take most of the time to make.
+
+    Raises
+    ------
+    ValueError
+        If no such machine can stand.
+    """
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
     drawn, conditions = rig.machine, record.conditions
+    check_load(scenario)
     start = _start(scenario)
     # a balance grade is that of the highest speed a machine is made for (ISO 21940-11)
     highest_rate = recipe.operation.shaft_rpm.support()[1] / 60
@@ -65,10 +89,21 @@ def physical_record(scenario: Scenario, recipe: Recipe) -> Record:
     pickups = np.zeros((len(rig.channels), 6))
     for row, (body, angle) in zip(pickups, rig.channels, strict=True):
         row[_BODIES[body] : _BODIES[body] + 2] = math.cos(angle), math.sin(angle)
-    return Record(
-        specimen.bearing, _machine(scenario, start.cage), turning, kernel_spalls(scenario, heaviest_ball_load(scenario)),
-        start.frequencies, start.phases, pickups, waviness(scenario, recipe.recording.sample_rate_hz), _schedule(scenario, recipe),
-    )  # fmt: skip
+    machine = _machine(scenario, start.cage)
+    return Record(specimen.bearing, machine, turning, (), start.frequencies, start.phases, pickups, np.empty(0))
+
+
+def check_load(scenario: Scenario) -> None:
+    """Raise ValueError if the equivalent static load of a record is absurd for the bearing on the drawing."""
+    drawing, conditions, profile = scenario.rig.bearing, scenario.record.conditions, scenario.record.load_profile
+    radial = conditions["load"] * (1.0 if profile is None else max(profile.shares))
+    load = equivalent_load(radial, conditions["axial_load"], scenario.specimen.bearing.contact_angle)
+    rating = static_rating(drawing)
+    if load * LEAST_SAFETY > rating:
+        raise ValueError(
+            f"an equivalent static load of {load:.4g} N is more than {1 / LEAST_SAFETY:g} times the static rating of its bearing "
+            f"{drawing.designation}, {rating:.4g} N; lower operation.load_n and axial_load_n, or take a larger bearing."
+        )
 
 
 class Start(NamedTuple):
@@ -189,26 +224,51 @@ def _bands(n_balls: int) -> tuple[FloatArray, FloatArray, NDArray[np.int_]]:
     return low, np.array([math.log(ratio) for ratio in high / low]), unit.astype(int)
 
 
-def _schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
+def is_scheduled(scenario: Scenario) -> bool:
+    """Whether speed or load of a record follow a schedule."""
+    record = scenario.record
+    return not (record.speed_profile is None and record.load_profile is None and record.conditions["load_wander"] == 0)
+
+
+def n_knots(recipe: Recipe) -> int:
+    """Number of knots of a schedule: the samples that settle, those of the record, and what the filter takes up."""
+    return round(recipe.recording.settle_s * recipe.recording.sample_rate_hz) + recipe.n_samples + LEAD + 2
+
+
+def knot_times(recipe: Recipe, knots: NDArray[np.integer]) -> FloatArray:
+    """Times of knots by their number, from the start of the record on, of their shape [s]."""
+    fs = recipe.recording.sample_rate_hz
+    return (knots - round(recipe.recording.settle_s * fs)) / fs
+
+
+def schedule(scenario: Scenario, recipe: Recipe) -> FloatArray:
     """Factors of shaft rate and load at the knots, shape (knot, 2); (0, 2) if both are constant."""
     record = scenario.record
-    wander = record.conditions["load_wander"]
-    if record.speed_profile is None and record.load_profile is None and wander == 0:
+    if not is_scheduled(scenario):
         return np.empty((0, 2))
-    fs = recipe.recording.sample_rate_hz
-    settling = round(recipe.recording.settle_s * fs)
-    times = (np.arange(settling + recipe.n_samples + LEAD + 2) - settling) / fs
+    times = knot_times(recipe, np.arange(n_knots(recipe)))
     factors = np.ones((len(times), 2))
     if record.speed_profile is not None:
-        factors[:, 0] = share_at(record.speed_profile, times + 0.5 / fs)
+        factors[:, 0] = share_at(record.speed_profile, times + 0.5 / recipe.recording.sample_rate_hz)
     if record.load_profile is not None:
         factors[:, 1] = share_at(record.load_profile, times)
-    if wander > 0:
-        rng, shaft_rate = scenario.rng(Purpose.LOAD_WANDER), record.conditions["shaft"]
-        rates = 2 * np.pi * shaft_rate * power(0.05, rng.random(LOAD_TERMS))
-        phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
-        factors[:, 1] *= np.maximum(1 + wander * math.sqrt(2 / LOAD_TERMS) * cosine_sum(times, rates, phases), 0.0)
+    if record.conditions["load_wander"] > 0:
+        factors[:, 1] *= load_wander(scenario, times)
     return factors
+
+
+def load_wander(scenario: Scenario, times: FloatArray) -> FloatArray:
+    """Factor of the load at evenly spaced ``times`` [s], of their shape [1]: slow, never below 0."""
+    amplitude, rates, phases = wander_terms(scenario)
+    return np.maximum(1 + amplitude * cosine_sum(times, rates, phases), 0.0)
+
+
+def wander_terms(scenario: Scenario) -> tuple[float, FloatArray, FloatArray]:
+    """Amplitude of all terms of the load's wander [1], their rates, none above that of the shaft [rad/s], and their phases [rad]."""
+    rng, conditions = scenario.rng(Purpose.LOAD_WANDER), scenario.record.conditions
+    rates = 2 * np.pi * conditions["shaft"] * power(0.05, rng.random(LOAD_TERMS))
+    phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
+    return conditions["load_wander"] * math.sqrt(2 / LOAD_TERMS), rates, phases
 
 
 def cosine_sum(times: NDArray[np.floating], rates: FloatArray, phases: FloatArray) -> FloatArray:

@@ -25,6 +25,7 @@ from gen.sound import Sound
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
 LARGEST_COUNT = 32767
+SILENCE = 1e-30  # m s-2, below which an rms is nothing
 _ROWS = 8  # records times channels at a time: enough for transforms side by side, few enough for the second-level cache
 _NO_RINGING, _NO_ANGLES = np.empty((0, 0), np.float32), np.empty(0)
 
@@ -40,7 +41,8 @@ class Measured:
     clipped: NDArray[np.int32]
     """Samples at the converter's limits, shape (record,)."""
     snr: FloatArray
-    """Bearing over background, shape (record,) [dB]."""
+    """Bearing over background, or over the rounding noise of the converter if that is larger, shape (record,) [dB]. NaN for a record
+    without a bearing, without a background to compare it with, or without a sample that is not zero."""
 
 
 def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Measured:
@@ -64,16 +66,20 @@ def measure(response: Response, scenarios: list[Scenario], recipe: Recipe) -> Me
     counts_per_unit = None if converter.kind == "float32" else LARGEST_COUNT / converter.full_scale_m_s2
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, snr = np.zeros(shape[0], np.int32), np.empty(shape[0])
+    rounding = (
+        0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
+    )  # rms of an error within half a count
     several = max(1, _ROWS // shape[1])
     for first in range(0, shape[0], several):
         some = slice(first, first + several)
-        mixed, snr[some] = _mixed(response.acceleration[some], scenarios[some], heard[some], recipe)
+        mixed, rms = _mixed(response.acceleration[some], scenarios[some], heard[some], recipe)
         if counts_per_unit is not None:
             np.rint(np.multiply(mixed, np.float32(counts_per_unit), out=mixed), out=mixed)
             clipped[some] = np.count_nonzero(np.abs(mixed) > LARGEST_COUNT, axis=(1, 2))
             np.clip(mixed, -LARGEST_COUNT, LARGEST_COUNT, out=mixed)
-            mixed[np.isnan(snr[some])] = 0.0
+            mixed[np.isnan(rms).any(axis=0)] = 0.0  # what diverged is left out, but has no count
         signal[some] = mixed
+        snr[some] = np.where(signal[some].any(axis=(1, 2)), _ratio(rms[0], np.maximum(rms[1], rounding)), np.nan)
     return Measured(signal, counts_per_unit, clipped, snr)
 
 
@@ -86,7 +92,7 @@ def compile_mixing(scenario: Scenario, recipe: Recipe) -> None:
 def _mixed(
     acceleration: Float32Array, scenarios: Sequence[Scenario], sounds: Sequence[Sound], recipe: Recipe
 ) -> tuple[Float32Array, FloatArray]:
-    """Bearing over background at the drawn levels, shape (record, channel, time) [m s-2], and the ratio of the two [dB]."""
+    """Bearing and background at the drawn levels, shape (record, channel, time), and the rms of either, shape (2, record) [m s-2]."""
     lead, (n_records, n_channels, length) = lead_samples(recipe), acceleration.shape
     kept = slice(lead, lead + recipe.n_samples)
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
@@ -100,13 +106,18 @@ def _mixed(
     ringing = _ringing(sounds, shafts, knocks, length, rngs)
     rms, gains = np.empty((2, n_records)), np.empty((2, n_records))
     for row, (lines, _, _) in enumerate(phases):
-        found = mix(bearing[row], background[row], ringing[row], shafts[row], lines, kept.start, kept.stop)
-        rms[:, row] = np.maximum(found, 1e-30)
-        gains[:, row] = _gains(scenarios[row], *rms[:, row])
+        rms[:, row] = mix(bearing[row], background[row], ringing[row], shafts[row], lines, kept.start, kept.stop)
+        gains[:, row] = _gains(scenarios[row], *np.maximum(rms[:, row], SILENCE))
     gain, noise = gains.astype(np.float32)[:, :, None, None]
     mixed = gain * bearing[..., kept]
     mixed += np.multiply(noise, background[..., kept], out=background[..., kept])
-    return mixed, decibels(rms[0] * gains[0] / np.maximum(rms[1] * gains[1], 1e-30))
+    return mixed, rms * gains
+
+
+def _ratio(bearing: FloatArray, background: FloatArray) -> FloatArray:
+    """Ratio of two rms values, NaN if either is nothing [dB]."""
+    known = (bearing > SILENCE) & (background > SILENCE) & np.isfinite(bearing) & np.isfinite(background)
+    return np.where(known, decibels(np.where(known, bearing, 1.0) / np.where(known, background, 1.0)), np.nan)
 
 
 def _through_paths(acceleration: Float32Array, sounds: Sequence[Sound]) -> Float32Array:

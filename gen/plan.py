@@ -11,14 +11,17 @@ from pathlib import Path
 from typing import Any
 
 from gen.corpus import FAULTS, SPLITS
+from gen.errors import SimulationError
+from gen.outline import outlined_record
 from gen.physics.batch import record_shape
 from gen.physics.kernel import Shape
 from gen.physics.lanes import LANES
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulate import kernel_record, lead_samples, steps_per_sample
+from gen.simulate import lead_samples, steps_per_sample
 
-MOST_DRAWN = 5000  # records, about 1 s; of a larger corpus as many parts, spread over it
+MOST_DRAWN = 5000  # records, about 2 s; of a larger corpus as many parts, spread over it
+MOST_DRAWN_DEAR = 1500  # the same with an axial load or a load that wanders, which take another 0.5 ms a record each
 
 # Rough, so that a plan costs nothing: what raceway bench gave on one core of a shared machine with AVX-512
 LANE_STEPS_PER_SECOND = 18e6  # integration, lanes that pad a batch included
@@ -34,8 +37,9 @@ BYTES_PER_RECORD, BYTES_PER_FILE = 700, 80_000  # labels and drawn values; what 
 class Plan:
     """What a recipe would make.
 
-    ``classes``, ``splits`` and ``steps_per_sample`` count records. If the ``drawn`` records are not all, these and the estimates are scaled
-    up from them. ``estimated_seconds`` is for one worker; ``compile_seconds`` come on top the first time on a machine.
+    ``classes``, ``splits`` and ``steps_per_sample`` count records; the last leaves out the ``left_out`` records, which cannot be simulated.
+    If the ``drawn`` records are not all, these and the estimates are scaled up from them. ``estimated_seconds`` is for one worker;
+    ``compile_seconds`` come on top the first time on a machine.
     """
 
     recipe: str
@@ -56,6 +60,9 @@ class Plan:
     estimated_seconds: float
     compile_seconds: float
     drawn: int
+    left_out: int
+    first_left_out: str | None
+    """Why the first of them cannot be simulated."""
 
 
 def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = None) -> Plan:
@@ -71,12 +78,15 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     Raises
     ------
     RecipeError, SimulationError
-        If the recipe asks for what cannot be.
+        If the recipe asks for what cannot be, or none of its records can be simulated.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
     parts = [draw_scenarios(checked, first, stop) for first, stop in some_ranges(checked)]
-    batches = [_batches(part, checked) for part in parts]
+    failures: list[str] = []
+    batches = [_batches(part, checked, failures) for part in parts]
     drawn = [scenario.specimen for part in parts for scenario in part]
+    if len(failures) == len(drawn):
+        raise SimulationError(failures[0])
     scale = checked.n_records / len(drawn)
 
     def scaled(counts: Counter[Any], order: Iterable[Any]) -> dict[Any, int]:
@@ -111,6 +121,8 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         + samples * SECONDS_PER_SAMPLE,
         compile_seconds=len(kernels) * COMPILE_SECONDS,
         drawn=len(drawn),
+        left_out=round(len(failures) * scale),
+        first_left_out=failures[0] if failures else None,
     )
 
 
@@ -121,18 +133,29 @@ def samples_integrated(recipe: Recipe) -> int:
 
 
 def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
-    """First and last but one record of every part, or of as many parts as ``MOST_DRAWN`` records make, spread over the corpus."""
-    size = recipe.corpus.records_per_part
-    parts = min(recipe.n_parts, max(1, MOST_DRAWN // size))
+    """First and last but one record of every part, or of as many parts as ``most_drawn`` records make, spread over the corpus."""
+    size, most = recipe.corpus.records_per_part, most_drawn(recipe)
+    parts = min(recipe.n_parts, max(1, most // size))
     firsts = [place * recipe.n_parts // parts * size for place in range(parts)]
-    return [(first, min(first + min(size, MOST_DRAWN), recipe.n_records)) for first in firsts]
+    return [(first, min(first + min(size, most), recipe.n_records)) for first in firsts]
 
 
-def _batches(scenarios: list[Scenario], recipe: Recipe) -> Counter[tuple[Shape, int]]:
-    """Number of records of a part for each kernel and number of steps per sample."""
+def most_drawn(recipe: Recipe) -> int:
+    """Number of records that a plan draws at most."""
+    operation = recipe.operation
+    dear = operation.axial_load_n.support()[1] > 0 or operation.load_wander_percent.support()[1] > 0
+    return MOST_DRAWN_DEAR if dear else MOST_DRAWN
+
+
+def _batches(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> Counter[tuple[Shape, int]]:
+    """Number of records of a part for each kernel and steps per sample; ``failures`` takes a sentence for each that is left out."""
     batches: Counter[tuple[Shape, int]] = Counter()
     for scenario in scenarios:
-        record = kernel_record(scenario, recipe)
+        try:
+            record = outlined_record(scenario, recipe)
+        except SimulationError as error:
+            failures.append(str(error))
+            continue
         batches[record_shape(record), steps_per_sample(record, scenario, recipe)] += 1
     return batches
 

@@ -6,7 +6,8 @@ chosen before the run from what the machine should do, and held against what its
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -184,8 +185,15 @@ def kernel_record(scenario: Scenario, recipe: Recipe) -> Record:
     SimulationError
         If no such machine can stand, with the number of the record.
     """
-    try:
+    with failures_named(scenario):
         return physical_record(scenario, recipe)
+
+
+@contextmanager
+def failures_named(scenario: Scenario) -> Iterator[None]:
+    """Turn the ValueError of a machine that cannot stand into a SimulationError with the number of the record."""
+    try:
+        yield
     except ValueError as error:
         raise SimulationError(f"record {scenario.record.number}: {error}") from None
 

@@ -79,11 +79,12 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
 def _show_plan(planned: "Plan") -> None:
     steps = list(planned.steps_per_sample)
     about = "" if planned.drawn == planned.records else f" (scaled up from {planned.drawn:,} that were drawn)"
+    without = f", without {planned.left_out:,} that cannot be simulated{about}" if planned.left_out else ""
     show.text(planned.title, "")
     show.facts(
         {
             "recipe": f"{planned.recipe}, seed {planned.seed}",
-            "records": f"{planned.records:,} of {planned.duration:g} s at {planned.sample_rate:g} Hz",
+            "records": f"{planned.records:,} of {planned.duration:g} s at {planned.sample_rate:g} Hz{without}",
             "channels": ", ".join(planned.channels),
             "rigs": f"{planned.rigs:,}",
             "specimens": f"{planned.specimens:,}",
@@ -96,6 +97,8 @@ def _show_plan(planned: "Plan") -> None:
             "kernels": f"{planned.kernels}, to be compiled once per machine in about {show.duration(planned.compile_seconds)}",
         }
     )
+    if planned.first_left_out is not None:
+        show.text("", f"The first that is left out: {planned.first_left_out}")
 
 
 @click.command()
@@ -114,12 +117,14 @@ def generate(
     seed: int | None,
     records: int | None,
     as_json: bool,
-) -> None:
+) -> int:
     """Make the corpus of RECIPE in DIR, or complete one.
 
     The corpus is made in parts. When the command is interrupted, finished parts are kept and the same command goes on from there; the
     result is the same to the bit, whatever the number of workers. By default there is a worker per core for more than 1000 records in
     two parts or more, else one.
+
+    Exits with 1 if more than 1 % of the records cannot be used, because they are clipped, all zeros or not numbers; the corpus is kept.
 
       raceway generate quickstart -o corpus
       raceway generate domain_randomised -o large --workers 8
@@ -129,6 +134,7 @@ def generate(
     """
     from gen import generate as generate_corpus
     from gen import read_recipe
+    from gen.corpus import complaint, described
 
     wanted = read_recipe(recipe, seed=seed, records=records)
     start = time.monotonic()
@@ -148,15 +154,23 @@ def generate(
         )
     for failure in made.failures:
         notice(f"left out: {failure}")
+    useless = complaint(made.signals, made.records)
+    if useless is not None:
+        notice(useless)
+    ending = DONE if useless is None else FOUND_WANTING
     seconds = time.monotonic() - start
     if as_json:
         names = ("records", "parts", "kept", "failures")
         facts = {name: getattr(made, name) for name in names}
-        show.as_json({"corpus": made.directory, **facts, "seconds": round(seconds, 3)})
-        return
+        show.as_json(
+            {"corpus": made.directory, **facts, "signals": made.signals._asdict(), "seconds": round(seconds, 3)}
+        )
+        return ending
     kept = f", {made.kept} of them kept from before" if made.kept else ""
+    unusable = f"; {described(made.signals)} cannot be used" if any(made.signals) else ""
     failed = f"; {len(made.failures)} could not be simulated and are left out" if made.failures else ""
-    show.text(f"{made.directory}: {made.records:,} records in {made.parts:,} parts{kept}{failed}.")
+    show.text(f"{made.directory}: {made.records:,} records in {made.parts:,} parts{kept}{failed}{unusable}.")
+    return ending
 
 
 def _kept(corpus: Path, recipe: "Recipe") -> str:
@@ -225,6 +239,8 @@ def info(corpus: Path, as_json: bool) -> None:
 
 def _show_info(facts: dict) -> None:
     """Show what ``describe`` found; an unfinished corpus without a part has no content yet."""
+    from gen.corpus import SignalCounts, described
+
     overrides = {key: value for key, value in facts.get("overrides", {}).items() if value is not None}
     with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
     origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
@@ -244,6 +260,8 @@ def _show_info(facts: dict) -> None:
             "shaft rate": _range(facts["shaft_rate"], "Hz"),
             "load": _range(facts["load"], "N"),
         }
+    if "signals" in facts:
+        known["not usable"] = described(SignalCounts(**facts["signals"]))
     known |= {"parts": f"{facts['parts']:,}", "size": show.size(facts["bytes"])}
     known["versions"] = ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items())
     show.facts(known)

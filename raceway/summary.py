@@ -35,7 +35,7 @@ def describe(directory: Path) -> dict[str, Any]:
         If it is no corpus, or a part is missing or altered.
     """
     manifest = read_manifest(directory)
-    known = manifest.model_dump(exclude={"parts_", "complete", "records", "index"}, exclude_unset=True)
+    known = manifest.model_dump(exclude={"parts_", "complete", "records", "index", "signals"}, exclude_unset=True)
     about = {
         "corpus": directory,
         "complete": manifest.complete,
@@ -45,6 +45,7 @@ def describe(directory: Path) -> dict[str, Any]:
         "failures": [],
         "warnings": [],
         "skipped": [],
+        "signals": manifest.signals._asdict(),
     }
     return about | known | (_content(_labels(directory, manifest)) if manifest.parts else {})
 

@@ -7,6 +7,7 @@ schema     dimensions, variables, units and roles
 hdf5       one thread at a time, values of the file itself only
 layout     what a file of a corpus may hold
 files      written whole or not at all, known by their hash
+signals    whether a stored signal can be used
 part       one self-describing netCDF-4 file of records
 manifest   which files belong to a corpus, with size and hash
 reading    records read when touched, a few files open at a time
@@ -43,6 +44,7 @@ from gen.corpus.schema import (
     Variable,
     make_dataset,
 )
+from gen.corpus.signals import SignalCounts, complaint, described, summed
 from gen.corpus.validation import validate_corpus
 
 __all__ = [
@@ -58,8 +60,11 @@ __all__ = [
     "Codec",
     "Manifest",
     "PartRow",
+    "SignalCounts",
     "Variable",
+    "complaint",
     "data_card",
+    "described",
     "format_page",
     "make_dataset",
     "open_corpus",
@@ -71,6 +76,7 @@ __all__ = [
     "read_manifest",
     "remove_left_behind",
     "sha256",
+    "summed",
     "temporary_beside",
     "validate_corpus",
     "whole_or_not_at_all",

@@ -4,10 +4,14 @@ import numpy as np
 import xarray as xr
 
 from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS
+from gen.corpus.signals import CLIPPED_SHARE, SignalCounts, described
 
 
-def data_card(corpus: xr.Dataset, origin: str) -> str:
-    """Markdown page about a corpus; ``origin`` is a paragraph on where it comes from and what one may do with it."""
+def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
+    """Markdown page about a corpus; ``origin`` is a paragraph on where it comes from and what one may do with it.
+
+    ``signals`` counts the records that cannot be used.
+    """
     records, samples = corpus.sizes["record"], corpus.sizes["elapsed_time"]
     names = ", ".join(plain_text(name) for name in corpus["channel"].values)
     fs = float(corpus["sample_rate"][0])
@@ -18,6 +22,7 @@ def data_card(corpus: xr.Dataset, origin: str) -> str:
         origin,
         "",
         f"{records} records of {samples / fs:g} s at {fs:g} Hz, channels {names}, in m/s^2.",
+        f"Records that cannot be used: {described(signals)}.",
         "",
         "| fault | records | specimens | rigs | " + " | ".join(SPLITS) + " |",
         "|---|---:|---:|---:|" + "---:|" * len(SPLITS),
@@ -46,12 +51,16 @@ A corpus is a folder:
 |---|---|
 | `corpus.nc` | every per-record variable, and the signal as an HDF5 virtual dataset over the parts: one file to any netCDF-4 reader |
 | `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
-| `manifest.json` | whether the corpus is complete; of each part its records, bytes and SHA-256; recipe hash and versions |
+| `manifest.json` | whether the corpus is complete; `signals`; of each part records, bytes, SHA-256, `signals`; recipe hash, versions |
 | `recipe.yaml` | the recipe it was made from, if it was simulated |
 | `README.md` | the data card |
 
 HDF5 reads a part that is missing as fill values, without an error: `gen.open_corpus` compares every part with
 the manifest before anything is read, and refuses what is missing or altered. `raceway validate` looks at everything.
+
+`signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of a channel lie at
+the ends of the converter, or in floating point at the channel's own largest and smallest value; `dead` if a channel is
+all zeros, `constant` if it is all one other value, `not_finite` if a sample is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
 and netCDF4 undo by themselves, or 32-bit floating point. Text is stored as

@@ -55,7 +55,11 @@ def packing_of(stored: h5py.Dataset) -> Packing:
         return Packing(stored.dtype, None, None)
     scale, offset, fill = (attributes[name] for name in PACKING)
     if not (
-        isinstance(scale, float) and np.isfinite(scale) and scale > 0 and offset == 0 and isinstance(fill, np.int16)
+        isinstance(scale, float)
+        and np.isfinite(scale)
+        and scale > 0
+        and offset == 0
+        and getattr(fill, "dtype", None) == np.int16
     ):
         raise ValueError(f"{SIGNAL} has scale_factor {scale!r}, add_offset {offset!r}, _FillValue {fill!r}")
     return Packing(stored.dtype, float(scale), int(fill))

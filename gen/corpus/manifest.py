@@ -3,6 +3,7 @@
 ``manifest.json`` is the root of every check: a part or an index that is not the file it names is refused before anything is read from it.
 """
 
+import json
 import re
 from collections.abc import Iterable
 from pathlib import Path
@@ -13,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 from gen.corpus.files import plain_file, sha256, stamp, write_text_durably
 from gen.corpus.part import PartRow
 from gen.corpus.schema import FORMAT
+from gen.corpus.signals import SignalCounts, summed
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -37,9 +39,17 @@ class FileRow(_Section):
     sha256: _Hash
 
 
+class _Signals(_Section):
+    clipped: _Count
+    dead: _Count
+    constant: _Count
+    not_finite: _Count
+
+
 class _Part(FileRow):
     name: str
     records: _Count
+    signals_: Annotated[_Signals, Field(alias="signals")]
 
 
 class Overrides(_Section):
@@ -72,7 +82,15 @@ class Manifest(_Section):
     @property
     def parts(self) -> list[PartRow]:
         """Rows of the parts, in the order of their records."""
-        return [PartRow(part.name, part.records, part.bytes, part.sha256) for part in self.parts_]
+        return [
+            PartRow(part.name, part.records, part.bytes, part.sha256, SignalCounts(**dict(part.signals_)))
+            for part in self.parts_
+        ]
+
+    @property
+    def signals(self) -> SignalCounts:
+        """Records that cannot be used."""
+        return summed(row.signals for row in self.parts)
 
 
 def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, **facts: Any) -> None:
@@ -80,18 +98,19 @@ def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, 
 
     The index of a complete corpus must have been written before.
     """
-    parts = tuple(_Part(**row._asdict()) for row in rows)
+    rows = list(rows)
+    parts = [row._asdict() | {"signals": row.signals._asdict()} for row in rows]
     index = directory / INDEX_NAME
-    manifest = Manifest(
-        raceway_format=FORMAT,
-        complete=complete,
-        records=sum(part.records for part in parts),
-        index=FileRow(bytes=stamp(index)[0], sha256=sha256(index)) if complete else None,
-        parts=parts,  # pyright: ignore[reportCallIssue] - the alias
+    content = {
+        "raceway_format": FORMAT,
+        "complete": complete,
+        "records": sum(row.records for row in rows),
+        "signals": summed(row.signals for row in rows)._asdict(),
+        "index": {"bytes": stamp(index)[0], "sha256": sha256(index)} if complete else None,
         **facts,
-    )
-    text = manifest.model_dump_json(by_alias=True, exclude_unset=True, indent=1)
-    write_text_durably(text + "\n", directory / "manifest.json")
+        "parts": parts,
+    }
+    write_text_durably(json.dumps(content, indent=1) + "\n", directory / "manifest.json")
 
 
 def read_manifest(directory: Path) -> Manifest:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from gen.corpus.files import sha256, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
+from gen.corpus.signals import SignalCounts, counted, judge
 
 Codec = Literal["zlib", "zstd", "none"]
 _CODECS: dict[Codec, dict[str, Any]] = {
@@ -30,6 +31,8 @@ class PartRow(NamedTuple):
     records: int
     bytes: int
     sha256: str
+    signals: SignalCounts = SignalCounts()
+    """Records that cannot be used."""
 
 
 def part_name(number: int) -> str:
@@ -65,7 +68,7 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
                     stored[:] = values
         if chunks:
             _write_chunks(chunks, temporary)
-    return PartRow(path.name, dataset.sizes["record"], path.stat().st_size, sha256(path))
+    return PartRow(path.name, len(signal), path.stat().st_size, sha256(path), counted(judge(signal)))
 
 
 def _declare(

@@ -40,6 +40,8 @@ from gen.limits import check_limit
 MOST_OPEN = 32
 """Files that are open at a time. A process may open some thousand; opening one takes 0.2 ms."""
 
+_BLOCK_SAMPLES = 10_000_000
+
 
 class Source(NamedTuple):
     """A file as it was when it was checked."""
@@ -198,7 +200,7 @@ class _Records(BackendEntrypoint):
                 )
             packing = packing_of(stored)
             signal = _Signal(sources, found, (row[0], row[1]), packing)
-            sizes: dict[str, int] = {name: size for name, size in zip(SIGNAL_DIMS, (records, *row), strict=True)}
+            sizes: dict[str, int] = {"record": records, "channel": row[0], "elapsed_time": row[1]}
             attributes = attributes_of(stored)
             encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
             attributes.pop("coordinates", None)
@@ -256,6 +258,19 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
     signal = np.multiply(counts, np.float32(packing.scale), dtype=np.float32)
     signal[counts == packing.fill] = np.nan
     return signal, columns
+
+
+def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
+    """Stored signal of a part, some records at a time: counts of the converter, or accelerations [m s-2]."""
+    source, first, records = source_of(path), 0, 1
+    while first < records:
+        with _opened(source) as file:
+            stored = own_dataset(file.handle, SIGNAL)
+            records, channels, samples = checked_shape(stored)
+            size = max(1, _BLOCK_SAMPLES // max(1, channels * samples))
+            block = stored[first : first + size]
+        yield block
+        first += size
 
 
 def _numbers(stored: h5py.Dataset, name: str, records: int) -> NDArray[Any]:

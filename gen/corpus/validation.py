@@ -10,11 +10,11 @@ from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.index import open_corpus
 from gen.corpus.layout import PACKING
 from gen.corpus.manifest import INDEX_NAME, Manifest, file_problems, read_manifest
-from gen.corpus.reading import open_part
+from gen.corpus.part import PartRow
+from gen.corpus.reading import open_part, stored_blocks
 from gen.corpus.schema import SIGNAL, schema_problems
+from gen.corpus.signals import VERDICTS, counted, described, judge
 from gen.errors import CorpusError
-
-_BLOCK_SAMPLES = 10_000_000  # read at a time
 
 
 def validate_corpus(directory: Path | str) -> list[str]:
@@ -44,7 +44,9 @@ def validate_corpus(directory: Path | str) -> list[str]:
                             f"{path}: {found} records, the manifest says {row.records}; do not trust this corpus.",
                         ]
                     here = index.isel(record=slice(first, first + row.records))
-                    problems += [f"{path}: {text}" for text in _part_problems(part, here)]
+                    problems += [
+                        f"{path}: {text}" for text in (*_part_problems(part, here), *_signal_problems(path, row))
+                    ]
                 first += row.records
     except CorpusError as error:
         problems.append(str(error))
@@ -73,17 +75,23 @@ def _mapping_problems(directory: Path, manifest: Manifest) -> list[str]:
     return [f"{path}: index and manifest disagree about {wrong}; do not trust this corpus."]
 
 
+def _signal_problems(path: Path, row: PartRow) -> list[str]:
+    verdicts = np.concatenate([judge(block) for block in stored_blocks(path)])
+    lost = np.flatnonzero(verdicts == VERDICTS.index("not_finite"))
+    problems = [f"record {record} of the part has samples that are not finite." for record in lost]
+    if counted(verdicts) != row.signals:
+        problems.append(
+            f"{described(counted(verdicts))} of its records cannot be used, the manifest says {described(row.signals)}."
+        )
+    return problems
+
+
 def _part_problems(part: xr.Dataset, index: xr.Dataset) -> list[str]:
     problems = schema_problems(part)
     if problems:
         return problems
     if set(part.variables) != set(index.variables) or part.sizes != index.sizes:
         return ["corpus.nc has other variables or sizes; make or copy the corpus again."]
-    block = max(1, _BLOCK_SAMPLES // (part.sizes["channel"] * part.sizes["elapsed_time"]))
-    for first in range(0, part.sizes["record"], block):
-        finite = np.isfinite(part[SIGNAL][first : first + block].values).all(axis=(1, 2))
-        for record in first + np.flatnonzero(~finite):
-            problems.append(f"record {record} of the part has samples that are not finite.")
     for name, variable in part.variables.items():
         same = _alike(variable, index[name].variable) if name == SIGNAL else variable.identical(index[name].variable)
         if not same:

@@ -16,9 +16,12 @@ import numpy as np
 from gen.corpus import (
     FAULTS,
     PartRow,
+    SignalCounts,
     Variable,
+    described,
     make_dataset,
     part_name,
+    summed,
     temporary_beside,
     write_index,
     write_manifest,
@@ -166,7 +169,8 @@ def _write_parts(records: Iterator[Record], collection: Collection, folder: Path
 
 def _finish(collection: Collection, rows: list[PartRow], log: _Log, length: int, directory: Path) -> None:
     write_index(directory, rows)
-    write_text_durably(_data_card(collection, log, length), directory / "README.md")
+    signals = summed(row.signals for row in rows)
+    write_text_durably(_data_card(collection, log, length, signals), directory / "README.md")
     write_manifest(
         directory,
         rows,
@@ -184,7 +188,7 @@ def _nothing_usable(importer: str, skipped: list[str]) -> str:
     return f"import {importer}: no recording can be used; the first of {len(skipped)} skipped: {skipped[0]}"
 
 
-def _data_card(collection: Collection, log: _Log, length: int) -> str:
+def _data_card(collection: Collection, log: _Log, length: int, signals: SignalCounts) -> str:
     fs = collection.fs
     lines = [
         f"# {plain_text(collection.title)}",
@@ -192,6 +196,7 @@ def _data_card(collection: Collection, log: _Log, length: int) -> str:
         f"Origin: {plain_text(collection.origin)}",
         "",
         f"Records of {length / fs:g} s at {fs:g} Hz, channel {plain_text(collection.channel)}, in m/s^2.",
+        f"Records that cannot be used: {described(signals)}.",
         "",
         "| fault | recordings | records |",
         "|---|---|---|",

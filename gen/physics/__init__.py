@@ -7,6 +7,7 @@ bearing    geometry, fault frequencies in orders of the shaft
 elementary powers and logarithms with the same bits everywhere
 catalogue  bearings by designation, with ratings and sources
 hertz      point and line contact: geometry to load-deflection factor
+rating     static load rating and equivalent static load
 lubricant  oil film and temperature: clearance, stiffness, damping
 profile    how speed and load run over a record
 lanes      how kernels are compiled: one record per lane

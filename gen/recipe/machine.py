@@ -89,6 +89,11 @@ class GeometryBearing(Section):
     roller_length_mm: Distribution = within(0, 1000, default=0.0)
     """Length of the rollers that touches the raceways; 0 for balls."""
 
+    @staticmethod
+    def largest_ball(n_balls: int, pitch: float, share: float) -> float:
+        """Ball diameter at a share of the pitch diameter, made smaller where neighbours would leave the cage no bars [m]."""
+        return min(share * pitch, 0.85 * math.pi * pitch / n_balls)
+
 
 class Resonator(Section):
     """Mass on a spring between housing and sensor."""

@@ -12,6 +12,7 @@ from gen.corpus import Codec
 from gen.distributions import Number
 from gen.limits import check_limit
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
+from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing, Contact, GeometryBearing, Machine, Specimen
 from gen.recipe.operation import Operation, Steps, Table
 from gen.recipe.section import Count, Name, Section
@@ -141,6 +142,9 @@ class Recipe(Section):
             raise ValueError(
                 "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
             )
+        beyond = load_problem(self.bearing, self.specimen, self.operation)
+        if beyond is not None:
+            raise ValueError(beyond)
         if "temperature_celsius" in self.operation.model_fields_set and self.contact.lubricant is None:
             raise ValueError(
                 "operation.temperature_celsius: does nothing without oil; give contact.lubricant, or leave it out."

@@ -133,14 +133,13 @@ def _draw_bearing(recipe: Recipe, draws: Draws, rig: int) -> Bearing:
     if isinstance(chosen, CatalogueBearing):
         return chosen.bearing(chosen.designations[int(draws.u() * len(chosen.designations))])
     drawn = draws.section(chosen)
-    n_balls, ball = round(drawn["n_balls"]), drawn["ball_share"] * drawn["pitch"]
-    # neighbours must not touch: 0.85 leaves the cage its bars
-    largest = 0.85 * math.pi * drawn["pitch"] / n_balls
+    n_balls = round(drawn["n_balls"])
+    ball = chosen.largest_ball(n_balls, drawn["pitch"], drawn["ball_share"])
     if drawn["ball_share"] > 0.6 or ball <= 0:
         raise RecipeError(f"rig {rig}: ball_share {drawn['ball_share']:g} gives no bearing; keep it below 0.45.")
     rollers = drawn["roller_length"]
     return Bearing(
-        chosen.designation, n_balls, drawn["pitch"], min(ball, largest), drawn["contact_angle"],
+        chosen.designation, n_balls, drawn["pitch"], ball, drawn["contact_angle"],
         rolling_element="roller" if rollers > 0 else "ball", roller_length=rollers or None,
     )  # fmt: skip
 

@@ -14,8 +14,10 @@ from features.indicators import GROUPS, feature_names
 from features.table import part_features
 from features.table_files import read_table, write_table
 from gen.corpus import (
+    MISSING_COUNT,
     ROLES,
     SCHEMA,
+    SIGNAL,
     Variable,
     make_dataset,
     open_corpus,
@@ -100,6 +102,39 @@ def test_everything_known_of_a_record_is_carried_along_with_its_attributes(corpu
             )
             assert table[variable.name].attrs["role"] in ROLES
         assert source.attrs.items() <= table.attrs.items()
+
+
+def in_counts(dataset, missing):
+    """The same records as counts of a converter, with the counts at ``missing`` places missing."""
+    signal = np.rint(dataset[SIGNAL].values * 1000).astype(np.int16)
+    for place in missing:
+        signal[place] = MISSING_COUNT
+    known = {variable.name: dataset[variable.name].values for variable in (*SCHEMA, SNR)}
+    channels = tuple(dataset["channel"].values)
+    return make_dataset(
+        signal,
+        FS,
+        channels,
+        known,
+        extra=(SNR,),
+        counts_per_unit=1000.0,
+        attributes={"title": "counts", "history": "made"},
+    )
+
+
+def test_counts_give_the_features_of_their_accelerations(tmp_path, table):
+    counts = feature_table(make_corpus(tmp_path / "c", change=lambda dataset: in_counts(dataset, ())))
+    np.testing.assert_allclose(counts["features"].sel(group="time"), table["features"].sel(group="time"), rtol=0.05)
+
+
+def test_a_missing_count_is_not_taken_for_a_sample(tmp_path):
+    """The fill value read as a sample would be a blow of full scale. One is enough; the other channel does not matter."""
+    missing = [(1, 0, 5), (2, 0), (3, 1)]  # a sample, a channel, and the channel that is not looked at
+    found = feature_table(make_corpus(tmp_path / "c", change=lambda dataset: in_counts(dataset, missing)))
+    rows = found["features"].values[:RECORDS]
+    assert np.isnan(rows).all(axis=1).tolist() == [False, True, True, False, False]
+    assert np.isfinite(rows[[0, 3, 4]]).all()
+    assert found.attrs["records_with_missing_features"] == 2 * PARTS
 
 
 def test_rows_are_in_the_order_of_the_corpus(corpus, table):

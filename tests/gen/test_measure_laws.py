@@ -134,6 +134,70 @@ def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
     np.testing.assert_allclose(measured.signal, expected, rtol=1e-6, atol=1e-2)
 
 
+PLAIN = {"path.modes": None, "path.direct": 1.0}
+COUNT = 500 / LARGEST_COUNT  # m s-2
+
+
+def pure_tone(recipe, amplitude):
+    """A response that is a tone of this amplitude, whole cycles of it in the record [m s-2]."""
+    return response(recipe, 1, lambda time: amplitude * np.cos(2 * np.pi * 500 * time))
+
+
+def plain(recipe, **changes):
+    quiet = {"background": QUIET, "background_rms": 0.0, "gain": 1.0}
+    return with_rig(draw_scenarios(recipe, 0, 1), **(quiet | changes))
+
+
+def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_converter(recipe_with):
+    """Rounding to counts leaves an error of 1/sqrt(12) count: that is what such a record has beside its bearing."""
+    recipe = recipe_with(PLAIN)
+    found = measure(pure_tone(recipe, 100.0), plain(recipe), recipe)
+    exact = measure(pure_tone(recipe, 100.0), plain(recipe), recipe_with(FLOAT | PLAIN)).signal[0, 0].astype(float)
+    error = found.signal[0, 0] * COUNT - exact
+    assert found.snr[0] == pytest.approx(20 * np.log10(100 / np.sqrt(2) / (COUNT / np.sqrt(12))), abs=1e-3)
+    assert found.snr[0] == pytest.approx(20 * np.log10(np.std(exact) / np.std(error)), abs=1.5)
+
+
+def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_ratio(recipe_with):
+    recipe = recipe_with(PLAIN)
+    without, with_little, with_more = (
+        measure(pure_tone(recipe, 100.0), plain(recipe, background_rms=rms), recipe).snr[0] for rms in (0.0, 1e-6, 1.0)
+    )
+    assert without == with_little
+    assert with_more == pytest.approx(20 * np.log10(100 / np.sqrt(2)), abs=0.3)
+
+
+@pytest.mark.parametrize(
+    ("amplitude", "background", "converter"),
+    [(0.4 * COUNT, 0.0, {}), (0.0, 0.3, {}), (0.0, 0.0, {}), (100.0, 0.0, FLOAT), (0.0, 0.3, FLOAT), (0.0, 0.0, FLOAT)],
+    ids=["below half a count", "no bearing", "silence", "no background", "no bearing in floats", "silence in floats"],
+)
+def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with, amplitude, background, converter):
+    """A bearing below half a count over no background is stored as zeros; it was labelled with 515 dB."""
+    recipe = recipe_with(PLAIN | converter)
+    found = measure(pure_tone(recipe, amplitude), plain(recipe, background_rms=background), recipe)
+    assert np.isnan(found.snr[0])
+    assert found.signal.any() == (background > 0 or (bool(converter) and amplitude > 0))
+
+
+def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
+    """A tenth of a count is still in the record: the background carries it over the steps of the converter."""
+    recipe = recipe_with(PLAIN)
+    found = measure(pure_tone(recipe, 0.1 * COUNT), plain(recipe, background_rms=1.0), recipe)
+    assert found.snr[0] == pytest.approx(20 * np.log10(0.1 * COUNT / np.sqrt(2)), abs=0.3)
+
+
+def test_a_record_that_diverged_has_no_ratio_and_leaves_its_neighbours_alone(recipe_with):
+    recipe = recipe_with()
+    scenarios, heard = draw_scenarios(recipe, 0, 3), hiss(recipe, 3)
+    sound = measure(heard, scenarios, recipe)
+    heard.acceleration[1] = np.nan
+    found = measure(heard, scenarios, recipe)
+    assert np.isnan(found.snr).tolist() == [False, True, False]
+    assert not found.signal[1].any()
+    np.testing.assert_array_equal(found.signal[[0, 2]], sound.signal[[0, 2]])
+
+
 def tone_through(recipe, scenarios, frequency):
     """Amplitude and phase of a tone of amplitude 1 behind the path, as a complex number."""
     n = lead_samples(recipe) + recipe.n_samples

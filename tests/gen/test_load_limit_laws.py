@@ -1,0 +1,120 @@
+"""Laws of the load limit: a bearing that would be crushed is refused, in the recipe if every draw is, else record by record."""
+
+import pytest
+
+from gen.errors import SimulationError
+from gen.generate import generate
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.rating import LEAST_SAFETY, computed_rating, static_rating
+from gen.plan import plan
+from gen.recipe import read_recipe, shipped_recipes
+from gen.scenarios import draw_scenarios
+from gen.simulate import kernel_record
+
+LIMIT = CATALOGUE["6205"].static_rating / LEAST_SAFETY
+OWN = {"n_balls": 9, "pitch_mm": 39.04, "ball_mm": 7.94}
+SEVERAL = {"kind": "catalogue", "designations": ["6205", "6309"]}
+GEOMETRY = {
+    "kind": "geometry",
+    "n_balls": {"kind": "choice", "values": [7, 9]},
+    "pitch_mm": {"kind": "uniform", "low": 30, "high": 39.04},
+    "ball_share": {"kind": "uniform", "low": 0.15, "high": 7.94 / 39.04},
+}
+STEPS = {"kind": "steps", "levels_percent": [200, 50], "step_s": 0.01}
+RISING = {"kind": "ramp", "from_percent": {"kind": "uniform", "low": 50, "high": 250}, "to_percent": 100}
+SLANTED = {"specimen.contact_angle_deg": {"kind": "uniform", "low": 5, "high": 10}, "operation.load_n": 10}
+
+
+@pytest.mark.parametrize(
+    ("changes", "key", "bearing"),
+    [
+        ({"operation.load_n": 1e7}, "load_n", "6205"),
+        ({"operation.load_n": {"kind": "uniform", "low": LIMIT + 1, "high": 1e5}}, "load_n", "6205"),
+        ({"operation.load_n": 64_000, "bearing": SEVERAL}, "load_n", "6309"),
+        ({"operation.load_n": 15_900, "bearing": GEOMETRY}, "load_n", "geometry"),
+        ({"operation.load_n": 8000, "operation.load_profile": {"kind": "table", "times_s": [0, 1], "percent": [1, 200]}}, "load_n", "6205"),
+        ({"operation.load_n": 8000, "operation.load_profile": STEPS}, "load_n", "6205"),
+        (SLANTED | {"operation.axial_load_n": 13_000}, "axial_load_n", "6205"),
+    ],
+)  # fmt: skip
+def test_a_recipe_whose_every_load_crushes_every_bearing_is_refused_when_it_is_read(recipe_with, changes, key, bearing):
+    with pytest.raises(
+        ValueError, match=rf"operation.{key}: gives .* static rating of bearing {bearing}, is the limit"
+    ):
+        recipe_with(changes)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"operation.load_n": {"kind": "uniform", "low": LIMIT - 1, "high": 1e5}},
+        {"operation.load_n": 16_000, "bearing": SEVERAL},
+        {"operation.load_n": 15_700, "bearing": GEOMETRY},
+        {"operation.load_n": 7000, "operation.load_profile": STEPS},
+        {"operation.load_n": LIMIT - 100, "operation.load_profile": RISING},
+        SLANTED | {"operation.axial_load_n": 12_500},
+    ],
+)
+def test_a_recipe_some_of_whose_draws_may_be_borne_is_read(recipe_with, changes):
+    recipe_with(changes)
+
+
+@pytest.mark.parametrize(("load", "borne"), [(LIMIT / 2 + 1, True), (LIMIT - 1, True), (LIMIT + 1, False)])
+def test_a_record_is_borne_up_to_twice_the_static_rating(recipe_with, load, borne):
+    recipe = recipe_with({"operation.load_n": {"kind": "choice", "values": [load, 100], "weights": [1, 0]}})
+    scenario = draw_scenarios(recipe, 0, 1)[0]
+    if borne:
+        assert kernel_record(scenario, recipe).machine.load_y == pytest.approx(-load)
+        return
+    with pytest.raises(SimulationError, match="is more than 2 times the static rating"):
+        kernel_record(scenario, recipe)
+
+
+def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tmp_path):
+    """Grids follow the number of the record: of four, one is 100 N too heavy."""
+    path = write_recipe(
+        tmp_path / "r.yaml",
+        {"operation.load_n": {"kind": "grid", "values": [500, LIMIT + 100, 500, 500]}, "records": 4},
+    )
+    made = generate(path, tmp_path / "corpus")
+    assert made.records == 3
+    (sentence,) = made.failures
+    assert sentence == (
+        "record 1: an equivalent static load of 1.59e+04 N is more than 2 times the static rating of its bearing 6205, 7900 N; "
+        "lower operation.load_n and axial_load_n, or take a larger bearing."
+    )
+    assert plan(path).left_out == 1
+
+
+def test_a_recipe_of_which_no_record_can_be_borne_has_no_plan(write_recipe, tmp_path):
+    """The smallest load could be borne, but the records that the corpus ends with do not draw it."""
+    grid = {"operation.load_n": {"kind": "grid", "values": [LIMIT + 100, LIMIT + 200, 500]}, "records": 2}
+    with pytest.raises(SimulationError, match="record 0: an equivalent static load"):
+        plan(write_recipe(tmp_path / "r.yaml", grid))
+
+
+def test_the_heaviest_moment_of_a_load_profile_counts(recipe_with):
+    profile = {"kind": "ramp", "from_percent": 100, "to_percent": {"kind": "grid", "values": [100, 250]}}
+    recipe = recipe_with({"operation.load_n": 7000, "operation.load_profile": profile})
+    first, second = draw_scenarios(recipe, 0, 2)
+    kernel_record(first, recipe)
+    with pytest.raises(SimulationError, match=r"record 1: .* 1.75e\+04 N"):
+        kernel_record(second, recipe)
+
+
+def test_a_bearing_of_ones_own_is_rated_by_its_geometry(recipe_with):
+    own = {"kind": "catalogue", "designations": ["mine"], "entries": {"mine": OWN}}
+    limit = computed_rating(CATALOGUE["6205"]) / LEAST_SAFETY
+    recipe_with({"bearing": own, "operation.load_n": limit - 1})
+    with pytest.raises(ValueError, match="static rating of bearing mine"):
+        recipe_with({"bearing": own, "operation.load_n": limit + 1})
+
+
+@pytest.mark.parametrize("name", shipped_recipes())
+def test_no_shipped_recipe_asks_for_a_load_near_the_limit(name):
+    """The largest load over static rating is 0.85, of the smallest bearings of domain_randomised."""
+    recipe = read_recipe(name)
+    ratios = [
+        scenario.record.conditions["load"] / static_rating(scenario.rig.bearing) for scenario in draw_scenarios(recipe)
+    ]
+    assert max(ratios) < 0.9
