@@ -5,7 +5,7 @@ BIN := $(VENV)/bin
 OUT ?= out/quickstart
 export OMP_NUM_THREADS ?= 1
 
-.PHONY: quickstart test lint generated bench clean
+.PHONY: quickstart test lint generated bench fuzz clean
 
 $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Raceway needs Python 3.11 or later; set PYTHON=..."; exit 2; }
@@ -36,6 +36,9 @@ generated: $(VENV)/installed
 
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks
+
+fuzz: $(VENV)/installed
+	$(BIN)/python -m tests.fuzz --count 20000
 
 clean:
 	rm -rf $(VENV) out build *.egg-info

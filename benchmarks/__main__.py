@@ -13,7 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from benchmarks import features, kernel, opening, pipeline, rivals, roofline
+from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline
 from benchmarks.pairs import Line, Row, Skipped
 from raceway.bench import machine
 
@@ -24,6 +24,7 @@ SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "pipeline": pipeline.rows,
     "features": features.rows,
     "opening": opening.rows,
+    "reading": reading.rows,
 }
 RESULTS = Path(__file__).with_name("results.json")
 HEADS = ("", "what", "value", "alternative", "its value", "ratio", "pairs")

@@ -13,6 +13,7 @@ from typing import Any, TypeVar
 
 from distributed import Client, Future, KilledWorker, LocalCluster, wait
 from distributed import TimeoutError as DaskTimeoutError
+from distributed.comm.core import CommClosedError
 
 from gen.errors import ClusterError
 
@@ -75,28 +76,33 @@ def run_tasks(client: Client, task: Callable[[Item], Result], items: Iterable[It
     alone_since: float | None = None
     while running:
         try:
-            with client.as_current():
-                waited: Any = wait(running, timeout=POLL_S, return_when="FIRST_COMPLETED")
+            future, result = _first_result(client, running)
         except (TimeoutError, DaskTimeoutError):
             alone_since = _alone_since(client, alone_since)
             continue
-        except (CancelledError, OSError) as error:
-            raise _lost(client) from error
         alone_since = None
-        for future in waited.done:
-            running.remove(future)
-            yield _result(client, future)
-            running |= {client.submit(task, item, pure=False) for item in islice(waiting, 1)}
+        running.remove(future)
+        running |= {client.submit(task, item, pure=False) for item in islice(waiting, 1)}
+        yield result
 
 
-def _result(client: Client, future: Future) -> Any:
+def _first_result(client: Client, running: set[Future]) -> tuple[Future, Any]:
+    """One of the tasks that are done, and what it returned; TimeoutError if none is within ``POLL_S``.
+
+    A result is fetched with a time limit too: it can be lost with its worker, and is then waited for until some worker has made it again.
+    """
     try:
-        return future.result()
+        with client.as_current():
+            waited: Any = wait(running, timeout=POLL_S, return_when="FIRST_COMPLETED")
+        future = next(iter(waited.done))
+        if future.status == "error":
+            raise future.exception(timeout=POLL_S)  # pyright: ignore[reportGeneralTypeIssues]
+        return future, future.result(timeout=POLL_S)
     except KilledWorker:
         raise ClusterError(
             "the workers of the cluster died again and again on one task; use fewer workers, or fewer records per part."
         ) from None
-    except (CancelledError, OSError) as error:
+    except (CancelledError, CommClosedError) as error:
         raise _lost(client) from error
 
 

@@ -43,6 +43,16 @@ LIMITS: Mapping[str, Limit] = {
 }  # fmt: skip
 
 
+def limits_page() -> str:
+    """Markdown page with all limits."""
+    rows = [f"| `{name}` | {found.value:,} {found.unit} | {found.meaning} |" for name, found in LIMITS.items()]
+    title = "# Limits on what a file may ask for\n"
+    how = (
+        "Raise one with `raceway --limit NAME=NUMBER COMMAND ...`. Why there are limits: [security.md](security.md).\n"
+    )
+    return "\n".join([title, how, "| name | unless raised | what it bounds |", "|---|---:|---|", *rows]) + "\n"
+
+
 def limit(name: str) -> int:
     """Value of a limit, as a user has set it or as it stands in ``LIMITS``.
 

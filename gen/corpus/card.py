@@ -51,12 +51,14 @@ A corpus is a folder:
 |---|---|
 | `corpus.nc` | every per-record variable, and the signal as an HDF5 virtual dataset over the parts: one file to any netCDF-4 reader |
 | `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
-| `manifest.json` | whether the corpus is complete; `signals`; of each part records, bytes, SHA-256, `signals`; recipe hash, versions |
+| `manifest.json` | whether the corpus is complete; `signals`; bytes and SHA-256 of `corpus.nc` and of each part; recipe hash, versions |
 | `recipe.yaml` | the recipe it was made from, if it was simulated |
 | `README.md` | the data card |
 
-HDF5 reads a part that is missing as fill values, without an error: `gen.open_corpus` compares every part with
-the manifest before anything is read, and refuses what is missing or altered. `raceway validate` looks at everything.
+HDF5 reads a part that it cannot open as missing values, without an error: one that is not there, or one too many for the
+files a process may open. `gen.open_corpus` therefore compares every file with the manifest before anything is read, refuses
+what is missing or altered, and reads the signal from the parts. `raceway validate` looks at everything. What else is
+checked of a corpus from elsewhere: [security.md](security.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of a channel lie at
 the ends of the converter, or in floating point at the channel's own largest and smallest value; `dead` if a channel is
@@ -71,7 +73,7 @@ fixed-length characters. Every other variable has one value per record, and a `r
 - `latent`: the truth of a simulation,
 - `provenance`: where the record comes from.
 
-A corpus may hold further per-record variables with a `long_name` and a `role`. These it must have:
+A corpus may hold further per-record variables with a `long_name` and a `role`: numbers that are not packed, or text. These it must have:
 
 | variable | type | unit | role | what it is |
 |---|---|---|---|---|

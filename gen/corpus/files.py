@@ -44,6 +44,11 @@ def sha256(path: Path) -> str:
     return found
 
 
+def forget_hashes() -> None:
+    """Hash every file again when it is asked for."""
+    _hashes.clear()
+
+
 def plain_file(directory: Path, name: str) -> Path:
     """Path of a file of a corpus: a plain file that lies in the folder itself.
 

@@ -1,7 +1,7 @@
 """Pages written from the code: ``python -m gen.recipe.reference ROOT`` renews them.
 
 ``recipes/schema.json`` and ``recipes/README.md`` follow from the model of the recipe, ``docs/format.md`` from the schema of the corpus,
-``docs/catalogue.md`` from the catalogue of bearings.
+``docs/catalogue.md`` from the catalogue of bearings, ``docs/limits.md`` from the limits.
 """
 
 import sys
@@ -14,6 +14,7 @@ from pydantic.fields import FieldInfo
 
 from gen.corpus import format_page
 from gen.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform
+from gen.limits import limits_page
 from gen.physics.catalogue import catalogue_page
 from gen.recipe import model
 from gen.recipe.reading import recipe_purpose, recipe_schema, shipped_recipes
@@ -116,6 +117,7 @@ PAGES = {
     "recipes/README.md": readme,
     "docs/format.md": format_page,
     "docs/catalogue.md": catalogue_page,
+    "docs/limits.md": limits_page,
 }
 
 if __name__ == "__main__":

@@ -3,7 +3,7 @@
 import importlib.util
 import math
 
-from benchmarks import features, kernel, opening, pipeline, rivals, roofline
+from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
 from benchmarks.profile import PARTS, kernel_parts
@@ -66,6 +66,13 @@ def test_features_are_compared_where_tsfel_is_installed():
 
 def test_opening_a_corpus_is_compared_with_opening_its_parts():
     assert set(sound(opening.rows(1, parts=3, records_per_part=2))) == {"opening size", "opening sha256"}
+
+
+def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
+    found = sound(reading.rows(1, parts=3, records_per_part=2))
+    assert set(found) == {
+        f"reading {way}" for way in ("in order", "at random", "through dask", "in processes", "hashes")
+    }
 
 
 def test_a_record_is_the_same_from_the_index_and_from_the_parts(few_short, tmp_path):

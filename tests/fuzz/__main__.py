@@ -9,6 +9,7 @@ import argparse
 import importlib
 import json
 import multiprocessing
+import os
 import resource
 import shutil
 import signal
@@ -88,6 +89,7 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=Path("out/fuzz"), help="folder for the files of findings")
     given = parser.parse_args()
+    os.environ["OMP_NUM_THREADS"] = "1"  # threads of OpenMP do not survive a fork
     findings = []
     for target in given.targets:
         found = fuzz(target, given.count, given.seed, given.keep)

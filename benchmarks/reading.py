@@ -1,0 +1,95 @@
+"""Records of a corpus read once, against xarray on ``corpus.nc``, whose virtual dataset opens every part; and the share of the hashes.
+
+The files are in the page cache. Processes are forked, as those of a data loader are.
+"""
+
+import multiprocessing
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from benchmarks.pairs import Line, interleaved, row, seconds
+from benchmarks.pipeline import SHORT, variant
+from gen.corpus import SIGNAL, files, open_corpus, part_paths
+from gen.generate import generate
+
+BLOCK = 64  # records read at a time
+PROCESSES = 4
+ALTERNATIVE = "xarray on corpus.nc"
+
+Opened = Callable[[], xr.Dataset]
+
+
+def rows(pairs: int = 5, *, parts: int = 40, records_per_part: int = 64) -> Iterator[Line]:
+    """Lines of the table."""
+    with tempfile.TemporaryDirectory() as folder:
+        recipe = variant(SHORT, Path(folder) / "parts.yaml", corpus={"records_per_part": records_per_part})
+        corpus = generate(recipe, Path(folder) / "corpus", records=parts * records_per_part).directory
+        records = parts * records_per_part
+        ways = {
+            "in order": in_order,
+            "at random": at_random,
+            "through dask": through_dask,
+            "in processes": in_processes,
+        }
+        for name, read in ways.items():
+            found = interleaved(
+                pairs,
+                ours=lambda read=read: records / seconds(read, lambda: open_corpus(corpus, "size"), records),
+                theirs=lambda read=read: records / seconds(read, lambda: plain(corpus), records),
+            )
+            yield row(f"reading {name}", f"{records} records", "1/s", found["ours"], ALTERNATIVE, found["theirs"])
+        found = interleaved(
+            pairs,
+            hashing=lambda: seconds(hashed, corpus),
+            reading=lambda: seconds(in_order, lambda: open_corpus(corpus, "size"), records),
+        )
+        yield row("reading hashes", "hash every file", "s", found["hashing"], "reading in order", found["reading"])
+
+
+def plain(corpus: Path) -> xr.Dataset:
+    """The corpus as xarray opens it by itself."""
+    return xr.open_dataset(corpus / "corpus.nc", engine="netcdf4", decode_times=False)
+
+
+def hashed(corpus: Path) -> None:
+    """Hash every file of a corpus, as the first opening in a process does."""
+    files.forget_hashes()
+    part_paths(corpus, "sha256")
+
+
+def in_order(opened: Opened, records: int) -> None:
+    """Every record, in blocks."""
+    with opened() as corpus:
+        for first in range(0, records, BLOCK):
+            corpus[SIGNAL].variable[first : first + BLOCK].load()
+
+
+def at_random(opened: Opened, records: int) -> None:
+    """As many records as there are, one at a time, drawn at random."""
+    with opened() as corpus:
+        for record in np.random.default_rng(0).integers(0, records, records):
+            corpus[SIGNAL].variable[int(record)].load()
+
+
+def through_dask(opened: Opened, records: int) -> None:
+    """Every record, as chunks of a dask array in two threads."""
+    with opened() as corpus:
+        corpus[[SIGNAL]].chunk({"record": BLOCK})[SIGNAL].mean().compute(scheduler="threads", num_workers=2)
+        assert corpus.sizes["record"] == records
+
+
+def in_processes(opened: Opened, records: int) -> None:
+    """Every record once, one at a time in random order, shared among processes."""
+    order = np.random.default_rng(0).permutation(records)
+    with opened() as corpus, multiprocessing.get_context("fork").Pool(PROCESSES) as pool:
+        signal = corpus[SIGNAL].variable
+        pool.starmap(_load, [(signal, share) for share in np.array_split(order, PROCESSES)])
+
+
+def _load(signal: xr.Variable, records: np.ndarray) -> None:
+    for record in records:
+        signal[int(record)].load()

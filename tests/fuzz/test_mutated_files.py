@@ -1,0 +1,19 @@
+"""Two thousand mutated files of each kind are refused with a sentence or read: none crashes, hangs or ends in another error."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from tests.fuzz.__main__ import TARGETS
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.mark.parametrize("target", TARGETS)
+def test_no_mutated_file_gets_past_its_reader(target, tmp_path):
+    command = [sys.executable, "-m", "tests.fuzz", target, "--count", "2000", "--keep", str(tmp_path)]
+    run = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert json.loads(run.stdout) == [], run.stderr
