@@ -20,6 +20,7 @@ from gen.cluster import client_of, local_client, run_tasks
 from gen.corpus import (
     PartRow,
     SignalCounts,
+    check_name,
     data_card,
     open_corpus,
     open_part,
@@ -146,6 +147,7 @@ def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: d
 @contextmanager
 def _claimed(directory: Path) -> Iterator[None]:
     """Make the folder, and keep every other call out of it."""
+    check_name(directory)
     if directory.exists() and not directory.is_dir():
         raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
     try:

@@ -19,6 +19,7 @@ card       the data card of a corpus, and the page about the format
 
 from gen.corpus.card import data_card, format_page
 from gen.corpus.files import (
+    check_name,
     plain_file,
     remove_left_behind,
     sha256,
@@ -62,6 +63,7 @@ __all__ = [
     "PartRow",
     "SignalCounts",
     "Variable",
+    "check_name",
     "complaint",
     "data_card",
     "described",

@@ -66,6 +66,14 @@ def plain_file(directory: Path, name: str) -> Path:
     return path
 
 
+def check_name(path: Path) -> None:
+    """Refuse a name that cannot be given to netCDF."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        raise CorpusError(f"{path}: the name is not UTF-8, which netCDF needs; choose another.") from None
+
+
 @contextmanager
 def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     """Temporary path to write to; flushed to disk it takes the place of ``path`` in one step, or is removed if anything fails.
@@ -75,6 +83,7 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     CorpusError
         If the disk refuses the file, with the reason it gives.
     """
+    check_name(path)
     try:
         with temporary_beside(path) as temporary:
             yield temporary

@@ -9,7 +9,6 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.hdf5 import own_dataset
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -79,9 +78,9 @@ def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
     return stored.shape
 
 
-def is_bare_dimension(file: h5py.File, name: str) -> bool:
+def is_bare_dimension(stored: h5py.Dataset) -> bool:
     """Whether netCDF keeps a dataset for the size of a dimension alone."""
-    label = own_dataset(file, name).attrs.get("NAME", b"")
+    label = stored.attrs.get("NAME", b"")
     return bytes(label).startswith(b"This is a netCDF dimension but not a netCDF variable")
 
 

@@ -188,10 +188,8 @@ class _Records(BackendEntrypoint):
     ) -> xr.Dataset:
         """Variables of one file, with the signal of ``parts``, each of which holds as many records as ``counts`` says."""
         source, sources = source_of(filename_or_obj), [source_of(path) for path in parts]
-        variables: dict[str, xr.Variable] = {}
-        with _opened(source) as opened_file:
-            file = opened_file.handle
-            stored = own_dataset(file, SIGNAL, virtual=counts is not None)
+        with _opened(source) as file:
+            stored = own_dataset(file.handle, SIGNAL, virtual=counts is not None)
             records, *row = checked_shape(stored)
             found = list(counts) if counts is not None else [records]
             if sum(found) != records:
@@ -204,10 +202,7 @@ class _Records(BackendEntrypoint):
             attributes = attributes_of(stored)
             encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
             attributes.pop("coordinates", None)
-            for name in map(str, file):
-                if name != SIGNAL and not is_bare_dimension(file, name):
-                    variables[name] = _variable(source, own_dataset(file, name), name, sizes)
-            facts = attributes_of(file)
+            variables, facts = _variables(file, source, sizes), attributes_of(file.handle)
         texts = [name for name, variable in variables.items() if variable.ndim == 2]
         described = xr.decode_cf(xr.Dataset(variables, attrs=facts), decode_times=False).set_coords(texts)
         lazy = indexing.LazilyIndexedArray(signal)
@@ -277,6 +272,18 @@ def _numbers(stored: h5py.Dataset, name: str, records: int) -> NDArray[Any]:
     if not is_text(stored, name, "record", records):
         return np.asarray(stored[:])
     raise ValueError(f"{name} is text, not numbers")
+
+
+def _variables(file: _OpenFile, source: Source, sizes: dict[str, int]) -> dict[str, xr.Variable]:
+    """Every variable of a file but the signal."""
+    found: dict[str, xr.Variable] = {}
+    for name in map(str, file.handle):
+        if name != SIGNAL:
+            stored = own_dataset(file.handle, name)
+            if not is_bare_dimension(stored):
+                found[name] = _variable(source, stored, name, sizes)
+                file.checked[name] = stored
+    return found
 
 
 def _variable(source: Source, stored: h5py.Dataset, name: str, sizes: dict[str, int]) -> xr.Variable:

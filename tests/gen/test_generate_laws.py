@@ -219,6 +219,12 @@ def test_what_is_in_the_way_of_a_corpus_is_named(recipe_file, tmp_path):
     assert (tmp_path / "full" / "thesis.txt").read_text() == "mine"
 
 
+def test_a_folder_whose_name_is_not_utf_8_is_refused_before_anything_is_made(recipe_file, tmp_path):
+    with pytest.raises(CorpusError, match="the name is not UTF-8, which netCDF needs; choose another"):
+        generate(recipe_file, tmp_path / "caf\udce9")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_less_than_one_worker_is_refused(recipe_file, tmp_path):
     with pytest.raises(RecipeError, match="workers: 0 is not allowed; use 1 or more"):
         generate(recipe_file, tmp_path / "c", workers=0)
