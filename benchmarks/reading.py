@@ -23,10 +23,15 @@ ALTERNATIVE = "xarray on corpus.nc"
 Opened = Callable[[], xr.Dataset]
 
 
-def rows(pairs: int = 5, *, parts: int = 40, records_per_part: int = 64) -> Iterator[Line]:
+def rows(pairs: int = 5, *, parts: int = 40, records_per_part: int = 64, seconds_each: float = 1.0) -> Iterator[Line]:
     """Lines of the table."""
     with tempfile.TemporaryDirectory() as folder:
-        recipe = variant(SHORT, Path(folder) / "parts.yaml", corpus={"records_per_part": records_per_part})
+        recipe = variant(
+            SHORT,
+            Path(folder) / "parts.yaml",
+            corpus={"records_per_part": records_per_part},
+            recording={"sample_rate_hz": 12800, "duration_s": seconds_each},
+        )
         corpus = generate(recipe, Path(folder) / "corpus", records=parts * records_per_part).directory
         records = parts * records_per_part
         ways = {

@@ -174,9 +174,11 @@ def generate(
 
 
 def _kept(corpus: Path, recipe: "Recipe") -> str:
-    from gen.corpus import read_manifest
+    """Remove what the workers were writing, and say what is kept."""
+    from gen.corpus import read_manifest, remove_left_behind
     from gen.errors import RacewayError
 
+    remove_left_behind(corpus / "parts", "part-*.nc")
     try:
         parts = len(read_manifest(corpus).parts)
     except RacewayError:  # before the first part

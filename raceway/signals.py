@@ -2,10 +2,11 @@
 
 A terminal sends Ctrl-C to every process of a command, and each worker of a dask cluster would show a traceback. So both signals are
 blocked, which threads and processes started later inherit, and one thread waits for them. It removes the files under way, says its sentence
-and ends the process at once. The main thread is not interrupted: an exception raised in it at any moment could crash compiled code, and
-nothing is left for it to do, since finished files have their names already. Workers of a cluster end when this process does.
+and ends the process at once, and its workers before. The main thread is not interrupted: an exception raised in it at any moment could
+crash compiled code, and nothing is left for it to do, since finished files have their names already.
 """
 
+import multiprocessing
 import os
 import signal
 import sys
@@ -16,6 +17,7 @@ from multiprocessing import resource_tracker
 
 INTERRUPTED = 130
 
+_PATIENCE_S = 1.0
 _came = threading.Event()
 _sentences: list[Callable[[], str]] = [lambda: "interrupted; nothing is left half done, the same command starts again."]
 
@@ -51,8 +53,12 @@ def leave_if_interrupted() -> None:
 def _end(awaited: set[signal.Signals]) -> None:
     signal.sigwait(awaited)
     _came.set()
-    sentence, terminal = _sentences[-1](), os.dup(2)
+    terminal = os.dup(2)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+    for worker in multiprocessing.active_children():
+        worker.kill()
+        worker.join(_PATIENCE_S)
+    sentence = _sentences[-1]()
     files = sys.modules.get("gen.corpus.files")  # not imported before anything is written
     remove = (lambda: None) if files is None else files.remove_unfinished
     remove()

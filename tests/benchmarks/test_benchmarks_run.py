@@ -69,7 +69,7 @@ def test_opening_a_corpus_is_compared_with_opening_its_parts():
 
 
 def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
-    found = sound(reading.rows(1, parts=3, records_per_part=2))
+    found = sound(reading.rows(1, parts=3, records_per_part=2, seconds_each=0.02))
     assert set(found) == {
         f"reading {way}" for way in ("in order", "at random", "through dask", "in processes", "hashes")
     }

@@ -237,6 +237,16 @@ def test_validation_finds_an_index_whose_attributes_are_not_those_of_its_parts(c
     assert any(name in problem for problem in validate_corpus(copied))
 
 
+def test_a_signal_is_not_read_by_a_scale_that_is_not_that_of_its_part(copied):
+    edit_index(copied, lambda index: index[SIGNAL].attrs.modify("scale_factor", 1.0))
+    seal(copied)
+    with (
+        open_corpus(copied) as corpus,
+        pytest.raises(CorpusError, match=r"part-00000\.nc: its signal is not of the shape or type"),
+    ):
+        corpus[SIGNAL][0].load()
+
+
 def damaged_part(change):
     """A corpus whose last part was written with a damage of its own, everything else following from it."""
 
