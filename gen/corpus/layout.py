@@ -47,7 +47,7 @@ class Packing(NamedTuple):
 
 def packing_of(stored: h5py.Dataset) -> Packing:
     """How a signal is stored; ValueError if it is packed in a way that the format does not know."""
-    attributes = attributes_of(stored)
+    attributes = {name: _plain(stored.attrs[name], name) for name in PACKING if name in stored.attrs}
     if stored.dtype == np.dtype(np.float32):
         if attributes.keys() & {"scale_factor", "add_offset"}:
             raise ValueError(f"{SIGNAL} is floating point and has a scale_factor or an add_offset")
@@ -76,6 +76,12 @@ def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
         if stored.chunks != (1, 1, samples) or stored.id.get_num_chunks() != records * channels:
             raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
     return stored.shape
+
+
+def is_deflated(stored: h5py.Dataset) -> bool:
+    """Whether the chunks of a signal are counts, shuffled and deflated, as :func:`gen.corpus.part.deflated` makes them."""
+    plain = stored.scaleoffset is None and not stored.fletcher32
+    return stored.dtype == np.dtype(np.int16) and stored.compression == "gzip" and stored.shuffle and plain
 
 
 def is_bare_dimension(stored: h5py.Dataset) -> bool:

@@ -4,8 +4,11 @@
 """
 
 import json
+import os
 import re
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -178,18 +181,22 @@ def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str
     wanted = {f"parts/{row.name}": FileRow(bytes=row.bytes, sha256=row.sha256) for row in manifest.parts}
     if manifest.complete and manifest.index is not None:
         wanted[INDEX_NAME] = manifest.index
-    problems: list[str] = []
-    for name, row in wanted.items():
-        try:
-            path = plain_file(directory, name)
-        except CorpusError as error:
-            problems.append(str(error))
-            continue
-        if path.stat().st_size != row.bytes or (check == "sha256" and sha256(path) != row.sha256):
-            problems.append(
-                f"{path}: altered, it is not the file the manifest names; copy it again or delete it and make the corpus again."
-            )
-    return problems
+    with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)))) as pool:  # hashing lets other threads run
+        found = pool.map(partial(_file_problem, directory, check), wanted.items())
+        return [problem for problem in found if problem is not None]
+
+
+def _file_problem(directory: Path, check: Check, item: tuple[str, FileRow]) -> str | None:
+    name, row = item
+    try:
+        path = plain_file(directory, name)
+    except CorpusError as error:
+        return str(error)
+    if path.stat().st_size == row.bytes and (check == "size" or sha256(path) == row.sha256):
+        return None
+    return (
+        f"{path}: altered, it is not the file the manifest names; copy it again or delete it and make the corpus again."
+    )
 
 
 def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:

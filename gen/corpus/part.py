@@ -129,6 +129,23 @@ def deflated(samples: NDArray[Any]) -> bytes:
     return b"".join([*pieces, b"\x03\x00", zlib.adler32(planes.data).to_bytes(4, "big")])
 
 
+def inflated(chunk: bytes, samples: int) -> NDArray[np.int16]:
+    """Counts out of a zlib stream of their shuffled bytes, as :func:`deflated` makes it; ValueError if it is not of as many ``samples``.
+
+    >>> inflated(deflated(np.array([1, -2, 300], np.int16)), 3)
+    array([  1,  -2, 300], dtype=int16)
+    """
+    stream = zlib.decompressobj()
+    planes = stream.decompress(chunk, 2 * samples + 1)
+    if len(planes) != 2 * samples or not stream.eof:
+        raise ValueError(f"a chunk does not hold {samples} samples")
+    low, high = np.frombuffer(planes, np.uint8).reshape(2, samples)
+    counts = high.view(np.int8).astype(np.int16)
+    counts <<= 8
+    counts |= low
+    return counts
+
+
 def _entropy(values: NDArray[np.uint8]) -> float:
     """Bits that each of ``values`` takes."""
     counts = np.bincount(values)

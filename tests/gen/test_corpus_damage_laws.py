@@ -14,6 +14,7 @@ import pytest
 from gen.corpus import (
     SIGNAL,
     open_corpus,
+    open_part,
     part_name,
     read_manifest,
     validate_corpus,
@@ -21,6 +22,7 @@ from gen.corpus import (
     write_manifest,
     write_part,
 )
+from gen.corpus.part import deflated
 from gen.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_corpus
 
@@ -245,6 +247,27 @@ def test_a_signal_is_not_read_by_a_scale_that_is_not_that_of_its_part(copied):
         pytest.raises(CorpusError, match=r"part-00000\.nc: its signal is not of the shape or type"),
     ):
         corpus[SIGNAL][0].load()
+
+
+CHUNKS = {
+    "no stream": (b"no zlib stream", 0),
+    "too short": (deflated(np.zeros(49, np.int16)), 0),
+    "too long": (deflated(np.zeros(5000, np.int16)), 0),
+    "cut short": (deflated(np.arange(50, dtype=np.int16))[:-4], 0),
+    "without its filters": (np.zeros(50, np.int16).tobytes(), 3),
+}
+
+
+@pytest.mark.parametrize("chunk", CHUNKS)
+def test_a_damaged_chunk_is_refused_when_it_is_read(copied, chunk):
+    path = copied / "parts" / part_name(0)
+    content, left_out = CHUNKS[chunk]
+    with h5py.File(path, "r+") as part:
+        part[SIGNAL].id.write_direct_chunk((1, 0, 0), content, left_out)
+    with open_part(path) as part:
+        part[SIGNAL][0].load()
+        with pytest.raises(CorpusError, match=r"part-00000\.nc: damaged \(.*\); generate or copy it again"):
+            part[SIGNAL][1].load()
 
 
 def damaged_part(change):
