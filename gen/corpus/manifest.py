@@ -181,9 +181,15 @@ def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str
     wanted = {f"parts/{row.name}": FileRow(bytes=row.bytes, sha256=row.sha256) for row in manifest.parts}
     if manifest.complete and manifest.index is not None:
         wanted[INDEX_NAME] = manifest.index
-    with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)))) as pool:  # hashing lets other threads run
-        found = pool.map(partial(_file_problem, directory, check), wanted.items())
-        return [problem for problem in found if problem is not None]
+    judge, items = partial(_file_problem, directory, check), list(wanted.items())
+    if check == "size":
+        found = [judge(item) for item in items]
+    else:
+        threads = min(8, len(os.sched_getaffinity(0)))  # hashing lets other threads run
+        with ThreadPoolExecutor(threads) as pool:
+            shares = pool.map(lambda first: [judge(item) for item in items[first::threads]], range(threads))
+            found = [problem for share in shares for problem in share]
+    return sorted(problem for problem in found if problem is not None)
 
 
 def _file_problem(directory: Path, check: Check, item: tuple[str, FileRow]) -> str | None:
