@@ -86,6 +86,8 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
         If the disk refuses the file, with the reason it gives.
     """
     check_name(path)
+    if path.exists() and not path.is_file():
+        raise CorpusError(f"{path}: is no plain file, which would be replaced; choose another name.")
     try:
         with temporary_beside(path) as temporary:
             yield temporary
@@ -98,8 +100,10 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
             finally:
                 os.close(folder)
     except (OSError, RuntimeError) as error:
+        code = getattr(error, "errno", None)  # HDF5 adds addresses and line breaks to its own text
+        reason = os.strerror(code) if code else " ".join(str(error).split())
         raise CorpusError(
-            f"{path}: could not be written ({error}); free some space or choose another folder."
+            f"{path}: could not be written ({reason}); free some space or choose another folder."
         ) from error
 
 

@@ -18,6 +18,7 @@ from gen.corpus import (
     part_name,
     read_manifest,
     validate_corpus,
+    write_durably,
     write_index,
     write_manifest,
     write_part,
@@ -354,6 +355,14 @@ def test_a_full_disk_leaves_no_half_part(tmp_path):
     with pytest.raises(CorpusError, match=r"part-00000\.nc: could not be written .* free some space"):
         write_part(large, tmp_path / part_name(0), "none")
     assert list(tmp_path.iterdir()) == []
+
+
+def test_a_pipe_or_a_folder_is_not_replaced_by_a_file(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for place in (tmp_path / "pipe", tmp_path):
+        with pytest.raises(CorpusError, match="is no plain file, which would be replaced; choose another name"):
+            write_durably(b"x", place)
+    assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 
 
 def test_a_full_disk_leaves_the_last_manifest_as_it_was(copied, request):
