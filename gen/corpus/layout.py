@@ -105,8 +105,9 @@ def plain_attributes(stored: h5py.Dataset, name: str) -> dict[str, Any]:
     attributes = attributes_of(stored)
     attributes.pop("coordinates", None)
     wrong = next((key for key in _ACTED_ON if key in attributes), None)
-    if wrong is not None or attributes.get("_Encoding", "utf-8") != "utf-8":
-        raise ValueError(f"{name} has the attribute {wrong or '_Encoding'}, which only {SIGNAL} may have")
+    encoding = attributes.get("_Encoding")
+    if wrong is not None or encoding not in (None, "utf-8") or (encoding is not None and stored.ndim == 1):
+        raise ValueError(f"{name} has the attribute {wrong or '_Encoding'}, which it may not have")
     return attributes
 
 

@@ -219,6 +219,12 @@ FOUND = {
     "a label is stored in another file": (external_storage, "the values of load are in another file"),
     "a label is a virtual dataset": (virtual_label, "load is a virtual dataset"),
     "a variable of no known dimension": (lambda i: i.create_dataset("x", data=np.zeros(4)), "x is of type"),
+    "numbers with the encoding of text": (
+        lambda i: i["fault"].attrs.create("_Encoding", "utf-8"), "fault has the attribute _Encoding, which it may not have",
+    ),
+    "a label that is packed": (
+        lambda i: i["load"].attrs.create("scale_factor", 2.0), "load has the attribute scale_factor, which it may not have",
+    ),
     "a group": (lambda i: i.create_group("x"), "x"),
 }  # fmt: skip
 
