@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of
-from gen.physics.batch import Record
+from gen.physics.kernel.batch import Record
 
 HERE = Path(__file__).parent
 FLAGS = ("-std=gnu99", "-O3", "-march=native", "-ffast-math", "-fPIC")

@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.compiled import accelerations, compiled, compiler, has_avx512, in_lanes
 from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
 from benchmarks.seed import seed_records
-from gen.physics.batch import Record
+from gen.physics.kernel.batch import Record
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
 from gen.simulate import kernel_record, steps_per_sample

@@ -14,13 +14,13 @@ from numba import njit
 
 from benchmarks.kernel import FULL
 from benchmarks.pairs import seconds
-from gen.physics.batch import lay_out, record_shape
-from gen.physics.decimate import OUTPUTS, decimation, filter_rows
-from gen.physics.gaps import ball_gaps, move_spalls
-from gen.physics.integrate import prepare, set_out, to_next_knot
-from gen.physics.lanes import LANES, zeros
-from gen.physics.motion import STRIDE, Lanes, move_forces, move_processes, turn_rings
-from gen.physics.step import advance
+from gen.physics.kernel.batch import lay_out, record_shape
+from gen.physics.kernel.compiling import LANES, zeros
+from gen.physics.kernel.decimate import OUTPUTS, decimation, filter_rows
+from gen.physics.kernel.integrate import prepare, set_out, to_next_knot
+from gen.physics.kernel.spalls import ball_gaps, move_spalls
+from gen.physics.kernel.step import advance
+from gen.physics.kernel.turning import STRIDE, Lanes, move_forces, move_processes, turn_rings
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios

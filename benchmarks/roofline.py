@@ -17,9 +17,9 @@ from numba import njit
 
 from benchmarks.compiled import HERE, compiler, has_avx512
 from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
-from gen.physics.kernel import N_STATE, Shape, make_shape, param_rows
-from gen.physics.lanes import LANES, copied, square_root, wide, zeros
-from gen.physics.step import advance
+from gen.physics.kernel.compiling import LANES, copied, square_root, wide, zeros
+from gen.physics.kernel.equations import N_STATE, Shape, make_shape, param_rows
+from gen.physics.kernel.step import advance
 
 FLAGS = (
     "-O3",

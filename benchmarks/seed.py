@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.batch import Record
 from gen.physics.bearing import orders
+from gen.physics.kernel.batch import Record
 from gen.physics.rotor import as_columns, rest
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios

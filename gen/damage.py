@@ -6,11 +6,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics import motion
-from gen.physics.batch import Spall as KernelSpall
 from gen.physics.bearing import Bearing, orders
 from gen.physics.hertz import footprints
-from gen.physics.spall import PROFILES, drop, largest_drop
+from gen.physics.kernel import turning as motion
+from gen.physics.kernel.batch import Spall as KernelSpall
+from gen.physics.kernel.drop import PROFILES, drop, largest_drop
 from gen.physics.trace import felt, places, rolled, roughened
 from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
 

@@ -39,7 +39,7 @@ from gen.errors import CorpusError, RecipeError, SimulationError
 from gen.labels import part_dataset
 from gen.measure import compile_mixing, measure
 from gen.outline import outlined_record
-from gen.physics.batch import record_shape
+from gen.physics.kernel.batch import record_shape
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
 from gen.simulate import compile_kernel, kernel_record, simulate, step_errors

@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.damage import kernel_spalls, waviness
-from gen.physics import motion
 from gen.physics.axial import axial_approach
-from gen.physics.batch import Motion, Record, n_terms
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
-from gen.physics.decimate import LEAD
 from gen.physics.elementary import exponential, power
 from gen.physics.hertz import contact_exponent, load_deflection_factor
+from gen.physics.kernel import turning as motion
+from gen.physics.kernel.batch import Motion, Record, n_terms
+from gen.physics.kernel.decimate import LEAD
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.profile import mean_share, share_at
 from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from gen.damage import is_wavy, plain_spalls
 from gen.machinery import bare_record, is_scheduled, knot_times, load_wander, n_knots, wander_terms
-from gen.physics.batch import Record
+from gen.physics.kernel.batch import Record
 from gen.physics.profile import Profile, share_at
 from gen.recipe import Recipe
 from gen.scenarios import Scenario

@@ -14,12 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import find_peaks, get_window, hilbert
 
-from gen.physics.batch import Motion, Record, Spall, lay_out, n_terms, record_shape
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.decimate import decimation
-from gen.physics.integrate import integrate
-from gen.physics.lanes import LANES
+from gen.physics.kernel.batch import Motion, Record, Spall, lay_out, n_terms, record_shape
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.decimate import decimation
+from gen.physics.kernel.integrate import integrate
 from gen.physics.rotor import Machine
 
 FloatArray = NDArray[np.floating]

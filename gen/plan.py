@@ -13,9 +13,9 @@ from typing import Any
 from gen.corpus import FAULTS, SPLITS
 from gen.errors import SimulationError
 from gen.outline import outlined_record
-from gen.physics.batch import record_shape
-from gen.physics.kernel import Shape
-from gen.physics.lanes import LANES
+from gen.physics.kernel.batch import record_shape
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.equations import Shape
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulate import lead_samples, steps_per_sample

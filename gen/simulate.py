@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 
 from gen.errors import SimulationError
 from gen.machinery import physical_record
-from gen.physics.batch import Record, lay_out, record_shape
-from gen.physics.decimate import decimation
-from gen.physics.integrate import Integral, integrate
-from gen.physics.kernel import Shape
-from gen.physics.lanes import LANES
+from gen.physics.kernel.batch import Record, lay_out, record_shape
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.decimate import decimation
+from gen.physics.kernel.equations import Shape
+from gen.physics.kernel.integrate import Integral, integrate
 from gen.physics.rotor import fastest_decay, fastest_swing, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING, Recipe
 from gen.scenarios import Scenario, first_specimens

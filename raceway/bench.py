@@ -20,12 +20,12 @@ from features.table import part_features
 from gen.corpus import write_part
 from gen.labels import part_dataset
 from gen.measure import measure
-from gen.physics.batch import lay_out, record_shape
-from gen.physics.decimate import decimation
-from gen.physics.integrate import integrate
-from gen.physics.kernel import Shape
-from gen.physics.lanes import LANES
-from gen.physics.motion import Lanes
+from gen.physics.kernel.batch import lay_out, record_shape
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.decimate import decimation
+from gen.physics.kernel.equations import Shape
+from gen.physics.kernel.integrate import integrate
+from gen.physics.kernel.turning import Lanes
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios

@@ -12,14 +12,15 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from gen.physics import decimate, gaps, integrate, kernel, lanes, motion, spall, step
-from gen.physics.batch import WAVES, Motion, Record, Spall, lay_out, record_shape
-from gen.physics.integrate import prepare, to_next_knot
-from gen.physics.kernel import AXES, CAGE_C, N_DYNAMIC, N_STATE, STEEPEST, FloatArray, param_rows
-from gen.physics.lanes import KERNEL, LANES
-from gen.physics.motion import ANGLE_ROWS, STRIDE, slow_rows
+from gen.physics.kernel import compiling, decimate, drop, equations, integrate, spalls, step
+from gen.physics.kernel import turning as motion
+from gen.physics.kernel.batch import WAVES, Motion, Record, Spall, lay_out, record_shape
+from gen.physics.kernel.compiling import KERNEL, LANES
+from gen.physics.kernel.equations import AXES, CAGE_C, N_DYNAMIC, N_STATE, STEEPEST, FloatArray, param_rows
+from gen.physics.kernel.integrate import prepare, to_next_knot
+from gen.physics.kernel.step import advance
+from gen.physics.kernel.turning import ANGLE_ROWS, STRIDE, slow_rows
 from gen.physics.rotor import Machine
-from gen.physics.step import advance
 
 EVERY_ACCELERATION = np.eye(AXES)
 
@@ -219,7 +220,7 @@ def fall(fault: Spall, offset: float, arc: float, ball: float, race: float) -> f
     if fault.profile == "half_sine":
         return fault.depth * math.cos(math.pi * offset / (2 * half))
     if fault.profile == "raised_cosine":
-        return fault.depth * (1 - math.cos(math.pi * min(inside / (spall.RAISED_EDGE * half), 1))) / 2
+        return fault.depth * (1 - math.cos(math.pi * min(inside / (drop.RAISED_EDGE * half), 1))) / 2
     if fault.profile == "table":
         drops_there = fault.table[1 if fault.site == "ball" and race < 0 else 0]
         return float(np.interp(offset, np.linspace(-half, half, len(drops_there)), drops_there))
@@ -381,6 +382,6 @@ def _cached(sources: str):
 
 _march = _cached(
     sha256(
-        "".join(map(getsource, (lanes, spall, kernel, step, motion, gaps, decimate, integrate))).encode()
+        "".join(map(getsource, (compiling, drop, equations, step, motion, spalls, decimate, integrate))).encode()
     ).hexdigest()
 )

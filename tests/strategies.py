@@ -8,13 +8,13 @@ from dataclasses import replace
 import numpy as np
 from hypothesis import strategies as st
 
-from gen.physics.batch import Motion, Record, Spall, n_terms
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT
-from gen.physics.motion import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, N_ORDERS
+from gen.physics.kernel.batch import Motion, Record, Spall, n_terms
+from gen.physics.kernel.drop import PROFILES as EVERY_PROFILE
+from gen.physics.kernel.turning import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, N_ORDERS
 from gen.physics.rotor import Machine, sensor_springs
-from gen.physics.spall import PROFILES as EVERY_PROFILE
 
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular")
 NO_WAVES = np.empty(0)

@@ -7,9 +7,9 @@ import pytest
 from numba import njit
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel import N_STATE, make_shape, param_rows
-from gen.physics.lanes import LANES
-from gen.physics.step import advance
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.equations import N_STATE, make_shape, param_rows
+from gen.physics.kernel.step import advance
 
 STAGES = 2  # bodies of the Runge-Kutta step, each with the force of every ball
 # a square root is the processor's or begins with half the exponent: every number of a vector shifted by one bit

@@ -10,17 +10,9 @@ hertz      point and line contact: geometry to load-deflection factor
 rating     static load rating and equivalent static load
 lubricant  oil film and temperature: clearance, stiffness, damping
 profile    how speed and load run over a record
-lanes      how kernels are compiled: one record per lane
-spall      how far a ball drops as it rolls over a defect
 rotor      machine constants, static rest, fastest swing
 axial      what an axial load takes up of the clearance
-kernel     equations of motion
-step       the Runge-Kutta step
-gaps       the gap under every ball: waviness and spalls
-motion     how shaft, cage, balls and spalls move between two steps' knots
+kernel     compiled: records in lanes, integrated and decimated
 trace      path of a ball over a measured surface, and what is felt of it
-decimate   from the rate of the steps down to the sample rate
-integrate  a batch from start to end, decimated on the way
-batch      records laid out in lanes
 ========== ================================================================
 """

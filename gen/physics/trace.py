@@ -1,7 +1,7 @@
 """The path of a ball over a measured or rough surface, and what a contact of finite width feels of it.
 
 A rigid ball rests on whatever it touches first: over a surface at depth ``z`` its centre drops by the least of ``z`` plus the sagittas of
-ball and race over the distance to each point. Two sharp edges and a floor make the ``geometric`` profile of :mod:`gen.physics.spall`
+ball and race over the distance to each point. Two sharp edges and a floor make the ``geometric`` profile of :mod:`gen.physics.kernel.drop`
 again. A contact is as wide as its Hertzian ellipse, and feels the mean of the path over it, weighted as the pressure is: a contact
 filter, as Remington describes it for wheel and rail [1]_. It takes the edge off spalls narrower than the contact.
 
@@ -11,7 +11,7 @@ filter, as Remington describes it for wheel and rail [1]_. It takes the edge off
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.motion import TABLE_POINTS
+from gen.physics.kernel.turning import TABLE_POINTS
 
 FloatArray = NDArray[np.float64]
 

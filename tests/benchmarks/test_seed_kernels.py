@@ -9,7 +9,7 @@ import pytest
 from benchmarks import rivals
 from benchmarks.compiled import accelerations, compiled, compiler, has_avx512, in_lanes
 from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_records
-from gen.physics.batch import Record
+from gen.physics.kernel.batch import Record
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
 from gen.simulate import kernel_record

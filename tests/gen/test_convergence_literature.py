@@ -11,8 +11,8 @@ outweigh what is smooth.
 import numpy as np
 import pytest
 
-from gen.physics.batch import Motion, Spall
-from gen.physics.lanes import LANES
+from gen.physics.kernel.batch import Motion, Spall
+from gen.physics.kernel.compiling import LANES
 from tests.reference import march_lanes
 from tests.strategies import RIG, record
 

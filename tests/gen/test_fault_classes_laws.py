@@ -11,9 +11,9 @@ from gen.corpus import FAULTS, SIGNAL, open_corpus, read_manifest, validate_corp
 from gen.damage import deepest
 from gen.generate import generate
 from gen.machinery import physical_record
-from gen.physics.batch import record_shape
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel import make_shape
+from gen.physics.kernel.batch import record_shape
+from gen.physics.kernel.equations import make_shape
 from gen.recipe import read_recipe
 from gen.replay import replay
 from gen.scenarios import draw_scenarios, fault_of_each_specimen

@@ -5,12 +5,12 @@ import pytest
 from hypothesis import given, settings
 from scipy.signal import find_peaks, hilbert
 
-from gen.physics.batch import Motion, Spall, lay_out, record_shape
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.decimate import decimation
-from gen.physics.integrate import integrate
-from gen.physics.lanes import LANES
+from gen.physics.kernel.batch import Motion, Spall, lay_out, record_shape
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.decimate import decimation
+from gen.physics.kernel.integrate import integrate
 from tests.strategies import RIG, record, seeds, wandering_records
 
 FS = 12_000

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from gen.physics.batch import Motion, Record, Spall, n_terms
 from gen.physics.bearing import Bearing
+from gen.physics.kernel.batch import Motion, Record, Spall, n_terms
 from gen.physics.rotor import Machine
 from tests.reference import EVERY_ACCELERATION, march_lanes, right_hand_side, slow_motion
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.batch import Motion, Spall
-from gen.physics.lanes import LANES
+from gen.physics.kernel.batch import Motion, Spall
+from gen.physics.kernel.compiling import LANES
 from tests.reference import march_lanes
 from tests.strategies import RIG, machines, record, steady_motions, wandering_records
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from gen.physics.lanes import square_root
+from gen.physics.kernel.compiling import square_root
 
 
 @njit

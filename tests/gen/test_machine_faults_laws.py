@@ -11,10 +11,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.stats import kstest
 
-from gen.physics.batch import Motion, Spall
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.motion import KNOCK_SCATTER, KNOCK_SECONDS
+from gen.physics.kernel.batch import Motion, Spall
+from gen.physics.kernel.turning import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.rotor import as_columns, rest
 from tests.reference import knock_scatter, march_lanes
 from tests.strategies import RIG, angles, record

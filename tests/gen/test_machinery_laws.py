@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 from gen.labels import part_dataset
 from gen.machinery import cosine_sum, heaviest_ball_load, physical_record, true_motion
 from gen.measure import measure
-from gen.physics.batch import record_shape
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor
+from gen.physics.kernel.batch import record_shape
 from gen.physics.lubricant import STEEL_EXPANSION
 from gen.scenarios import draw_scenarios
 from gen.simulate import Response, lead_samples

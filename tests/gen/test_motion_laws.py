@@ -7,9 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.batch import Spall
 from gen.physics.bearing import slipping_orders
-from gen.physics.motion import SPEED_TERMS
+from gen.physics.kernel.batch import Spall
+from gen.physics.kernel.turning import SPEED_TERMS
 from tests.reference import march_lanes, process, slow_motion
 from tests.strategies import angles, machines, record, seeds, wandering_motions, wandering_records
 

@@ -11,7 +11,7 @@ from gen.errors import SimulationError
 from gen.generate import compile_kernels
 from gen.machinery import schedule
 from gen.outline import outlined_record
-from gen.physics.batch import record_shape
+from gen.physics.kernel.batch import record_shape
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.lanes import LANES
+from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import Machine, as_columns, ball_forces, fastest_swing, likely_stiffness, rest, sensor_springs
 from tests.strategies import angles, machines
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.spall import largest_drop
+from gen.physics.kernel.drop import largest_drop
 
 DROPS = json.loads((Path(__file__).parents[1] / "golden" / "model.json").read_text())["largest_drops_6205_um"]
 

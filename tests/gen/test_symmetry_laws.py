@@ -6,11 +6,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.batch import WAVES, Spall, lay_out, record_shape
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel import N_DYNAMIC
-from gen.physics.lanes import LANES
-from gen.physics.motion import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
+from gen.physics.kernel.batch import WAVES, Spall, lay_out, record_shape
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.equations import N_DYNAMIC
+from gen.physics.kernel.turning import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from tests.reference import march_lanes
 from tests.strategies import RIG, angles, record, steady_motions, troubled_records
 

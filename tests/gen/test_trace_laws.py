@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.motion import TABLE_POINTS
-from gen.physics.spall import GEOMETRIC, drop, sagitta
+from gen.physics.kernel.drop import GEOMETRIC, drop, sagitta
+from gen.physics.kernel.turning import TABLE_POINTS
 from gen.physics.trace import felt, places, rolled, roughened
 
 law = settings(deadline=None, max_examples=40)

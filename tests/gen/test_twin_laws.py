@@ -6,11 +6,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.batch import lay_out, record_shape
-from gen.physics.decimate import decimation
-from gen.physics.integrate import integrate
-from gen.physics.kernel import N_DYNAMIC
-from gen.physics.lanes import LANES
+from gen.physics.kernel.batch import lay_out, record_shape
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.decimate import decimation
+from gen.physics.kernel.equations import N_DYNAMIC
+from gen.physics.kernel.integrate import integrate
 from tests.reference import (
     contact_stiffness,
     contacts,

@@ -12,12 +12,13 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics import decimate, gaps, kernel, lanes, motion, spall, step
-from gen.physics.decimate import OUTPUTS, Decimation, Single, filter_rows
-from gen.physics.gaps import N_ROTATIONS, ball_gaps, move_gaps, move_spalls
-from gen.physics.kernel import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, param_rows
-from gen.physics.lanes import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
-from gen.physics.motion import (
+from gen.physics.kernel import compiling, decimate, drop, equations, spalls, step, turning
+from gen.physics.kernel.compiling import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
+from gen.physics.kernel.decimate import OUTPUTS, Decimation, Single, filter_rows
+from gen.physics.kernel.equations import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, param_rows
+from gen.physics.kernel.spalls import N_ROTATIONS, ball_gaps, move_gaps, move_spalls
+from gen.physics.kernel.step import advance
+from gen.physics.kernel.turning import (
     ANGLE_ROWS,
     JITTER,
     STRIDE,
@@ -29,7 +30,6 @@ from gen.physics.motion import (
     start_processes,
     turn_rings,
 )
-from gen.physics.step import advance
 
 FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
 BLOCK = 8  # knots between two runs of the filters, a multiple of what they give in one pass
@@ -177,7 +177,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
 
 integrate_lanes = _cached(
     sha256(
-        "".join([str(LANES), *map(getsource, (lanes, spall, kernel, step, motion, gaps, decimate))]).encode()
+        "".join([str(LANES), *map(getsource, (compiling, drop, equations, step, turning, spalls, decimate))]).encode()
     ).hexdigest()
 )
 

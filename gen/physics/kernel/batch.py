@@ -8,14 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gen.physics import kernel, motion
 from gen.physics.bearing import Bearing
-from gen.physics.kernel import FloatArray, Shape
-from gen.physics.lanes import LANES
+from gen.physics.kernel import equations, turning
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.drop import PROFILES
+from gen.physics.kernel.equations import FloatArray, Shape
 from gen.physics.rotor import Machine, as_columns, rest
-from gen.physics.spall import PROFILES
 
-WAVES = 4 * motion.N_ORDERS  # amplitudes of both races
+WAVES = 4 * turning.N_ORDERS  # amplitudes of both races
 
 
 class Spall(NamedTuple):
@@ -86,7 +86,7 @@ class Record(NamedTuple):
 
 def n_terms(n_balls: int) -> int:
     """Number of cosine terms of all processes: speed, slip, spin, spin axis, and the jitter of every ball."""
-    return motion.JITTER_FIRST + motion.JITTER_TERMS * n_balls
+    return turning.JITTER_FIRST + turning.JITTER_TERMS * n_balls
 
 
 def spall_reach(bearing: Bearing, spall: Spall) -> tuple[float, float]:
@@ -98,7 +98,7 @@ def spall_reach(bearing: Bearing, spall: Spall) -> tuple[float, float]:
 def record_shape(record: Record) -> Shape:
     """Shape of the kernel that a record needs; it depends on nothing but the record."""
     turning = record.motion
-    return kernel.make_shape(
+    return equations.make_shape(
         record.bearing.n_balls,
         len(record.pickups),
         displacement=record.displacement,
@@ -113,7 +113,7 @@ def record_shape(record: Record) -> Shape:
     )
 
 
-def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool = True) -> motion.Lanes:
+def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool = True) -> turning.Lanes:
     """Records in lanes, at most ``LANES`` of them and all of ``shape``, starting from rest or from zero.
 
     ``knot`` is the time between two knots [s].
@@ -122,16 +122,16 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
     machines = as_columns([record.machine for record in padded])
     motions = Motion(*np.asarray([record.motion for record in padded], dtype=float).T)
     n_balls = len(shape.balls)
-    state = np.zeros((kernel.N_STATE, LANES))
+    state = np.zeros((equations.N_STATE, LANES))
     cage = np.asarray(motions.cage_angle)
     if at_rest:
         places = cage[:, None] + 2 * np.pi * np.arange(n_balls) / n_balls
         state[:4] = rest(machines, places).T
         state[4:6] = state[2:4]
-    state[kernel.CAGE_C], state[kernel.CAGE_S] = np.cos(cage), np.sin(cage)
-    state[kernel.SHAFT_C], state[kernel.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
+    state[equations.CAGE_C], state[equations.CAGE_S] = np.cos(cage), np.sin(cage)
+    state[equations.SHAFT_C], state[equations.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
     spalls, tables = _spalls(padded)
-    return motion.Lanes(
+    return turning.Lanes(
         state.ravel(),
         _params(padded, machines, shape).ravel(),
         _drive(padded, motions, machines, knot).ravel(),
@@ -146,20 +146,20 @@ def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool =
 
 
 def _params(records: list[Record], machine: Machine, shape: Shape) -> FloatArray:
-    params = np.zeros((kernel.direction_row(shape), LANES))
+    params = np.zeros((equations.direction_row(shape), LANES))
     with np.errstate(divide="ignore"):
         sensor = np.where(np.asarray(machine.sensor_mass) > 0, 1 / np.asarray(machine.sensor_mass), 0.0)
     damping = np.divide(machine.contact_damping, machine.load_deflection_factor)
-    params[: kernel.N_CONSTANTS] = [
+    params[: equations.N_CONSTANTS] = [
         machine.load_deflection_factor, damping, machine.contact_cosine, machine.half_clearance,
         1 / np.asarray(machine.shaft_mass), 1 / np.asarray(machine.housing_mass), sensor, machine.ring_damping,
         machine.shaft_damping, machine.shaft_stiffness, machine.ring_stiffness_x, machine.ring_stiffness_y,
         machine.support_stiffness_x, machine.support_stiffness_y, machine.support_damping_x, machine.support_damping_y,
         machine.sensor_stiffness_x, machine.sensor_stiffness_y, machine.sensor_damping, machine.looseness,
     ]  # fmt: skip
-    params[kernel.FORCES], params[kernel.FORCES + 1] = machine.load_x, machine.load_y
+    params[equations.FORCES], params[equations.FORCES + 1] = machine.load_x, machine.load_y
     for lane, record in enumerate(records):
-        params[kernel.PICKUPS :, lane] = record.pickups.ravel()
+        params[equations.PICKUPS :, lane] = record.pickups.ravel()
     return params
 
 
@@ -182,13 +182,13 @@ def _drive(records: list[Record], motions: Motion, machine: Machine, knot: float
 
 def _spalls(records: list[Record]) -> tuple[FloatArray, FloatArray]:
     """Spalls, shape (spall, row, lane), and the tables of those that have one, shape (table, point)."""
-    sites = {"inner": motion.INNER, "outer": motion.OUTER, "ball": motion.BALL_SITE}
-    spalls = np.zeros((max(len(record.spalls) for record in records), motion.SPALL_ROWS, LANES))
-    tables = [np.zeros(motion.TABLE_POINTS)]
+    sites = {"inner": turning.INNER, "outer": turning.OUTER, "ball": turning.BALL_SITE}
+    spalls = np.zeros((max(len(record.spalls) for record in records), turning.SPALL_ROWS, LANES))
+    tables = [np.zeros(turning.TABLE_POINTS)]
     # of a ball from its place in the cage, at most: all terms at their peaks
-    farthest = [r.motion.jitter_rms * math.sqrt(2 * motion.JITTER_TERMS) + abs(r.motion.late_by) for r in records]
-    spalls[:, motion.PERIOD] = 1.0
-    spalls[:, motion.REACH] = -1.0  # where there is no spall, no ball is near
+    farthest = [r.motion.jitter_rms * math.sqrt(2 * turning.JITTER_TERMS) + abs(r.motion.late_by) for r in records]
+    spalls[:, turning.PERIOD] = 1.0
+    spalls[:, turning.REACH] = -1.0  # where there is no spall, no ball is near
     for lane, record in enumerate(records):
         for place, spall in enumerate(record.spalls):
             half, arc = spall_reach(record.bearing, spall)
@@ -204,26 +204,26 @@ def _spalls(records: list[Record]) -> tuple[FloatArray, FloatArray]:
                 len(tables),
             )  # fmt: skip
             for drops in spall.table:
-                points = np.linspace(0, len(drops) - 1, motion.TABLE_POINTS)
+                points = np.linspace(0, len(drops) - 1, turning.TABLE_POINTS)
                 tables.append(np.interp(points, np.arange(len(drops)), drops))
     return spalls, np.stack(tables)
 
 
 def _waves(records: list[Record], shape: Shape) -> FloatArray:
-    """Waviness amplitudes as :class:`motion.Lanes` has them, shape (row, lane)."""
-    n_balls, terms = len(shape.balls), motion.n_terms(shape)
+    """Waviness amplitudes as :class:`turning.Lanes` has them, shape (row, lane)."""
+    n_balls, terms = len(shape.balls), turning.n_terms(shape)
     of_races = max(record.waves.size > 0 for record in records)
     of_balls = max(record.waves.size > WAVES for record in records)
-    waves = np.zeros((motion.race_rows(shape) * of_races + 2 * motion.BALL_ORDERS * n_balls * of_balls, LANES))
+    waves = np.zeros((turning.race_rows(shape) * of_races + 2 * turning.BALL_ORDERS * n_balls * of_balls, LANES))
     for lane, record in enumerate(records):
         if record.waves.size:
             races = np.zeros((2, terms * n_balls, 2))
             own = record.waves[:WAVES].reshape(2, 2, -1).transpose(0, 2, 1)
-            races[:, motion.LOWEST_ORDER : motion.HIGHEST_ORDER + 1] = own
+            races[:, turning.LOWEST_ORDER : turning.HIGHEST_ORDER + 1] = own
             waves[: races.size, lane] = races.ravel()
         if record.waves.size > WAVES:
-            balls = record.waves[WAVES:].reshape(motion.BALL_ORDERS, 2, n_balls).transpose(0, 2, 1)
-            waves[motion.race_rows(shape) :, lane] = balls.ravel()
+            balls = record.waves[WAVES:].reshape(turning.BALL_ORDERS, 2, n_balls).transpose(0, 2, 1)
+            waves[turning.race_rows(shape) :, lane] = balls.ravel()
     return waves
 
 
@@ -239,5 +239,5 @@ def _schedules(records: list[Record]) -> FloatArray:
 
 def _phasors(records: list[Record], knot: float) -> FloatArray:
     phases = np.stack([record.phases for record in records], axis=1)
-    turns = 2 * np.pi * knot * motion.STRIDE * np.stack([record.frequencies for record in records], axis=1)
+    turns = 2 * np.pi * knot * turning.STRIDE * np.stack([record.frequencies for record in records], axis=1)
     return np.stack([np.cos(phases), np.sin(phases), np.cos(turns), np.sin(turns)], axis=1)

@@ -10,9 +10,20 @@ import math
 import numpy as np
 from numba import njit
 
-from gen.physics.kernel import CAGE_C, CAGE_S, MAX_BALLS, SHAFT_C, SHAFT_S, FloatArray, Shape, drop_row, gap_row
-from gen.physics.lanes import INLINE, LANES, cosine, fma, lane_count, sine, wide
-from gen.physics.motion import (
+from gen.physics.kernel.compiling import INLINE, LANES, cosine, fma, lane_count, sine, wide
+from gen.physics.kernel.drop import GEOMETRIC, RECTANGULAR, TABLE, drop
+from gen.physics.kernel.equations import (
+    CAGE_C,
+    CAGE_S,
+    MAX_BALLS,
+    SHAFT_C,
+    SHAFT_S,
+    FloatArray,
+    Shape,
+    drop_row,
+    gap_row,
+)
+from gen.physics.kernel.turning import (
     ARC,
     AXIS_LIMIT,
     AXIS_OFFSET,
@@ -47,7 +58,6 @@ from gen.physics.motion import (
     race_rows,
     slow_rows,
 )  # fmt: skip
-from gen.physics.spall import GEOMETRIC, RECTANGULAR, TABLE, drop
 
 _TURNS = np.arange(MAX_BALLS)[:, None] * np.arange(MAX_BALLS) / np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None, None]
 COS_OF_TURNS, SIN_OF_TURNS = np.cos(2 * np.pi * _TURNS), np.sin(2 * np.pi * _TURNS)  # (number of balls, ball, order)

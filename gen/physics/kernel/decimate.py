@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 from scipy.signal import firwin
 
-from gen.physics.lanes import INLINE, LANES, fma, lane_count, wide
+from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
 
 Single = NDArray[np.float32]
 

@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from gen.physics.kernel import (
+from gen.physics.kernel.compiling import CALLED, INLINE, LANES, cosine, fma, lane_count, sine, wide
+from gen.physics.kernel.equations import (
     CAGE_C,
     CAGE_TURN_C,
     CAGE_TURN_S,
@@ -28,7 +29,6 @@ from gen.physics.kernel import (
     Shape,
     direction_row,
 )  # fmt: skip
-from gen.physics.lanes import CALLED, INLINE, LANES, cosine, fma, lane_count, sine, wide
 
 # Rows of ``drive``: what a record's motion is made of.
 (

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics.lanes import CALLED, INLINE, LANES, fma, square_root
+from gen.physics.kernel.compiling import CALLED, INLINE, LANES, fma, square_root
 
 FloatArray = NDArray[np.float64]
 
@@ -51,7 +51,7 @@ Push = tuple[float, float, float]
 
 
 class Shape(NamedTuple):
-    """What a compiled kernel contains, as lengths of tuples (see :mod:`gen.physics.lanes`); a record pays for nothing else."""
+    """What a compiled kernel contains, as lengths of tuples (see :mod:`gen.physics.kernel.compiling`); a record pays for nothing else."""
 
     balls: tuple[None, ...]
     channels: tuple[None, ...]

@@ -7,7 +7,8 @@ body it is not faster, and that body takes twice as long to compile.
 
 from numba import njit
 
-from gen.physics.kernel import (
+from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
+from gen.physics.kernel.equations import (
     AXES,
     BEGINNING,
     CAGE_C,
@@ -25,7 +26,6 @@ from gen.physics.kernel import (
     accelerations,
     drop_row,
 )  # fmt: skip
-from gen.physics.lanes import INLINE, LANES, fma, lane_count, wide
 
 State = tuple[float, ...]
 

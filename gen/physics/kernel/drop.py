@@ -9,7 +9,7 @@ import math
 
 from numba import njit
 
-from gen.physics.lanes import CALLED, cosine, sine
+from gen.physics.kernel.compiling import CALLED, cosine, sine
 
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular", "table")
 GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR, TABLE = range(5)
