@@ -32,7 +32,7 @@ test: lint
 	$(BIN)/python -m pytest -n logical --dist worksteal
 
 generated: $(VENV)/installed
-	$(BIN)/python -m gen.recipe.reference .
+	$(BIN)/python -m gen.pages .
 
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks

@@ -14,7 +14,7 @@ from benchmarks.seed import seed_records
 from gen.physics.kernel.batch import Record
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulate import kernel_record, steps_per_sample
+from gen.simulation.simulate import kernel_record, steps_per_sample
 from raceway.bench import bench
 
 SEED, FULL = "ophel2025", Path(__file__).with_name("full.yaml")

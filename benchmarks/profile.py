@@ -24,7 +24,7 @@ from gen.physics.kernel.turning import STRIDE, Lanes, move_forces, move_processe
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulate import kernel_record, steps_per_sample
+from gen.simulation.simulate import kernel_record, steps_per_sample
 from raceway.bench import bench
 
 KNOTS, TRIES = 400, 25

@@ -13,7 +13,7 @@ from gen.physics.kernel.batch import Record
 from gen.physics.rotor import as_columns, rest
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
-from gen.simulate import kernel_record
+from gen.simulation.simulate import kernel_record
 
 FloatArray = NDArray[np.float64]
 

@@ -11,12 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.signal import butter, hilbert, sosfiltfilt
 
-from gen.measure import measure
+from gen.measurement.measure import measure
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
-from gen.simulate import simulate
+from gen.simulation.simulate import simulate
 
 FS, SECONDS, RESONANCE = 12_000, 4.0, 3000.0
 TURNING = {"kind": "uniform", "low": 0, "high": 360}

@@ -2,33 +2,28 @@
 
 ``recipe.yaml -> read_recipe -> Recipe -> draw_scenarios -> [Scenario] -> simulate -> Response -> measure -> records -> corpus``
 
-============= ==================================================================
-module        responsibility
-============= ==================================================================
-errors        what can go wrong, one sentence each
-limits        how much a file from elsewhere may ask for
-cluster       independent tasks on dask
-plain_files   files opened only if they are no pipes or devices
-yaml_files    recipes and mapping files, read within the limits
-physics       pure: bearing, Hertz contact, spalls, machine, kernel
-corpus        the netCDF format: write, index, open, validate
-importers     real recordings into the same format
-distributions what a recipe may draw from
-recipe        YAML to a frozen model
-scenarios     rigs, specimens and records, fully drawn
-damage        spalls and waviness, as the kernel takes them
-machinery     what the kernel needs of a scenario
-simulate      scenarios to accelerations
-outline       kernel shape and steps of a record, without building it
-sound         what a machine sounds like: paths, noise, lines
-mixing        bearing and background put together, compiled
-measure       accelerations to what a data-acquisition card stores
-labels        what is written beside each record
-generate      a corpus, part by part, with dask
-paper         the seed paper, run and held against what it says
-replay        any record again, bit for bit
-plan          what a recipe would make, without making it
-============= ==================================================================
+=========== ==================================================================
+module      responsibility
+=========== ==================================================================
+errors      what can go wrong, one sentence each
+limits      how much a file from elsewhere may ask for
+cluster     independent tasks on dask
+plain_files files opened only if they are no pipes or devices
+yaml_files  recipes and mapping files, read within the limits
+physics     pure: bearing, Hertz contact, spalls, machine, kernel
+corpus      the netCDF format: write, index, open, validate
+importers   real recordings into the same format
+recipe      YAML to a frozen model
+scenarios   rigs, specimens and records, fully drawn
+simulation  scenarios to accelerations
+measurement accelerations to what a data-acquisition card stores
+labels      what is written beside each record
+generate    a corpus, part by part, with dask
+replay      any record again, bit for bit
+plan        what a recipe would make, without making it
+pages       documentation pages written from the code
+paper       the seed paper, run and held against what it says
+=========== ==================================================================
 
 Data flows down this list; a module imports only modules above it.
 """
@@ -39,7 +34,7 @@ from gen.generate import generate
 from gen.recipe import read_recipe
 from gen.replay import replay
 from gen.scenarios import draw_scenarios
-from gen.simulate import simulate
+from gen.simulation.simulate import simulate
 
 __all__ = [
     "ClusterError",

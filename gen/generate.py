@@ -37,12 +37,12 @@ from gen.corpus import (
 )
 from gen.errors import CorpusError, RecipeError, SimulationError
 from gen.labels import part_dataset
-from gen.measure import compile_mixing, measure
-from gen.outline import outlined_record
+from gen.measurement.measure import compile_mixing, measure
 from gen.physics.kernel.batch import record_shape
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
-from gen.simulate import compile_kernel, kernel_record, simulate, step_errors
+from gen.simulation.outline import outlined_record
+from gen.simulation.simulate import compile_kernel, kernel_record, simulate, step_errors
 
 Progress = Callable[[int, int], None]
 

@@ -10,14 +10,14 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, FAULTS, SPLITS, Variable, make_dataset
-from gen.damage import deepest
-from gen.machinery import true_motion
-from gen.measure import Measured
+from gen.measurement.measure import Measured
 from gen.physics.bearing import orders
 from gen.physics.profile import mean_share, share_at
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
-from gen.simulate import Response
+from gen.simulation.damage import deepest
+from gen.simulation.machine import true_motion
+from gen.simulation.simulate import Response
 
 EXTRA = (
     Variable("axial_load", "f8", "N", "operating", "axial load"),

@@ -12,13 +12,13 @@ from typing import Any
 
 from gen.corpus import FAULTS, SPLITS
 from gen.errors import SimulationError
-from gen.outline import outlined_record
 from gen.physics.kernel.batch import record_shape
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.equations import Shape
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulate import lead_samples, steps_per_sample
+from gen.simulation.outline import outlined_record
+from gen.simulation.simulate import lead_samples, steps_per_sample
 
 MOST_DRAWN = 5000  # records, about 2 s; of a larger corpus as many parts, spread over it
 MOST_DRAWN_DEAR = 1500  # the same with an axial load or a load that wanders, which take another 0.5 ms a record each

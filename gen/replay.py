@@ -9,10 +9,10 @@ import xarray as xr
 from gen.corpus import SIGNAL, open_corpus, read_manifest
 from gen.errors import CorpusError
 from gen.labels import part_dataset
-from gen.measure import measure
+from gen.measurement.measure import measure
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
-from gen.simulate import simulate
+from gen.simulation.simulate import simulate
 
 
 def corpus_recipe(directory: Path) -> Recipe:

@@ -19,7 +19,7 @@ from typing import Any
 from features.table import part_features
 from gen.corpus import write_part
 from gen.labels import part_dataset
-from gen.measure import measure
+from gen.measurement.measure import measure
 from gen.physics.kernel.batch import lay_out, record_shape
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
@@ -29,7 +29,7 @@ from gen.physics.kernel.turning import Lanes
 from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulate import Response, kernel_record, lead_samples, simulate, steps_per_sample
+from gen.simulation.simulate import Response, kernel_record, lead_samples, simulate, steps_per_sample
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5

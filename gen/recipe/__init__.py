@@ -1,18 +1,18 @@
 """The recipe: YAML in, a frozen model out.
 
-========= ========================================================
-module    responsibility
-========= ========================================================
-section   what every part shares: units, bounds, known keys
-machine   bearing, machine, lubricant, specimen
-faults    spalls, worn races, broken cages, several at once
-operation speed and load with their profiles, slip, temperature
-sensing   sensors, path, background, level, converter
-loads     loads that no bearing of the recipe can carry
-model     the recipe as a whole
-reading   files, names, error sentences, hash and JSON schema
-reference ``recipes/README.md`` and ``recipes/schema.json``
-========= ========================================================
+============= ========================================================
+module        responsibility
+============= ========================================================
+distributions what a recipe may draw from
+section       what every part shares: units, bounds, known keys
+machine       bearing, machine, lubricant, specimen
+faults        spalls, worn races, broken cages, several at once
+operation     speed and load with their profiles, slip, temperature
+sensing       sensors, path, background, level, converter
+loads         loads that no bearing of the recipe can carry
+model         the recipe as a whole
+reading       files, names, error sentences, hash and JSON schema
+============= ========================================================
 """
 
 from gen.recipe.faults import (

@@ -4,8 +4,8 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictInt, model_validator
 
-from gen.distributions import Distribution, Number, within
 from gen.physics.kernel.turning import HIGHEST_ORDER, LOWEST_ORDER
+from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Section, Weight
 
 MAX_SPALLS = 16

@@ -6,10 +6,10 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from gen.distributions import Distribution, Number, within
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.kernel.equations import MAX_BALLS
+from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Count, Name, Section
 
 _KNOWN = tuple(

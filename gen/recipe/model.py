@@ -9,8 +9,8 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, StrictInt, StringConstraints, model_validator
 
 from gen.corpus import Codec
-from gen.distributions import Number
 from gen.limits import check_limit
+from gen.recipe.distributions import Number
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
 from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing, Contact, GeometryBearing, Machine, Specimen

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from gen.distributions import Distribution, Number, within
+from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Section
 
 Share = Annotated[Number, Field(gt=0, le=1000)]

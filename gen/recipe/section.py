@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field, StrictInt, StringConstraints, ValidationInfo, field_validator
 
-from gen.distributions import Number, check_bounds
+from gen.recipe.distributions import Number, check_bounds
 
 _UNITS = {
     "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "rpm": 1 / 60, "deg": math.pi / 180, "percent": 1e-2, "mm_s": 1e-3, "mm2_s": 1e-6,

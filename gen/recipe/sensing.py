@@ -4,7 +4,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import AfterValidator, BeforeValidator, Field, StrictInt
 
-from gen.distributions import Distribution, Number, within
+from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Name, Section, Weight
 
 MAX_OVERSAMPLING = 96

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from scipy.stats import qmc
 
 from gen.corpus import SPLITS
-from gen.distributions import weighted_index
 from gen.errors import RecipeError
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
@@ -29,6 +28,7 @@ from gen.recipe import (
 )
 from gen.recipe import Path as WantedPath
 from gen.recipe import Profile as WantedProfile
+from gen.recipe.distributions import weighted_index
 from gen.scenarios.draws import Draws
 from gen.scenarios.faults import damaged, fault_of_each_specimen
 from gen.scenarios.model import (

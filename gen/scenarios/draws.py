@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
-from gen.distributions import Grid
 from gen.recipe import Section, split_unit
+from gen.recipe.distributions import Grid
 from gen.scenarios.model import Drawn
 
 _unit_of = functools.cache(split_unit)

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from gen.corpus import FAULTS
-from gen.distributions import weighted_index
 from gen.errors import RecipeError
 from gen.physics.bearing import Bearing
 from gen.recipe import (
@@ -21,6 +20,7 @@ from gen.recipe import (
     Recipe,
     fault_class,
 )
+from gen.recipe.distributions import weighted_index
 from gen.scenarios.draws import Draws
 from gen.scenarios.model import Purpose, Spall, Specimen, Wear, stream
 

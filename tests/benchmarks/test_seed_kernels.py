@@ -12,7 +12,7 @@ from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_reco
 from gen.physics.kernel.batch import Record
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulate import kernel_record
+from gen.simulation.simulate import kernel_record
 from tests.reference import march_lanes
 
 FS, SAMPLES, LANES = 100_000, 500, 8

@@ -14,7 +14,7 @@ from gen.physics.axial import HALF_LOADED, axial_approach
 from gen.physics.hertz import LINE_EXPONENT
 from gen.plan import plan
 from gen.scenarios import draw_scenarios
-from gen.simulate import simulate
+from gen.simulation.simulate import simulate
 from tests.strategies import RIG
 
 law = settings(deadline=None, max_examples=40)

@@ -22,7 +22,7 @@ from gen.replay import replay
 from gen.scenarios import draw_scenarios
 
 GENERATE = importlib.import_module("gen.generate")  # the packages give the functions under these names
-SIMULATE = importlib.import_module("gen.simulate")
+SIMULATE = importlib.import_module("gen.simulation.simulate")
 
 
 class InterruptedAt:

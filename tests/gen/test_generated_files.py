@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from gen.recipe.reference import PAGES
+from gen.pages import PAGES
 
 ROOT = Path(__file__).parents[2]
 

@@ -8,9 +8,9 @@ import pytest
 
 from gen.corpus import FAULTS, SPLITS
 from gen.labels import part_dataset
-from gen.measure import measure
+from gen.measurement.measure import measure
 from gen.scenarios import draw_scenarios
-from gen.simulate import Response, kernel_record, lead_samples
+from gen.simulation.simulate import Response, kernel_record, lead_samples
 
 FS = 12_000.0
 BALL, PITCH, Z = 7.94e-3, 39.04e-3, 9  # 6205

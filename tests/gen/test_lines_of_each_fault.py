@@ -10,11 +10,11 @@ import pytest
 
 from features.demodulation import analytic_band, envelope_spectrum
 from features.spectra import fourier_coefficients
-from gen.measure import measure
+from gen.measurement.measure import measure
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.scenarios import draw_scenarios
-from gen.simulate import simulate
+from gen.simulation.simulate import simulate
 
 FS = 12_000
 CLEAR_DB, ABSENT_DB = 15.0, 12.0

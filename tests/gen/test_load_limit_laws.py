@@ -9,7 +9,7 @@ from gen.physics.rating import LEAST_SAFETY, computed_rating, static_rating
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
-from gen.simulate import kernel_record
+from gen.simulation.simulate import kernel_record
 
 LIMIT = CATALOGUE["6205"].static_rating / LEAST_SAFETY
 OWN = {"n_balls": 9, "pitch_mm": 39.04, "ball_mm": 7.94}

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from gen.machinery import true_motion
-from gen.measure import measure
+from gen.measurement.measure import measure
 from gen.scenarios import draw_scenarios
-from gen.simulate import Response, lead_samples, simulate
+from gen.simulation.machine import true_motion
+from gen.simulation.simulate import Response, lead_samples, simulate
 from tests.recipes import EVERYTHING
 
 FS = 12_000.0

@@ -8,14 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.labels import part_dataset
-from gen.machinery import cosine_sum, heaviest_ball_load, physical_record, true_motion
-from gen.measure import measure
+from gen.measurement.measure import measure
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor
 from gen.physics.kernel.batch import record_shape
 from gen.physics.lubricant import STEEL_EXPANSION
 from gen.scenarios import draw_scenarios
-from gen.simulate import Response, lead_samples
+from gen.simulation.machine import cosine_sum, heaviest_ball_load, physical_record, true_motion
+from gen.simulation.simulate import Response, lead_samples
 from tests.reference import slow_motion
 
 FS = 12_000.0

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import welch
 
-from gen.measure import LARGEST_COUNT, measure
+from gen.measurement.measure import LARGEST_COUNT, measure
+from gen.measurement.rig import base_excited
 from gen.scenarios import Background, Mode, Path, Tone, draw_scenarios
-from gen.simulate import Response, lead_samples
-from gen.sound import base_excited
+from gen.simulation.simulate import Response, lead_samples
 
 law = settings(deadline=None, max_examples=25)
 FS = 12_000.0

@@ -5,13 +5,13 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.mixing import BLOCK, Lines, Shaft, mix
+from gen.measurement.mixing import BLOCK, Lines, Shaft, mix
 
 law = settings(deadline=None, max_examples=25)
 
 
 def mixed(bearing, background, ringing, angles, lines, first, stop):
-    """Twin of :func:`gen.mixing.mix` that returns what it changes, from ``first`` to ``stop``."""
+    """Twin of :func:`gen.measurement.mixing.mix` that returns what it changes, from ``first`` to ``stop``."""
     time, turn = np.arange(first, stop), angles[first:stop]
     swing = [1 + a * np.cos(turn + p) + b * np.cos(2 * turn + q) for a, b, p, q in lines.swings]
     line = np.zeros(len(time))

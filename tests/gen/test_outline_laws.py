@@ -9,13 +9,13 @@ from hypothesis import strategies as st
 
 from gen.errors import SimulationError
 from gen.generate import compile_kernels
-from gen.machinery import schedule
-from gen.outline import outlined_record
 from gen.physics.kernel.batch import record_shape
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
-from gen.simulate import kernel_record, steps_per_sample
+from gen.simulation.machine import schedule
+from gen.simulation.outline import outlined_record
+from gen.simulation.simulate import kernel_record, steps_per_sample
 from tests.recipes import EVERYTHING
 
 GENERATE = importlib.import_module("gen.generate")
@@ -73,7 +73,7 @@ def test_the_peak_of_a_wandering_load_is_found_however_sparsely_it_is_looked_at(
     recipe_with, monkeypatch, samples_per_turn
 ):
     """Between two samples the load rises no further than its curvature lets it."""
-    monkeypatch.setattr("gen.outline.SAMPLES_PER_TURN", samples_per_turn)
+    monkeypatch.setattr("gen.simulation.outline.SAMPLES_PER_TURN", samples_per_turn)
     recipe = recipe_with({"operation.load_wander_percent": 50, "operation.shaft_rpm": 6000, "operation.load_n": 100})
     for scenario in draw_scenarios(recipe):
         found = outlined_record(scenario, recipe).schedule[0, 1]
@@ -122,7 +122,7 @@ def test_a_plan_builds_no_whole_record(write_recipe, tmp_path, monkeypatch):
         raise AssertionError
 
     for name in ("kernel_spalls", "waviness", "schedule"):
-        monkeypatch.setattr(f"gen.machinery.{name}", refused)
+        monkeypatch.setattr(f"gen.simulation.machine.{name}", refused)
     assert plan(write_recipe(tmp_path / "r.yaml", EVERYTHING)).steps_per_sample.keys()
 
 

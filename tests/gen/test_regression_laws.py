@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen import CorpusError, draw_scenarios, generate, simulate
-from gen.machinery import physical_record
+from gen.simulation.machine import physical_record
 
 
 def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe_with):

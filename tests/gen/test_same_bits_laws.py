@@ -14,7 +14,7 @@ GEN = Path(__file__).parents[2] / "gen"
 SCRIPT = """
 import hashlib, sys
 from gen import draw_scenarios, read_recipe, simulate
-from gen.measure import measure
+from gen.measurement.measure import measure
 recipe = read_recipe(sys.argv[1])
 scenarios = draw_scenarios(recipe)
 response = simulate(scenarios, recipe)

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.errors import RecipeError
-from gen.machinery import physical_record
 from gen.scenarios import Purpose, draw_scenarios, fault_of_each_specimen, stream
+from gen.simulation.machine import physical_record
 
 law = settings(deadline=None, max_examples=25)
 SAMPLINGS = ("random", "sobol", "halton")

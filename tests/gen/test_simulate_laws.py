@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from gen.errors import SimulationError
-from gen.machinery import physical_record, true_motion
 from gen.physics.rotor import fastest_swing, likely_stiffness
 from gen.scenarios import draw_scenarios
-from gen.simulate import FINE_STEP, lead_samples, simulate, steps_per_sample
+from gen.simulation.machine import physical_record, true_motion
+from gen.simulation.simulate import FINE_STEP, lead_samples, simulate, steps_per_sample
 from tests.reference import decimation_taps, march_lanes, slow_motion, waviness
 
 FS = 12_000.0
-MODULE = importlib.import_module("gen.simulate")  # the package gives the function under this name
+MODULE = importlib.import_module("gen.simulation.simulate")  # the package gives the function under this name
 
 
 @pytest.fixture(scope="module")

@@ -8,11 +8,11 @@ import pytest
 from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
 from gen.errors import RecipeError, SimulationError
 from gen.generate import generate
-from gen.machinery import physical_record
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import fastest_swing
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
-from gen.simulate import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places, simulate, step_errors
+from gen.simulation.machine import physical_record
+from gen.simulation.simulate import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places, simulate, step_errors
 from tests.reference import contact_stiffness, contacts, march_lanes, slow_motion
 
 FS = 12_000.0

@@ -14,13 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
-from gen.mixing import Lines, Shaft, mix
+from gen.measurement.mixing import Lines, Shaft, mix
+from gen.measurement.rig import Sound
 from gen.physics.elementary import decibels
 from gen.physics.profile import turned
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario
-from gen.simulate import LEAD_S, Response, lead_samples
-from gen.sound import Sound
+from gen.simulation.simulate import LEAD_S, Response, lead_samples
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]

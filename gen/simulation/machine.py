@@ -10,7 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.damage import kernel_spalls, waviness
 from gen.physics.axial import axial_approach
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
 from gen.physics.elementary import exponential, power
@@ -24,6 +23,7 @@ from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
 from gen.physics.rotor import STRIBECK, Machine, sensor_springs
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario, stream
+from gen.simulation.damage import kernel_spalls, waviness
 
 FloatArray = NDArray[np.float64]
 

@@ -1,4 +1,4 @@
-"""Pages written from the code: ``python -m gen.recipe.reference ROOT`` renews them.
+"""Pages written from the code: ``python -m gen.pages ROOT`` renews them.
 
 ``recipes/schema.json`` and ``recipes/README.md`` follow from the model of the recipe, ``docs/format.md`` from the schema of the corpus,
 ``docs/catalogue.md`` from the catalogue of bearings, ``docs/limits.md`` from the limits.
@@ -13,10 +13,10 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from gen.corpus import format_page
-from gen.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform
 from gen.limits import limits_page
 from gen.physics.catalogue import catalogue_page
 from gen.recipe import model
+from gen.recipe.distributions import Choice, Constant, Grid, LogUniform, Normal, Uniform
 from gen.recipe.reading import recipe_purpose, recipe_schema, shipped_recipes
 
 _HEAD = """# Recipes

@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.errors import SimulationError
-from gen.machinery import physical_record
 from gen.physics.kernel.batch import Record, lay_out, record_shape
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
@@ -23,6 +22,7 @@ from gen.physics.kernel.integrate import Integral, integrate
 from gen.physics.rotor import fastest_decay, fastest_swing, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING, Recipe
 from gen.scenarios import Scenario, first_specimens
+from gen.simulation.machine import physical_record
 
 FloatArray = NDArray[np.float64]
 

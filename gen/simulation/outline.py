@@ -9,13 +9,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.damage import is_wavy, plain_spalls
-from gen.machinery import bare_record, is_scheduled, knot_times, load_wander, n_knots, wander_terms
 from gen.physics.kernel.batch import Record
 from gen.physics.profile import Profile, share_at
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
-from gen.simulate import failures_named
+from gen.simulation.damage import is_wavy, plain_spalls
+from gen.simulation.machine import bare_record, is_scheduled, knot_times, load_wander, n_knots, wander_terms
+from gen.simulation.simulate import failures_named
 
 FloatArray = NDArray[np.float64]
 
@@ -24,7 +24,7 @@ MOST_APART = 1024  # knots between two such samples
 
 
 def outlined_record(scenario: Scenario, recipe: Recipe) -> Record:
-    """Record of which kernel shape and steps per sample are those of :func:`gen.simulate.kernel_record`, and nothing else.
+    """Record of which kernel shape and steps per sample are those of :func:`gen.simulation.simulate.kernel_record`, and nothing else.
 
     Raises
     ------
