@@ -15,7 +15,7 @@ from typing import Any
 
 from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline
 from benchmarks.pairs import Line, Row, Skipped
-from raceway.bench import machine
+from raceway.studies.timing import machine
 
 SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "roofline": roofline.rows,

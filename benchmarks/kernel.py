@@ -1,6 +1,7 @@
 """The kernel against kernels in C written for the seed model alone, and the full model against the seed.
 
-The C kernels hand on the accelerations of every few steps as they are; ours, timed as :func:`raceway.bench.bench` does, filters them first.
+The C kernels return the accelerations of every few steps unfiltered; ours, timed as :func:`raceway.studies.timing.bench` does, filters
+them first.
 All run on one core, at the recipe's own step, on the same records.
 """
 
@@ -15,7 +16,7 @@ from gen.physics.kernel.batch import Record
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import kernel_record, steps_per_sample
-from raceway.bench import bench
+from raceway.studies.timing import bench
 
 SEED, FULL = "ophel2025", Path(__file__).with_name("full.yaml")
 UNIT = "record-steps/s"

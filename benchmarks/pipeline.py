@@ -19,7 +19,7 @@ from ruamel.yaml import YAML
 from benchmarks.kernel import FULL
 from benchmarks.pairs import Line, interleaved, row, seconds
 from gen.generate import generate
-from raceway.bench import bench
+from raceway.studies.timing import bench
 
 SHORT = Path(__file__).with_name("short.yaml")
 CODECS = ("zlib", "zstd")

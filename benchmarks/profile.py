@@ -25,7 +25,7 @@ from gen.plan import samples_integrated
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import kernel_record, steps_per_sample
-from raceway.bench import bench
+from raceway.studies.timing import bench
 
 KNOTS, TRIES = 400, 25
 STEP, ROTATION, SLOW, FORCES, WAVES, SPALLS, PREPARED, FIRST_FILTER, LAST_FILTER = range(9)

@@ -17,11 +17,11 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.fft import irfft, next_fast_len
 
-from features.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted, running_median
-from features.lines import FAMILIES, LINE_NAMES, Orders, highest_order, read_lines
-from features.rows import ComplexArray, FloatArray, centred, squared_modulus
-from features.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
-from features.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted, running_median
+from features.signal.lines import FAMILIES, LINE_NAMES, Orders, highest_order, read_lines
+from features.signal.rows import ComplexArray, FloatArray, centred, squared_modulus
+from features.signal.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
+from features.signal.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
 
 __all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
 

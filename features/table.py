@@ -17,7 +17,7 @@ import xarray as xr
 from distributed import Client
 
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
-from features.rows import FloatArray
+from features.signal.rows import FloatArray
 from gen.cluster import client_of, local_client, run_tasks
 from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
 from gen.errors import CorpusError

@@ -14,7 +14,7 @@ from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from features.indicators import GROUPS, Orders, feature_names, indicators
-from features.rows import FloatArray
+from features.signal.rows import FloatArray
 
 
 class IndicatorTransformer(TransformerMixin, BaseEstimator):

@@ -22,7 +22,6 @@ generate    a corpus, part by part, with dask
 replay      any record again, bit for bit
 plan        what a recipe would make, without making it
 pages       documentation pages written from the code
-paper       the seed paper, run and held against what it says
 =========== ==================================================================
 
 Data flows down this list; a module imports only modules above it.

@@ -10,13 +10,13 @@ from typing import Any, NoReturn
 
 import click
 
-from raceway import corpora, gallery, importing, learning, reproduce
-from raceway.ending import NoReader, exit_code
-from raceway.signals import listen_for_signals
+from raceway.commands import corpora, gallery, importing, learning, reproduce
+from raceway.console.ending import NoReader, exit_code
+from raceway.console.signals import listen_for_signals
 
 
 class Raceway(click.Group):
-    """A group that lists its commands in the order of the work, and ends as :mod:`raceway.ending` says."""
+    """A group that lists its commands in the order of the work, and ends as :mod:`raceway.console.ending` says."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         """Names of the commands, in the order they were added."""

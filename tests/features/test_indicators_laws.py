@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from features.indicators import GROUPS, NAMES, Orders, feature_groups, feature_names, indicators
-from features.lines import FAMILIES
+from features.signal.lines import FAMILIES
 
 law = settings(deadline=None, max_examples=12)
 seeds = st.integers(0, 2**32 - 1)

@@ -1,17 +1,15 @@
 """Cited numbers: moments of known distributions, and fault lines known to be in public recordings."""
 
-import os
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 from scipy.io import loadmat
 
 from features.indicators import Orders, feature_names, indicators
-from features.shape import TIME_NAMES, time_statistics
+from features.signal.shape import TIME_NAMES, time_statistics
+from tests.paths import REAL
 
-REAL = Path(os.environ.get("RACEWAY_REAL", Path(__file__).parents[3] / "shared" / "real"))
 CWRU = REAL / "cwru" / "12k_drive_end"
 NORMAL = REAL / "cwru" / "normal"
 SPEEDS = (1797, 1772, 1750, 1730)  # nominal rpm at motor loads 0-3

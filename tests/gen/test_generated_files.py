@@ -1,11 +1,9 @@
 import re
-from pathlib import Path
 
 import pytest
 
 from gen.pages import PAGES
-
-ROOT = Path(__file__).parents[2]
+from tests.paths import ROOT
 
 
 @pytest.mark.parametrize("name", PAGES)

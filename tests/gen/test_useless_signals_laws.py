@@ -13,7 +13,7 @@ from gen.generate import generate
 from gen.importers.assemble import Collection, import_recordings
 from gen.importers.recordings import Candidate, Recording
 from gen.physics.catalogue import CATALOGUE
-from raceway.summary import describe
+from raceway.console.summary import describe
 
 CLIPPED = {"recording.converter": {"kind": "adc", "full_scale_m_s2": 1e-3}}
 SILENT = {

@@ -1,0 +1,295 @@
+"""Pictures of records, corpora and scores, drawn from plain arrays.
+
+Colours are those of Okabe and Ito [1]_, which readers with colour-blindness can tell apart. No text of a corpus gets into
+a picture: only numbers and the names of the classes.
+
+.. [1] M. Okabe, K. Ito, "Color Universal Design: how to make figures and presentations that are friendly to colorblind
+       people", 2008.
+"""
+
+import io
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
+
+from features.baselines import Baseline, Scores
+from features.baselines.records import IntArray
+from features.indicators import BROAD, WHITENING_WIDTH, Orders
+from features.signal.demodulation import analytic_band, squared_envelope_spectrum
+from features.signal.rows import FloatArray
+from features.signal.spectra import fourier_coefficients, psd, psd_whitened
+from gen.corpus import FAULTS
+
+PictureFormat = Literal["png", "svg", "pdf"]
+
+COLOURS: dict[str, str] = dict(
+    zip(FAULTS, ("#009E73", "#D55E00", "#0072B2", "#CC79A7", "#E69F00", "#56B4E9"), strict=True)
+)
+INK, FAINT = "#222222", "#8a8a8a"
+STYLE: Any = {
+    "figure.facecolor": "white",
+    "figure.dpi": 150,
+    "font.size": 9,
+    "axes.edgecolor": FAINT,
+    "axes.labelcolor": INK,
+    "axes.titlelocation": "left",
+    "axes.titlesize": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.linewidth": 0.8,
+    "xtick.color": FAINT,
+    "ytick.color": FAINT,
+    "xtick.labelcolor": INK,
+    "ytick.labelcolor": INK,
+    "legend.frameon": False,
+    "svg.hashsalt": "raceway",
+}
+WIDTH = 6.2  # inches: letters stay readable on a phone
+
+TURNS = 8  # of the shaft, in the waveform
+COLUMNS = 1500  # in which a long waveform is drawn
+SEGMENT = 0.05  # s, of the power spectral density
+FAINTEST_DB = 120.0  # below the highest density
+HARMONICS = {
+    "outer": ("BPFO", "2 BPFO", "3 BPFO"),
+    "inner": ("BPFI", "2 BPFI", "3 BPFI"),
+    "ball": ("2 BSF", "4 BSF", "6 BSF"),
+    "cage": ("FTF", "2 FTF", "3 FTF"),
+}
+FIRST = tuple(names[0] for names in HARMONICS.values())
+TOLERANCE = 0.02  # of an order, shaded around the lines of the fault itself
+
+
+class Shown(NamedTuple):
+    """A record as it is drawn: signal [m s-2], shape (time,), sample and shaft rate [Hz], fault orders and class.
+
+    ``title`` is written above it.
+    """
+
+    title: str
+    signal: FloatArray
+    fs: float
+    shaft_rate: float
+    orders: Orders
+    fault: str
+
+
+class Quantity(NamedTuple):
+    """Values of a per-record variable, in the unit of its label, shape (record,)."""
+
+    label: str
+    values: FloatArray
+
+
+@rc_context(STYLE)
+def picture(figure: Figure, suffix: PictureFormat) -> bytes:
+    """Encode a figure; the same figure gives the same bytes."""
+    stream = io.BytesIO()
+    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
+    figure.savefig(stream, format=suffix, metadata=undated)
+    return stream.getvalue()
+
+
+@rc_context(STYLE)
+def draw_record(shown: Shown) -> Figure:
+    """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
+    figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=COLOURS[shown.fault])
+    waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
+    _draw_waveform(waveform, shown)
+    _draw_density(density, shown)
+    _draw_envelope_spectrum(envelope, shown)
+    figure.align_ylabels()
+    return figure
+
+
+def _draw_waveform(axes: Axes, shown: Shown) -> None:
+    duration = shown.signal.size / shown.fs
+    visible = min(duration, TURNS / shown.shaft_rate)
+    x = shown.signal[: max(2, round(visible * shown.fs))]
+    time, values = thinned(np.arange(x.size) / shown.fs, x)
+    axes.plot(time, values, color=INK, linewidth=0.6)
+    axes.set(xlabel="time [s]", ylabel="acceleration [m/s²]", xlim=(0, visible))
+    axes.set_title(f"First {visible:.2g} s of {duration:.3g} s, {visible * shown.shaft_rate:.2g} turns of the shaft")
+
+
+def thinned(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Lowest and highest value in each of at most `COLUMNS` columns, which look like the whole when drawn."""
+    step = -(-values.size // COLUMNS)
+    if step < 4:
+        return time, values
+    blocks = np.pad(values, (0, -values.size % step), mode="edge").reshape(-1, step)
+    extremes = np.stack([blocks.min(axis=1), blocks.max(axis=1)], axis=1).reshape(-1)
+    return np.repeat(time[::step], 2), extremes
+
+
+def _draw_density(axes: Axes, shown: Shown) -> None:
+    frequencies, density = psd(shown.signal[None], shown.fs, SEGMENT)
+    faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
+    axes.plot(frequencies / 1e3, 10 * np.log10(np.maximum(density[0], faintest)), color=INK, linewidth=0.8)
+    low, high = BROAD[0] / 1e3, min(BROAD[1], shown.fs / 2) / 1e3
+    axes.axvspan(low, high, color=FAINT, alpha=0.12, linewidth=0)
+    axes.set(xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, shown.fs / 2e3))
+    axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:g}-{high:g} kHz shaded")
+
+
+def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
+    order, spectrum = squared_envelope(shown)
+    own, others = fault_lines(shown.orders, shown.fault)
+    # the lines of a cage are close together, and the first lines of the other faults are enough beside them
+    top = (1.1 if shown.fault == "cage" else 3.15) * max(line for name, line in (own | others).items() if name in FIRST)
+    visible = order <= top
+    colour = COLOURS[shown.fault]
+    for line in own.values():
+        axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=colour, alpha=0.2, linewidth=0)
+    for line in others.values():
+        axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
+    axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.8)
+    axes.set(xlabel="order of the shaft", ylabel="squared envelope [1]", xlim=(0, top), ylim=(0, None))
+    _name_lines(axes, own, others, colour, top)
+    axes.set_title("Squared envelope spectrum of the whitened band", pad=30)
+
+
+def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
+    """Orders of the shaft, and squared envelope spectrum of the whitened band [1], both of shape (order,)."""
+    duration = shown.signal.size / shown.fs
+    coefficients = fourier_coefficients(shown.signal[None], shown.fs, BROAD[1])
+    whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
+    band = analytic_band(whitened, *(round(edge * duration) for edge in BROAD))
+    frequencies, spectrum = squared_envelope_spectrum(band, band.shape[-1] / duration)
+    scale = np.mean(np.abs(band) ** 2)
+    return frequencies / shown.shaft_rate, spectrum[0] / (scale if scale > 0 else 1.0)
+
+
+def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str, float]]:
+    """Orders at which a fault shows, three harmonics of its line, and the other lines to compare with, by name.
+
+    A compound fault may show at the first line of any: its label does not say which parts it is on.
+    """
+    ftf, bpfo, bpfi, bsf = (float(order) for order in orders)
+    order = {"outer": bpfo, "inner": bpfi, "ball": 2 * bsf, "cage": ftf}
+    first = dict(zip(FIRST, order.values(), strict=True))
+    own = {name: n * order[fault] for n, name in enumerate(HARMONICS.get(fault, ()), start=1)}
+    own = first if fault == "compound" else own
+    return own, {name: line for name, line in ({"shaft": 1.0} | first).items() if name not in own}
+
+
+def _name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
+    """Write the name of each line above the axes, in the lower of two rows if it has room for it."""
+    ends = [-np.inf, -np.inf]
+    per_letter = top / 78
+    named = [(line, name, colour) for name, line in own.items()] + [(line, name, INK) for name, line in others.items()]
+    for line, name, ink in sorted(named):
+        half = (len(name) + 1) / 2 * per_letter
+        row = 0 if line - half > ends[0] else int(np.argmin(ends))
+        ends[row] = line + half
+        weight = "normal" if ink == INK else "bold"
+        axes.annotate(
+            name, (line, 1), (0, 3 + 11 * row), ("data", "axes fraction"), "offset points",
+            color=ink, fontsize=8, fontweight=weight, ha="center", va="bottom", annotation_clip=False,
+        )  # fmt: skip
+
+
+@rc_context(STYLE)
+def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity]) -> Figure:
+    """Records per rig and distributions of quantities that vary, stacked by class.
+
+    Parameters
+    ----------
+    fault, rig
+        Class and number of the rig of each record, shape (record,).
+    quantities
+        What to show the distribution of; values that are not finite are left out.
+    """
+    quantities = [quantity for quantity in quantities if _varies(quantity.values)]
+    rows = -(-(1 + len(quantities)) // 2)
+    figure = Figure(figsize=(WIDTH, 0.4 + 1.9 * rows), layout="constrained")
+    panels = figure.subplots(rows, 2, squeeze=False).ravel()
+    present = np.unique(fault)
+    _draw_rigs(panels[0], fault, rig, present)
+    for axes, quantity in zip(panels[1:], quantities, strict=False):
+        _draw_distribution(axes, fault, quantity, present)
+    for axes in panels[1 + len(quantities) :]:
+        axes.remove()
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(FAULTS))
+    return figure
+
+
+def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) -> None:
+    rigs, number = np.unique(rig, return_inverse=True)
+    bottom = np.zeros(len(rigs))
+    for c in present:
+        count = np.bincount(number[fault == c], minlength=len(rigs))
+        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=COLOURS[FAULTS[c]], label=FAULTS[c])
+        bottom += count
+    step = max(1, len(rigs) // 10)
+    axes.set_xticks(np.arange(0, len(rigs), step), [str(name) for name in rigs[::step]])
+    axes.set(xlabel="rig", ylabel="records")
+
+
+def _varies(values: FloatArray) -> bool:
+    finite = values[np.isfinite(values)]
+    return finite.size > 0 and bool(finite.min() < finite.max())
+
+
+def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present: IntArray) -> None:
+    finite = np.isfinite(quantity.values)
+    values = quantity.values[finite]
+    wide = values.min() > 0 and values.max() > 10 * values.min()
+    spaced = np.geomspace if wide else np.linspace
+    edges = spaced(values.min(), values.max(), 25)
+    axes.hist(
+        [values[fault[finite] == c] for c in present],
+        bins=edges.tolist(),
+        stacked=True,
+        color=[COLOURS[FAULTS[c]] for c in present],
+    )
+    axes.set(xlabel=quantity.label, ylabel="records")
+    axes.locator_params(axis="x", nbins=5)
+    if wide:
+        axes.set_xscale("log")
+        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_locator(NullLocator())
+
+
+@rc_context(STYLE)
+def draw_scores(baselines: Mapping[str, Baseline], chance: float, by: str) -> Figure:
+    """Balanced accuracy of every baseline beside its controls; bars are 95 % intervals."""
+    figure = Figure(figsize=(WIDTH, 1.2 + 0.45 * len(baselines)), layout="constrained")
+    axes = figure.subplots()
+    rows = np.arange(len(baselines))[::-1]
+    scored = list(baselines.values())
+    test = [baseline.test for baseline in scored if baseline.test is not None]
+    axes.hlines(rows, 0, 1, color=FAINT, linewidth=0.4, alpha=0.5)
+    axes.vlines(chance, -0.6, len(rows) - 0.45, color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
+    axes.text(chance, len(rows) - 0.4, "chance", color=INK, fontsize=8, va="bottom", ha="center")
+    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, COLOURS["outer"], "o", f"unseen {by}s")
+    if test:
+        _draw_intervals(axes, test, rows - 0.18, COLOURS["inner"], "s", "other corpus")
+    null, leaky = ([getattr(b, kind).balanced_accuracy for b in scored] for kind in ("null", "leaky"))
+    axes.plot(
+        leaky, rows + 0.13, "D", color=FAINT, markerfacecolor="none", markersize=9, label="random records (leaks)"
+    )
+    axes.plot(null, rows, "x", color=FAINT, markersize=6, label="labels permuted")
+    axes.set_yticks(rows, [name.replace("_", " ") for name in baselines])
+    axes.set(xlabel="balanced accuracy", xlim=(0, 1.02), ylim=(-0.6, len(rows) - 0.1))
+    axes.spines["left"].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    figure.legend(loc="outside upper left", ncols=4, handletextpad=0.3, columnspacing=1.0)
+    return figure
+
+
+def _draw_intervals(
+    axes: Axes, scores: Iterable[Scores], rows: FloatArray, colour: str, marker: str, label: str
+) -> None:
+    scores = list(scores)
+    low, high = np.transpose([found.interval for found in scores])
+    axes.hlines(rows, low, high, color=colour, linewidth=1.6)
+    axes.plot([found.balanced_accuracy for found in scores], rows, marker, color=colour, markersize=5.5, label=label)

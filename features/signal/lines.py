@@ -1,0 +1,139 @@
+"""Fault lines in the level of an envelope spectrum over its floor, looked up at orders of the shaft.
+
+A spall makes the envelope repeat at its fault order and leaves a line there, harmonics above it, and
+sidebands at the rate at which the spall passes through the load [1]_. Speed labels and orders of real
+machines are off by a per cent or two, so a single line is the highest level within a tolerance, and a comb
+may shift as a whole.
+
+.. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
+       Process.* 25 (2011) 485-520.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from features.signal.rows import FloatArray, row_kernel
+
+LINE_TOLERANCE = 0.015
+COMB_TOLERANCE = 0.02
+COMB_HARMONICS = 3
+HIGHEST_LINE_ORDERS = (0.25, 12.0)
+
+FAMILIES = ("bpfo", "bpfi", "2bsf")
+LINE_NAMES = (
+    *(f"{family}_{what}" for what in ("comb", "h1", "h2", "sidebands") for family in FAMILIES),
+    *("bsf", "fr", "2fr", "ftf", "2ftf", "fr-ftf"),
+    "highest_line",
+)
+
+
+class Orders(NamedTuple):
+    """Nominal fault orders of records, each of shape (record,), in multiples of the shaft rate.
+
+    ``bsf`` is the spin of a ball. A spall on it strikes both raceways in each spin: its line is ``2 * bsf``.
+    """
+
+    ftf: FloatArray
+    bpfo: FloatArray
+    bpfi: FloatArray
+    bsf: FloatArray
+
+
+def families(orders: Orders) -> FloatArray:
+    """Fundamental order of each of `FAMILIES`, shape (record, family)."""
+    return np.stack([orders.bpfo, orders.bpfi, 2 * orders.bsf], axis=-1)
+
+
+def highest_order(orders: Orders) -> FloatArray:
+    """Highest order at which `read_lines` looks, shape (record,)."""
+    comb = COMB_HARMONICS * (1 + COMB_TOLERANCE) * families(orders).max(axis=-1)
+    return np.maximum(comb, HIGHEST_LINE_ORDERS[1])
+
+
+def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) -> FloatArray:
+    """Levels of the lines of `LINE_NAMES`, shape (record, line).
+
+    Parameters
+    ----------
+    level
+        Natural logarithm of an envelope spectrum over its floor, shape (record, frequency). Lines beyond its
+        end read 0, as high as the floor.
+    bins_per_order
+        Shape (record,).
+    orders
+        Where the lines are.
+    """
+    base, one = families(orders), np.ones_like(orders.ftf)
+    ftf = orders.ftf
+    sides = np.stack([one, one, ftf], axis=-1)
+    singles = np.stack([orders.bsf, one, 2 * one, ftf, 2 * ftf, one - ftf], axis=-1)
+    places = np.concatenate([base, 2 * base, base - sides, base + sides, singles], axis=-1)
+    read = single_lines(level, places * bins_per_order[:, None])
+    h1, h2, lower, upper, others = np.split(read, [3, 6, 9, 12], axis=-1)
+    return np.concatenate(
+        [
+            combs(level, base * bins_per_order[:, None]),
+            h1,
+            h2,
+            0.5 * (lower + upper),
+            others,
+            highest_line(level, bins_per_order)[:, None],
+        ],
+        axis=-1,
+    )
+
+
+@row_kernel
+def single_lines(level: FloatArray, bins: FloatArray) -> FloatArray:
+    """Highest level within the tolerance of each place, shapes (record, frequency) at (record, line)."""
+    out = np.empty(bins.shape)
+    for row in range(bins.shape[0]):
+        for line in range(bins.shape[1]):
+            first = int(np.rint(bins[row, line] * (1 - LINE_TOLERANCE)))
+            last = int(np.rint(bins[row, line] * (1 + LINE_TOLERANCE)))
+            highest = _at(level[row], last)
+            for place in range(first, last):
+                highest = max(highest, _at(level[row], place))
+            out[row, line] = highest
+    return out
+
+
+@row_kernel
+def combs(level: FloatArray, bins: FloatArray) -> FloatArray:
+    """Largest mean level of harmonics 1 to 3 over a speed error shared by the three, shape (record, family).
+
+    The error runs over +-2 % in steps that move the third harmonic by one bin.
+    """
+    out = np.empty(bins.shape)
+    for row in range(bins.shape[0]):
+        for family in range(bins.shape[1]):
+            step = 1 / (COMB_HARMONICS * bins[row, family])
+            highest = -np.inf
+            for number in range(int(np.ceil(2 * COMB_TOLERANCE / step)) + 1):
+                error = min(-COMB_TOLERANCE + step * number, COMB_TOLERANCE)
+                total = 0.0
+                for harmonic in range(1, COMB_HARMONICS + 1):
+                    total += _at(level[row], int(np.rint(harmonic * bins[row, family] * (1 + error))))
+                highest = max(highest, total)
+            out[row, family] = highest / COMB_HARMONICS
+    return out
+
+
+@row_kernel
+def highest_line(level: FloatArray, bins_per_order: FloatArray) -> FloatArray:
+    """Level of the highest line between 0.25 and 12 orders, at least 0, shape (record,)."""
+    out = np.empty(len(level))
+    for row in range(len(level)):
+        first = int(np.rint(HIGHEST_LINE_ORDERS[0] * bins_per_order[row]))
+        last = int(np.rint(HIGHEST_LINE_ORDERS[1] * bins_per_order[row]))
+        highest = level.dtype.type(0.0)
+        for place in range(first, min(last + 1, level.shape[1])):
+            highest = max(highest, level[row, place])
+        out[row] = highest
+    return out
+
+
+@row_kernel
+def _at(level: FloatArray, place: int) -> float:
+    return level[max(place, 0)] if place < len(level) else 0.0

@@ -1,0 +1,119 @@
+"""Shape of a signal whatever repeats in it: impulsiveness, slow fluctuation, statistics in time.
+
+Impacts make the tails of a signal heavy (kurtosis, crest factor); a load zone, a cage or a machine at work
+makes its power wander slowly against the turn of the shaft [1]_.
+
+.. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, sections 3.3 and 5.5.
+"""
+
+import numpy as np
+
+from features.signal.demodulation import ZERO_PADDING
+from features.signal.rows import FloatArray, row_kernel, total
+
+SHAPE_NAMES = ("impulsiveness", "slow_fluctuation", "slow_share")
+SMOOTHING_TURNS = 0.5
+SLOW_ORDERS = 0.8
+
+TIME_NAMES = (
+    "rms",
+    "peak",
+    "crest_factor",
+    "kurtosis",
+    "skewness",
+    "shape_factor",
+    "impulse_factor",
+    "clearance_factor",
+)
+
+
+def envelope_shape(
+    power: FloatArray, weighted: FloatArray, spectrum: FloatArray, rate: float, shaft_rate: FloatArray
+) -> FloatArray:
+    """Shape of the envelope of analytic signals: the three of `SHAPE_NAMES`, shape (record, 3).
+
+    Impulsiveness is ``ln(E|z|^4 / (E|z|^2)^2)``, ln 2 for Gaussian noise; slow fluctuation is the relative
+    standard deviation of ``|z|^2`` averaged over half a turn; slow share is the part of the power of the
+    envelope, without its mean, below 0.8 order.
+
+    Parameters
+    ----------
+    power
+        Squared envelopes ``|z|^2``, shape (record, time).
+    weighted
+        Envelopes under their window, as from `features.signal.demodulation.hann_weighted`, shape (record, time).
+    spectrum
+        Their `features.signal.demodulation.fine_amplitudes` from 0 to 0.8 order or further, shape (record, frequency).
+    rate
+        Sample rate of z [Hz].
+    shaft_rate
+        Shape (record,) [Hz].
+    """
+    span = np.maximum(1, np.rint(SMOOTHING_TURNS * rate / shaft_rate)).astype(np.intp)
+    n = power.shape[-1]
+    slow_bins = SLOW_ORDERS * shaft_rate * ZERO_PADDING * n / rate
+    return _envelope_shape(power, weighted, spectrum, span, slow_bins)
+
+
+@row_kernel
+def _envelope_shape(
+    power: FloatArray, weighted: FloatArray, spectrum: FloatArray, span: np.ndarray, slow_bins: FloatArray
+) -> FloatArray:
+    out = np.empty((len(power), 3))
+    n = power.shape[1]
+    tiny = np.finfo(power.dtype).tiny
+    for row in range(len(power)):
+        mean = max(total(power[row]) / n, tiny)
+        out[row, 0] = np.log(max(total(power[row] ** 2) / n / mean**2, 1.0))
+        out[row, 1] = _fluctuation(power[row], span[row]) / mean
+        whole = total(weighted[row] ** 2) * (8 * ZERO_PADDING / n)  # Parseval: that of the spectrum to its end
+        out[row, 2] = total(spectrum[row, : int(np.ceil(slow_bins[row]))] ** 2) / max(whole, tiny)
+    return out
+
+
+@row_kernel
+def _fluctuation(power: FloatArray, span: int) -> float:
+    """Deviation of means over ``span`` samples from one another, taken at every quarter of a span."""
+    step = max(1, span // 4)
+    means = np.empty(max(1, (len(power) - span) // step + 1))
+    for number in range(len(means)):
+        within = power[number * step : number * step + span]
+        means[number] = total(within) / len(within)
+    return float(np.std(means))
+
+
+def time_statistics(x: FloatArray) -> FloatArray:
+    """Statistics of records less their mean, in the order of `TIME_NAMES`, shape (record, 8).
+
+    Root mean square and peak are in the unit of x, the others free of gain; shape, impulse and clearance
+    factor are the rms over the mean modulus, the peak over the mean modulus and the peak over the squared
+    mean root of the modulus.
+    """
+    centred = x - x.mean(axis=-1, keepdims=True)
+    modulus, root, square, cube, fourth = moments(centred).T
+    peak, rms = peaks(centred), np.sqrt(square)
+    factors = (rms / modulus, peak / modulus, peak / root**2)
+    return np.stack([rms, peak, peak / rms, fourth / square**2, cube / square**1.5, *factors], axis=-1)
+
+
+def peaks(x: FloatArray) -> FloatArray:
+    """Largest modulus of each record, shape (record,)."""
+    return np.maximum(x.max(axis=-1), -x.min(axis=-1))
+
+
+@row_kernel
+def moments(x: FloatArray) -> FloatArray:
+    """Means of the modulus, its root, the square, the cube and the fourth power of records, shape (record, 5)."""
+    out = np.empty((len(x), 5))
+    for row in range(len(x)):
+        modulus, root, square, cube, fourth = 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(x.shape[1]):
+            size = abs(x[row, i])
+            power = size * size
+            modulus += size
+            root += np.sqrt(size)
+            square += power
+            cube += power * x[row, i]
+            fourth += power * power
+        out[row] = np.array([modulus, root, square, cube, fourth]) / x.shape[1]
+    return out

@@ -1,0 +1,117 @@
+"""Commands that bring real recordings into the corpus format."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from raceway.console import show
+from raceway.console.options import A_PATH, folder_option, json_option
+from raceway.console.progress import notice, progress
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from gen.importers import Import
+
+_source: Any = click.argument("source", metavar="SRC", type=A_PATH)
+_output: Any = folder_option("DIR", "Folder of the new corpus.")
+_window: Any = click.option(
+    "--window", type=float, default=0.5, show_default=True, metavar="S", help="Length of a record [s]."
+)
+
+
+@click.group("import")
+def import_() -> None:
+    """Bring real recordings into the corpus format.
+
+    Raceway ships no recordings; give the folder of your own copy. Each is cut into records of --window seconds. A file that cannot be
+    used is named and skipped, and whatever is assumed is said; both lists stay in the corpus (raceway info DIR).
+
+      raceway import cwru 12k_drive_end -o cwru
+      raceway evaluate cwru --model model.skops
+    """
+
+
+@import_.command()
+@_source
+@_output
+@_window
+@click.option(
+    "--subset",
+    type=click.Choice(["all", "wang"]),
+    default="all",
+    show_default=True,
+    help="All 64 recordings, or the 40 of Wang, Taal and Fink (2021).",
+)
+@json_option
+def cwru(source: Path, output: Path, window: float, subset: Any, as_json: bool) -> None:
+    """Case Western Reserve University, drive end, 12 kHz.
+
+    SRC is the folder of the published MATLAB files, in any arrangement.
+
+      raceway import cwru SRC -o cwru --subset wang
+    """
+    from gen.importers import import_cwru
+
+    _run(lambda report: import_cwru(source, output, window=window, subset=subset, progress=report), as_json)
+
+
+@import_.command()
+@_source
+@_output
+@_window
+@json_option
+def mfpt(source: Path, output: Path, window: float, as_json: bool) -> None:
+    """MFPT fault data set of Bechhoefer, 48,828 Hz.
+
+    SRC is the folder of the published MATLAB files, in any arrangement.
+
+      raceway import mfpt SRC -o mfpt
+    """
+    from gen.importers import import_mfpt
+
+    _run(lambda report: import_mfpt(source, output, window=window, progress=report), as_json)
+
+
+@import_.command()
+@_source
+@_output
+@_window
+@json_option
+def generic(source: Path, output: Path, window: float, as_json: bool) -> None:
+    """Your own recordings, described by a mapping file.
+
+    SRC is a YAML file beside the recordings (MATLAB, text or NumPy) that says what is in them:
+
+      title: Pump 7, drive side
+      bearing: "6205"
+      unit: g
+      sample_rate_hz: 25600
+      shaft_rpm: 1480
+      files:
+        - {path: healthy/*.csv, fault: healthy, specimen: new}
+        - {path: outer/*.csv, fault: outer, specimen: worn}
+
+      raceway import generic pump7/mapping.yaml -o pump7_corpus
+    """
+    from gen.importers import import_generic
+
+    _run(lambda report: import_generic(source, output, window=window, progress=report), as_json)
+
+
+def _run(bring: "Callable[[Any], Import]", as_json: bool) -> None:
+    with progress("importing", "files") as report:
+        done = bring(report)
+    for sentence in done.warnings:
+        notice(f"warning: {sentence}")
+    for sentence in done.skipped:
+        notice(sentence)
+    if as_json:
+        facts = done._asdict()
+        show.as_json({"corpus": facts.pop("directory"), **facts})
+        return
+    show.text(
+        f"{done.directory}: {done.records:,} records of {done.recordings:,} recordings; "
+        f"{len(done.skipped)} files skipped, {len(done.warnings)} warnings."
+    )

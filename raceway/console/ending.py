@@ -1,0 +1,78 @@
+"""How a command ends: an exit code, and for people a sentence on stderr.
+
+0 done; 1 checked and found wanting; 2 bad usage or input; 70 an error of Raceway itself; 130 interrupted; 141 nobody reads the output.
+"""
+
+import os
+import sys
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+import click
+
+from raceway.console.signals import INTERRUPTED, leave_if_interrupted
+
+DONE, FOUND_WANTING, BAD_INPUT, INTERNAL_ERROR, NO_READER = 0, 1, 2, 70, 141
+
+
+class NoReader(click.ClickException):
+    """Standard output was closed by whoever read it."""
+
+    exit_code = NO_READER
+
+
+def exit_code(call: Callable[[], Any]) -> int:
+    """Run a command, say what went wrong on stderr, and return its exit code."""
+    try:
+        return int(call() or DONE)
+    except NoReader:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to flush goes nowhere
+        return NO_READER
+    except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the outermost call: nothing may pass as a traceback
+        leave_if_interrupted()
+        if os.environ.get("RACEWAY_TRACEBACK"):
+            traceback.print_exc()
+        code, sentence = _verdict(error)
+        click.echo(printable(sentence), err=True)
+        return code
+
+
+def _verdict(error: BaseException) -> tuple[int, str]:
+    match error:
+        case click.Abort() | KeyboardInterrupt():
+            return INTERRUPTED, "interrupted."
+        case click.exceptions.NoArgsIsHelpError():
+            return BAD_INPUT, error.format_message()
+        case click.UsageError():
+            command = error.ctx.command_path if error.ctx else "raceway"
+            return BAD_INPUT, f"{command}: {error.format_message().rstrip('.')}; see {command} --help."
+        case click.ClickException():
+            return error.exit_code, error.format_message()
+        case _ if _is_foreseen(error):
+            return BAD_INPUT, str(error)
+        case _ if type(error).__name__ == "KilledWorker":
+            return BAD_INPUT, "the workers of the cluster died again and again; use fewer, or fewer records per part."
+        case OSError(strerror=str() as reason):
+            where = f"{error.filename}: " if error.filename else ""
+            return BAD_INPUT, f"{where}{reason}; choose another place, or set it right there."
+        case OSError() | RuntimeError() if "NetCDF" in str(error) or "HDF" in str(error):
+            return BAD_INPUT, f"a file of the corpus cannot be read ({error}); raceway validate says which."
+        case _:
+            what = f"{type(error).__name__}: {error}"
+            return INTERNAL_ERROR, f"internal error ({what}); please report it with what RACEWAY_TRACEBACK=1 shows."
+
+
+def _is_foreseen(error: BaseException) -> bool:
+    """Whether ``gen`` or ``features`` made the sentence; they are not imported to find out, since that takes seconds."""
+    errors = sys.modules.get("gen.errors")
+    return errors is not None and isinstance(error, errors.RacewayError)
+
+
+def printable(text: str) -> str:
+    r"""Text without what could steer a terminal: names and titles come from strangers.
+
+    >>> printable("ball\x1b[2J of a\nrig")
+    'ball?[2J of a\nrig'
+    """
+    return "".join(letter if letter.isprintable() or letter == "\n" else "?" for letter in text)

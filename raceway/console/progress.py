@@ -1,0 +1,101 @@
+"""How far a long command has come, on standard error: a bar on a terminal, else a plain line now and then."""
+
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any
+
+from raceway.console import show
+
+Progress = Callable[[int, int], None]
+
+SECONDS_BETWEEN_LINES = 10.0
+
+
+@contextmanager
+def progress(doing: str, unit: str) -> Iterator[Progress]:
+    """Something to call with the number of units done and of all.
+
+    ``doing`` is what goes on, such as "generating"; ``unit`` what is counted, such as "records".
+    """
+    if sys.stderr.isatty():
+        with _bar(doing, unit) as report:
+            yield report
+    else:
+        yield _lines(doing, unit)
+
+
+@contextmanager
+def _bar(doing: str, unit: str) -> Iterator[Progress]:
+    from rich import progress as rich  # not above: raceway --help is to answer at once
+    from rich.console import Console
+
+    columns = (
+        rich.TextColumn("{task.description}"),
+        rich.BarColumn(),
+        rich.MofNCompleteColumn(),
+        rich.TimeElapsedColumn(),
+        rich.TextColumn("{task.fields[pace]}"),
+    )
+    pace = _pace(unit)
+    with rich.Progress(*columns, console=Console(stderr=True)) as bars:
+        task = bars.add_task(doing, total=None, pace="")
+        yield lambda done, total: bars.update(task, completed=done, total=total, pace=pace(done, total))
+
+
+def _lines(doing: str, unit: str) -> Progress:
+    last, pace = time.monotonic(), _pace(unit)
+
+    def report(done: int, total: int) -> None:
+        nonlocal last
+        current = pace(done, total)
+        if done == total or time.monotonic() - last >= SECONDS_BETWEEN_LINES:
+            last = time.monotonic()
+            notice(f"{doing}: {done:,} of {total:,} {unit}, {current}")
+
+    return report
+
+
+def _pace(unit: str) -> Callable[[int, int], str]:
+    """Rate and time left; from the third report on since the first, which may tell of what was there before."""
+    marks = [(time.monotonic(), 0)]
+
+    def pace(done: int, total: int) -> str:
+        marks.append((time.monotonic(), done))
+        (then, before), (now, _) = marks[0 if len(marks) < 4 else 1], marks[-1]
+        rate = max(done - before, 1e-9) / max(now - then, 1e-9)
+        left = f", {show.duration((total - done) / rate)} left" if done < total else ""
+        return f"{rate:,.3g} {unit}/s{left}"
+
+    return pace
+
+
+def notice(sentence: str) -> None:
+    """Print a sentence on standard error, above the bar if there is one."""
+    sys.stderr.write(show.printable(sentence) + "\n")
+
+
+@contextmanager
+def compilation_noticed() -> Iterator[None]:
+    """Say so when numba starts to compile a kernel, which keeps one waiting once per machine."""
+    from numba.core import event
+
+    class Once(event.Listener):
+        """Speaks at the first compilation only."""
+
+        said = False
+
+        def on_start(self, event: Any) -> None:
+            for_keeps = (
+                event.data["dispatcher"].stats.cache_path is not None
+            )  # the others are small, and compiled each time
+            if for_keeps and not self.said:
+                self.said = True
+                notice("compiling kernels for this machine: some seconds each, and kept for the next time.")
+
+        def on_end(self, event: Any) -> None:
+            """Nothing to say."""
+
+    with event.install_listener("numba:compile", Once()):
+        yield

@@ -1,0 +1,111 @@
+"""Results on standard output: tidy text for people, or one JSON object for programs."""
+
+import json
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import click
+
+from raceway.console.ending import printable
+
+
+def as_json(facts: Any) -> None:
+    """Print a mapping or dataclass as one JSON object; NaN and infinity become null."""
+    click.echo(json_text(facts), nl=False)
+
+
+def json_text(facts: Any) -> str:
+    """Text of a mapping or dataclass as one JSON object; NaN and infinity become null."""
+    return json.dumps(plain(facts), indent=1, allow_nan=False) + "\n"
+
+
+def plain(value: Any) -> Any:
+    """Turn a value into what JSON knows.
+
+    >>> plain({"rms": float("nan"), "where": Path("a/b"), "counts": (1, 2)})
+    {'rms': None, 'where': 'a/b', 'counts': [1, 2]}
+    """
+    if is_dataclass(value) and not isinstance(value, type):
+        return plain(asdict(value))
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str):
+        return [plain(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return str(value) if isinstance(value, Path) else value
+
+
+def text(*paragraphs: str) -> None:
+    """Print sentences."""
+    for paragraph in paragraphs:
+        click.echo(printable(paragraph))
+
+
+def facts(pairs: Mapping[str, Any]) -> None:
+    """Print names and values, one pair a line; an empty value is left out."""
+    shown = {name: str(value) for name, value in pairs.items() if value not in (None, "", ())}
+    width = max(map(len, shown), default=0)
+    for name, value in shown.items():
+        click.echo(printable(f"{name.ljust(width)}  {value}"))
+
+
+def definitions(meanings: Mapping[str, str]) -> None:
+    """Print names, each with its meaning beside it in as many lines as it takes."""
+    formatter = click.HelpFormatter(max_width=100)
+    formatter.write_dl([(name, printable(meaning)) for name, meaning in meanings.items()])
+    click.echo(formatter.getvalue(), nl=False)
+
+
+def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    """Print columns under a header: the first to the left, the others to the right."""
+    lines = [list(header), *([str(cell) for cell in row] for row in rows)]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        first, *others = (
+            cell.rjust(width) if place else cell.ljust(width)
+            for place, (cell, width) in enumerate(zip(line, widths, strict=True))
+        )
+        click.echo(printable("  ".join([first, *others]).rstrip()))
+
+
+def counts(numbers: Mapping[str, int]) -> str:
+    """Counts on one line.
+
+    >>> counts({"healthy": 3, "inner": 1200})
+    'healthy 3, inner 1,200'
+    """
+    return ", ".join(f"{name} {number:,}" for name, number in numbers.items())
+
+
+def size(n_bytes: float) -> str:
+    """Size of a file.
+
+    >>> size(999), size(1_234_567)
+    ('999 B', '1.2 MB')
+    """
+    for unit in ("B", "kB", "MB", "GB"):
+        if n_bytes < 999.5:
+            return (
+                f"{n_bytes:.3g} {unit}"
+                if unit == "B"
+                else f"{n_bytes:.2g} {unit}"
+                if n_bytes < 10
+                else f"{n_bytes:.0f} {unit}"
+            )
+        n_bytes /= 1000
+    return f"{n_bytes:.3g} TB"
+
+
+def duration(seconds: float) -> str:
+    """Time a person waits.
+
+    >>> duration(0.31), duration(42.4), duration(150), duration(9000)
+    ('1 s', '42 s', '2.5 min', '2.5 h')
+    """
+    if seconds < 100:
+        return f"{max(round(seconds), 1)} s"
+    return f"{seconds / 60:.2g} min" if seconds < 5940 else f"{seconds / 3600:.2g} h"

@@ -1,0 +1,263 @@
+"""The page and the pictures: complete, alone, escaped, the same every time, and refused in one sentence where they cannot be."""
+
+import json
+import re
+from dataclasses import replace
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from features.baselines import ESTIMATORS, benchmark
+from features.indicators import Orders
+from features.report.page import _findings, _of_faults, plot_record, write_report
+from features.report.pictures import Shown, draw_record, fault_lines, picture, squared_envelope, thinned
+from features.table import feature_table
+from gen.corpus import FAULTS, SCHEMA, make_dataset, open_corpus, part_name, write_index, write_manifest, write_part
+from gen.errors import CorpusError
+
+FS = 10_000.0
+ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
+LINES = {"healthy": (), "inner": (5.4,), "outer": (3.6,), "ball": (4.7,), "cage": (0.4,), "compound": (5.4, 3.6)}
+FOUR = FAULTS[:4]  # the classes of corpora made before there were six
+HOSTILE = "<script>alert(1)</script>'\"{{ 7 * 7 }}$\\frac"
+
+
+def signal_of(fault, shaft_rate, rng):
+    """Noise of which the envelope repeats at the lines of the fault."""
+    time = np.arange(4000) / FS
+    loudness = sum(3 * np.exp(-6 * (1 - np.cos(2 * np.pi * line * shaft_rate * time))) for line in LINES[fault])
+    return rng.standard_normal(time.size) * (0.2 + loudness)
+
+
+def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, classes=4, **changed):
+    rng = np.random.default_rng(0)
+    (directory / "parts").mkdir(parents=True)
+    specimen = np.repeat(np.arange(specimens), records)
+    count = len(specimen)
+    columns = {v.name: np.array([title] * count, object) if v.dtype == "str" else np.zeros(count) for v in SCHEMA}
+    columns |= {name: np.full(count, order) for name, order in ORDERS.items()}
+    columns |= {
+        "shaft_rate": rng.uniform(20, 40, count),
+        "sample_rate": np.full(count, FS),
+        "load": rng.uniform(100, 2000, count),
+        "fault": specimen % classes,
+        "width": 1e-3 * ~np.isin(specimen % classes, [0, 4]) * rng.uniform(0.5, 1, count),
+        "rig": specimen // classes,
+        "specimen": specimen,
+        "recording": np.arange(count),
+    }
+    signal = [signal_of(FAULTS[fault], columns["shaft_rate"][n], rng) for n, fault in enumerate(columns["fault"])]
+    dataset = make_dataset(
+        np.array(signal, dtype=np.float32)[:, None],
+        FS,
+        ("housing",),
+        columns | changed,
+        attributes={"title": title, "source": title, "history": ""},
+    )
+    rows = [write_part(dataset, directory / "parts" / part_name(0))]
+    write_index(directory, rows)
+    write_manifest(directory, rows, complete=True, recipe=title, versions={title: title}, warnings=(title,))
+    return directory
+
+
+@pytest.fixture(scope="module")
+def results_of():
+    def results(corpus, test=None):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("features.baselines.estimators.TREES", 10)
+            return benchmark(feature_table(corpus), None if test is None else feature_table(test), folds=2)
+
+    return results
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory):
+    return write_corpus(tmp_path_factory.mktemp("report") / "corpus")
+
+
+@pytest.fixture(scope="module")
+def results(corpus, results_of):
+    return results_of(corpus)
+
+
+@pytest.fixture(scope="module")
+def page(corpus, results, tmp_path_factory):
+    return write_report(corpus, results, tmp_path_factory.mktemp("report") / "new" / "folder").read_text()
+
+
+class Links(HTMLParser):
+    """Addresses a page refers to, the elements it leaves open, and its text."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.addresses, self.open, self.text = [], [], ""
+        self.feed(page)
+
+    def handle_starttag(self, tag, attrs):
+        self.addresses += [value for name, value in attrs if name in ("src", "href", "action", "data", "srcset")]
+        if tag not in ("meta", "img", "br", "link"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.text += f"{data} "
+
+
+def test_the_page_needs_nothing_but_itself(page):
+    found = Links(page)
+    assert found.open == []
+    assert len(found.addresses) == 6
+    assert all(address.startswith("data:image/svg+xml;base64,") for address in found.addresses)
+    assert "http" not in re.sub(r"base64,[^\"]*", "", page).replace("http-equiv", "")
+
+
+def test_the_page_tells_what_the_corpus_holds_and_every_score(page, results):
+    text = " ".join(Links(page).text.split())
+    assert "24 records of 0.4 s at 10 kHz, 8 specimens on 2 rigs." in text
+    for name in ESTIMATORS:
+        found = results.baselines[name].grouped
+        assert f"{name.replace('_', ' ')} {found.balanced_accuracy:.3f} ± {np.std(found.folds):.3f}" in text
+    for fault in FOUR:
+        assert f"{fault} 6 2 2 6 0 0" in text
+    assert "cage" not in text
+    assert "compound" not in text
+
+
+def test_six_classes_are_counted_drawn_and_scored(results_of, tmp_path):
+    corpus = write_corpus(tmp_path / "corpus", specimens=12, classes=6)
+    found = Links(write_report(corpus, results_of(corpus), tmp_path / "out").read_text())
+    text = " ".join(found.text.split())
+    assert len(found.addresses) == 8
+    for fault in FAULTS:
+        assert f"{fault} 6 2 2 6 0 0" in text
+    assert f"true \\ predicted {' '.join(FAULTS)} healthy" in text
+    assert "chance is 0.167" in text
+
+
+def test_a_distribution_of_widths_leaves_out_the_records_without_a_spall(tmp_path):
+    with open_corpus(write_corpus(tmp_path / "corpus", specimens=12, classes=6)) as corpus:
+        widths = _of_faults("width", corpus)
+        np.testing.assert_array_equal(np.isnan(widths), np.isin(corpus["fault"].values, [0, 4]))
+        np.testing.assert_array_equal(_of_faults("load", corpus), corpus["load"].values)
+
+
+def test_the_page_comes_with_the_numbers_and_is_the_same_every_time(corpus, results, page, tmp_path):
+    assert write_report(corpus, results, tmp_path).read_text() == page
+    held = json.loads((tmp_path / "results.json").read_text())
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "results.json"]
+    assert held["baselines"]["ensemble"]["null"]["accuracy"] == results.baselines["ensemble"].null.accuracy
+
+
+def test_text_of_a_corpus_is_escaped_and_cut_short(results_of, tmp_path):
+    title = HOSTILE + 400 * "x"
+    corpus = write_corpus(tmp_path / "corpus", title)
+    test = write_corpus(tmp_path / "test", "2" + title, records=2)
+    page = write_report(corpus, results_of(corpus, test), tmp_path / "out").read_text()
+    assert "<script" not in page
+    assert 400 * "x" not in page
+    assert "{{ 7 * 7 }}" in page
+    assert "other corpus" in page
+
+
+def test_permuted_labels_above_chance_are_called_out(results):
+    found = results.baselines["ensemble"]
+    leaking = replace(found, null=replace(found.null, interval=(0.8, 0.9)))
+    suspicious = replace(results, baselines=results.baselines | {"ensemble": leaking})
+    assert "above chance: look for a leak" in _findings(suspicious, 0.25)[2]
+    honest = replace(found, null=replace(found.null, interval=(0.2, 0.9)))
+    fine = replace(results, baselines=results.baselines | {"ensemble": honest})
+    assert "at chance, as it must be" in _findings(fine, 0.25)[2]
+
+
+def test_a_class_that_cannot_be_drawn_is_said_so(results, tmp_path):
+    faults = np.repeat(np.arange(8) % 4, 3)
+    unknown = write_corpus(
+        tmp_path / "corpus", shaft_rate=np.where(faults == 2, np.nan, 30.0), load=np.full(24, np.nan)
+    )
+    page = write_report(unknown, results, tmp_path / "out").read_text()
+    assert "No record of this class has a signal, a shaft rate and fault orders to draw." in page
+    assert len(Links(page).addresses) == 5
+
+
+@pytest.mark.parametrize(
+    ("suffix", "start"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF"), (".PNG", b"\x89PNG")]
+)
+def test_a_record_is_drawn_in_the_format_of_the_suffix_and_the_same_every_time(corpus, tmp_path, suffix, start):
+    first, second = tmp_path / f"first{suffix}", tmp_path / f"second{suffix}"
+    plot_record(corpus, 3, first)
+    plot_record(corpus, 3, second)
+    assert first.read_bytes().startswith(start)
+    assert first.read_bytes() == second.read_bytes()
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+@pytest.mark.parametrize(
+    ("record", "channel", "name", "sentence"),
+    [
+        (0, 0, "picture.gif", r"\.gif is no format of pictures; use \.png, \.svg or \.pdf"),
+        (0, 0, "picture", "no suffix is no format of pictures"),
+        (24, 0, "picture.png", "no record 24; give one of 0 to 23"),
+        (-1, 0, "picture.png", "no record -1; give one of 0 to 23"),
+        (0, 1, "picture.png", "no channel 1; give one of 0 to 0"),
+        (0, 0, "missing/picture.png", "could not be written"),
+    ],
+)
+def test_what_cannot_be_drawn_is_refused_in_one_sentence(corpus, tmp_path, record, channel, name, sentence):
+    with pytest.raises(CorpusError, match=sentence):
+        plot_record(corpus, record, tmp_path / name, channel=channel)
+
+
+def test_a_record_without_a_shaft_rate_is_refused(tmp_path):
+    unknown = write_corpus(tmp_path / "corpus", shaft_rate=np.zeros(24))
+    with pytest.raises(CorpusError, match="record 1 cannot be drawn"):
+        plot_record(unknown, 1, tmp_path / "picture.png")
+
+
+def test_a_constant_record_can_be_drawn():
+    shown = Shown("constant", np.ones(4000), FS, 30.0, Orders(**ORDERS), "inner")
+    assert np.all(squared_envelope(shown)[1] == 0)
+    assert picture(draw_record(shown), "png").startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("fault", ["inner", "outer", "ball", "cage"])
+def test_the_drawn_envelope_has_its_highest_lines_where_the_fault_is_marked(fault):
+    rng = np.random.default_rng(2)
+    shown = Shown("made up", signal_of(fault, 31.0, rng), FS, 31.0, Orders(**ORDERS), fault)
+    order, spectrum = squared_envelope(shown)
+    own, others = fault_lines(shown.orders, fault)
+    seen = order > 0.2
+    assert order[seen][spectrum[seen].argmax()] == pytest.approx(min(own.values()), abs=0.05)
+    for line in others.values():
+        assert np.interp(line, order, spectrum) < 0.3 * spectrum[seen].max()
+
+
+def test_the_lines_of_a_fault_are_three_harmonics_and_a_ball_strikes_both_races():
+    own, others = fault_lines(Orders(**ORDERS), "ball")
+    assert own == pytest.approx({"2 BSF": 4.7, "4 BSF": 9.4, "6 BSF": 14.1})
+    assert others == {"BPFO": 3.6, "BPFI": 5.4, "shaft": 1.0, "FTF": 0.4}
+    assert fault_lines(Orders(**ORDERS), "healthy")[0] == {}
+
+
+def test_a_compound_fault_may_show_the_line_of_any_part_and_a_cage_its_own_only():
+    own, others = fault_lines(Orders(**ORDERS), "compound")
+    assert own == pytest.approx({"BPFO": 3.6, "BPFI": 5.4, "2 BSF": 4.7, "FTF": 0.4})
+    assert others == {"shaft": 1.0}
+    own, others = fault_lines(Orders(**ORDERS), "cage")
+    assert own == pytest.approx({"FTF": 0.4, "2 FTF": 0.8, "3 FTF": 1.2})
+    assert others == pytest.approx({"BPFO": 3.6, "BPFI": 5.4, "2 BSF": 4.7, "shaft": 1.0})
+
+
+@given(length=st.integers(2, 40_000), place=st.floats(0, 0.99), seed=st.integers(0, 99))
+@settings(deadline=None)
+def test_a_thinned_waveform_keeps_its_highest_peak(length, place, seed):
+    values = np.random.default_rng(seed).standard_normal(length)
+    values[int(place * length * 0.9)] = 20.0
+    time, drawn = thinned(np.arange(length) / FS, values)
+    assert drawn.max() == 20.0
+    assert time.shape == drawn.shape
+    assert drawn.size < 6100

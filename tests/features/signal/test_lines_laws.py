@@ -1,0 +1,86 @@
+"""Laws of line reading, on levels drawn by hand."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from features.signal.lines import LINE_NAMES, Orders, combs, read_lines, single_lines
+
+law = settings(deadline=None, max_examples=40)
+ORDERS = Orders(*(np.array([order]) for order in (0.3983, 3.5848, 5.4152, 2.3567)))
+BINS_PER_ORDER = 60.0
+
+
+def level_with(*places, height=2.0, bins=1200):
+    level = np.zeros((1, bins))
+    level[0, np.rint(places).astype(int)] = height
+    return level
+
+
+def read(level):
+    return dict(zip(LINE_NAMES, read_lines(level, np.array([BINS_PER_ORDER]), ORDERS)[0], strict=True))
+
+
+@law
+@given(st.floats(-0.015, 0.015), st.floats(50.0, 390.0))
+def test_a_line_within_the_tolerance_is_read_whole(error, place):
+    assert single_lines(level_with(place * (1 + error)), np.array([[place]]))[0, 0] == 2.0
+
+
+@law
+@given(st.floats(0.03, 0.1), st.sampled_from([-1, 1]), st.floats(100.0, 390.0))
+def test_a_line_outside_the_tolerance_is_not_read(error, side, place):
+    assert single_lines(level_with(place * (1 + side * error)), np.array([[place]]))[0, 0] == 0.0
+
+
+@law
+@given(st.floats(-0.018, 0.018), st.floats(50.0, 390.0))
+def test_a_comb_forgives_a_speed_error_shared_by_its_harmonics(error, base):
+    harmonics = np.arange(1, 4) * base * (1 + error)
+    wide = level_with(*harmonics, *(harmonics - 1), *(harmonics + 1))
+    assert combs(wide, np.array([[base]]))[0, 0] == pytest.approx(2.0)
+
+
+@law
+@given(st.floats(200.0, 390.0))
+def test_a_comb_does_not_join_harmonics_of_different_speeds(base):
+    disagreeing = level_with(base * 1.018, 2 * base * 0.982, 3 * base)
+    assert combs(disagreeing, np.array([[base]]))[0, 0] == pytest.approx(2.0 / 3)
+
+
+def test_each_line_is_read_at_its_order():
+    ftf, bpfo, bpfi, bsf = (order[0] for order in ORDERS)
+    lines = {
+        "bpfo_h1": bpfo,
+        "bpfi_h1": bpfi,
+        "2bsf_h1": 2 * bsf,
+        "bpfo_h2": 2 * bpfo,
+        "bpfi_h2": 2 * bpfi,
+        "2bsf_h2": 4 * bsf,
+        "bsf": bsf,
+        "fr": 1.0,
+        "2fr": 2.0,
+        "ftf": ftf,
+        "2ftf": 2 * ftf,
+        "fr-ftf": 1 - ftf,
+    }
+    for name, order in lines.items():
+        values = read(level_with(order * BINS_PER_ORDER))
+        assert values[name] == 2.0, name
+        assert values["highest_line"] == 2.0, name
+
+
+def test_sidebands_are_a_shaft_turn_away_and_a_cage_turn_for_the_ball():
+    ftf, bpfo, bpfi, bsf = (order[0] for order in ORDERS)
+    for name, base, side in (("bpfo", bpfo, 1.0), ("bpfi", bpfi, 1.0), ("2bsf", 2 * bsf, ftf)):
+        both = read(level_with((base - side) * BINS_PER_ORDER, (base + side) * BINS_PER_ORDER))
+        one = read(level_with((base - side) * BINS_PER_ORDER))
+        assert both[f"{name}_sidebands"] == 2.0
+        assert one[f"{name}_sidebands"] == 1.0
+
+
+def test_a_line_beyond_the_end_of_the_spectrum_reads_as_high_as_the_floor():
+    values = read(np.full((1, 100), 3.0))
+    assert values["fr"] == 3.0
+    assert values["bpfo_h1"] == values["bpfi_comb"] == 0.0

@@ -1,0 +1,202 @@
+"""Laws of the spectra: energy is kept, modulations show where they are, neighbours do not matter."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.ndimage import uniform_filter1d
+from scipy.signal import welch
+from scipy.signal.windows import hann
+
+from features.signal.demodulation import (
+    analytic_band,
+    envelope_spectrum,
+    fine_amplitudes,
+    hann_weighted,
+    running_median,
+    squared_envelope_spectrum,
+)
+from features.signal.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
+
+law = settings(deadline=None, max_examples=25)
+seeds = st.integers(0, 2**32 - 1)
+
+
+def noise(seed, records=3, n=4096):
+    return np.random.default_rng(seed).standard_normal((records, n))
+
+
+@law
+@given(seeds, st.integers(16, 4000), st.floats(1e3, 1e5))
+def test_the_psd_of_one_window_holds_the_energy_of_the_windowed_record(seed, n, fs):
+    x = noise(seed, n=n)
+    frequencies, density = psd(x, fs, segment=n / fs)
+    window = hann(n, sym=False)
+    energy = np.sum((window * (x - x.mean(axis=1, keepdims=True))) ** 2, axis=1) / np.sum(window**2)
+    np.testing.assert_allclose(density.sum(axis=1) * frequencies[1], energy, rtol=1e-9)
+
+
+@law
+@given(seeds, st.floats(1e3, 1e5))
+def test_the_psd_of_a_long_record_holds_its_variance(seed, fs):
+    x = noise(seed, n=65536)
+    frequencies, density = psd(x, fs, segment=512 / fs)
+    np.testing.assert_allclose(density.sum(axis=1) * frequencies[1], x.var(axis=1), rtol=0.03)
+
+
+@law
+@given(seeds, st.integers(16, 4000), st.integers(8, 4000))
+def test_the_psd_is_that_of_welch(seed, n, length):
+    x = noise(seed, n=n)
+    for ours, his in zip(psd(x, 1.0, length), welch(x, 1.0, nperseg=min(n, length)), strict=True):
+        np.testing.assert_allclose(ours, his, rtol=1e-9, atol=1e-12)
+
+
+@law
+@given(st.floats(0.1, 10.0), st.floats(200.0, 4000.0))
+def test_a_tone_has_half_its_squared_amplitude_in_its_band(amplitude, tone):
+    fs = 12_000.0
+    x = amplitude * np.sin(2 * np.pi * tone * np.arange(12_000) / fs)[None]
+    frequencies, density = psd(x, fs)
+    inside, outside = band_energies(density, frequencies, [tone - 40, tone + 40, 6000.0])[0]
+    assert inside == pytest.approx(amplitude**2 / 2, rel=0.02)
+    assert outside < 1e-3 * inside
+
+
+@law
+@given(seeds, st.lists(st.floats(0.0, 600.0), min_size=2, max_size=8, unique=True))
+def test_energies_of_adjoining_bands_add_up(seed, edges):
+    frequencies = np.linspace(0, 500, 101)
+    density = noise(seed, n=101) ** 2
+    edges = sorted(edges)
+    parts = band_energies(density, frequencies, edges)
+    whole = band_energies(density, frequencies, [edges[0], edges[-1]])
+    np.testing.assert_allclose(parts.sum(axis=1), whole[:, 0], rtol=1e-9, atol=1e-9)
+    assert (parts >= -1e-9).all()
+
+
+@law
+@given(seeds)
+def test_bands_around_everything_hold_everything(seed):
+    frequencies, density = psd(noise(seed), 12_000.0)
+    total = band_energies(density, frequencies, [-1e9, 1e9])[:, 0]
+    np.testing.assert_allclose(total, density.sum(axis=1) * frequencies[1])
+
+
+@law
+@given(seeds, st.lists(st.floats(5.0, 60.0), min_size=3, max_size=3))
+def test_bands_in_orders_are_bands_at_the_speed_of_each_record(seed, rates):
+    frequencies, density = psd(noise(seed), 12_000.0)
+    orders = np.array([0.5, 1.5, 7.3, 40.0])
+    together = band_energies(density, frequencies, np.multiply.outer(np.array(rates), orders))
+    for record, rate in enumerate(rates):
+        alone = band_energies(density[record : record + 1], frequencies, rate * orders)
+        np.testing.assert_array_equal(together[record], alone[0])
+
+
+@law
+@given(st.floats(0.05, 0.9), st.integers(10, 120), st.sampled_from([12_000, 25_600, 48_828]))
+def test_an_amplitude_modulated_tone_puts_its_line_in_the_envelope_spectrum(depth, modulation, fs):
+    t = np.arange(fs) / fs
+    x = (1 + depth * np.cos(2 * np.pi * modulation * t)) * np.sin(2 * np.pi * 3000.0 * t)
+    z = analytic_band(fourier_coefficients(x[None], fs, 5000.0), 2000, 4000)
+    for spectrum, amplitude in ((envelope_spectrum, depth), (squared_envelope_spectrum, 2 * depth)):
+        frequencies, lines = spectrum(z, float(z.shape[1]))
+        highest = np.argmax(lines[0])
+        assert frequencies[highest] == pytest.approx(modulation, abs=frequencies[1])
+        assert lines[0, highest] == pytest.approx(amplitude, rel=0.03)
+
+
+@law
+@given(st.floats(0.1, 10.0), st.floats(600.0, 1400.0))
+def test_the_modulus_of_an_analytic_band_is_the_amplitude_of_a_tone_in_it(amplitude, tone):
+    x = amplitude * np.sin(2 * np.pi * tone * np.arange(12_000) / 12_000)
+    z = analytic_band(fourier_coefficients(x[None], 12_000, 5000.0), 500, 1500)
+    middle = np.abs(z[0, z.shape[1] // 4 : -z.shape[1] // 4])
+    gain = 1.01  # the taper, whose mean is 0.99, is normalised by its mean
+    np.testing.assert_allclose(middle, gain * amplitude, rtol=0.02)
+
+
+@law
+@given(seeds)
+def test_a_band_does_not_depend_on_the_sample_rate(seed):
+    rng = np.random.default_rng(seed)
+    tones, phases = rng.uniform(1200, 1800, 5), rng.uniform(0, 2 * np.pi, 5)
+    bands = []
+    for fs in (12_000, 25_600):
+        t = np.arange(fs // 2) / fs
+        x = np.cos(2 * np.pi * np.multiply.outer(t, tones) + phases).sum(axis=1)
+        bands.append(analytic_band(fourier_coefficients(x[None], fs, 5000.0), 500, 1000))
+    np.testing.assert_allclose(*bands, atol=0.02)
+
+
+@law
+@given(seeds)
+def test_cepstral_whitening_leaves_phases_alone_and_makes_all_moduli_one(seed):
+    coefficients = fourier_coefficients(noise(seed), 12_000.0, 5000.0)
+    white = cepstrally_whitened(coefficients)[:, 1:]
+    np.testing.assert_allclose(np.abs(white), 1.0)
+    np.testing.assert_allclose(np.angle(white), np.angle(coefficients[:, 1:]))
+
+
+@law
+@given(seeds, st.floats(-2.0, 2.0))
+def test_a_psd_whitened_spectrum_is_as_strong_in_every_band(seed, colour):
+    coefficients = fourier_coefficients(noise(seed, n=12_000), 12_000.0, 5000.0)
+    coloured = coefficients * (1.0 + np.arange(coefficients.shape[1])) ** colour
+    power = np.abs(psd_whitened(coloured, 100)[:, 500:4500]) ** 2
+    np.testing.assert_allclose(power.reshape(3, 4, 1000).mean(axis=2), 1.0, atol=0.1)
+
+
+@law
+@given(seeds, st.integers(3, 500), st.integers(1, 200))
+def test_a_spectrum_is_whitened_by_its_running_mean_mirrored_at_its_ends(seed, bins, width):
+    coefficients = noise(seed, n=bins) * np.exp(1j * noise(seed + 1, n=bins))
+    mean = uniform_filter1d(np.abs(coefficients) ** 2, width, mode="mirror")
+    np.testing.assert_allclose(psd_whitened(coefficients, width), coefficients / np.sqrt(mean), rtol=1e-6)
+
+
+@law
+@given(seeds, st.integers(50, 6000), st.sampled_from([np.float32, np.float64]), st.floats(0.0, 1.0))
+def test_an_interpolated_spectrum_is_that_of_the_padded_signal(seed, n, precision, part):
+    weighted = hann_weighted(np.abs(noise(seed, n=n)).astype(precision))
+    padded = 4 / n * np.abs(np.fft.rfft(weighted, 4 * n))
+    bins = max(1, round(part * padded.shape[1]))
+    near = 5e-5 * np.sqrt(np.mean(padded**2))
+    np.testing.assert_allclose(fine_amplitudes(weighted, bins), padded[:, :bins], rtol=0, atol=near)
+
+
+@pytest.mark.parametrize("whiten", [cepstrally_whitened, lambda c: psd_whitened(c, 25)])
+def test_whitening_silence_leaves_silence(whiten):
+    assert not whiten(np.zeros((2, 100), complex)).any()
+
+
+@law
+@given(st.floats(-5, 5), st.floats(-1, 1), st.floats(8.0, 300.0))
+def test_the_running_median_follows_a_straight_line(height, slope, width):
+    line = height + slope * np.arange(1000.0)
+    median = running_median(line[None], np.array([width]), 800)[0]
+    half = int(width) + 1
+    np.testing.assert_allclose(median[half:], line[half:800], atol=2 * abs(slope) + 1e-9)
+
+
+@law
+@given(seeds, st.integers(60, 900))
+def test_the_running_median_does_not_see_a_narrow_line(seed, place):
+    floor = 1 + 0.01 * noise(seed, records=1, n=1000)
+    floor[0, place - 5 : place + 6] = 100.0
+    assert running_median(floor, np.array([100.0]), 1000).max() < 1.1
+
+
+@law
+@given(seeds)
+def test_a_record_does_not_depend_on_the_records_beside_it(seed):
+    x = noise(seed, records=5, n=6000)
+    widths = np.array([40.0, 90.0, 77.0, 300.0, 51.0])
+
+    def floors(rows):
+        z = analytic_band(psd_whitened(fourier_coefficients(x[rows], 12_000.0, 5000.0), 25), 250, 750)
+        _, spectrum = envelope_spectrum(z, 2000.0)
+        return running_median(spectrum, widths[rows], 500)
+
+    np.testing.assert_array_equal(floors(slice(0, 5))[3], floors(slice(3, 4))[0])

@@ -1,0 +1,338 @@
+"""The generic importer: what a mapping file may say, and the sentence for what it may not."""
+
+import math
+import re
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+
+from gen.corpus import FAULTS, open_corpus, validate_corpus
+from gen.errors import CorpusError
+from gen.importers import import_generic
+from gen.importers.mapping import bearing_of, read_mapping
+from tests.paths import ROOT
+
+SIGNAL = np.random.default_rng(1).normal(size=2100)
+COMMON = "bearing: '6205'\nunit: m/s2\nsample_rate_hz: 2000\nshaft_rpm: 1500\nfault: inner\nspecimen: A\n"
+
+
+def imported(tmp_path, mapping, **options):
+    (tmp_path / "mapping.yaml").write_text(mapping)
+    done = import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", **options)
+    assert validate_corpus(done.directory) == []
+    with open_corpus(done.directory) as corpus:
+        return done, corpus.load()
+
+
+def refusal(tmp_path, mapping):
+    (tmp_path / "mapping.yaml").write_text(mapping)
+    with pytest.raises(CorpusError) as refused:
+        import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus")
+    assert not (tmp_path / "corpus").exists()
+    assert "\n" not in str(refused.value)
+    return str(refused.value)
+
+
+def write_matlab_7_3(path):
+    with h5py.File(path, "w", userblock_size=512) as file:
+        file["vibration"] = SIGNAL[np.newaxis]
+    with path.open("r+b") as stream:
+        stream.write(b"MATLAB 7.3 MAT-file".ljust(124) + b"\x00\x02IM")
+
+
+WRITERS = {
+    "matlab": ("a.mat", lambda path: scipy.io.savemat(path, {"vibration": SIGNAL}), "variable: vibration"),
+    "matlab_structure": (
+        "a.mat",
+        lambda path: scipy.io.savemat(path, {"run": {"fs": 2000, "x": SIGNAL}}),
+        "variable: run.x",
+    ),
+    "matlab_table": (
+        "a.mat",
+        lambda path: scipy.io.savemat(path, {"x": np.stack([0 * SIGNAL, SIGNAL])}),
+        "{variable: x, column: 1}",
+    ),
+    "matlab_7_3": ("a.mat", write_matlab_7_3, "variable: vibration"),
+    "numpy": ("a.npy", lambda path: np.save(path, SIGNAL), "rig: 1"),
+    "comma_and_header": (
+        "a.csv",
+        lambda path: np.savetxt(path, np.c_[0 * SIGNAL, SIGNAL], delimiter=",", header="t,ax", comments=""),
+        "column: ax",
+    ),
+    "semicolon_and_title": (
+        "a.txt",
+        lambda path: np.savetxt(path, np.c_[SIGNAL, SIGNAL], delimiter="; ", header="run 7\nstarted late"),
+        "column: 1",
+    ),
+    "bare_column": ("a.txt", lambda path: np.savetxt(path, SIGNAL), "rig: 1"),
+    "stated_delimiter": (
+        "a.dat",
+        lambda path: np.savetxt(path, np.c_[SIGNAL, SIGNAL], delimiter="|"),
+        "{delimiter: '|', column: 0}",
+    ),
+}
+
+
+@pytest.mark.parametrize(("name", "write", "keys"), WRITERS.values(), ids=WRITERS)
+def test_every_format_gives_the_numbers_that_were_written(tmp_path, name, write, keys):
+    write(tmp_path / name)
+    keys = keys.strip("{}")
+    done, corpus = imported(tmp_path, f"{COMMON}files:\n  - {{path: {name}, {keys}}}\n")
+    assert (done.recordings, done.records, done.skipped) == (1, 2, ())
+    np.testing.assert_array_equal(corpus.acceleration.values.reshape(-1), SIGNAL[:2000].astype(np.float32))
+
+
+def test_a_file_overrides_what_is_said_at_the_top_and_units_become_si(tmp_path):
+    np.save(tmp_path / "a.npy", SIGNAL)
+    np.save(tmp_path / "b.npy", SIGNAL)
+    _, corpus = imported(
+        tmp_path,
+        COMMON + "title: Pump 7\nchannel: drive side\nfiles:\n"
+        "  - {path: a.npy, fault: healthy, specimen: 1}\n"
+        "  - {path: b.npy, unit: g, shaft_rpm: 1.2e3, load_n: 50, width_mm: 1e-1,"
+        " depth_mm: 0.02, angle_deg: -90,"
+        " bearing: {n_balls: 8, pitch_diameter_mm: 40, ball_diameter_mm: 8, contact_angle_deg: 60}}\n",
+    )
+    last = corpus.isel(record=-1)
+    assert [FAULTS[fault] for fault in corpus.fault.values] == ["healthy", "healthy", "inner", "inner"]
+    assert float(last.acceleration[0, 0]) == pytest.approx(SIGNAL[1000] * 9.80665, rel=1e-6)
+    assert float(last.shaft_rate) == 20.0
+    assert float(last["load"]) == 50.0
+    assert float(last.width) == pytest.approx(1e-4)
+    assert float(last.angle) == pytest.approx(-math.pi / 2)
+    assert float(last.bpfo) == pytest.approx(8 / 2 * (1 - 0.2 * 0.5))
+    assert corpus.attrs["title"] == "Pump 7"
+    assert corpus.channel.values.tolist() == ["drive side"]
+    assert corpus.n_spalls.values.tolist() == [0, 0, 1, 1]
+
+
+def test_patterns_name_files_and_specimens_belong_to_their_rig(tmp_path):
+    for place in ("one/a", "one/b", "two/a"):
+        (tmp_path / place).parent.mkdir(exist_ok=True)
+        np.save(tmp_path / f"{place}.npy", SIGNAL)
+    done, corpus = imported(
+        tmp_path, COMMON + "files:\n- {path: one/*.npy, rig: north}\n- {path: '**/a.npy', rig: south}\n"
+    )
+    assert corpus.source.values[::2].tolist() == ["one/a.npy#0", "one/b.npy#0", "two/a.npy#0"]
+    assert corpus.rig.values[::2].tolist() == [0, 0, 1]
+    assert corpus.specimen.values[::2].tolist() == [0, 0, 1]
+    assert corpus.recording.values[::2].tolist() == [0, 1, 2]
+    assert done.skipped == ("one/a.npy: is listed once more by files[1]; skipped.",)
+
+
+def test_one_file_may_hold_several_recordings(tmp_path):
+    np.save(tmp_path / "a.npy", np.stack([SIGNAL, -SIGNAL]))
+    done, corpus = imported(
+        tmp_path, COMMON + "files:\n- {path: a.npy, column: 0}\n- {path: a.npy, column: 1, specimen: B}\n"
+    )
+    assert done.recordings == 2
+    assert corpus.source.values[::2].tolist() == ["a.npy:0#0", "a.npy:1#0"]
+
+
+UNUSABLE = {
+    "missing.npy": (None, "no such file beside mapping.yaml"),
+    "empty.csv": (lambda path: path.write_bytes(b""), "is empty"),
+    "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no line of numbers among its first 2"),
+    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is no readable delimited text file"),
+    "nan.csv": (
+        lambda path: path.write_text("1\nnan\n" * 2000),
+        "has 2000 samples of 4000 that are not finite",
+    ),
+    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "holds 2 columns there and none is chosen"),
+    "objects.npy": (
+        lambda path: np.save(path, np.array([{}]), allow_pickle=True),
+        "is no readable NumPy file",
+    ),
+    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is no readable NumPy file"),
+    "sound.wav": (lambda path: path.write_bytes(b"RIFF"), "ends in none of .mat, .npy"),
+    "a.mat": (lambda path: scipy.io.savemat(path, {"x": SIGNAL}), "needs the key variable"),
+    "broken_7_3.mat": (
+        lambda path: (write_matlab_7_3(path), path.write_bytes(path.read_bytes()[:900])),
+        "needs the key variable",
+    ),
+}
+
+
+def test_each_file_that_cannot_be_used_is_named_with_its_reason(tmp_path):
+    np.save(tmp_path / "good.npy", SIGNAL)
+    for name, (write, _) in UNUSABLE.items():
+        if write is not None:
+            write(tmp_path / name)
+    listed = "".join(f"- {{path: {name}}}\n" for name in ("good.npy", *UNUSABLE))
+    done, corpus = imported(tmp_path, COMMON + "files:\n" + listed)
+    told = dict(sentence.split(": ", 1) for sentence in done.skipped)
+    assert (done.recordings, len(done.skipped)) == (1, len(UNUSABLE))
+    assert set(corpus.source.values.tolist()) == {"good.npy#0", "good.npy#1000"}
+    for name, (_, reason) in UNUSABLE.items():
+        assert reason in told[name], name
+
+
+def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
+    np.save(tmp_path / "good.npy", SIGNAL)
+    write_matlab_7_3(tmp_path / "whole.mat")
+    (tmp_path / "half.mat").write_bytes((tmp_path / "whole.mat").read_bytes()[:900])
+    done, _ = imported(
+        tmp_path,
+        COMMON + "variable: x\nfiles: [{path: good.npy, variable: null}, {path: half.mat}, {path: whole.mat}]\n",
+    )
+    assert "half.mat:x: is no readable MATLAB 7.3 file" in done.skipped[0]
+    assert done.skipped[1] == "whole.mat:x: holds vibration, not x; skipped."
+
+
+REFUSED = {
+    "no_files": (COMMON, "mapping.yaml: files is missing; give it there."),
+    "files_empty": (COMMON + "files: []", "files: [] is not allowed; list should have at least 1 item"),
+    "not_yaml": ("files: [", "mapping.yaml: line 1: is not valid YAML ("),
+    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit is there twice)"),
+    "a_list": ("- 1\n- 2", "mapping.yaml: holds no keys"),
+    "missing_key": (
+        "bearing: '6205'\nunit: g\nfiles: [{path: a.npy, sample_rate_hz: 9, shaft_rpm: 9, specimen: A}]",
+        "files[0].fault is missing; give it there, or at the top for all files.",
+    ),
+    "typo": (
+        COMMON + "files: [{path: a.npy, shaft_rmp: 5}]",
+        "files[0].shaft_rmp is no key here; did you mean shaft_rpm?",
+    ),
+    "typo_at_the_top": (
+        COMMON + "lod_n: 5\nfiles: [{path: a.npy}]",
+        "mapping.yaml: lod_n is no key here; did you mean load_n?",
+    ),
+    "column": (COMMON + "files: [{path: a.npy, column: [1]}]", "files[0].column: [1] is not allowed"),
+    "bearing_list": (COMMON + "files: [{path: a.npy, bearing: [1]}]", "files[0].bearing: [1] is not allowed"),
+    "fault": (
+        COMMON + "files: [{path: a.npy, fault: gear}]",
+        "files[0].fault: 'gear' is not allowed; input should be 'healthy'",
+    ),
+    "speed": (
+        COMMON + "files: [{path: a.npy, shaft_rpm: 0}]",
+        "files[0].shaft_rpm: 0 is not allowed; input should be greater than or equal to 0.001",
+    ),
+    "not_a_number": (COMMON + "files: [{path: a.npy, load_n: .nan}]", "files[0].load_n: nan is not allowed"),
+    "bearing": (
+        COMMON + "files: [{path: a.npy, bearing: 6295}]",
+        "files[0].bearing 6295 is not in the catalogue (",
+    ),
+    "geometry": (
+        COMMON + "files: [{path: a.npy, bearing: {n_balls: 8, pitch_diameter_mm: 40}}]",
+        "files[0].bearing.ball_diameter_mm is missing",
+    ),
+    "balls": (
+        COMMON + "files: [{path: a.npy, bearing: {n_balls: 20, pitch_diameter_mm: 40, ball_diameter_mm: 8}}]",
+        "20 balls of 8 mm do not fit on the pitch circle",
+    ),
+    "healthy_spall": (
+        COMMON + "files: [{path: a.npy, fault: healthy, width_mm: 1}]",
+        "files[0].width_mm describes a spall, and fault is healthy",
+    ),
+    "rates": (
+        COMMON + "files: [{path: a.npy}, {path: b.npy, sample_rate_hz: 4000}]",
+        "files[1] (b.npy) is at 4000 Hz and files[0] (a.npy) at 2000 Hz; make a corpus of each",
+    ),
+    "absolute": (
+        COMMON + "files: [{path: /etc/passwd}]",
+        "files[0].path: /etc/passwd leads out of the folder",
+    ),
+    "above": (COMMON + "files: [{path: data/../../a.npy}]", "leads out of the folder of the mapping file"),
+    "pattern": (COMMON + "files: [{path: 'a**b'}]", "files[0].path: a**b is no pattern of file names"),
+    "folder_itself": (
+        COMMON + "files: [{path: '.'}]",
+        "files[0].path: . is no pattern of file names; write it like data/*.mat",
+    ),
+    "every_folder_twice": (COMMON + "files: [{path: '**/**/a'}]", "write it like data/*.mat, with ** at most once."),
+    "control_character": (
+        COMMON + 'files: [{path: "a\\0b"}]',
+        "files[0].path: '\\x00' is a control character; leave it out.",
+    ),
+    "specimen_on_two_lines": (
+        COMMON + 'files: [{path: a, specimen: "b\\nc"}]',
+        "goes over several lines; write it on one.",
+    ),
+    "control_character_in_a_title": (
+        COMMON + 'title: "a\\e[2J"\nfiles: [{path: a}]',
+        "title: '\\x1b' is a control character",
+    ),
+    "half_a_character": (
+        COMMON + 'origin: "\\ud800"\nfiles: [{path: a}]',
+        "is not valid YAML (half a character (a lone surrogate))",
+    ),
+    "long_title": (
+        COMMON + f"title: {'t' * 6000}\nfiles: [{{path: a}}]",
+        "title: 'tttttttttttt...ttttttttttttt' is not allowed;",
+    ),
+    "spalls": (
+        COMMON + "n_spalls: 40000\nfiles: [{path: a}]",
+        "n_spalls: 40000 is not allowed; input should be less than or equal to",
+    ),
+    "rate_of_1e308": (
+        COMMON + "files: [{path: a, sample_rate_hz: 1e308}]",
+        "files[0].sample_rate_hz: 1e+308 is not allowed;",
+    ),
+    "rate_of_1e_300": (
+        COMMON + "files: [{path: a, sample_rate_hz: 1e-300}]",
+        "files[0].sample_rate_hz: 1e-300 is not allowed;",
+    ),
+    "speed_of_1e_300": (COMMON + "files: [{path: a, shaft_rpm: 1e-300}]", "files[0].shaft_rpm: 1e-300 is not allowed;"),
+    "column_beyond": (
+        COMMON + "files: [{path: a, column: 99999999999999999999}]",
+        "files[0].column: is not in 0 to 999999.",
+    ),
+    "column_below": (COMMON + "files: [{path: a, column: -1}]", "files[0].column: is not in 0 to 999999."),
+    "delimiter_of_two": (COMMON + "files: [{path: a, delimiter: ';;'}]", "files[0].delimiter: ';;' is not allowed;"),
+    "delimiter_of_numbers": (
+        COMMON + "files: [{path: a, delimiter: '5'}]",
+        "files[0].delimiter: '5' separates no columns.",
+    ),
+    "tiny_balls": (
+        COMMON + "files: [{path: a, bearing: {n_balls: 9, pitch_diameter_mm: 40, ball_diameter_mm: 1e-308}}]",
+        "files[0].bearing.ball_diameter_mm: 1e-308 is not allowed;",
+    ),
+    "nothing_usable": (
+        COMMON + "files: [{path: a.npy}]",
+        "no recording can be used; the first of 1 skipped: a.npy",
+    ),
+}
+
+
+@pytest.mark.parametrize(("mapping", "sentence"), REFUSED.values(), ids=REFUSED)
+def test_a_mapping_that_cannot_be_meant_is_refused_with_a_sentence(tmp_path, mapping, sentence):
+    assert sentence in refusal(tmp_path, mapping)
+
+
+@pytest.mark.parametrize(
+    ("window", "sentence"),
+    [
+        (1e300, "window: 1e+300 s are 1e18 or more samples, and the limit is 25000000;"),
+        (1e306, "window: 1e+306 s holds no signal"),
+        (math.nan, "window: nan s holds no signal"),
+        (1e5, "window: 100000 s are 200000000 samples, and the limit is 25000000;"),
+    ],
+)
+def test_a_window_that_cannot_be_meant_is_refused(tmp_path, window, sentence):
+    (tmp_path / "mapping.yaml").write_text(COMMON + "files: [{path: a.npy}]")
+    with pytest.raises(CorpusError, match=re.escape(sentence)):
+        import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", window=window)
+
+
+def test_a_missing_mapping_and_a_folder_in_its_place_are_refused(tmp_path):
+    for source in (tmp_path / "none.yaml", tmp_path):
+        with pytest.raises(CorpusError, match="no such file; give the YAML file that describes the recordings"):
+            import_generic(source, tmp_path / "corpus")
+
+
+def test_a_link_out_of_the_folder_is_refused(tmp_path):
+    inside = tmp_path / "inside"
+    inside.mkdir()
+    np.save(tmp_path / "a.npy", SIGNAL)
+    (inside / "a.npy").symlink_to(tmp_path / "a.npy")
+    assert "link out of the folder" in refusal(inside, COMMON + "files: [{path: '*.npy'}]")
+
+
+def test_the_mapping_in_the_documentation_is_one(tmp_path):
+    page = (ROOT / "docs" / "importing.md").read_text(encoding="utf-8")
+    (example,) = re.findall(r"```yaml\n(.*?)```", page, flags=re.DOTALL)
+    (tmp_path / "mapping.yaml").write_text(example, encoding="utf-8")
+    mapping = read_mapping(tmp_path / "mapping.yaml")
+    assert [entry.fault for entry in mapping.entries] == ["healthy", "outer", "ball"]
+    assert [bearing_of(entry).designation for entry in mapping.entries] == ["6205", "6205", "L8"]

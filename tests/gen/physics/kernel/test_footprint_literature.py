@@ -1,0 +1,83 @@
+"""The contact ellipse of a ball, against the model study and the pressures that follow from its axes.
+
+Closed forms are those of K. L. Johnson, *Contact Mechanics*, Cambridge University Press, 1985, ch. 4.
+"""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.special import ellipk
+
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.hertz import effective_modulus, ellipticity, footprints, race_curvatures, race_factors
+from gen.physics.trace import felt, rolled
+from tests.paths import ROOT
+from tests.strategies import bearings
+
+law = settings(deadline=None, max_examples=60)
+LOAD = 200.0  # of one ball of a 6205 [N]
+# half the length and half the width of the ellipse [m], largest pressure [Pa], approach [m]; model study, three figures at most
+STUDY = {"inner": (0.77e-3, 0.083e-3, 1.50e9, 3.95e-6), "outer": (0.75e-3, 0.103e-3, 1.25e9, 3.80e-6)}
+STEEL = effective_modulus(207e9, 0.3)
+
+
+@pytest.mark.parametrize("race", [0, 1], ids=STUDY)
+def test_the_ellipse_of_a_6205_is_that_of_the_model_study(race):
+    bearing = CATALOGUE["6205"]
+    long, short, pressure, approach = list(STUDY.values())[race]
+    found = footprints(bearing, LOAD)[race]
+    length = found * ellipticity(*race_curvatures(bearing)[race])
+    assert found == pytest.approx(short, abs=0.51e-6)  # the last figure given; 82.5 um was rounded up
+    assert length == pytest.approx(long, abs=0.5e-5)
+    assert 1.5 * LOAD / (math.pi * length * found) == pytest.approx(pressure, abs=0.5e7)
+    assert (LOAD / race_factors(bearing)[race]) ** (2 / 3) == pytest.approx(approach, abs=0.5e-8)
+
+
+@law
+@given(bearings(), st.floats(1, 1e4), st.floats(1.1, 100))
+def test_a_contact_widens_with_the_cube_root_of_the_load(bearing, load, times):
+    light, heavy = footprints(bearing, load), footprints(bearing, times * load)
+    assert heavy == pytest.approx([times ** (1 / 3) * width for width in light], rel=1e-9)
+
+
+@law
+@given(bearings(), st.floats(1, 1e4))
+def test_half_widths_and_load_deflection_factors_belong_to_one_ellipse(bearing, load):
+    """Approach of the bodies 3 Q K(m) / (2 pi a E*), a the long semi-axis: two ways through the elliptic integrals, one contact."""
+    for width, curvatures, factor in zip(
+        footprints(bearing, load), race_curvatures(bearing), race_factors(bearing), strict=True
+    ):
+        ratio = ellipticity(*curvatures)
+        approach = 3 * load * ellipk(1 - ratio**-2) / (2 * math.pi * ratio * width * STEEL / 2)
+        assert approach == pytest.approx((load / factor) ** (2 / 3), rel=1e-9)
+
+
+def test_a_ball_on_races_as_good_as_flat_touches_them_in_the_circle_of_hertz():
+    ball = 8e-3
+    flat = replace(
+        CATALOGUE["6205"], ball_diameter=ball, pitch_diameter=1e4, inner_conformity=1e6, outer_conformity=1e6
+    )
+    radius = (3 * LOAD * (ball / 2) / (4 * (STEEL / 2))) ** (1 / 3)
+    assert footprints(flat, LOAD) == pytest.approx((radius, radius), rel=1e-3)
+
+
+def test_the_contact_of_a_roller_is_the_strip_of_two_cylinders():
+    bearing = CATALOGUE["NU206"]
+    assert bearing.roller_length is not None
+    for width, radius in zip(footprints(bearing, LOAD), (bearing.inner_radius, -bearing.outer_radius), strict=True):
+        together = 1 / (2 / bearing.ball_diameter + 1 / radius)
+        strip = math.sqrt(4 * LOAD * together / (math.pi * bearing.roller_length * STEEL / 2))
+        assert width == pytest.approx(strip, rel=1e-12)
+
+
+def test_the_model_page_says_how_far_a_ball_drops_into_a_narrow_spall_through_its_contact():
+    bearing, width = CATALOGUE["6205"], 0.18e-3
+    path = rolled(np.full(3, 280e-6), width, bearing.ball_diameter / 2, bearing.inner_radius)
+    footprint = footprints(bearing, LOAD)[0]
+    through = felt(path, width, footprint, footprint).max()
+    page = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
+    assert f"under {LOAD:.0f} N by {1e6 * through:.2f} um instead of {1e6 * path.max():.2f} um" in page

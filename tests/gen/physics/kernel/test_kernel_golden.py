@@ -1,0 +1,74 @@
+"""The kernel against right-hand sides and trajectories of other implementations, in tests/golden/model.json."""
+
+import json
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+from gen.physics.bearing import Bearing
+from gen.physics.kernel.batch import Motion, Record, Spall, n_terms
+from gen.physics.rotor import Machine
+from tests.paths import GOLDEN
+from tests.reference import EVERY_ACCELERATION, march_lanes, right_hand_side, slow_motion
+
+GOLDEN = json.loads((GOLDEN / "model.json").read_text())
+START = np.array(GOLDEN["start"])
+KNOT = 1 / 12_000
+STEPS_AT_192_KHZ = 16
+
+
+def golden_record(half_clearance, *, with_spalls):
+    bearing = Bearing("golden", **GOLDEN["bearing"])
+    still = np.zeros(n_terms(bearing.n_balls))
+    return Record(
+        bearing,
+        Machine(**GOLDEN["machine"])._replace(half_clearance=half_clearance),
+        Motion(**GOLDEN["motion"]),
+        tuple(Spall(**spall) for spall in GOLDEN["spalls"]) if with_spalls else (),
+        still,
+        still,
+        EVERY_ACCELERATION,
+        np.empty(0),
+    )
+
+
+def later(record, time):
+    """The record as it stands after ``time``: the rates hold, so one knot is enough to know the angles."""
+    shaft, cage, spin = slow_motion(record, time, 1).angles[1] if time else slow_motion(record, 1.0, 0).angles[0]
+    return record._replace(motion=record.motion._replace(shaft_angle=shaft, cage_angle=cage, spin_angle=spin))
+
+
+@pytest.mark.parametrize("case", GOLDEN["right_hand_sides"], ids=lambda case: f"t={case['time']}")
+def test_the_right_hand_side_with_three_spalls_is_the_golden_one(case):
+    record = later(golden_record(GOLDEN["machine"]["half_clearance"], with_spalls=True), case["time"])
+    trip = march_lanes([record], 1, STEPS_AT_192_KHZ, KNOT, START)[0]
+    derivative = np.concatenate([trip.states[0, 6:], trip.accelerations[0]])
+    np.testing.assert_allclose(derivative, case["derivative"], rtol=1e-10, atol=0)
+
+
+@pytest.mark.parametrize("case", GOLDEN["trajectories"], ids=lambda case: case["name"])
+def test_a_trajectory_of_twenty_milliseconds_ends_where_the_golden_one_does(case):
+    record = golden_record(case["half_clearance"], with_spalls=case["spalls"])
+    n_knots = round(case["time"] / KNOT)
+    trip = march_lanes([record], n_knots, STEPS_AT_192_KHZ, KNOT, START)[0]
+    np.testing.assert_allclose(trip.states[-1, :6], case["state"][:6], rtol=0, atol=case["tolerance"])
+
+
+@pytest.mark.parametrize("case", GOLDEN["trajectories"], ids=lambda case: case["name"])
+def test_another_integrator_of_another_right_hand_side_goes_where_both_kernel_and_golden_one_go(case):
+    """The twin over one single knot, so that its angles are continuous, by Dormand's and Prince's method of order eight."""
+    record, time = golden_record(case["half_clearance"], with_spalls=case["spalls"]), case["time"]
+    slow = slow_motion(record, time, 1)
+    end = solve_ivp(
+        lambda t, y: right_hand_side(record, slow, time, 0, t / time, y),
+        (0.0, time),
+        START,
+        method="DOP853",
+        rtol=1e-12,
+        atol=np.repeat([1e-18, 1e-15], 6),
+        max_step=1e-4,  # a third of what the narrowest spall takes to pass
+    ).y[:, -1]
+    trip = march_lanes([record], round(time / KNOT), STEPS_AT_192_KHZ, KNOT, START)[0]
+    np.testing.assert_allclose(end[:6], case["state"][:6], rtol=0, atol=1e-13)
+    np.testing.assert_allclose(end[:6], trip.states[-1, :6], rtol=0, atol=case["tolerance"])

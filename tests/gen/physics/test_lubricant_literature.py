@@ -1,0 +1,164 @@
+"""Oil and film against tables, other authors' formulas and a rule of practice; what docs/model.md says of them.
+
+.. [1] G. W. Stachowiak, A. W. Batchelor, *Engineering Tribology*, Elsevier, table 2.3: dynamic viscosity at 30, 60 and 100 C.
+.. [2] ASTM D341, a worked example of its equation: a gear oil SAE 140 of 404 and 28 mm2/s has 132.126 mm2/s at 60 C.
+.. [3] G. Nijenbanning, C. H. Venner, H. Moes, "Film thickness in elastohydrodynamically lubricated elliptic contacts", Wear 176
+   (1994) 217-229.
+.. [4] A. N. Grubin, in *Central Scientific Research Institute for Technology and Mechanical Engineering*, book 30, Moscow, 1949.
+.. [5] E. Krämer, *Dynamics of Rotors and Foundations*, Springer, 1993: damping of rolling bearings from their stiffness.
+"""
+
+import math
+from itertools import product
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from gen.physics.bearing import orders
+from gen.physics.catalogue import CATALOGUE
+from gen.physics.hertz import POINT_EXPONENT, effective_modulus, load_deflection_factor
+from gen.physics.lubricant import (
+    Film,
+    Lubricant,
+    density,
+    dynamic_viscosity,
+    film,
+    kinematic_viscosity,
+    line_film_thickness,
+    point_film_thickness,
+    point_squeeze_damping,
+)
+from gen.physics.rotor import STRIBECK
+from tests.paths import ROOT
+
+STEEL = effective_modulus(207e9, 0.3)
+ALPHA = 2e-8
+PAGE = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
+MINERAL_OILS = (  # [1], mPa s at 30, 60, 100 C
+    (38, 12.1, 5.3),
+    (153, 34, 9.1),
+    (250, 50.5, 12.6),
+    (810, 135, 26.8),
+    (18.6, 6.3, 2.4),
+    (45, 12, 3.9),
+    (107, 23.3, 6.4),
+    (122, 26.3, 7.3),
+    (171, 31, 7.5),
+    (30.7, 8.6, 3.1),
+    (165, 30.0, 6.8),
+    (310, 44.2, 9.4),
+    (2000, 180, 24),
+)
+
+
+def test_the_equation_reproduces_the_worked_example():
+    oil = Lubricant(404e-6, 28e-6)
+    assert kinematic_viscosity(oil, 60) == pytest.approx(132.126e-6, rel=1e-5)
+
+
+def test_measured_oils_lie_on_the_line_through_two_of_their_points():
+    """Twelve of thirteen within 6 percent; the first row falls less from 60 to 100 C than any other oil of the table."""
+
+    def through(at_30, at_100):
+        """The oil with these dynamic viscosities."""
+        some = Lubricant()._replace(viscosity_100=at_100 / density(Lubricant(), 100))
+        at_40 = brentq(
+            lambda nu: dynamic_viscosity(some._replace(viscosity_40=nu), 30) - at_30, 1.01 * some.viscosity_100, 0.1
+        )
+        return some._replace(viscosity_40=at_40)
+
+    errors = sorted(
+        abs(dynamic_viscosity(through(1e-3 * at_30, 1e-3 * at_100), 60) / (1e-3 * at_60) - 1)
+        for at_30, at_60, at_100 in MINERAL_OILS
+    )
+    assert np.median(errors) < 0.02
+    assert errors[-2] < 0.06
+    assert errors[-1] < 0.13
+
+
+@pytest.mark.parametrize("U", [5e-12, 2e-11, 5e-11])
+@pytest.mark.parametrize("load", [30.0, 300.0, 1500.0])
+@pytest.mark.parametrize("ratio", [2.0, 15.0, 40.0])  # of curvatures; 14 to 45 in the catalogue
+@pytest.mark.parametrize("radius", [1.5e-3, 5e-3])
+def test_the_film_of_a_ball_is_that_of_nijenbanning_venner_and_moes(radius, ratio, load, U):
+    """Two fits to two sets of computations, at the speeds of bearings: films of 10 nm to 0.3 um.
+
+    Beyond they part, for theirs has no single power of speed: at U = 1e-12 it is 6 to 21 percent lower, at 3e-10 11 to 28 higher.
+    """
+    viscous_speed = U * STEEL * radius
+    curvature, both_speeds = 1 / ratio, 2 * viscous_speed
+    M = load / (STEEL * radius**2) * (STEEL * radius / both_speeds) ** 0.75
+    L = ALPHA * STEEL * (both_speeds / (STEEL * radius)) ** 0.25
+    shape = 1 + 0.006 * math.log(curvature) + 0.63 * curvature ** (4 / 7)
+    rigid = 145 * (1 + 0.796 * curvature ** (14 / 15)) ** (-15 / 7) / curvature * M**-2
+    elastic = 3.18 * shape ** (-14 / 25) * curvature ** (-1 / 15) * M ** (-2 / 15)
+    rigid_piezoviscous = 1.29 * (1 + 0.691 * curvature) ** (-2 / 3) * L ** (2 / 3)
+    elastic_piezoviscous = 1.48 * shape ** (-7 / 20) * curvature ** (-1 / 24) * M ** (-1 / 12) * L ** (3 / 4)
+    s = 1.5 * (1 + math.exp(-1.2 * elastic / elastic_piezoviscous))
+    isoviscous = rigid**1.5 + (elastic**-4 + (1.8 * ratio) ** -4) ** (-3 / 8)
+    piezoviscous = rigid_piezoviscous**-8 + elastic_piezoviscous**-8
+    expected = (isoviscous ** (2 * s / 3) + piezoviscous ** (-s / 8)) ** (1 / s)
+    expected *= radius * math.sqrt(both_speeds / (STEEL * radius))
+    thickness = point_film_thickness((1 / radius, curvature / radius), STEEL, ALPHA, viscous_speed, load)
+    assert thickness == pytest.approx(expected, rel=0.15)
+
+
+@pytest.mark.parametrize("viscous_speed", [0.005, 0.02, 0.05])  # [N/m]
+@pytest.mark.parametrize("per_length", [2e4, 1e5, 3e5])
+def test_the_least_film_of_a_roller_is_about_three_quarters_of_the_parallel_one_of_grubin(per_length, viscous_speed):
+    radius = 4e-3
+    U, G, W = viscous_speed / (STEEL * radius), ALPHA * STEEL, per_length / (STEEL * radius)
+    parallel = 1.95 * (U * G) ** (8 / 11) * W ** (-1 / 11) * radius
+    thickness = line_film_thickness(1 / radius, STEEL, ALPHA, viscous_speed, per_length)
+    assert thickness / parallel == pytest.approx(0.77, abs=0.1)
+
+
+def test_a_sphere_near_a_plane_is_damped_as_cox_and_brenner_say():
+    radius, viscosity, gap = 4e-3, 0.02, 1e-6
+    expected = 6 * math.pi * viscosity * radius**2 / gap
+    assert point_squeeze_damping((1 / radius, 1 / radius), viscosity, gap) == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_ball_in_its_film_is_damped_as_practice_says_of_rolling_bearings():
+    """Krämer's rule: damping over stiffness of (0.25 to 2.5)e-5 s.
+
+    Over the ball bearings of the catalogue, 40 to 80 C, 10 to 60 Hz, 30 to 1000 N, the film of rigid surfaces gives a median
+    of 0.56e-5 s, 85 percent of it within the rule. Slow shafts, small loads and cold oil make it more, fast ones less; no case
+    is off by more than a factor of six.
+    """
+    ratios = []
+    balls = [bearing for bearing in CATALOGUE.values() if bearing.rolling_element == "ball"]
+    for bearing, celsius, rate, load in product(balls, (40, 60, 80), (10, 30, 60), (30, 100, 300, 1000)):
+        stiffness = POINT_EXPONENT * load_deflection_factor(bearing) ** (2 / 3) * load ** (1 / 3)
+        ratios.append(film(bearing, Lubricant(), celsius, rate, load).damping / stiffness)
+    assert np.median(ratios) == pytest.approx(0.56e-5, rel=0.1)
+    assert np.mean([0.25e-5 < ratio < 2.5e-5 for ratio in ratios]) > 0.8
+    assert min(ratios) > 0.25e-5 / 6
+    assert max(ratios) < 6 * 2.5e-5
+
+
+def film_of_the_page(celsius: float) -> Film:
+    """Film of one ball of a 6205 with VG 68 oil at 30 Hz and 300 N."""
+    return film(CATALOGUE["6205"], Lubricant(), celsius, 30.0, 300.0)
+
+
+def test_the_oil_table_of_the_model_page_is_what_the_formulas_give():
+    films = [film_of_the_page(celsius) for celsius in (20, 60, 100)]
+    rows = {
+        "viscosity [mPa s]": [1e3 * dynamic_viscosity(Lubricant(), celsius) for celsius in (20, 60, 100)],
+        "film, both contacts [um]": [1e6 * one.thickness for one in films],
+        "damping [N s/m]": [one.damping for one in films],
+    }
+    for name, values in rows.items():
+        assert f"| {name} | {' | '.join(f'{value:.3g}' for value in values)} |" in PAGE
+
+
+def test_the_damping_of_a_fall_that_the_model_page_leaves_out_is_what_it_says():
+    """Where a ball swaps edges, half the width of the spall from either, it falls as steeply as its sagitta on the race."""
+    bearing = CATALOGUE["6205"]
+    rolling = 2 * math.pi * 30 * (1 - orders(bearing).ftf) * bearing.inner_radius
+    falling = rolling * 0.53e-3 / 2 * (2 / bearing.ball_diameter + 1 / bearing.inner_radius)
+    damping = film_of_the_page(60).damping
+    assert f"{falling:.2f} m/s x {damping:.0f} N s/m = {falling * damping:.0f} N on a ball that carries" in PAGE
+    assert f"carries {STRIBECK * 300 / bearing.n_balls:.0f} N of the 300 N" in PAGE

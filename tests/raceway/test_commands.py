@@ -1,0 +1,229 @@
+"""What each command gives, to people and to programs."""
+
+import importlib
+import json
+import subprocess
+import sys
+from dataclasses import replace
+from importlib.metadata import version
+
+import netCDF4
+import numpy as np
+import pytest
+
+from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
+from features.table_files import read_table
+from gen.corpus import SIGNAL, open_corpus
+from raceway.cli import cli
+from raceway.commands import learning
+
+
+def leaves(command, path=("raceway",)):
+    """Every command with its path, groups opened."""
+    for name, inner in getattr(command, "commands", {}).items():
+        yield (*path, name), inner
+        yield from leaves(inner, (*path, name))
+
+
+@pytest.fixture(scope="module")
+def model(tiny_corpus, tmp_path_factory):
+    from features import feature_table
+    from features.baselines import save_model, train
+
+    path = tmp_path_factory.mktemp("model") / "model.skops"
+    save_model(train(feature_table(tiny_corpus), "logistic_regression"), path)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("path", "command"), list(leaves(cli)), ids=lambda value: " ".join(value) if isinstance(value, tuple) else ""
+)
+def test_help_shows_how_a_command_is_called(run, path, command):
+    result = run(*path[1:], "--help")
+    assert result.exit_code == 0
+    assert " ".join(path) in result.stdout.replace("Usage: ", "", 1)
+    assert f"\n    {' '.join(path)}" in result.stdout  # an example on a line of its own
+    assert len(command.get_short_help_str(60)) < 60
+    assert "..." not in command.get_short_help_str(60)
+
+
+def test_the_version_is_that_of_the_distribution(run):
+    assert run("--version").stdout == f"raceway {version('raceway')}\n"
+
+
+def test_help_and_version_wait_for_no_heavy_library():
+    heavy = {"numpy", "numba", "xarray", "distributed", "sklearn", "matplotlib", "rich", "gen", "features"}
+    code = f"import sys, raceway.cli; print(*({heavy!r} & set(sys.modules)))"
+    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert loaded.stdout == "\n"
+
+
+def test_the_estimators_on_offer_are_those_of_the_registry(run):
+    assert tuple(ESTIMATORS) == learning.ESTIMATORS
+    assert f"default: {DEFAULT_ESTIMATOR}" in " ".join(run("train", "--help").stdout.split())
+
+
+def test_recipes_are_listed_with_what_they_are_for(run, told):
+    listed = told("recipes")["recipes"]
+    assert {"quickstart", "domain_randomised", "ophel2025"} <= {recipe["name"] for recipe in listed}
+    for recipe in listed:
+        assert len(recipe["purpose"]) > 20
+        assert recipe["name"] in run("recipes").stdout
+
+
+def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
+    planned, found = told("plan", tiny_recipe), told("info", tiny_corpus)
+    same = (
+        "records",
+        "specimens",
+        "rigs",
+        "parts",
+        "classes",
+        "splits",
+        "channels",
+        "sample_rate",
+        "duration",
+        "title",
+    )
+    assert {name: planned[name] for name in same} == {name: found[name] for name in same}
+    assert planned["bytes"] == pytest.approx(found["bytes"], rel=0.5)
+    assert planned["estimated_seconds"] > 0
+    assert "healthy 12, inner 12, outer 12, ball 12" in run("plan", tiny_recipe).stdout
+
+
+def test_a_plan_writes_nothing(run, tiny_recipe, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("plan", tiny_recipe).exit_code == 0
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_generate_tells_what_it_made_and_a_second_call_keeps_it(told, tiny_recipe, tmp_path):
+    made = told("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 20, "--seed", 9)
+    assert (made["records"], made["parts"], made["kept"], made["failures"]) == (20, 2, 0, [])
+    again = told("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 20, "--seed", 9)
+    assert (again["records"], again["kept"]) == (20, 2)
+    assert told("info", tmp_path / "corpus")["overrides"] == {"seed": 9, "records": 20}
+
+
+def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tmp_path, monkeypatch):
+    module = importlib.import_module("gen.generate")  # the package gives the function under this name
+    simulate = module.simulate
+
+    def first_diverges(scenarios, recipe):
+        return replace(simulate(scenarios, recipe), failures={0: f"record {scenarios[0].record.number} diverged."})
+
+    monkeypatch.setattr(module, "simulate", first_diverges)
+    result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
+    assert result.exit_code == 0
+    assert "left out: record 0 diverged.\nleft out: record 12 diverged.\n" in result.stderr
+    assert "22 records in 2 parts; 2 could not be simulated" in result.stdout
+    assert told("info", tmp_path / "corpus")["failures"] == ["record 0 diverged.", "record 12 diverged."]
+    assert "Left out:\n- record 0 diverged.\n" in run("info", tmp_path / "corpus").stdout
+
+
+def test_info_and_validate_find_a_sound_corpus_sound(run, told, tiny_corpus):
+    assert told("validate", tiny_corpus) == {"corpus": str(tiny_corpus), "valid": True, "problems": []}
+    assert run("validate", tiny_corpus).stdout == f"{tiny_corpus}: sound.\n"
+    found = told("info", tiny_corpus)
+    assert (found["complete"], found["bearings"], found["recordings"]) == (True, {"6205": 48}, 48)
+    assert found["versions"].keys() >= {"raceway", "numpy", "numba"}
+    shown = run("info", tiny_corpus).stdout
+    for part in ("Tiny corpus", "recipe tiny", "48 of 0.1 s at 12000 Hz", "6205 48", "train 36, test 12", "complete"):
+        assert part in shown
+
+
+def test_replay_finds_a_record_identical_and_writes_it(run, told, tiny_corpus, tmp_path):
+    path = tmp_path / "record.nc"
+    assert told("replay", tiny_corpus, "--record", 17, "-o", path)["identical"] is True
+    with open_corpus(tiny_corpus) as corpus, netCDF4.Dataset(path) as written:
+        np.testing.assert_allclose(written[SIGNAL][0], corpus[SIGNAL][17], rtol=1e-6)
+    assert run("replay", tiny_corpus, "--record", 0).stdout == f"{tiny_corpus}: record 0: identical.\n"
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg", ".pdf"])
+def test_plot_draws_a_record(run, tiny_corpus, tmp_path, suffix):
+    path = tmp_path / f"record{suffix}"
+    assert run("plot", tiny_corpus, "--record", 5, "-o", path).exit_code == 0
+    assert path.stat().st_size > 5000
+
+
+def test_features_are_written_as_netcdf_and_parquet(told, tiny_corpus, tmp_path):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
+    table = read_table(tmp_path / "features.nc")
+    assert (made["records"], made["features"]) == (48, table.sizes["feature"])
+    told("features", tiny_corpus, "-o", tmp_path / "features.parquet")
+    assert parquet.read_table(tmp_path / "features.parquet").num_rows == 48
+
+
+def test_train_keeps_the_test_split_for_an_honest_score(told, run, tiny_corpus, tmp_path):
+    path = tmp_path / "model.skops"
+    made = told("train", tiny_corpus, "-o", path, "--estimator", "logistic_regression")
+    assert (made["records"], made["test"]["records"], made["test"]["seen"]) == (36, 12, 0)
+    assert made["classes"] == ["healthy", "inner", "outer", "ball"]
+    assert 0 <= made["test"]["balanced_accuracy"] <= 1
+    found = run("evaluate", tiny_corpus, "--model", path, "--json")
+    assert json.loads(found.stdout)["seen"] == 36
+    assert "no fair test" in found.stderr
+
+
+def test_train_without_a_test_split_scores_nothing(told, tiny_recipe, tmp_path):
+    whole = tmp_path / "whole.yaml"
+    whole.write_text(tiny_recipe.read_text().replace("split: {test: 0.25}", "split: {test: 0}"))
+    told("generate", whole, "-o", tmp_path / "corpus", "--records", 24)
+    made = told("train", tmp_path / "corpus", "-o", tmp_path / "model", "--estimator", "majority")
+    assert (made["records"], made["test"]) == (24, None)
+
+
+def test_evaluate_gives_the_figures_over_the_classes_present(run, told, tiny_corpus, model):
+    scores = told("evaluate", tiny_corpus, "--model", model)
+    wanted = ("balanced_accuracy", "macro_f1", "accuracy", "classes", "confusion", "records", "by_recording")
+    assert set(wanted) <= scores.keys()
+    assert sum(map(sum, scores["confusion"])) == scores["records"] == 48
+    shown = run("evaluate", tiny_corpus, "--model", model).stdout
+    assert f"balanced accuracy  {scores['balanced_accuracy']:.3f}" in shown
+
+
+def test_benchmark_writes_a_report_and_results(run, told, tiny_corpus, tmp_path, monkeypatch):
+    for name in ("svm", "random_forest", "extra_trees", "gradient_boosting", "ensemble"):
+        monkeypatch.setitem(ESTIMATORS, name, ESTIMATORS["logistic_regression"])  # for speed
+    results = told("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2)
+    assert results["baselines"].keys() == ESTIMATORS.keys()
+    assert json.loads((tmp_path / "report" / "results.json").read_text())["baselines"] == results["baselines"]
+    assert "Tiny corpus" in (tmp_path / "report" / "report.html").read_text()
+    monkeypatch.setattr("features.report.page.write_report", lambda *_: tmp_path / "report.html")  # for speed
+    shown = run("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2).stdout
+    assert "null labels" in shown
+    assert "envelope_rule" in shown
+
+
+def test_recordings_are_imported_and_counted(run, told, tmp_path):
+    rng = np.random.default_rng(0)
+    for name in ("healthy", "outer"):
+        np.save(tmp_path / f"{name}.npy", rng.standard_normal(4000))
+    mapping = tmp_path / "mapping.yaml"
+    mapping.write_text(
+        "title: Pump\nbearing: '6205'\nunit: g\nsample_rate_hz: 2000\nshaft_rpm: 1480\nfiles:\n"
+        "  - {path: healthy.npy, fault: healthy, specimen: new}\n"
+        "  - {path: outer.npy, fault: outer, specimen: worn}\n"
+        "  - {path: lost.npy, fault: inner, specimen: lost}\n"
+    )
+    result = run("import", "generic", mapping, "-o", tmp_path / "pump", "--window", 0.25, "--json")
+    made = json.loads(result.stdout)
+    assert (made["recordings"], made["records"], len(made["skipped"])) == (2, 16, 1)
+    assert "lost.npy: no such file" in result.stderr
+    found = told("info", tmp_path / "pump")
+    assert (found["importer"], found["classes"]) == ("generic", {"healthy": 8, "outer": 8})
+    assert "lost.npy: no such file" in run("info", tmp_path / "pump").stdout
+
+
+def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):
+    monkeypatch.setattr("raceway.studies.timing.REPEATS", 1)
+    found = told("bench", tiny_recipe, "--records", 6)
+    assert set(found["stage_seconds"]) == {"draw", "lay_out", "integrate", "measure", "write", "features"}
+    assert found["kernel_record_steps_per_second"] == pytest.approx(
+        found["record_steps"] / found["stage_seconds"]["integrate"]
+    )
+    assert found["record_steps"] % 6 == 0
+    assert found["records_per_second"] > 0
+    assert "million record-steps/s" in run("bench", tiny_recipe, "--records", 6).stdout

@@ -1,0 +1,259 @@
+"""Bad usage and bad input: one sentence on standard error that says what to do, exit code 2, nothing written."""
+
+import json
+import shutil
+
+import h5py
+import pytest
+
+from features.baselines import save_model, train
+from features.table import feature_table
+from raceway.console import ending, show
+
+
+@pytest.fixture(scope="module")
+def places(tiny_recipe, tiny_corpus, tmp_path_factory):
+    """Paths of what is there and what is wrong, by the names that stand in the table below."""
+    here = tmp_path_factory.mktemp("places")
+    (here / "file.txt").write_text("not what is wanted\n")
+    (here / "folder").mkdir()
+    (here / "folder" / "something").write_text("of another kind\n")
+    (here / "binary.yaml").write_bytes(bytes(range(256)))
+    table = feature_table(tiny_corpus)
+    save_model(train(table, "majority"), here / "model.skops")
+    whole = (here / "model.skops").read_bytes()
+    (here / "cut.skops").write_bytes(whole[: len(whole) // 2])
+    for name, (whole, broken) in RECIPES.items():
+        (here / f"{name}.yaml").write_text(tiny_recipe.read_text().replace(whole, broken))
+    for damage, change in DAMAGES.items():
+        folder = shutil.copytree(tiny_corpus, here / damage)
+        change(folder)
+    names = {path.name.partition(".")[0]: path for path in here.iterdir()}
+    absent = {name: here / name for name in ("nowhere", "new", "begun")}
+    return names | absent | {"recipe": tiny_recipe, "corpus": tiny_corpus}
+
+
+def change_manifest(folder, **facts):
+    manifest = json.loads((folder / "manifest.json").read_text())
+    (folder / "manifest.json").write_text(json.dumps(manifest | facts))
+
+
+def alter_a_part(folder):
+    path = folder / "parts" / "part-00002.nc"
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 255
+    path.write_bytes(content)
+
+
+def lead_out(folder):
+    rows = json.loads((folder / "manifest.json").read_text())["parts"]
+    change_manifest(folder, parts=[rows[0] | {"name": "../../secret.nc"}])
+
+
+def point_elsewhere(folder):
+    with h5py.File(folder / "corpus.nc", "r+") as index:
+        shape, dtype = index["acceleration"].shape, index["acceleration"].dtype
+        del index["acceleration"]
+        layout = h5py.VirtualLayout(shape, dtype)
+        layout[:] = h5py.VirtualSource("/etc/secret.nc", "acceleration", shape, dtype)
+        index.create_virtual_dataset("acceleration", layout)
+
+
+DAMAGES = {
+    "no_json": lambda folder: (folder / "manifest.json").write_text("{"),
+    "a_list": lambda folder: (folder / "manifest.json").write_text("[1, 2]"),
+    "vague": lambda folder: change_manifest(folder, complete="yes"),
+    "later_format": lambda folder: change_manifest(folder, raceway_format=99),
+    "unfinished": lambda folder: change_manifest(folder, complete=False),
+    "leading_out": lead_out,
+    "missing_part": lambda folder: (folder / "parts" / "part-00001.nc").unlink(),
+    "altered_part": alter_a_part,
+    "no_index": lambda folder: (folder / "corpus.nc").unlink(),
+    "pointing_elsewhere": point_elsewhere,
+    "other_recipe": lambda folder: (folder / "recipe.yaml").write_text(
+        (folder / "recipe.yaml").read_text().replace("low: 0.5", "low: 0.6")
+    ),
+    "no_recipe": lambda folder: (folder / "recipe.yaml").unlink(),
+}
+
+RECIPES = {
+    "unknown_bearing": ('"6205"', "NU205"),
+    "crowded": ('["6205"]', "[mine], entries: {mine: {n_balls: 20, pitch_mm: 50, ball_mm: 9}}"),
+    "untraced": ("{kind: outer,", "{kind: outer, profile: trace,"),
+    "hasty": ("operation: {", "operation: {load_profile: {kind: steps, levels_percent: [50, 99]}, "),
+    "twice": ("{kind: healthy}", "{kind: compound, parts: [{kind: cage}, {kind: cage}]}"),
+    "straight": ("operation: {", "operation: {axial_load_n: 100, "),
+    "coming_loose": ("20}\noperation: {", "20, contact_angle_deg: 10}\noperation: {axial_load_n: 10, "),
+    "wide": ("{kind: healthy}", "{kind: ball, width_mm: 6}"),
+}
+
+TABLE = [
+    # usage
+    ("frob", "raceway: No such command 'frob'; see raceway --help."),
+    ("generate {recipe}", "raceway generate: Missing option '-o' / '--output'; see raceway generate --help."),
+    ("info", "raceway info: Missing argument 'DIR'"),
+    ("info {corpus} --colour", "raceway info: No such option '--colour'"),
+    ("generate {recipe} -o {new} --workers 0", "'--workers': 0 is not in the range x>=1"),
+    ("generate {recipe} -o {new} --records some", "'--records': 'some' is not a valid integer"),
+    ("replay {corpus} --record first", "'--record': 'first' is not a valid integer"),
+    ("train {corpus} -o {new} --estimator oracle", "'--estimator': 'oracle' is not one of 'majority', 'envelope_rule'"),
+    ("import cwru {folder} -o {new} --subset some", "'--subset': 'some' is not one of 'all', 'wang'"),
+    ("import skf {folder} -o {new}", "raceway import: No such command 'skf'"),
+    ("benchmark {corpus} -o {new} --folds 1", "'--folds': 1 is not in the range x>=2"),
+    # where results go
+    ("generate {recipe} -o {file}", "file.txt is a file; give a folder"),
+    ("generate {recipe} -o {folder}", "folder: is not empty and holds no corpus; choose another folder."),
+    ("generate {recipe} -o {corpus} --seed 8", "holds a corpus of another recipe, seed or size; choose another folder."),
+    ("generate {recipe} -o /proc/corpus", "/proc/corpus: cannot be written"),
+    ("features {corpus} -o {new}.csv", "new.csv does not end in .nc or .parquet"),
+    ("plot {corpus} --record 0 -o {new}.bmp", "new.bmp does not end in .png or .svg or .pdf"),
+    ("replay {corpus} --record 0 -o {new}.txt", "new.txt does not end in .nc"),
+    ("train {corpus} -o {folder}", "folder is a folder; give a file"),
+    ("train {corpus} -o {nowhere}/model", "there is no folder"),
+    ("benchmark {corpus} -o {file}", "file.txt is a file; give a folder"),
+    ("import generic {file} -o {file}", "file.txt is a file; give a folder"),
+    # recipes
+    ("plan {nowhere}", "nowhere: neither a file nor one of the recipes domain_randomised"),
+    ("plan quikstart", "did you mean quickstart?"),
+    ("plan {folder}", "folder: is a folder; give a recipe file, or the name of one of"),
+    ("plan {binary}", "binary.yaml: cannot be read"),
+    ("plan {file}", "file.txt: a recipe is a mapping"),
+    ("plan {recipe} --seed -1", "tiny.yaml: seed: -1 is not allowed here; it must be greater than or equal to 0."),
+    ("generate {recipe} -o {new} --records 0", "records: 0 is not allowed here; it must be greater than or equal to 1."),
+    ("generate {recipe} -o {begun} --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
+    ("plan {unknown_bearing}", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
+    ("plan {crowded}", "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_mm below 7.461."),
+    ("plan {untraced}", "faults[2].profile: trace and trace_um belong together; give both or neither."),
+    ("generate {hasty} -o {new}", "operation.load_profile.step_s: 0.1 s leaves the levels no time; keep it below 0.05."),
+    ("generate {twice} -o {new}", "faults[0].parts: cage, cage are not all different; several spalls of one part need no compound."),
+    ("plan {straight}", "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."),
+    ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
+    ("plan {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; at least 66.12 N do."),
+    ("bench {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; at least 66.12 N do."),
+    ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
+    # corpora
+    ("info {nowhere}", "nowhere: no such folder; give the folder of a corpus"),
+    ("info {file}", "file.txt: no such folder; give the folder of a corpus"),
+    ("validate {folder}", "folder: holds no manifest.json, so it is no corpus; make one with raceway generate."),
+    ("features {no_json} -o {new}.nc", "manifest.json: not a corpus manifest"),
+    ("info {a_list}", "manifest.json: not a corpus manifest"),
+    ("info {vague}", "manifest.json: not a corpus manifest (complete: input should be a valid boolean)"),
+    ("info {later_format}", "manifest.json: corpus format 99, this version of raceway reads format 2; make it again."),
+    ("features {unfinished} -o {new}.nc", "unfinished; the raceway generate command that began it completes it."),
+    ("info {leading_out}", "'../../secret.nc' is not the name of a part"),
+    ("plot {missing_part} --record 0 -o {new}.png", "part-00001.nc: missing; copy it again"),
+    ("features {altered_part} -o {new}.nc", "part-00002.nc: altered, it is not the file the manifest names"),
+    ("train {altered_part} -o {new}", "part-00002.nc: altered"),
+    ("info {no_index}", "corpus.nc: missing; copy it again"),
+    ("features {pointing_elsewhere} -o {new}.nc", "corpus.nc: altered, it is not the file the manifest names"),
+    ("replay {other_recipe} --record 0", "is not the recipe the corpus was made from; restore it to replay."),
+    ("replay {no_recipe} --record 0", "holds no recipe.yaml"),
+    ("replay {corpus} --record 48", "record 48 is not in it; it has records 0 to 47."),
+    ("replay {corpus} --record -1", "record -1 is not in it; it has records 0 to 47."),
+    ("plot {corpus} --record 99 -o {new}.png", "no record 99; give one of 0 to 47."),
+    # models and scores
+    ("evaluate {corpus} --model {nowhere}", "nowhere: no such file; give a model made with raceway train."),
+    ("evaluate {corpus} --model {file}", "file.txt: not a readable model"),
+    ("evaluate {corpus} --model {cut}", "cut.skops: not a readable model"),
+    ("evaluate {nowhere} --model {model}", "nowhere: no such folder"),
+    ("benchmark {corpus} -o {new} --by rig --folds 3", "2 rig(s) cannot fill 3 folds; use at most 2 folds."),
+    ("benchmark {corpus} -o {new} --folds 3 --test {corpus}", "48 of its records are in the training corpus too"),
+    # recordings
+    ("import cwru {nowhere} -o {new}", "nowhere: no such folder; give the folder that holds the .mat files."),
+    ("import mfpt {folder} -o {new}", "no .mat file in it or below"),
+    ("import generic {nowhere} -o {new}", "nowhere: no such file; give the YAML file that describes the recordings."),
+    ("import generic {binary} -o {new}", "binary.yaml"),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("line", "sentence"), TABLE, ids=[line for line, _ in TABLE])
+def test_bad_usage_or_input_gets_a_sentence_and_exit_code_2(run, places, line, sentence):
+    result = run(*line.format(**places).split())
+    assert result.exit_code == 2, result.output
+    assert result.stdout == ""
+    said = [line for line in result.stderr.splitlines() if not line.startswith("computing features")]
+    assert len(said) == 1
+    assert sentence in said[0]
+    assert said[0].endswith((".", "?"))
+    assert not [path for path in places["new"].parent.iterdir() if path.name.startswith((".", "new"))]
+
+
+@pytest.mark.parametrize(
+    "damage", [name for name in DAMAGES if name not in ("other_recipe", "no_recipe", "unfinished")]
+)
+def test_validate_finds_a_damaged_corpus_wanting(run, places, damage):
+    result = run("validate", places[damage], "--json")
+    found = json.loads(result.stdout)
+    assert (result.exit_code, found["valid"], result.stderr) == (1, False, "")
+    assert len(found["problems"]) == 1
+    assert run("validate", places[damage]).stdout == found["problems"][0] + "\n"
+
+
+def test_a_record_that_replays_differently_is_found_wanting(run, tiny_corpus, tmp_path):
+    folder = shutil.copytree(tiny_corpus, tmp_path / "corpus")
+    path = folder / "parts" / "part-00000.nc"
+    with h5py.File(path, "r+") as part:
+        part["acceleration"][3, 0, 100] += 1
+    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest["parts"][0]["bytes"] = path.stat().st_size
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+    assert run("replay", folder, "--record", 2).exit_code == 0
+    result = run("replay", folder, "--record", 3, "--json")
+    assert (result.exit_code, json.loads(result.stdout)["identical"]) == (1, False)
+    assert "differs" in run("replay", folder, "--record", 3).stdout
+
+
+def test_a_part_that_cannot_be_read_gets_a_sentence(run, places):
+    """Replay compares sizes alone, so it is HDF5 that meets the damage."""
+    for record in range(24, 36):
+        result = run("replay", places["altered_part"], "--record", record)
+        assert result.exit_code in (0, 1, 2)
+        assert result.exit_code < 2 or "a file of the corpus cannot be read" in result.stderr
+
+
+def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch):
+    def fail(_folder):
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr("raceway.console.summary.describe", fail)
+    result = run("info", places["corpus"])
+    assert result.exit_code == 70
+    assert result.stderr == (
+        "internal error (ZeroDivisionError: float division by zero); "
+        "please report it with what RACEWAY_TRACEBACK=1 shows.\n"
+    )
+    monkeypatch.setenv("RACEWAY_TRACEBACK", "1")
+    assert "Traceback" in run("info", places["corpus"]).stderr
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "sentence"),
+    [
+        (
+            PermissionError(13, "Permission denied", "/locked/x"),
+            2,
+            "/locked/x: Permission denied; choose another place",
+        ),
+        (RuntimeError("NetCDF: HDF error"), 2, "a file of the corpus cannot be read (NetCDF: HDF error)"),
+        (type("KilledWorker", (Exception,), {})("part-3"), 2, "the workers of the cluster died again and again"),
+        (KeyboardInterrupt(), 130, "interrupted."),
+    ],
+)
+def test_an_exception_that_gets_through_ends_in_a_sentence(capsys, error, code, sentence):
+    def fail():
+        raise error
+
+    assert ending.exit_code(fail) == code
+    assert sentence in capsys.readouterr().err
+
+
+def test_text_from_strangers_steers_no_terminal(run, tiny_recipe, tmp_path):
+    path = tmp_path / "rude.yaml"
+    path.write_text(tiny_recipe.read_text().replace("title: Tiny corpus", 'title: "Tiny \\e[2J corpus"'))
+    shown = run("plan", path).stdout
+    assert "Tiny ?[2J corpus" in shown
+    assert "\x1b" not in shown
+
+
+def test_json_has_no_word_for_nan():
+    assert show.plain({"load": [float("nan"), 1.5], "rate": float("inf")}) == {"load": [None, 1.5], "rate": None}
