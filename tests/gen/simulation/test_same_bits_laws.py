@@ -15,7 +15,6 @@ SCRIPT = """
 import hashlib, sys
 from gen import draw_scenarios, read_recipe, simulate
 from gen.measurement.measure import measure
-from tests.paths import ROOT
 recipe = read_recipe(sys.argv[1])
 scenarios = draw_scenarios(recipe)
 response = simulate(scenarios, recipe)
