@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of
-from gen.physics.kernel.batch import Record
+from gen.physics.inputs import KernelInput
 
 HERE = Path(__file__).parent
 FLAGS = ("-std=gnu99", "-O3", "-march=native", "-ffast-math", "-fPIC")
@@ -63,7 +63,7 @@ def compiled(name: str, lanes: int, spall: int, folder: Path) -> March:
     return march
 
 
-def in_lanes(records: list[Record], lanes: int, dt: float) -> list[Batch]:
+def in_lanes(records: list[KernelInput], lanes: int, dt: float) -> list[Batch]:
     """Records laid out for steps of ``dt`` seconds; some come twice where the last batch would not be full."""
     full = [records[place % len(records)] for place in range(-(-len(records) // lanes) * lanes)]
     return [_batch(*seed_of(full[first : first + lanes]), dt) for first in range(0, len(full), lanes)]

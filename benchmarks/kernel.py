@@ -12,10 +12,12 @@ from pathlib import Path
 from benchmarks.compiled import accelerations, compiled, compiler, has_avx512, in_lanes
 from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
 from benchmarks.seed import seed_records
-from gen.physics.kernel.batch import Record
+from gen.physics.inputs import KernelInput
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import kernel_record, steps_per_sample
+from gen.simulation.inputs import kernel_input
+from gen.simulation.steps import steps_per_sample
+from gen.simulation.timeline import timeline
 from raceway.studies.timing import bench
 
 SEED, FULL = "ophel2025", Path(__file__).with_name("full.yaml")
@@ -56,7 +58,7 @@ def step_seconds(recipe: Path | str) -> tuple[float, int]:
     """Step that our kernel takes for the first record of a recipe [s], and steps per sample."""
     checked = read_recipe(recipe)
     (scenario,) = draw_scenarios(checked, 0, 1)
-    factor = steps_per_sample(kernel_record(scenario, checked), scenario, checked)
+    factor = steps_per_sample(kernel_input(scenario, timeline(checked)), scenario.record.number, checked)
     return 1 / (checked.recording.sample_rate_hz * factor), factor
 
 
@@ -79,7 +81,7 @@ def _c_kernels(
 
 
 def _c_speed(
-    source: str, lanes: int, groups: dict[int, list[Record]], dt: float, samples: int, steps: int, folder: Path
+    source: str, lanes: int, groups: dict[int, list[KernelInput]], dt: float, samples: int, steps: int, folder: Path
 ) -> Callable[[], float]:
     """What measures a C kernel on the records our kernel is given."""
     work = [(compiled(source, lanes, spall, folder), in_lanes(records, lanes, dt)) for spall, records in groups.items()]

@@ -14,17 +14,19 @@ from numba import njit
 
 from benchmarks.kernel import FULL
 from benchmarks.pairs import seconds
-from gen.physics.kernel.batch import lay_out, record_shape
 from gen.physics.kernel.compiling import LANES, zeros
 from gen.physics.kernel.decimate import OUTPUTS, decimation, filter_rows
 from gen.physics.kernel.integrate import prepare, set_out, to_next_knot
-from gen.physics.kernel.spalls import ball_gaps, move_spalls
+from gen.physics.kernel.layout import Batch
+from gen.physics.kernel.outer_forces import move_forces
+from gen.physics.kernel.spalls import move_spalls
 from gen.physics.kernel.step import advance
-from gen.physics.kernel.turning import STRIDE, Lanes, move_forces, move_processes, turn_rings
-from gen.plan import samples_integrated
+from gen.physics.kernel.turning import STRIDE, move_processes, turn_rings
+from gen.physics.kernel.waviness import ball_gaps
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import kernel_record, steps_per_sample
+from gen.simulation.simulate import laid_out
+from gen.simulation.timeline import timeline
 from raceway.studies.timing import bench
 
 KNOTS, TRIES = 400, 25
@@ -42,10 +44,10 @@ PARTS = {
 
 
 @njit
-def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters: Any, knots: int) -> None:
+def repeat(part: int, shape: Any, batch: Batch, n_steps: int, dt: float, filters: Any, knots: int) -> None:
     """One part of the kernel for so many ``knots``."""
-    lanes = set_out(shape, batch, n_steps)
-    work = prepare(shape, lanes, n_steps)
+    own = set_out(shape, batch, n_steps)
+    work = prepare(shape, own, n_steps)
     width = len(shape.channels) * LANES
     totals = zeros(OUTPUTS * width, np.float32)
     history, halfway = (
@@ -53,28 +55,28 @@ def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters
         zeros((len(filters.last.taps) + 64) * width, np.float32),
     )
     for knot in range(STRIDE):
-        to_next_knot(shape, lanes, knot, n_steps, dt, work)
+        to_next_knot(shape, own, knot, n_steps, dt, work)
     for knot in range(knots):
         if part == STEP:
-            advance(shape, lanes.state, lanes.params, dt, n_steps, 0.0, history, 0)
+            advance(shape, own.state, own.params, dt, n_steps, 0.0, history, 0)
         elif part == ROTATION:
-            turn_rings(shape, lanes, knot, n_steps, dt, work.moves)
+            turn_rings(shape, own, knot, n_steps, dt, work.moves)
         elif part == SLOW:
             if knot % STRIDE == 0:
-                move_processes(shape, lanes, n_steps, work.scratch)
+                move_processes(shape, own, n_steps, work.scratch)
         elif part == FORCES:
             if len(shape.forced):
-                move_forces(lanes, knot, n_steps, dt, work.moves, work.scratch)
-                for i in range(lanes.angles.size):
-                    lanes.angles[i] += work.moves[i]
+                move_forces(own, knot, n_steps, dt, work.moves, work.scratch)
+                for i in range(own.angles.size):
+                    own.angles[i] += work.moves[i]
         elif part == WAVES:
             if len(shape.wavy):
-                ball_gaps(shape, lanes, work.moves, work.scratch, work.gaps)
+                ball_gaps(shape, own, work.moves, work.scratch, work.gaps)
         elif part == SPALLS:
             if len(shape.spalled):
-                move_spalls(shape, lanes, n_steps, work.moves, work.scratch, work.dropped)
-                for i in range(lanes.angles.size):
-                    lanes.angles[i] += work.moves[i]
+                move_spalls(shape, own, n_steps, work.moves, work.scratch, work.dropped)
+                for i in range(own.angles.size):
+                    own.angles[i] += work.moves[i]
         elif part == FIRST_FILTER:
             if knot % 2 == 0 and len(filters.first.taps):
                 filter_rows(shape.channels, filters.first.taps, history, 0, halfway, 0, totals)
@@ -84,16 +86,11 @@ def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters
 
 def kernel_parts(recipe: Recipe) -> tuple[dict[str, float], int]:
     """Time of each part for each record and knot [s], on the commonest batch of a recipe, and its steps per knot."""
-    scenarios = draw_scenarios(recipe, 0, recipe.corpus.records_per_part)
-    records = [kernel_record(scenario, recipe) for scenario in scenarios]
-    needs = [
-        (record_shape(record), steps_per_sample(record, scenario, recipe))
-        for record, scenario in zip(records, scenarios, strict=True)
-    ]
-    (shape, n_steps), _ = Counter(needs).most_common(1)[0]
-    some = [record for record, need in zip(records, needs, strict=True) if need == (shape, n_steps)][:LANES]
-    knot = 1 / recipe.recording.sample_rate_hz
-    given: Any = (shape, lay_out(some, shape, knot), n_steps, knot / n_steps, decimation(n_steps))
+    in_lanes = laid_out(draw_scenarios(recipe, 0, recipe.corpus.records_per_part), recipe)
+    commonest = Counter(group for group, _ in in_lanes).most_common(1)[0][0]
+    batch = next(batch for group, batch in in_lanes if group == commonest)
+    (shape, n_steps), knot = commonest, 1 / timeline(recipe).fs
+    given: Any = (shape, batch, n_steps, knot / n_steps, decimation(n_steps))
     repeat(STEP, *given, 1)
     nothing = min(seconds(repeat, PREPARED, *given, KNOTS) for _ in range(TRIES))
     times = {
@@ -116,7 +113,7 @@ def main() -> None:
         share = "" if stage == "features" else f"{time / total:6.0%}"
         print(f"{stage:36}{time * whole:8.0f} us{share}")
         if stage == "integrate":
-            knots = samples_integrated(recipe) * 1e6
+            knots = timeline(recipe).integrated * 1e6
             for name, part in parts.items():
                 print(f"  {name:34}{part * knots:8.0f} us")
             rest = time * whole - sum(parts.values()) * knots

@@ -18,7 +18,7 @@ from numba import njit
 from benchmarks.compiled import HERE, compiler, has_avx512
 from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
 from gen.physics.kernel.compiling import LANES, copied, square_root, wide, zeros
-from gen.physics.kernel.equations import N_STATE, Shape, make_shape, param_rows
+from gen.physics.kernel.layout import STATE_ROWS, Shape, make_shape, param_rows
 from gen.physics.kernel.step import advance
 
 FLAGS = (
@@ -79,7 +79,7 @@ def rows(pairs: int = 15, *, times: int = TIMES, shapes: tuple[str, ...] = tuple
 
 def operations(shape: Shape) -> int:
     """Arithmetic vector instructions of a stage of the step: the mean of the long loops over lanes, of which LLVM makes up to four."""
-    take_steps(shape, np.zeros(N_STATE * LANES), np.zeros(param_rows(shape, STEPS) * LANES), 0)
+    take_steps(shape, np.zeros(STATE_ROWS * LANES), np.zeros(param_rows(shape, STEPS) * LANES), 0)
     assembly = take_steps.inspect_asm()[take_steps.signatures[-1]]
     counts = [len(ARITHMETIC.findall(block)) for block in re.split(r"\n\S+:", assembly)]
     return round(statistics.mean(count for count in counts if count > max(counts) / 2))
@@ -97,7 +97,7 @@ def _rate(function: Any, done: int, times: int) -> Callable[[], float]:
 
 
 def _step_rate(shape: Shape, times: int) -> Callable[[], float]:
-    state, params = np.zeros(N_STATE * LANES), np.zeros(param_rows(shape, STEPS) * LANES)
+    state, params = np.zeros(STATE_ROWS * LANES), np.zeros(param_rows(shape, STEPS) * LANES)
     take_steps(shape, state, params, 1)
     return lambda: times * STEPS * LANES / seconds(take_steps, shape, state, params, times)
 

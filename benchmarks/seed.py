@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.bearing import orders
-from gen.physics.kernel.batch import Record
+from gen.physics.inputs import KernelInput
 from gen.physics.rotor import as_columns, rest
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import kernel_record
+from gen.simulation.inputs import kernel_input
+from gen.simulation.timeline import timeline
 
 FloatArray = NDArray[np.float64]
 
@@ -51,21 +52,21 @@ class Seed(NamedTuple):
     inner_radius: FloatArray
 
 
-def seed_records(recipe: Recipe, wanted: int) -> dict[int, list[Record]]:
+def seed_records(recipe: Recipe, wanted: int) -> dict[int, list[KernelInput]]:
     """The first records of a recipe by the profile of their spall."""
-    groups: dict[int, list[Record]] = {}
+    groups: dict[int, list[KernelInput]] = {}
     for scenario in draw_scenarios(recipe, 0, wanted):
-        record = kernel_record(scenario, recipe)
+        record = kernel_input(scenario, timeline(recipe))
         profile = _PROFILES[record.spalls[0].profile] if record.spalls else NO_SPALL
         groups.setdefault(profile, []).append(record)
     return groups
 
 
-def seed_of(records: list[Record]) -> tuple[Seed, FloatArray]:
+def seed_of(records: list[KernelInput]) -> tuple[Seed, FloatArray]:
     """Constants of records, and their state at static rest: x1 y1 x2 y2 and their rates, shape (8, record) [m, m/s]."""
     machine = as_columns([record.machine for record in records])
     shared = {name: np.asarray(getattr(machine, name)) for name in Seed._fields if hasattr(machine, name)}
-    motions = [record.motion for record in records]
+    motions = [record.turning for record in records]
     omega = 2 * np.pi * np.array([motion.shaft_rate for motion in motions])
     inner_radius = np.array([record.bearing.inner_radius for record in records])
     width, angle, depth = np.array([_spall(record) for record in records]).T
@@ -87,7 +88,7 @@ def seed_of(records: list[Record]) -> tuple[Seed, FloatArray]:
     return seed, state
 
 
-def _spall(record: Record) -> tuple[float, float, float]:
+def _spall(record: KernelInput) -> tuple[float, float, float]:
     """Width [m], angle [rad] and depth [m]."""
     if not record.spalls:
         return 0.0, 0.0, 0.0

@@ -38,11 +38,13 @@ from gen.corpus import (
 from gen.errors import CorpusError, RecipeError, SimulationError
 from gen.labels import part_dataset
 from gen.measurement.measure import compile_mixing, measure
-from gen.physics.kernel.batch import record_shape
+from gen.physics.kernel.batch import input_shape
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.scenarios import draw_scenarios
-from gen.simulation.outline import outlined_record
-from gen.simulation.simulate import compile_kernel, kernel_record, simulate, step_errors
+from gen.simulation.inputs import kernel_input
+from gen.simulation.outline import outlined_input
+from gen.simulation.simulate import compile_kernel, simulate, step_errors
+from gen.simulation.timeline import timeline
 
 Progress = Callable[[int, int], None]
 
@@ -257,12 +259,12 @@ def compile_kernels(recipe: Recipe) -> None:
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
             try:
-                shape = record_shape(outlined_record(scenario, recipe))
+                shape = input_shape(outlined_input(scenario, timeline(recipe)))
             except SimulationError:  # left out when its part is made
                 continue
             if shape not in done:
                 done.add(shape)
-                compile_kernel(kernel_record(scenario, recipe))
+                compile_kernel(kernel_input(scenario, timeline(recipe)))
 
 
 def make_part(recipe: Recipe, part: int, directory: Path, known: PartRow | None = None) -> Outcome:
@@ -274,7 +276,7 @@ def make_part(recipe: Recipe, part: int, directory: Path, known: PartRow | None 
     first = part * recipe.corpus.records_per_part
     scenarios = draw_scenarios(recipe, first, first + recipe.corpus.records_per_part)
     response = simulate(scenarios, recipe)
-    measured = measure(response, scenarios, recipe)
+    measured = measure(response.acceleration, scenarios, recipe)
     fine = [place for place in range(len(scenarios)) if place not in response.failures]
     failures = tuple(response.failures[place] for place in sorted(response.failures))
     if not fine:

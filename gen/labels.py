@@ -1,7 +1,5 @@
-"""What is written beside each record: what an analyst knows, the labels, and the truth of the simulation."""
+"""Variables stored with each record: operating conditions, labels and the truth of the simulation, copied from where they are known."""
 
-import json
-import math
 from importlib.metadata import version
 from typing import Any
 
@@ -12,11 +10,8 @@ from numpy.typing import NDArray
 from gen.corpus import DRAWS, FAULTS, SPLITS, Variable, make_dataset
 from gen.measurement.measure import Measured
 from gen.physics.bearing import orders
-from gen.physics.profile import mean_share, share_at
 from gen.recipe import Recipe
-from gen.scenarios import Scenario
-from gen.simulation.damage import deepest
-from gen.simulation.machine import true_motion
+from gen.scenarios import Scenario, scenario_texts
 from gen.simulation.simulate import Response
 
 EXTRA = (
@@ -54,17 +49,19 @@ def part_dataset(
     step_error: NDArray[np.float64] | None = None,
 ) -> xr.Dataset:
     """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
-    # records share rigs and specimens: those are written out once
-    shared = {id(item): item for scenario in scenarios for item in (scenario.rig, scenario.specimen)}
-    drawn = {number: json.dumps(item, default=vars) for number, item in shared.items()}
-    rows = [_columns(scenario, recipe, drawn) for scenario in scenarios]
-    columns = {name: [row[name] for row in rows] for name in rows[0]}
-    columns |= {"clipped": measured.clipped, "snr": measured.snr}
-    columns |= {"oversampling": response.oversampling, "step_phase": response.step_phase}
-    columns["operating_clearance"] = [
-        np.nan if record is None else 2 * record.machine.half_clearance for record in response.records
+    rows = [
+        {**_drawn(scenario, recipe), **truth._asdict()}
+        for scenario, truth in zip(scenarios, response.truth, strict=True)
     ]
-    columns["step_error"] = np.full(len(rows), np.nan) if step_error is None else step_error
+    columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
+    columns |= {
+        "clipped": measured.clipped,
+        "snr": measured.snr,
+        "oversampling": response.oversampling,
+        "step_phase": response.step_phase,
+        "step_error": np.full(len(rows), np.nan) if step_error is None else step_error,
+        DRAWS: scenario_texts(scenarios),
+    }
     return make_dataset(
         measured.signal,
         recipe.recording.sample_rate_hz,
@@ -80,58 +77,28 @@ def part_dataset(
     )
 
 
-def _columns(scenario: Scenario, recipe: Recipe, drawn: dict[int, str]) -> dict[str, Any]:
-    """Everything that is known of a record before it is measured; ``drawn`` are its rig and specimen as JSON, by identity."""
+def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
+    """Variables of one record that are copied from its scenario."""
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
-    conditions, duration = record.conditions, recipe.recording.duration_s
-    nominal, (true_rate, true_orders) = orders(rig.bearing), true_motion(scenario, recipe)
-    speeds = [1.0, 1.0] if record.speed_profile is None else share_at(record.speed_profile, np.array([0.0, duration]))
-    return {
-        "shaft_rate": conditions["shaft"]
-        * mean_share(record.speed_profile, duration)
-        * (1 + conditions["label_error"]),
-        "sample_rate": recipe.recording.sample_rate_hz,
-        "load": conditions["load"] * mean_share(record.load_profile, duration),
-        "axial_load": conditions["axial_load"],
-        "temperature": np.nan if rig.lubricant is None else conditions["temperature"],
-        **nominal._asdict(),
-        "bearing": rig.bearing.designation,
-        **_fault_labels(scenario),
-        "rig": rig.number,
-        "specimen": specimen.number,
-        "recording": record.number,
-        "split": SPLITS.index(specimen.split),
-        "source": f"{recipe.name}/{record.number}",
-        "true_shaft_rate": true_rate,
-        "first_shaft_rate": conditions["shaft"] * speeds[0],
-        "last_shaft_rate": conditions["shaft"] * speeds[1],
-        **{f"true_{name}": value for name, value in true_orders._asdict().items()},
-        "diametral_clearance": specimen.properties["diametral_clearance"],
-        DRAWS: f'{{"rig": {drawn[id(rig)]}, "specimen": {drawn[id(specimen)]}, "record": {json.dumps(record, default=vars)}}}',
-    }
-
-
-def _fault_labels(scenario: Scenario) -> dict[str, Any]:
-    specimen = scenario.specimen
-    bearing, widest = specimen.bearing, max(specimen.spalls, key=lambda spall: spall.width, default=None)
+    conditions = record.conditions
     worn = [] if specimen.wear is None else [specimen.wear.site]
     parts = [*worn, *dict.fromkeys(spall.site for spall in specimen.spalls), *(["cage"] if specimen.cage else [])]
-    labels: dict[str, Any] = {
+    return {
+        "sample_rate": recipe.recording.sample_rate_hz,
+        "axial_load": conditions["axial_load"],
+        "temperature": np.nan if rig.lubricant is None else conditions["temperature"],
+        **orders(rig.bearing)._asdict(),
+        "bearing": rig.bearing.designation,
         "fault": FAULTS.index(specimen.fault),
         "parts": "+".join(parts),
         "n_spalls": len(specimen.spalls),
         "wear": 0.0 if specimen.wear is None else specimen.wear.waviness,
         "pitch_error": specimen.cage.get("pitch_error", 0.0),
         "knock": specimen.cage.get("knock", 0.0),
-    }
-    if widest is None:
-        return labels | {"width": 0.0, "depth": 0.0, "angle": np.nan, "largest_drop": 0.0, "width_share": 0.0}
-    arc = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[widest.site]
-    passed = math.pi * bearing.ball_diameter if widest.site == "ball" else 2 * math.pi * arc / bearing.n_balls
-    return labels | {
-        "width": widest.width,
-        "depth": widest.depth,
-        "angle": widest.angle + (scenario.rig.machine["load_angle"] if widest.site == "outer" else 0.0),
-        "largest_drop": deepest(scenario, specimen.spalls.index(widest)),
-        "width_share": widest.width / passed,
+        "rig": rig.number,
+        "specimen": specimen.number,
+        "recording": record.number,
+        "split": SPLITS.index(specimen.split),
+        "source": f"{recipe.name}/{record.number}",
+        "diametral_clearance": specimen.properties["diametral_clearance"],
     }

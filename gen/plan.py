@@ -12,13 +12,12 @@ from typing import Any
 
 from gen.corpus import FAULTS, SPLITS
 from gen.errors import SimulationError
-from gen.physics.kernel.batch import record_shape
-from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel.equations import Shape
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulation.outline import outlined_record
-from gen.simulation.simulate import lead_samples, steps_per_sample
+from gen.simulation.batches import Group, filled_lanes, group_of
+from gen.simulation.outline import outlined_input
+from gen.simulation.steps import steps_per_sample
+from gen.simulation.timeline import timeline
 
 MOST_DRAWN = 5000  # records, about 2 s; of a larger corpus as many parts, spread over it
 MOST_DRAWN_DEAR = 1500  # the same with an axial load or a load that wanders, which take another 0.5 ms a record each
@@ -83,7 +82,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     checked = read_recipe(recipe, seed=seed, records=records)
     parts = [draw_scenarios(checked, first, stop) for first, stop in some_ranges(checked)]
     failures: list[str] = []
-    batches = [_batches(part, checked, failures) for part in parts]
+    groups = [_groups(part, checked, failures) for part in parts]
     drawn = [scenario.specimen for part in parts for scenario in part]
     if len(failures) == len(drawn):
         raise SimulationError(failures[0])
@@ -93,10 +92,10 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         return {key: round(counts[key] * scale) for key in order if counts[key]}
 
     factors: Counter[int] = Counter()
-    for (_, factor), count in (item for part in batches for item in part.items()):
-        factors[factor] += count
-    lanes = sum(factor * math.ceil(count / LANES) * LANES for part in batches for (_, factor), count in part.items())
-    kernels = {shape for part in batches for shape, _ in part}
+    for group, count in (item for part in groups for item in part.items()):
+        factors[group.steps] += count
+    lanes = sum(group.steps * filled_lanes(count) for part in groups for group, count in part.items())
+    kernels = {group.shape for part in groups for group in part}
     recording = checked.recording
     samples = checked.n_records * checked.n_samples * len(recording.channels)
     specimens = math.ceil(checked.n_records / checked.corpus.records_per_specimen)
@@ -117,19 +116,13 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         kernels=len(kernels),
         bytes=round(samples * _bytes_per_sample(checked) + checked.n_records * BYTES_PER_RECORD)
         + (checked.n_parts + 1) * BYTES_PER_FILE,
-        estimated_seconds=lanes * scale * samples_integrated(checked) / LANE_STEPS_PER_SECOND
+        estimated_seconds=lanes * scale * timeline(checked).integrated / LANE_STEPS_PER_SECOND
         + samples * SECONDS_PER_SAMPLE,
         compile_seconds=len(kernels) * COMPILE_SECONDS,
         drawn=len(drawn),
         left_out=round(len(failures) * scale),
         first_left_out=failures[0] if failures else None,
     )
-
-
-def samples_integrated(recipe: Recipe) -> int:
-    """Samples of a record that are integrated, those that settle and are dropped included."""
-    settling = max(round(recipe.recording.settle_s * recipe.recording.sample_rate_hz), lead_samples(recipe))
-    return settling + recipe.n_samples
 
 
 def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
@@ -147,17 +140,17 @@ def most_drawn(recipe: Recipe) -> int:
     return MOST_DRAWN_DEAR if dear else MOST_DRAWN
 
 
-def _batches(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> Counter[tuple[Shape, int]]:
-    """Number of records of a part for each kernel and steps per sample; ``failures`` takes a sentence for each that is left out."""
-    batches: Counter[tuple[Shape, int]] = Counter()
+def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> Counter[Group]:
+    """Number of records of a part in each group; ``failures`` receives a sentence for each record that is left out."""
+    groups: Counter[Group] = Counter()
     for scenario in scenarios:
         try:
-            record = outlined_record(scenario, recipe)
+            given = outlined_input(scenario, timeline(recipe))
         except SimulationError as error:
             failures.append(str(error))
             continue
-        batches[record_shape(record), steps_per_sample(record, scenario, recipe)] += 1
-    return batches
+        groups[group_of(given, steps_per_sample(given, scenario.record.number, recipe))] += 1
+    return groups
 
 
 def _bytes_per_sample(recipe: Recipe) -> float:

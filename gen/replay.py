@@ -63,7 +63,7 @@ def replay(directory: Path | str, record: int) -> Replayed:
         stored = corpus[SIGNAL][record].values
     scenarios = draw_scenarios(recipe, number, number + 1)
     response = simulate(scenarios, recipe)
-    measured = measure(response, scenarios, recipe)
+    measured = measure(response.acceleration, scenarios, recipe)
     dataset = part_dataset(measured, scenarios, recipe, response)
     again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))

@@ -1,25 +1,45 @@
-"""The kernel's slow, readable twin, and the same trip through the lanes to compare it with.
+"""A slow, readable twin of the kernel in NumPy, and the kernel run over the same time to compare them.
 
-The twin follows one record with NumPy: every angle is an angle, every ball looks at every spall, every process is the sum of cosines it
-was drawn as. All it shares with the kernel is what the kernel promises: between two knots slow quantities move along straight lines.
+The twin integrates one record. Angles are angles, every ball is compared with every spall, and every process is the sum of cosines that
+was drawn. It shares one property with the kernel: between two knots slow quantities change linearly.
 """
 
 import math
-from hashlib import sha256
-from inspect import getsource
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 
-from gen.physics.kernel import compiling, decimate, drop, equations, integrate, spalls, step
-from gen.physics.kernel import turning as motion
-from gen.physics.kernel.batch import WAVES, Motion, Record, Spall, lay_out, record_shape
+from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
+from gen.physics.inputs import KernelInput, SpallInput, Turning
+from gen.physics.kernel import decimate
+from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import KERNEL, LANES
-from gen.physics.kernel.equations import AXES, CAGE_C, N_DYNAMIC, N_STATE, STEEPEST, FloatArray, param_rows
-from gen.physics.kernel.integrate import prepare, to_next_knot
+from gen.physics.kernel.drop import RAISED_EDGE
+from gen.physics.kernel.integrate import kernel_sources, prepare, to_next_knot
+from gen.physics.kernel.layout import (
+    AXES,
+    JITTER_FIRST,
+    JITTER_TERMS,
+    N_DYNAMIC,
+    SLIP_FIRST,
+    SLIP_TERMS,
+    SPEED_TERMS,
+    SPIN_FIRST,
+    SPIN_TERMS,
+    STATE_ROWS,
+    TILT_FIRST,
+    TILT_TERMS,
+    Batch,
+    FloatArray,
+    Shape,
+    State,
+    param_rows,
+    slow_rows,
+)
+from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.kernel.step import advance
-from gen.physics.kernel.turning import ANGLE_ROWS, STRIDE, slow_rows
+from gen.physics.kernel.turning import N_ANGLES, STRIDE
 from gen.physics.rotor import Machine
 
 EVERY_ACCELERATION = np.eye(AXES)
@@ -57,16 +77,16 @@ class Slow(NamedTuple):
     """Of its drop that a ball spall gives up to this knot, shape (knot,) [1]."""
 
 
-def process(record: Record, first: int, terms: int, times: FloatArray) -> FloatArray:
+def process(record: KernelInput, first: int, terms: int, times: FloatArray) -> FloatArray:
     """Values of a process of unit rms, shape (time,)."""
     some = slice(first, first + terms)
     turns = 2 * np.pi * np.outer(times, record.frequencies[some]) + record.phases[some]
     return math.sqrt(2 / terms) * np.cos(turns).sum(axis=1)
 
 
-def slow_motion(record: Record, knot: float, n_knots: int) -> Slow:
+def slow_motion(record: KernelInput, knot: float, n_knots: int) -> Slow:
     """Slow quantities at the knots, ``knot`` seconds apart; rates hold from one knot to the next, as they are halfway."""
-    bearing, drawn = record.bearing, record.motion
+    bearing, drawn = record.bearing, record.turning
     gamma, size = bearing.gamma, bearing.pitch_diameter / bearing.ball_diameter
     nodes = STRIDE * knot * np.arange(n_knots // STRIDE + 2)
     times = np.linspace(0, knot * n_knots, n_knots + 1)
@@ -75,18 +95,17 @@ def slow_motion(record: Record, knot: float, n_knots: int) -> Slow:
         return np.interp(when, nodes, process(record, first, terms, nodes))
 
     halfway = times + knot / 2
-    shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * straight(0, motion.SPEED_TERMS, halfway))
+    shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * straight(0, SPEED_TERMS, halfway))
     shaft = shaft * scheduled(record, n_knots + 1)[:, 0]
-    slip = drawn.mean_slip + drawn.slip_rms * straight(motion.SLIP_FIRST, motion.SLIP_TERMS, halfway)
-    wander = 1 + drawn.spin_rms * straight(motion.SPIN_FIRST, motion.SPIN_TERMS, halfway)
+    slip = drawn.mean_slip + drawn.slip_rms * straight(SLIP_FIRST, SLIP_TERMS, halfway)
+    wander = 1 + drawn.spin_rms * straight(SPIN_FIRST, SPIN_TERMS, halfway)
     rates = np.stack([shaft, shaft * (1 - gamma) / 2 * (1 - slip), shaft * size / 2 * (1 - gamma**2) * wander], axis=1)
     start = np.array([drawn.shaft_angle, drawn.cage_angle, drawn.spin_angle])
     angles = start + np.concatenate([np.zeros((1, 3)), np.cumsum(knot * rates[:-1], axis=0)])
     balls = np.arange(bearing.n_balls)
     at_nodes = np.stack(
         [
-            drawn.jitter_rms
-            * process(record, motion.JITTER_FIRST + ball * motion.JITTER_TERMS, motion.JITTER_TERMS, nodes)
+            drawn.jitter_rms * process(record, JITTER_FIRST + ball * JITTER_TERMS, JITTER_TERMS, nodes)
             + (drawn.late_by if ball == drawn.late_ball else 0.0)
             for ball in balls
         ],
@@ -100,21 +119,21 @@ def slow_motion(record: Record, knot: float, n_knots: int) -> Slow:
     places = angles[:, 1:2] + 2 * np.pi * balls / bearing.n_balls
     height = waviness(record, places - angles[:, :1], places) + ball_waviness(record, angles[:, 2])
     gaps = record.machine.half_clearance - height
-    tilt = drawn.axis_offset + drawn.axis_rms * straight(motion.AXIS_FIRST, motion.AXIS_TERMS, times)
+    tilt = drawn.axis_offset + drawn.axis_rms * straight(TILT_FIRST, TILT_TERMS, times)
     share = np.maximum(0.0, 1 - (tilt / drawn.axis_limit) ** 2) if drawn.axis_limit > 0 else np.ones(n_knots + 1)
     return Slow(angles, gaps, jitter, directions, rates, outer_forces(record, knot, angles, rates), share)
 
 
-def scheduled(record: Record, n_knots: int) -> FloatArray:
+def scheduled(record: KernelInput, n_knots: int) -> FloatArray:
     """Factors of shaft rate and load, the last ones held, shape (knot, 2) [1]."""
     if len(record.schedule) == 0:
         return np.ones((n_knots, 2))
     return record.schedule[np.minimum(np.arange(n_knots), len(record.schedule) - 1)]
 
 
-def outer_forces(record: Record, knot: float, angles: FloatArray, rates: FloatArray) -> FloatArray:
+def outer_forces(record: KernelInput, knot: float, angles: FloatArray, rates: FloatArray) -> FloatArray:
     """See :class:`Slow`."""
-    drawn, n_knots = record.motion, len(angles)
+    drawn, n_knots = record.turning, len(angles)
     load = scheduled(record, n_knots + 1)[:, 1]
     out = np.array([math.cos(drawn.knock_angle), math.sin(drawn.knock_angle)])
     forces = np.empty((n_knots, 2, 4))
@@ -128,7 +147,7 @@ def outer_forces(record: Record, knot: float, angles: FloatArray, rates: FloatAr
     return forces
 
 
-def knock(drawn: Motion, cage: float, rate: float, knot: float) -> float:
+def knock(drawn: Turning, cage: float, rate: float, knot: float) -> float:
     """Mean of all knocks over the hat that is 1 at this knot and 0 at its neighbours [N]."""
     if drawn.knock == 0:
         return 0.0
@@ -144,7 +163,7 @@ def knock(drawn: Motion, cage: float, rate: float, knot: float) -> float:
 def knock_scatter(turn: int, seed: int) -> float:
     """Log-normal factor of the knock of a turn, from two uniform numbers by Box and Muller [1]."""
     first, second = (split_mix(2 * turn + k, seed) for k in (0, 1))
-    return math.exp(motion.KNOCK_SCATTER * math.sqrt(-2 * math.log(first)) * math.cos(2 * math.pi * second))
+    return math.exp(KNOCK_SCATTER * math.sqrt(-2 * math.log(first)) * math.cos(2 * math.pi * second))
 
 
 def split_mix(number: int, seed: int) -> float:
@@ -157,34 +176,29 @@ def split_mix(number: int, seed: int) -> float:
 
 def half_sine_under_slope(since: float, reach: float) -> float:
     """Integral of the unit half sine that began ``since`` seconds ago, under a line from 1 now to 0 at ``reach`` from now [s]."""
-    low, high = np.clip(sorted((since, since + reach)), 0.0, motion.KNOCK_SECONDS)
+    low, high = np.clip(sorted((since, since + reach)), 0.0, KNOCK_SECONDS)
     nodes, weights = np.polynomial.legendre.leggauss(24)
     at = (low + high) / 2 + (high - low) / 2 * nodes
     line = 1 - (at - since) / reach
-    return float((high - low) / 2 * weights @ (np.sin(np.pi * at / motion.KNOCK_SECONDS) * line))
+    return float((high - low) / 2 * weights @ (np.sin(np.pi * at / KNOCK_SECONDS) * line))
 
 
-def waviness(record: Record, on_inner: FloatArray, on_outer: FloatArray) -> FloatArray:
+def waviness(record: KernelInput, on_inner: FloatArray, on_outer: FloatArray) -> FloatArray:
     """Height of both races under balls at angles measured from each race's own mark, shape of the angles [m]."""
-    if record.waves.size == 0:
-        return np.zeros_like(on_outer)
-    orders = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1)
-    amplitudes = record.waves[:WAVES].reshape(2, 2, -1)
     height = np.zeros_like(on_outer)
-    for (real, imaginary), angles in zip(amplitudes, (on_inner, on_outer), strict=True):
-        turns = angles[..., None] * orders
-        height += (real * np.cos(turns) - imaginary * np.sin(turns)).sum(axis=-1)
+    if record.waviness.races.size:
+        orders = np.arange(LOWEST_ORDER, HIGHEST_ORDER + 1)
+        for amplitudes, angles in zip(record.waviness.races, (on_inner, on_outer), strict=True):
+            height += (amplitudes * np.exp(1j * angles[..., None] * orders)).real.sum(axis=-1)
     return height
 
 
-def ball_waviness(record: Record, spin: FloatArray) -> FloatArray:
+def ball_waviness(record: KernelInput, spin: FloatArray) -> FloatArray:
     """Height of every ball over both its contacts at the spin angles ``spin``, shape (time, ball) [m]."""
-    orders = 2 * np.arange(1, motion.BALL_ORDERS + 1)
+    orders = 2 * np.arange(1, BALL_ORDERS + 1)
     height = np.zeros((len(spin), record.bearing.n_balls))
-    if record.waves.size > WAVES:
-        real, imaginary = record.waves[WAVES:].reshape(len(orders), 2, -1).transpose(1, 0, 2)
-        turns = np.outer(spin, orders)
-        height += np.cos(turns) @ real - np.sin(turns) @ imaginary
+    if record.waviness.balls.size:
+        height += (np.exp(1j * np.outer(spin, orders)) @ record.waviness.balls).real
     return height
 
 
@@ -209,7 +223,7 @@ def rigid_path(offset: float, half: float, arc: float, ball: float, race: float,
     return min(lens + math.copysign(bend, race), depth)
 
 
-def fall(fault: Spall, offset: float, arc: float, ball: float, race: float) -> float:
+def fall(fault: SpallInput, offset: float, arc: float, ball: float, race: float) -> float:
     """Drop of a ball whose contact is ``offset`` [rad] from the centre of a spall, MODEL.md section 5.1 [m]."""
     half = fault.width / 2 / arc
     inside = half - abs(offset)
@@ -220,14 +234,14 @@ def fall(fault: Spall, offset: float, arc: float, ball: float, race: float) -> f
     if fault.profile == "half_sine":
         return fault.depth * math.cos(math.pi * offset / (2 * half))
     if fault.profile == "raised_cosine":
-        return fault.depth * (1 - math.cos(math.pi * min(inside / (drop.RAISED_EDGE * half), 1))) / 2
+        return fault.depth * (1 - math.cos(math.pi * min(inside / (RAISED_EDGE * half), 1))) / 2
     if fault.profile == "table":
         drops_there = fault.table[1 if fault.site == "ball" and race < 0 else 0]
         return float(np.interp(offset, np.linspace(-half, half, len(drops_there)), drops_there))
     return fault.depth
 
 
-def drops(record: Record, angles: FloatArray, places: FloatArray, share: float) -> FloatArray:
+def drops(record: KernelInput, angles: FloatArray, places: FloatArray, share: float) -> FloatArray:
     """How far each ball, at the angle ``places``, has dropped into all spalls together, shape (ball,) [m]."""
     bearing = record.bearing
     shaft, _, spin = angles
@@ -256,7 +270,7 @@ class Contacts(NamedTuple):
     """Rate of the squeeze, the balls' own motion aside [m/s]."""
 
 
-def contacts(record: Record, slow: Slow, at: int, tau: float, y: FloatArray) -> Contacts:
+def contacts(record: KernelInput, slow: Slow, at: int, tau: float, y: FloatArray) -> Contacts:
     """Contacts in the state ``y``, a share ``tau`` of the way from knot ``at`` to the next."""
     angles, gaps, jitter, in_cage = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow[:4])
     places = angles[1] + 2 * np.pi * np.arange(record.bearing.n_balls) / record.bearing.n_balls + jitter
@@ -282,7 +296,7 @@ def contact_stiffness(machine: Machine, squeeze: FloatArray) -> float:
     return float(machine.contact_cosine**2 * slopes.sum())
 
 
-def right_hand_side(record: Record, slow: Slow, knot: float, at: int, tau: float, y: FloatArray) -> FloatArray:
+def right_hand_side(record: KernelInput, slow: Slow, knot: float, at: int, tau: float, y: FloatArray) -> FloatArray:
     """Derivative of the state, shape (coordinate,), a share ``tau`` of the way from knot ``at`` to the next.
 
     MODEL.md section 4.2, term by term.
@@ -291,9 +305,9 @@ def right_hand_side(record: Record, slow: Slow, knot: float, at: int, tau: float
     force = contact_force(machine, contacts(record, slow, at, tau, y))
     (first, second, sensor), (u, v, w) = y[:6].reshape(3, 2), y[6:].reshape(3, 2)
     angle, rate = (1 - tau) * slow.angles[at, 0] + tau * slow.angles[at + 1, 0], slow.rates[at, 0]
-    quickening = (rate - slow.rates[at - 1, 0]) / knot if at > 0 else 0.0
+    speeding_up = (rate - slow.rates[at - 1, 0]) / knot if at > 0 else 0.0
     outwards, across = np.array([math.cos(angle), math.sin(angle)]), np.array([math.sin(angle), -math.cos(angle)])
-    turning = record.motion.unbalance * (rate**2 * outwards + quickening * across) + record.motion.bow * outwards
+    turning = record.turning.unbalance * (rate**2 * outwards + speeding_up * across) + record.turning.bow * outwards
     outer = (1 - tau) * slow.forces[at, 0] + tau * slow.forces[at, 1]
     ring = np.array([machine.ring_stiffness_x, machine.ring_stiffness_y])
     support = np.array([machine.support_stiffness_x, machine.support_stiffness_y])
@@ -308,7 +322,7 @@ def right_hand_side(record: Record, slow: Slow, knot: float, at: int, tau: float
     return np.concatenate([y[6:], on_shaft / machine.shaft_mass, on_housing / machine.housing_mass, sensor_rate])
 
 
-def march_twin(record: Record, start: FloatArray, n_knots: int, n_steps: int, knot: float) -> Trip:
+def march_twin(record: KernelInput, start: FloatArray, n_knots: int, n_steps: int, knot: float) -> Trip:
     """Classical Runge-Kutta from the state ``start``, ``n_steps`` per knot, knots ``knot`` seconds apart."""
     slow, dt = slow_motion(record, knot, n_knots), knot / n_steps
     y = np.array(start, dtype=float)
@@ -340,48 +354,60 @@ def decimation_taps(n_steps: int) -> FloatArray:
 
 
 def march_lanes(
-    records: list[Record], n_knots: int, n_steps: int, knot: float, start: FloatArray | None = None
+    records: list[KernelInput], n_knots: int, n_steps: int, knot: float, start: FloatArray | None = None
 ) -> list[Trip]:
     """The same by the lane kernel, one trip per record; all of one shape, from static rest unless a ``start`` is given."""
     every = [record._replace(pickups=EVERY_ACCELERATION) for record in records]
-    shape = record_shape(every[0])
+    shape = input_shape(every[0])
     batch = lay_out(every, shape, knot)
-    params = np.zeros(param_rows(shape, n_steps) * LANES)
-    params[: batch.params.size] = batch.params
-    batch = batch._replace(params=params, slow=np.zeros(2 * slow_rows(shape) * LANES))
     if start is not None:
         batch.state.reshape(-1, LANES)[:N_DYNAMIC] = np.asarray(start)[:, None]
-    states = np.empty((n_knots + 1, N_STATE, LANES))
-    angles = np.empty((n_knots + 1, ANGLE_ROWS, LANES))
+    return march_batch(shape, batch, n_knots, n_steps, knot)[: len(records)]
+
+
+def march_batch(shape: Shape, batch: Batch, n_knots: int, n_steps: int, knot: float) -> list[Trip]:
+    """A batch by the lane kernel, one trip per lane; its channels are the six accelerations."""
+    own = with_room(shape, batch, n_steps)
+    states = np.empty((n_knots + 1, STATE_ROWS, LANES))
+    angles = np.empty((n_knots + 1, N_ANGLES, LANES))
     history = np.empty(n_knots * n_steps * AXES * LANES)
-    _march(shape, batch, knot / n_steps, n_steps, states, angles, history)
+    _march(shape, own, knot / n_steps, n_steps, states, angles, history)
     accelerations = history.reshape(-1, AXES, LANES)
     return [
-        Trip(states[:, :N_DYNAMIC, i], accelerations[..., i], angles[..., i], states[:, CAGE_C:STEEPEST, i])
-        for i in range(len(records))
+        Trip(
+            states[:, :N_DYNAMIC, i],
+            accelerations[..., i],
+            angles[..., i],
+            states[:, State.CAGE_COS : State.STEEPEST, i],
+        )
+        for i in range(LANES)
     ]
 
 
+def with_room(shape: Shape, batch: Batch, n_steps: int) -> Batch:
+    """A copy of a batch that the kernel may change, with all rows of ``params`` and ``slow``."""
+    params = np.zeros(param_rows(shape, n_steps) * LANES)
+    params[: batch.params.size] = batch.params
+    own = {name: array.copy() for name, array in batch._asdict().items()}
+    return Batch(**own | {"params": params, "slow": np.zeros(2 * slow_rows(shape) * LANES)})
+
+
 def _cached(sources: str):
-    """Compile and cache; numba sees changes in this file alone, but what a function closes over is part of its key."""
+    """Compile and cache: the kernel under test is part of the key, as a variable that the function closes over."""
 
     @njit(**KERNEL)
-    def march(shape, lanes, dt, n_steps, states, angles, history):
+    def march(shape, batch, dt, n_steps, states, angles, history):
         _ = sources
-        work = prepare(shape, lanes, n_steps)
+        work = prepare(shape, batch, n_steps)
         for knot in range(len(states)):
-            states[knot] = lanes.state.reshape(N_STATE, LANES)
-            angles[knot] = lanes.angles.reshape(ANGLE_ROWS, LANES)
+            states[knot] = batch.state.reshape(STATE_ROWS, LANES)
+            angles[knot] = batch.angles.reshape(N_ANGLES, LANES)
             if knot + 1 < len(states):
-                to_next_knot(shape, lanes, knot, n_steps, dt, work)
+                to_next_knot(shape, batch, knot, n_steps, dt, work)
                 since = 2.0 * n_steps * (knot % STRIDE)
-                advance(shape, lanes.state, lanes.params, dt, n_steps, since, history, knot * n_steps * AXES)
+                advance(shape, batch.state, batch.params, dt, n_steps, since, history, knot * n_steps * AXES)
 
     return march
 
 
-_march = _cached(
-    sha256(
-        "".join(map(getsource, (compiling, drop, equations, step, motion, spalls, decimate, integrate))).encode()
-    ).hexdigest()
-)
+_march = _cached(kernel_sources())

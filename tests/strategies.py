@@ -10,14 +10,15 @@ from hypothesis import strategies as st
 
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
+from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import LINE_EXPONENT
-from gen.physics.kernel.batch import Motion, Record, Spall, n_terms
+from gen.physics.inputs import ROUND, KernelInput, SpallInput, Turning, Waviness
 from gen.physics.kernel.drop import PROFILES as EVERY_PROFILE
-from gen.physics.kernel.turning import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, N_ORDERS
+from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine, sensor_springs
 
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular")
-NO_WAVES = np.empty(0)
+N_ORDERS = HIGHEST_ORDER - LOWEST_ORDER + 1
 
 SPRING, DAMPER = sensor_springs(0.2, 3000.0, 0.03)
 RIG = Machine(
@@ -87,13 +88,13 @@ def machines(draw, *, half_clearance=None, contact_damping=None):
 @st.composite
 def spalls(draw, sites=("inner", "outer", "ball")):
     """A spall on one of ``sites``, narrower than the space between two balls."""
-    return Spall(draw(st.sampled_from(sites)), draw(widths), draw(depths), draw(angles), draw(st.integers(0, 8)))
+    return SpallInput(draw(st.sampled_from(sites)), draw(widths), draw(depths), draw(angles), draw(st.integers(0, 8)))
 
 
 @st.composite
-def steady_motions(draw):
+def steady_turnings(draw):
     """Motion at a constant rate, from anywhere."""
-    return Motion(
+    return Turning(
         draw(st.floats(10, 60)),
         unbalance=draw(st.floats(0, 1e-4)),
         shaft_angle=draw(angles),
@@ -103,9 +104,9 @@ def steady_motions(draw):
 
 
 @st.composite
-def wandering_motions(draw):
+def wandering_turnings(draw):
     """Motion with all its random processes at work."""
-    return draw(steady_motions())._replace(
+    return draw(steady_turnings())._replace(
         speed_rms=draw(st.floats(0, 0.01)),
         mean_slip=draw(st.floats(-0.01, 0.02)),
         slip_rms=draw(st.floats(0, 0.02)),
@@ -117,33 +118,32 @@ def wandering_motions(draw):
     )
 
 
-def waves(seed, rms):
-    """Amplitudes of the waviness of both races, all orders alike, shape (row,) [m]."""
+def race_waves(seed, rms):
+    """Amplitudes of the waviness of both races, all orders alike, shape (race, order) [m]."""
     phases = np.random.default_rng(seed).uniform(0, 2 * np.pi, (2, N_ORDERS))
-    amplitude = rms * np.sqrt(2 / (HIGHEST_ORDER - LOWEST_ORDER + 1))
-    return np.concatenate([amplitude * part for race in phases for part in (np.cos(race), np.sin(race))])
+    return rms * np.sqrt(2 / N_ORDERS) * np.exp(1j * phases)
 
 
-def record(machine, motion, some_spalls=(), *, seed=0, waviness=0.0):
+def record(machine, turning, some_spalls=(), *, seed=0, waviness=0.0):
     """A 6205 in ``machine``, its processes drawn from ``seed``; uneven if it has jitter or waviness."""
     bearing = replace(CATALOGUE["6205"], contact_angle=float(np.arccos(machine.contact_cosine)))
     rng = np.random.default_rng(seed)
-    return Record(
-        bearing,
-        machine,
-        motion,
-        tuple(some_spalls),
-        rng.uniform(0.3, 60, n_terms(bearing.n_balls)),
-        rng.uniform(0, 2 * np.pi, n_terms(bearing.n_balls)),
-        np.eye(6),
-        waves(seed, waviness) if waviness else NO_WAVES,
+    return KernelInput(
+        bearing=bearing,
+        machine=machine,
+        turning=turning,
+        spalls=tuple(some_spalls),
+        frequencies=rng.uniform(0.3, 60, n_process_terms(bearing.n_balls)),
+        phases=rng.uniform(0, 2 * np.pi, n_process_terms(bearing.n_balls)),
+        pickups=np.eye(6),
+        waviness=Waviness(race_waves(seed, waviness), ROUND.balls) if waviness else ROUND,
     )
 
 
 @st.composite
 def steady_records(draw):
     """A healthy record of even balls at a constant rate, without contact damping."""
-    return record(draw(machines(contact_damping=0.0)), draw(steady_motions()))
+    return record(draw(machines(contact_damping=0.0)), draw(steady_turnings()))
 
 
 @st.composite
@@ -151,13 +151,13 @@ def wandering_records(draw):
     """A record with everything at once: two to four spalls, damped contacts, wander, jitter, waviness."""
     some = draw(st.lists(spalls(), min_size=2, max_size=4))
     seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
-    return record(draw(machines()), draw(wandering_motions()), some, seed=seed, waviness=rms)
+    return record(draw(machines()), draw(wandering_turnings()), some, seed=seed, waviness=rms)
 
 
 @st.composite
 def extended_records(draw):
     """A record with one spall on the inner race that two balls can be in at once, and perhaps another one."""
-    wide = Spall("inner", draw(st.floats(11.5e-3, 18e-3)), draw(st.floats(3e-6, 50e-6)), draw(angles))
+    wide = SpallInput("inner", draw(st.floats(11.5e-3, 18e-3)), draw(st.floats(3e-6, 50e-6)), draw(angles))
     other = draw(st.lists(spalls(), max_size=1))
     return draw(wandering_records())._replace(spalls=(wide, *other))
 
@@ -172,23 +172,24 @@ def profiled_spalls(draw):
 
 
 @st.composite
-def troubled_motions(draw):
+def troubled_turnings(draw):
     """Motion with a broken cage, a bent and misaligned shaft on top of its processes; the cage knocks soon after the start."""
-    motion = draw(wandering_motions())
-    return motion._replace(
+    turning = draw(wandering_turnings())
+    return turning._replace(
         bow=draw(st.floats(0, 200)),
         twice_x=draw(st.floats(-200, 200)),
         twice_y=draw(st.floats(-200, 200)),
         knock=draw(st.floats(1, 100)),
-        knock_angle=motion.cage_angle + draw(st.floats(-0.02, 0.05)),
+        knock_angle=turning.cage_angle + draw(st.floats(-0.02, 0.05)),
         late_ball=draw(st.integers(0, 8)),
         late_by=draw(st.floats(-0.08, 0.08)),
     )
 
 
 def ball_waves(seed, rms):
-    """Amplitudes of the waviness of nine balls over both contacts, shape (row,) [m]."""
-    return np.random.default_rng(seed).normal(scale=rms / np.sqrt(BALL_ORDERS), size=2 * BALL_ORDERS * 9)
+    """Amplitudes of the waviness of nine balls over both contacts, shape (order, ball) [m]."""
+    real, imaginary = np.random.default_rng(seed).normal(scale=rms / np.sqrt(BALL_ORDERS), size=(2, BALL_ORDERS, 9))
+    return real + 1j * imaginary
 
 
 @st.composite
@@ -199,10 +200,10 @@ def troubled_records(draw, *, rollers=False):
     machine = draw(machines())._replace(looseness=draw(st.floats(1e-8, 5e-6)))
     if rollers:
         machine = machine._replace(load_deflection_factor=draw(st.floats(1e8, 1e9)), contact_exponent=LINE_EXPONENT)
-    there = record(machine, draw(troubled_motions()), some, seed=seed, waviness=rms)
+    there = record(machine, draw(troubled_turnings()), some, seed=seed, waviness=rms)
     schedule = np.random.default_rng(seed).uniform(0.7, 1.3, (draw(st.integers(1, 10)), 2))
     return there._replace(
         bearing=replace(there.bearing, roller_length=8e-3) if rollers else there.bearing,
-        waves=np.concatenate([there.waves, ball_waves(seed, rms)]),
+        waviness=there.waviness._replace(balls=ball_waves(seed, rms)),
         schedule=schedule,
     )

@@ -8,7 +8,7 @@ from numba import njit
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel.equations import N_STATE, make_shape, param_rows
+from gen.physics.kernel.layout import STATE_ROWS, make_shape, param_rows
 from gen.physics.kernel.step import advance
 
 STAGES = 2  # bodies of the Runge-Kutta step, each with the force of every ball
@@ -36,7 +36,7 @@ def advance_once(shape, state, params, history):
 
 def assembly(shape):
     """Code of a step; each takes three seconds to compile."""
-    advance_once(shape, np.zeros(N_STATE * LANES), np.ones(param_rows(shape, 1) * LANES), np.zeros(LANES))
+    advance_once(shape, np.zeros(STATE_ROWS * LANES), np.ones(param_rows(shape, 1) * LANES), np.zeros(LANES))
     return advance_once.inspect_asm(advance_once.signatures[-1])
 
 

@@ -1,4 +1,4 @@
-"""What a rig makes of its bearings, and what it adds to them: path, colour of the noise, lines, ringing and modulation."""
+"""Transfer paths and machine background of a rig, for records of one length."""
 
 import math
 from dataclasses import dataclass
@@ -15,65 +15,80 @@ Float32Array = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
-class Sound:
-    """What a rig makes of its bearings, and adds to them."""
+class RigFilters:
+    """Transfer paths and machine background of a rig, ready for responses of one length."""
 
     n: int
-    """Samples of a transform: those of a response, and as many more as make it fast."""
+    """Samples of a Fourier transform: at least as many as a response has."""
     paths: NDArray[np.complex64]
-    """Path of each channel, shape (channel, frequency)."""
+    """Transfer path of each channel, shape (channel, frequency)."""
     direct: Float32Array | None
-    """The same where no path has resonances, shape (channel, 1)."""
-    colour: Float32Array
-    """What turns complex numbers of unit variance into noise of unit rms, shape (frequency,)."""
-    levels: FloatArray
+    """The same where no path has resonances, shape (channel, 1), else None."""
+    noise: Float32Array
+    """Factors that turn complex numbers of unit variance into the spectrum of noise of unit rms, shape (frequency,)."""
+    harmonics: FloatArray
     """Amplitude of each harmonic of the shaft, shape (order,)."""
     tones: FloatArray
     """Angle per sample [rad], amplitude and depth of modulation of each tone, shape (tone, 3)."""
-    depths: FloatArray
-    """Modulation once and twice per turn of the noise and of each channel's path, shape (1 + channel, 2)."""
-    swings_with: NDArray[np.int_]
-    """Number of the modulation of each of them: channels on the common path swing together."""
+    modulations: FloatArray
+    """Depth of modulation once and twice per turn, of the noise and of the path of each channel, shape (1 + channel, 2)."""
+    modulation_numbers: NDArray[np.int_]
+    """Index of the modulation that each of them uses; channels on the common path share one."""
     impulses: tuple[float, float]
-    """Number in a response, and level."""
+    """Expected number in a response, and level."""
     knocks: tuple[float, float]
     """Number in a turn of the shaft, and level."""
-    struck: NDArray[np.complex64]
-    """The paths, scaled so that an impulse has a peak of one behind each, shape (channel, frequency); unscaled without impulses."""
+    impulse_paths: NDArray[np.complex64]
+    """The paths, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency); unscaled without impulses."""
 
-    @staticmethod
-    def of(rig: Rig, length: int, fs: float) -> "Sound":
-        """Sound of a rig, for responses of ``length`` samples."""
-        n, background = next_fast_len(length, real=True), rig.background
-        frequency = np.arange(n // 2 + 1) * (fs / n)
-        ways = [own or rig.path for own in rig.own_paths]
-        paths = np.stack([way.direct + base_excited(way.modes, frequency) for way in ways]).astype(np.complex64)
-        colour = noise_colour(background, frequency) * math.sqrt(n / 2)
-        colour[:1] *= math.sqrt(2)  # real, so all of its power is in one number
-        colour[n - n // 2 :] *= math.sqrt(2)  # of an even n
-        levels = np.zeros(max((int(line.frequency) for line in background.harmonics), default=0))
-        for line in background.harmonics:
-            levels[int(line.frequency) - 1] = math.sqrt(2) * line.level
-        tones = [
-            (2 * math.pi * tone.frequency / fs, math.sqrt(2) * tone.level, tone.modulation) for tone in background.tones
-        ]
-        impulses, knocks = background.impulses, background.knocks
-        struck = paths
-        if impulses is not None or knocks is not None:
-            struck = paths / np.abs(irfft(paths, n)).max(axis=1, keepdims=True)
-        return Sound(
-            n,
-            paths,
-            None if any(way.modes for way in ways) else np.array([[way.direct] for way in ways], np.float32),
-            colour.astype(np.float32),
-            levels,
-            np.array(tones).reshape(-1, 3),
-            np.array([background.modulation, *(way.modulation for way in ways)]),
-            np.array([0, *(1 if own is None else place for place, own in enumerate(rig.own_paths, 2))]),
-            (0.0, 0.0) if impulses is None else (impulses.frequency * length / fs, impulses.level),
-            (0.0, 0.0) if knocks is None else (knocks.frequency, knocks.level),
-            struck,
-        )
+
+def rig_filters(rig: Rig, length: int, fs: float) -> RigFilters:
+    """Transfer paths and background of a rig, for responses of ``length`` samples."""
+    n, background = next_fast_len(length, real=True), rig.background
+    frequency = np.arange(n // 2 + 1) * (fs / n)
+    own = [path or rig.path for path in rig.own_paths]
+    paths = np.stack([path.direct + base_excited(path.modes, frequency) for path in own]).astype(np.complex64)
+    impulses, knocks = background.impulses, background.knocks
+    impulse_paths = paths
+    if impulses is not None or knocks is not None:
+        impulse_paths = paths / np.abs(irfft(paths, n)).max(axis=1, keepdims=True)
+    modulations = [background.modulation, *(path.modulation for path in own)]
+    return RigFilters(
+        n=n,
+        paths=paths,
+        direct=None if any(path.modes for path in own) else np.array([[path.direct] for path in own], np.float32),
+        noise=_noise_factors(background, frequency, n),
+        harmonics=_harmonics(background),
+        tones=_tones(background, fs),
+        modulations=np.array([[modulation.once, modulation.twice] for modulation in modulations]),
+        modulation_numbers=np.array(
+            [0, *(1 if path is None else place for place, path in enumerate(rig.own_paths, 2))]
+        ),
+        impulses=(0.0, 0.0) if impulses is None else (impulses.frequency * length / fs, impulses.level),
+        knocks=(0.0, 0.0) if knocks is None else (knocks.frequency, knocks.level),
+        impulse_paths=impulse_paths,
+    )
+
+
+def _noise_factors(background: Background, frequency: FloatArray, n: int) -> Float32Array:
+    factors = noise_spectrum(background, frequency) * math.sqrt(n / 2)
+    # the spectrum is real at 0 Hz, and at the Nyquist frequency of an even n: one number has all of the power there
+    factors[:1] *= math.sqrt(2)
+    factors[n - n // 2 :] *= math.sqrt(2)
+    return factors.astype(np.float32)
+
+
+def _harmonics(background: Background) -> FloatArray:
+    levels = np.zeros(max((int(line.frequency) for line in background.harmonics), default=0))
+    for line in background.harmonics:
+        levels[int(line.frequency) - 1] = math.sqrt(2) * line.level
+    return levels
+
+
+def _tones(background: Background, fs: float) -> FloatArray:
+    root = math.sqrt(2)
+    tones = [(2 * math.pi * tone.frequency / fs, root * tone.level, tone.modulation) for tone in background.tones]
+    return np.array(tones).reshape(-1, 3)
 
 
 def base_excited(modes: tuple[Mode, ...], frequency: FloatArray) -> NDArray[np.complex128]:
@@ -89,10 +104,10 @@ def base_excited(modes: tuple[Mode, ...], frequency: FloatArray) -> NDArray[np.c
     return total
 
 
-def noise_colour(background: Background, frequency: FloatArray) -> FloatArray:
-    """Amplitude spectrum of the machine's noise with unit mean power, shape (frequency,) [1].
+def noise_spectrum(background: Background, frequency: FloatArray) -> FloatArray:
+    """Amplitude spectrum of the noise of a machine, with unit mean power, shape (frequency,) [1].
 
-    The PSD falls with ``f^-slope`` above 10 Hz, times the resonances, over a white floor.
+    Its PSD is a white floor plus ``f^-slope``, constant below 10 Hz, times the resonances.
     """
     falling = power(np.maximum(frequency, 10.0), -background.slope / 2)
     falling *= np.abs(1 + base_excited(background.modes, frequency))

@@ -55,6 +55,10 @@ class Bearing:
         """Radius of the outer raceway at the groove bottom [m]."""
         return (self.pitch_diameter + self.ball_diameter * math.cos(self.contact_angle)) / 2
 
+    def radius(self, site: str) -> float:
+        """Radius of the surface that a ``site`` is on: ``inner`` or ``outer`` raceway, or ``ball`` [m]."""
+        return {"inner": self.inner_radius, "outer": self.outer_radius, "ball": self.ball_diameter / 2}[site]
+
 
 class Orders(NamedTuple):
     """Fault frequencies in orders of the shaft; a ball spall strikes both races each spin, so its line is ``2 * bsf``."""

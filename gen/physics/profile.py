@@ -1,10 +1,10 @@
-"""How a quantity runs over time: through given points, straight or without a jerk.
+"""How a quantity changes over time between given points: linearly or smoothly.
 
-Without a jerk means the polynomial of degree five whose first two derivatives vanish at both ends, so that a speed that runs up keeps a
-continuous acceleration.
+Smooth means the polynomial of degree five whose first two derivatives are zero at both ends, so that a speed that runs up has a continuous
+acceleration.
 """
 
-from typing import NamedTuple
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +12,15 @@ from numpy.typing import NDArray
 FloatArray = NDArray[np.float64]
 
 
-class Profile(NamedTuple):
+@dataclass(frozen=True)
+class Profile:
     """Shares of a nominal value at rising times; constant before the first point and after the last."""
 
     times: tuple[float, ...]
     """From the start of the record [s]."""
     shares: tuple[float, ...]
     smooth: bool = False
-    """Whether it runs without a jerk between points."""
+    """Whether it changes smoothly between points."""
 
 
 def share_at(profile: Profile, times: NDArray[np.floating]) -> FloatArray:

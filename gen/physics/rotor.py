@@ -4,7 +4,8 @@ Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r th
 """
 
 import math
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from numpy.typing import NDArray
 from gen.physics.elementary import power
 
 FloatArray = NDArray[np.float64]
+Fields = TypeVar("Fields", bound=tuple[Any, ...])
 
 # Heaviest ball load before anything moves, Stribeck: 5 W / Z; three times that covers what spalls were seen to do to it.
 STRIBECK, DYNAMIC_FACTOR, LOADED_BALLS = 5.0, 3.0, 3
@@ -48,9 +50,10 @@ class Machine(NamedTuple):
     contact_exponent: float = 1.5
 
 
-def as_columns(machines: list[Machine]) -> Machine:
-    """The same constants as arrays, shape (record,) each."""
-    return Machine(*np.asarray(machines, dtype=float).T)
+def as_columns(items: Sequence[Fields]) -> Fields:
+    """The fields of several items as arrays, shape (item,) each, in one item of the same type."""
+    kind: Any = type(items[0])
+    return kind(**{name: np.array([getattr(item, name) for item in items], float) for name in kind._fields})
 
 
 def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> FloatArray | float:

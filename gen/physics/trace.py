@@ -1,9 +1,9 @@
-"""The path of a ball over a measured or rough surface, and what a contact of finite width feels of it.
+"""The path of a ball over a measured or rough surface, and its mean over the width of the contact.
 
-A rigid ball rests on whatever it touches first: over a surface at depth ``z`` its centre drops by the least of ``z`` plus the sagittas of
-ball and race over the distance to each point. Two sharp edges and a floor make the ``geometric`` profile of :mod:`gen.physics.kernel.drop`
-again. A contact is as wide as its Hertzian ellipse, and feels the mean of the path over it, weighted as the pressure is: a contact
-filter, as Remington describes it for wheel and rail [1]_. It takes the edge off spalls narrower than the contact.
+A rigid ball rests on the point that it touches first: over a surface at depth ``z`` its centre drops by the minimum over all points of
+``z`` plus the sagittas of ball and race over the distance to the point. For two sharp edges and a floor this is the ``geometric`` profile
+of :mod:`gen.physics.kernel.drop`. A contact has the width of its Hertzian ellipse, and averages the path over it, weighted by its
+pressure: the contact filter of Remington for wheel and rail [1]_. It smooths spalls narrower than the contact.
 
 .. [1] P. J. Remington, "Wheel/rail noise - part I: characterization of the wheel/rail dynamic system", J. Sound Vib. 46 (1976) 359-379.
 """
@@ -11,7 +11,7 @@ filter, as Remington describes it for wheel and rail [1]_. It takes the edge off
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.kernel.turning import TABLE_POINTS
+from gen.physics.extent import TABLE_POINTS
 
 FloatArray = NDArray[np.float64]
 
@@ -21,13 +21,13 @@ def places(width: float) -> FloatArray:
     return np.linspace(-width / 2, width / 2, TABLE_POINTS)
 
 
-def rolled(depths: FloatArray, width: float, ball: float, race: float) -> FloatArray:
+def ball_path(depths: FloatArray, width: float, ball: float, race: float) -> FloatArray:
     """Drop of a ball that rolls over a surface, shape (point,) [m].
 
     Parameters
     ----------
     depths : array, shape (point,)
-        Depth of the surface from edge to edge, evenly spaced [m]; the edges themselves are sound.
+        Depth of the surface from edge to edge, evenly spaced [m]; at the edges it is taken as 0.
     width : float
         From edge to edge [m].
     ball, race : float
@@ -43,16 +43,16 @@ def rolled(depths: FloatArray, width: float, ball: float, race: float) -> FloatA
     return np.where(inside, surface + sagittas, np.inf).min(axis=1)
 
 
-def roughened(depths: FloatArray, rms: float, rng: np.random.Generator) -> FloatArray:
-    """Depth of a surface made rough by ``rms`` over lengths from a hundredth to a tenth of its width, shape (point,) [m]."""
+def with_roughness(depths: FloatArray, rms: float, rng: np.random.Generator) -> FloatArray:
+    """Depth of a surface plus roughness of ``rms`` at wavelengths from a hundredth to a tenth of its width, shape (point,) [m]."""
     waves = np.zeros(len(depths) // 2 + 1, complex)
     waves[10:101] = np.exp(2j * np.pi * rng.random(91)) / np.arange(10, 101)
     roughness = np.fft.irfft(waves, len(depths))
     return np.maximum(depths + roughness * (rms / roughness.std()), 0.0)
 
 
-def felt(path: FloatArray, width: float, footprint: float, margin: float) -> FloatArray:
-    """What a contact of half width ``footprint`` feels of a path, from ``margin`` before one edge to ``margin`` after the other.
+def contact_mean(path: FloatArray, width: float, footprint: float, margin: float) -> FloatArray:
+    """Mean of a path under a contact of half width ``footprint``, from ``margin`` before one edge to ``margin`` after the other.
 
     Parameters
     ----------

@@ -1,12 +1,13 @@
-"""Scenarios: a recipe, fully drawn, nothing random left but what happens in time.
+"""Scenarios: rigs, specimens and records with every value drawn; only the course of random processes in time is left to the simulation.
 
 ====== ============================================================
 module responsibility
 ====== ============================================================
 model  rigs, specimens, records, and the random streams they own
-draws  values drawn one after the other, from a recipe's distributions
+draws  values drawn one after the other, from the distributions
 faults which specimens are damaged, and how
 draw   how each is drawn, level by level
+stored scenarios as the text that a corpus stores, and back
 ====== ============================================================
 """
 
@@ -17,24 +18,29 @@ from gen.scenarios.model import (
     Mode,
     Operation,
     Path,
+    Pickup,
     Purpose,
     Rig,
     Scenario,
+    ShaftModulation,
     Spall,
     Specimen,
     Tone,
     Wear,
     stream,
 )
+from gen.scenarios.stored import read_scenario, scenario_texts
 
 __all__ = [
     "Background",
     "Mode",
     "Operation",
     "Path",
+    "Pickup",
     "Purpose",
     "Rig",
     "Scenario",
+    "ShaftModulation",
     "Spall",
     "Specimen",
     "Tone",
@@ -42,5 +48,7 @@ __all__ = [
     "draw_scenarios",
     "fault_of_each_specimen",
     "first_specimens",
+    "read_scenario",
+    "scenario_texts",
     "stream",
 ]

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from gen.corpus import SPLITS
 from gen.errors import RecipeError
@@ -36,9 +35,11 @@ from gen.scenarios.model import (
     Mode,
     Operation,
     Path,
+    Pickup,
     Purpose,
     Rig,
     Scenario,
+    ShaftModulation,
     Specimen,
     Tone,
     stream,
@@ -87,6 +88,8 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
     """Quasi-random points of items ``first`` to ``stop`` of a level; empty ones if sampling is random."""
     if recipe.corpus.sampling == "random":
         return {number: np.empty(0) for number in range(first, stop)}
+    from scipy.stats import qmc  # loads for half a second, and few recipes need it
+
     engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
     rng = stream(recipe.seed, 0, 0, 0, Purpose.SAMPLING)
     engine = engine_type(_FIRST_DIMENSION[level] + _DIMENSIONS, scramble=True, rng=rng)
@@ -105,13 +108,16 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
 def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
     draws = Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number)
     machine = draws.section(recipe.machine)
+    # the balance grade holds at the highest speed that a machine is made for (ISO 21940-11)
+    highest_rate = recipe.operation.shaft_rpm.support()[1] / 60
+    machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
     resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator)
     bearing = _draw_bearing(recipe, draws, number)
     level = draws.section(recipe.level)
     channels = []
     for channel in recipe.recording.channels:
         body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
-        channels.append((body, draws.section(channel)["angle"]))
+        channels.append(Pickup(body, draws.section(channel)["angle"]))
     path = _draw_path(draws, recipe.path)
     background = _draw_background(recipe, draws)
     own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
@@ -122,10 +128,19 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
             f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
         )
     return Rig(
-        number, bearing, machine, resonator, tuple(channels), path, own_paths, background,
-        level.get("gain", 1.0), level.get("background", 1.0),
-        lubricant=oil, footprint=recipe.contact.footprint == "hertz",
-    )  # fmt: skip
+        number=number,
+        bearing=bearing,
+        machine=machine,
+        resonator=resonator,
+        channels=tuple(channels),
+        path=path,
+        own_paths=own_paths,
+        background=background,
+        gain=level.get("gain", 1.0),
+        background_rms=level.get("background", 1.0),
+        lubricant=oil,
+        footprint=recipe.contact.footprint == "hertz",
+    )
 
 
 def _draw_bearing(recipe: Recipe, draws: Draws, rig: int) -> Bearing:
@@ -161,10 +176,10 @@ def _draw_modes(draws: Draws, modes: Modes | None) -> tuple[Mode, ...]:
     return tuple(found)
 
 
-def _draw_modulation(draws: Draws, modulation: Any) -> tuple[float, float]:
+def _draw_modulation(draws: Draws, modulation: Any) -> ShaftModulation:
     if modulation is None or not draws.happens(modulation):
-        return 0.0, 0.0
-    return draws.value(modulation.first), draws.value(modulation.second)
+        return ShaftModulation()
+    return ShaftModulation(draws.value(modulation.first), draws.value(modulation.second))
 
 
 def _draw_background(recipe: Recipe, draws: Draws) -> Background:
@@ -184,7 +199,16 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     if wanted.knocks is not None and draws.happens(wanted.knocks):
         knocks = Tone(draws.value(wanted.knocks.orders), 10 ** (draws.value(wanted.knocks.level_db) / 20))
     modes, modulation = _draw_modes(draws, wanted.modes), _draw_modulation(draws, wanted.modulation)
-    return Background(slope, floor, modes, modulation, tuple(harmonics), tuple(tones), impulses, knocks)
+    return Background(
+        slope=slope,
+        floor=floor,
+        modes=modes,
+        modulation=modulation,
+        harmonics=tuple(harmonics),
+        tones=tuple(tones),
+        impulses=impulses,
+        knocks=knocks,
+    )
 
 
 def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str]) -> Specimen:
@@ -210,7 +234,9 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
     wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
-    specimen = Specimen(number, bearing, properties, fault, (), {}, _draw_split(recipe, rig.number, place))
+    specimen = Specimen(
+        number, bearing, properties, fault, spalls=(), axis={}, split=_draw_split(recipe, rig.number, place)
+    )
     return damaged(draws, entry, specimen)
 
 

@@ -51,16 +51,23 @@ def _with_part(draws: Draws, part: RaceFault | BallFault | CageFault, specimen: 
 
 def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int) -> tuple[Spall, ...]:
     carrier = int(draws.u() * bearing.n_balls)
-    radius = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[
-        entry.kind
-    ]
+    radius = bearing.radius(entry.kind)
     trace = tuple(depth * 1e-6 for depth in entry.trace_um or ())
     spalls = []
     for _ in range(round(draws.value(entry.spalls))):
         width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
         angle, roughness = math.radians(draws.value(entry.angle_deg)), draws.value(entry.roughness_um) * 1e-6
         spalls.append(
-            Spall(entry.kind, width, max(trace, default=depth), angle, carrier, entry.profile, trace, roughness)
+            Spall(
+                site=entry.kind,
+                width=width,
+                depth=max(trace, default=depth),
+                angle=angle,
+                ball=carrier,
+                profile=entry.profile,
+                trace=trace,
+                roughness=roughness,
+            )
         )
         if width > _WIDEST[entry.kind] * radius:
             raise RecipeError(

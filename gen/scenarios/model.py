@@ -1,11 +1,10 @@
-"""What a corpus is drawn into: rigs with their background, specimens with their spalls, records with their conditions.
+"""Rigs with their background, specimens with their damage, records with their conditions.
 
-Every value is plain and in SI units, so that a scenario can be stored beside its record and made again from it.
+Every value is plain and in SI units, so that a scenario can be stored with its record and read back.
 """
 
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -16,7 +15,7 @@ Drawn = dict[str, float]
 
 
 class Purpose(IntEnum):
-    """What a random stream is for."""
+    """Purpose of a random stream."""
 
     RIG = 0
     CLASSES = 1
@@ -34,24 +33,30 @@ class Purpose(IntEnum):
     KNOCKS = 13
 
 
-class Spall(NamedTuple):
-    """One spall as it was drawn; ``ball`` says which ball carries it if ``site`` is ``ball``."""
+@dataclass(frozen=True)
+class Spall:
+    """One spall as it was drawn."""
 
     site: str
+    """``inner``, ``outer`` or ``ball``."""
     width: float
+    """Along the rolling direction [m]."""
     depth: float
+    """[m]."""
     angle: float
+    """On the outer race from the direction of the load [rad]."""
     ball: int = 0
+    """Number of the ball that carries it, if ``site`` is ``ball``."""
     profile: str = "geometric"
     trace: tuple[float, ...] = ()
     """Depths of a measured surface from edge to edge [m]."""
     roughness: float = 0.0
-    """Of its floor, rms [m]."""
+    """Rms roughness of its floor [m]."""
 
 
 @dataclass(frozen=True)
 class Wear:
-    """Waviness of a worn race: rms [m], all of it at one ``order`` per turn, or falling as 1/order."""
+    """Waviness of a worn race: rms [m], at one ``order`` per turn, or with amplitudes that fall as 1/order."""
 
     site: str
     waviness: float
@@ -69,7 +74,7 @@ class Mode:
 
 @dataclass(frozen=True)
 class Tone:
-    """A line: frequency [Hz or shaft orders], rms relative to the noise, and depth of its modulation by the shaft."""
+    """A spectral line: frequency [Hz or shaft orders], rms relative to the noise, and depth of its modulation by the shaft."""
 
     frequency: float
     level: float
@@ -77,22 +82,38 @@ class Tone:
 
 
 @dataclass(frozen=True)
+class ShaftModulation:
+    """Depth of an amplitude modulation once and twice per turn of the shaft [1]."""
+
+    once: float = 0.0
+    twice: float = 0.0
+
+
+@dataclass(frozen=True)
+class Pickup:
+    """The body whose acceleration a channel measures, and the direction in which it does [rad]."""
+
+    body: str
+    angle: float
+
+
+@dataclass(frozen=True)
 class Path:
-    """The way from bearing to sensor: a direct part, resonances, and modulation once and twice per turn of the shaft."""
+    """Transfer path from bearing to sensor: a direct part, resonances, and modulation by the shaft."""
 
     direct: float
     modes: tuple[Mode, ...]
-    modulation: tuple[float, float]
+    modulation: ShaftModulation
 
 
 @dataclass(frozen=True)
 class Background:
-    """What a machine sounds like without the bearing; levels are relative to its noise."""
+    """Vibration of a machine without the bearing; levels are relative to its noise."""
 
     slope: float
     floor: float
     modes: tuple[Mode, ...]
-    modulation: tuple[float, float]
+    modulation: ShaftModulation
     harmonics: tuple[Tone, ...]
     tones: tuple[Tone, ...]
     impulses: Tone | None
@@ -107,17 +128,16 @@ class Rig:
     bearing: Bearing
     machine: Drawn
     resonator: Drawn | None
-    channels: tuple[tuple[str, float], ...]
-    """Body and direction [rad] of each channel."""
+    channels: tuple[Pickup, ...]
     path: Path
     own_paths: tuple[Path | None, ...]
-    """Path of each channel that does not take the common one."""
+    """Path of each channel, None where it is the common one."""
     background: Background
     gain: float
     background_rms: float
     lubricant: Drawn | None = None
     footprint: bool = False
-    """Whether contacts are as wide as Hertz says, or points."""
+    """Whether contacts have their Hertzian width, or are points."""
 
 
 @dataclass(frozen=True)
@@ -129,8 +149,8 @@ class Specimen:
     properties: Drawn
     fault: str
     spalls: tuple[Spall, ...]
-    """Outer race angles count from the load direction."""
     axis: Drawn
+    """Tilt of the spin axis of a bearing with a ball spall: its mean, its rms, and the tilt that misses the track [rad]."""
     split: str
     cage: Drawn = field(default_factory=dict)
     """Pitch error [rad] and knock [N] of a broken cage."""
@@ -139,7 +159,7 @@ class Specimen:
 
 @dataclass(frozen=True)
 class Operation:
-    """One record: how the machine ran, and how loud the bearing was."""
+    """One record: operating conditions, and level of the bearing."""
 
     number: int
     conditions: Drawn
@@ -159,12 +179,8 @@ class Scenario:
     record: Operation
 
     def rng(self, purpose: Purpose) -> np.random.Generator:
-        """Stream of this record for what is random in time."""
+        """Random stream of this record for one purpose."""
         return stream(self.seed, self.rig.number, self.specimen.number, self.record.number, purpose)
-
-    def as_dict(self) -> dict[str, Any]:
-        """Every drawn value, for storage."""
-        return {"rig": asdict(self.rig), "specimen": asdict(self.specimen), "record": asdict(self.record)}
 
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""

@@ -1,11 +1,17 @@
-"""Scenarios in, accelerations at the bodies out.
+"""Scenarios in, accelerations of the bodies out.
 
-======== ==============================================================
+======== ====================================================================
 module   responsibility
-======== ==============================================================
-damage   spalls and waviness, as the kernel takes them
-machine  constants of the machine, its motion, speed and load over time
-simulate a batch of scenarios integrated; the step and its check
-outline  kernel shape and steps of a record, without building it
-======== ==============================================================
+======== ====================================================================
+timeline the time axis: settling, lead, record
+machine  constants of the machine: oil, temperature and axial load included
+motion   how shaft, cage and balls turn; speed and load over time
+damage   spalls and waviness
+inputs   kernel inputs, put together from these
+truth    what is true of a record by construction
+batches  records grouped by kernel and step, and integrated in lanes
+steps    the step: chosen before the run, checked after it
+simulate scenarios integrated
+outline  kernel shape and steps of a record, without its kernel input
+======== ====================================================================
 """

@@ -1,61 +1,68 @@
-"""What is uneven in a bearing, as the kernel takes it: spalls with the paths of balls over them, and waviness."""
+"""Spalls, with the paths of the balls over them, and waviness, as the kernel takes them."""
 
 import functools
 import math
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.bearing import Bearing, orders
+from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
-from gen.physics.kernel import turning as motion
-from gen.physics.kernel.batch import Spall as KernelSpall
+from gen.physics.inputs import ROUND, SpallInput, Waviness
 from gen.physics.kernel.drop import PROFILES, drop, largest_drop
-from gen.physics.trace import felt, places, rolled, roughened
+from gen.physics.trace import ball_path, contact_mean, places, with_roughness
 from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
 
 FloatArray = NDArray[np.float64]
 
-# of the sample rate: waviness that passes a ball faster is left out, for gaps are known once per sample
-FASTEST_WAVE = 0.4
+FASTEST_WAVE = (
+    0.4  # of the sample rate: gaps are computed once per sample, so waviness that passes a ball faster is left out
+)
 
 
-def kernel_spalls(scenario: Scenario, ball_load: float) -> tuple[KernelSpall, ...]:
-    """Spalls as the kernel knows them; outer race angles count from x there, and rough or wide contacts make tables."""
+def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]:
+    """Spalls as the kernel takes them: angles on the outer race count from x, and rough floors or wide contacts need a table."""
     return tuple(
-        _tabulated(scenario, number, plain, ball_load) if _needs_table(scenario, spall) else plain
-        for number, (spall, plain) in enumerate(zip(scenario.specimen.spalls, plain_spalls(scenario), strict=True))
+        _tabulated(scenario, number, bare, ball_load) if _needs_table(scenario, spall) else bare
+        for number, (spall, bare) in enumerate(zip(scenario.specimen.spalls, untabulated_spalls(scenario), strict=True))
     )
 
 
-def plain_spalls(scenario: Scenario) -> tuple[KernelSpall, ...]:
-    """Spalls as the kernel knows those that need no table."""
+def untabulated_spalls(scenario: Scenario) -> tuple[SpallInput, ...]:
+    """The spalls of a record without their tables."""
     shift = scenario.rig.machine["load_angle"]
     return tuple(
-        KernelSpall(
-            spall.site, spall.width, spall.depth, spall.angle + (shift if spall.site == "outer" else 0.0), spall.ball, spall.profile
+        SpallInput(
+            site=spall.site,
+            width=spall.width,
+            depth=spall.depth,
+            angle=spall.angle + (shift if spall.site == "outer" else 0.0),
+            ball=spall.ball,
+            profile=spall.profile,
         )
         for spall in scenario.specimen.spalls
-    )  # fmt: skip
+    )
 
 
 def _needs_table(scenario: Scenario, spall: Spall) -> bool:
     return scenario.rig.footprint or spall.profile == "trace" or spall.roughness > 0
 
 
-def _tabulated(scenario: Scenario, number: int, plain: KernelSpall, ball_load: float) -> KernelSpall:
+def _tabulated(scenario: Scenario, number: int, bare: SpallInput, ball_load: float) -> SpallInput:
     paths = spall_paths(scenario, number)
     if not scenario.rig.footprint:
-        return plain._replace(profile="table", table=tuple(tuple(path) for path in paths))
+        return bare._replace(profile="table", table=tuple(tuple(path) for path in paths))
     inner, outer = footprints(scenario.specimen.bearing, ball_load)
-    widths = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[plain.site]
+    widths = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[bare.site]
     margin = max(widths)
-    table = tuple(tuple(felt(path, plain.width, b, margin)) for path, b in zip(paths, widths, strict=True))
-    return plain._replace(profile="table", width=plain.width + 2 * margin, table=table)
+    table = tuple(tuple(contact_mean(path, bare.width, b, margin)) for path, b in zip(paths, widths, strict=True))
+    return bare._replace(profile="table", width=bare.width + 2 * margin, table=table)
 
 
 def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
-    """Path of the middle of a contact over a spall, shape (point,), on each race that its balls roll on there [m]."""
+    """Path of the middle of a contact over a spall, shape (point,) [m]: on its race, or for a ball spall on both races."""
     specimen, spall = scenario.specimen, scenario.specimen.spalls[number]
     bearing = specimen.bearing
     inner, outer = bearing.inner_radius, -bearing.outer_radius
@@ -64,15 +71,13 @@ def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
     return _paths(spall, bearing.ball_diameter / 2, races, place)
 
 
-def deepest(scenario: Scenario, number: int) -> float:
-    """Largest drop of a rigid ball over a spall, on whichever race is deeper [m]."""
+def largest_drop_over(scenario: Scenario, number: int) -> float:
+    """Largest drop of a rigid ball over a spall, on the race where it is larger [m]."""
     spall, bearing = scenario.specimen.spalls[number], scenario.specimen.bearing
     if spall.profile != "geometric" or spall.roughness > 0:
         return max(float(path.max()) for path in spall_paths(scenario, number))
-    ball = bearing.ball_diameter / 2
-    arc = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": ball}[spall.site]
     race = -bearing.outer_radius if spall.site == "outer" else bearing.inner_radius
-    return largest_drop(spall.width, arc, ball, race, spall.depth)
+    return largest_drop(spall.width, bearing.radius(spall.site), bearing.radius("ball"), race, spall.depth)
 
 
 @functools.lru_cache(maxsize=256)
@@ -89,8 +94,8 @@ def _paths(
     if spall.profile == "trace":
         depths = np.interp(at, np.linspace(at[0], at[-1], len(spall.trace)), spall.trace)
     if spall.roughness > 0:
-        depths = roughened(depths, spall.roughness, stream(*place, Purpose.ROUGHNESS))
-    return tuple(rolled(depths, spall.width, ball, race) for race in races)
+        depths = with_roughness(depths, spall.roughness, stream(*place, Purpose.ROUGHNESS))
+    return tuple(ball_path(depths, spall.width, ball, race) for race in races)
 
 
 def is_wavy(scenario: Scenario) -> bool:
@@ -99,41 +104,52 @@ def is_wavy(scenario: Scenario) -> bool:
     return bool(properties["waviness"] or properties["ball_waviness"] or scenario.specimen.wear is not None)
 
 
-def waviness(scenario: Scenario, fs: float) -> FloatArray:
-    """Fourier amplitudes of both races, and of the balls if they have some, shape (row,) [m]: the specimen's own, phases random."""
-    specimen, properties = scenario.specimen, scenario.specimen.properties
-    rms, of_balls = properties["waviness"], properties["ball_waviness"]
+def waviness_of(scenario: Scenario, fs: float) -> Waviness:
+    """Fourier amplitudes of races and balls of the specimen of a record, without waves that pass a ball too fast for ``fs`` [Hz]."""
     if not is_wavy(scenario):
-        return np.empty(0)
+        return ROUND
+    specimen, profile = scenario.specimen, scenario.record.speed_profile
     place = scenario.seed, scenario.rig.number, specimen.number, 0
-    rows, orders_at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)
-    profile = scenario.record.speed_profile
+    rms, of_balls = specimen.properties["waviness"], specimen.properties["ball_waviness"]
+    whole, at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)
     highest_rate = scenario.record.conditions["shaft"] * (1.0 if profile is None else max(profile.shares))
-    return rows * (orders_at_balls <= FASTEST_WAVE * fs / highest_rate)
+    highest_order = FASTEST_WAVE * fs / highest_rate
+    races = np.where(at_balls.races <= highest_order, whole.races, 0j)
+    return Waviness(races, np.where(at_balls.balls <= highest_order, whole.balls, 0j))
+
+
+class Passages(NamedTuple):
+    """How often each wave passes a ball in a turn of the shaft."""
+
+    races: NDArray[np.floating]
+    """Shape (race, order) [1]."""
+    balls: NDArray[np.floating]
+    """Shape (order, 1) [1]."""
 
 
 @functools.lru_cache(maxsize=256)
 def _waves(
     place: tuple[int, int, int, int], bearing: Bearing, rms: float, of_balls: float, wear: Wear | None
-) -> tuple[FloatArray, NDArray[np.floating]]:
-    """Amplitudes of a specimen, and how often each wave passes a ball in a turn of the shaft, shape (row,) [m, 1]."""
+) -> tuple[Waviness, Passages]:
+    """Amplitudes of a specimen, with random phases, and how often each wave passes a ball."""
     rng, n_balls, spinning = stream(*place, Purpose.WAVINESS), bearing.n_balls, orders(bearing)
-    every, even = np.arange(motion.LOWEST_ORDER, motion.HIGHEST_ORDER + 1), 2 * np.arange(1, motion.BALL_ORDERS + 1)
-    races = _falling(every) * rms * np.exp(1j * rng.uniform(0, 2 * np.pi, (2, motion.N_ORDERS)))
-    # a ball's two contacts see the same height in even orders: together twice as much
-    balls = 2 * of_balls * _falling(even)[:, None] * np.exp(1j * rng.uniform(0, 2 * np.pi, (len(even), n_balls)))
+    every, even = np.arange(LOWEST_ORDER, HIGHEST_ORDER + 1), 2 * np.arange(1, BALL_ORDERS + 1)
+    races = _falling(every) * rms * _phasors(rng, (2, len(every)))
+    # in even orders the two contacts of a ball have the same height: together twice as much
+    balls = 2 * of_balls * _falling(even)[:, None] * _phasors(rng, (len(even), n_balls))
     if wear is not None:
         rng = stream(*place, Purpose.WEAR)
         worn = _falling(every) if wear.order is None else math.sqrt(2) * (every == wear.order)
-        races[("inner", "outer").index(wear.site)] += (
-            worn * wear.waviness * np.exp(1j * rng.uniform(0, 2 * np.pi, len(every)))
-        )
-    rows = [np.stack([races.real, races.imag], axis=1).ravel()]
-    passing = [every * (1 - spinning.ftf)] * 2 + [every * spinning.ftf] * 2
-    if of_balls > 0:
-        rows.append(np.stack([balls.real, balls.imag], axis=1).ravel())
-        passing.append(np.repeat(even * spinning.bsf, 2 * n_balls))
-    return np.concatenate(rows), np.concatenate(passing)
+        races[("inner", "outer").index(wear.site)] += worn * wear.waviness * _phasors(rng, (len(every),))
+    passing = np.stack([every * (1 - spinning.ftf), every * spinning.ftf])
+    if of_balls == 0:
+        balls = ROUND.balls
+    return Waviness(races, balls), Passages(passing, (even * spinning.bsf)[:, None] if of_balls else ROUND.balls.real)
+
+
+def _phasors(rng: np.random.Generator, shape: tuple[int, ...]) -> Any:
+    """Complex numbers of size 1 with random phases."""
+    return np.exp(1j * rng.uniform(0, 2 * np.pi, shape))
 
 
 def _falling(orders_of_turn: NDArray[np.int_]) -> FloatArray:

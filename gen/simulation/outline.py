@@ -1,7 +1,7 @@
-"""What a record asks of the computer, without building it: the shape of its kernel and its steps per sample.
+"""Kernel shape and steps per sample of a record, without its full kernel input.
 
-Both follow from the machine and from whether there are spalls, waviness and a schedule; of the schedule only the highest speed and the
-highest load matter. So an outline has plain spalls, waves of no height and a schedule of one knot, which holds the two.
+Both follow from the machine and from whether there are spalls, waviness and a schedule. Of the schedule only the highest speed and the
+highest load matter. So an outline has spalls without tables, waviness of no height, and a schedule of one knot with these two maxima.
 """
 
 import math
@@ -9,65 +9,71 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.kernel.batch import Record
+from gen.physics.inputs import CONSTANT, ROUND, KernelInput, Waviness
 from gen.physics.profile import Profile, share_at
-from gen.recipe import Recipe
 from gen.scenarios import Scenario
-from gen.simulation.damage import is_wavy, plain_spalls
-from gen.simulation.machine import bare_record, is_scheduled, knot_times, load_wander, n_knots, wander_terms
-from gen.simulation.simulate import failures_named
+from gen.simulation.damage import is_wavy, untabulated_spalls
+from gen.simulation.inputs import bare_input, failures_named
+from gen.simulation.motion import is_scheduled, load_wander, wander_terms
+from gen.simulation.timeline import Timeline
 
 FloatArray = NDArray[np.float64]
 
-SAMPLES_PER_TURN = 16  # of the shaft, at which a wandering load is looked at first
-MOST_APART = 1024  # knots between two such samples
+SAMPLES_PER_TURN = 16  # of the shaft, for the first samples of a wandering load
+MOST_APART = 1024  # knots between two such samples, at most
 
 
-def outlined_record(scenario: Scenario, recipe: Recipe) -> Record:
-    """Record of which kernel shape and steps per sample are those of :func:`gen.simulation.simulate.kernel_record`, and nothing else.
+FLAT = Waviness(np.zeros((2, 1), complex), ROUND.balls)
+
+
+def outlined_input(scenario: Scenario, timeline: Timeline) -> KernelInput:
+    """Kernel input with the shape and steps per sample of :func:`gen.simulation.inputs.kernel_input`, and nothing else of it.
 
     Raises
     ------
     SimulationError
-        If no such machine can stand, with the number of the record: the same as of the whole record.
+        If no such machine is possible, with the same sentence.
     """
     with failures_named(scenario):
-        bare = bare_record(scenario, recipe)
-    highest = [[_speed_peak(scenario, recipe), _load_peak(scenario, recipe)]] if is_scheduled(scenario) else []
+        bare = bare_input(scenario)
     return bare._replace(
-        spalls=plain_spalls(scenario),
-        waves=np.zeros(int(is_wavy(scenario))),
-        schedule=np.array(highest).reshape(-1, 2),
+        spalls=untabulated_spalls(scenario),
+        waviness=FLAT if is_wavy(scenario) else ROUND,
+        schedule=_peaks(scenario, timeline) if is_scheduled(scenario) else CONSTANT,
     )
 
 
-def _speed_peak(scenario: Scenario, recipe: Recipe) -> float:
+def _peaks(scenario: Scenario, timeline: Timeline) -> FloatArray:
+    return np.array([[_speed_peak(scenario, timeline), _load_peak(scenario, timeline)]])
+
+
+def _speed_peak(scenario: Scenario, timeline: Timeline) -> float:
     """Highest factor of the speed over the knots of the schedule [1]."""
     profile = scenario.record.speed_profile
-    return 1.0 if profile is None else _peak(profile, recipe, later=0.5 / recipe.recording.sample_rate_hz)
+    return 1.0 if profile is None else _peak(profile, timeline, later=0.5 / timeline.fs)
 
 
-def _load_peak(scenario: Scenario, recipe: Recipe) -> float:
+def _load_peak(scenario: Scenario, timeline: Timeline) -> float:
     """Highest factor of the load over the knots of the schedule [1].
 
-    A load that wanders is sampled some times per turn of the shaft, and then at all knots between those samples that may have the peak
-    between them.
+    A wandering load is first sampled ``SAMPLES_PER_TURN`` times per turn of the shaft, and then at every knot wherever the peak may lie
+    between two of these samples.
     """
     profile = scenario.record.load_profile
     if scenario.record.conditions["load_wander"] == 0:
-        return 1.0 if profile is None else _peak(profile, recipe, later=0.0)
-    count, (amplitude, rates, phases) = n_knots(recipe), wander_terms(scenario)
-    apart = int(recipe.recording.sample_rate_hz / (SAMPLES_PER_TURN * scenario.record.conditions["shaft"]))
+        return 1.0 if profile is None else _peak(profile, timeline, later=0.0)
+    count, (amplitude, rates, phases) = timeline.knots, wander_terms(scenario)
+    apart = int(timeline.fs / (SAMPLES_PER_TURN * scenario.record.conditions["shaft"]))
     apart = max(1, min(apart, MOST_APART, count // 2))
     knots = np.arange(0, count + apart, apart)  # the last is beyond the end, so that every knot is between two
-    times = knot_times(recipe, knots)
+    times = timeline.knot_times(knots)
     wander, shares = load_wander(scenario, times), _shares(profile, times)
     # a sum of cosines rises above the larger of two samples by at most spacing^2 / 8 of its largest second derivative
-    beyond = amplitude * float(np.sum(rates**2)) * (apart / recipe.recording.sample_rate_hz) ** 2 / 8
+    beyond = amplitude * float(np.sum(rates**2)) * (apart / timeline.fs) ** 2 / 8
     most = (np.maximum(wander[1:], wander[:-1]) + beyond) * _largest_between(profile, times, shares)
     places = np.flatnonzero(most >= (wander * shares)[knots < count].max())
     near = np.unique(knots[places][:, None] + np.arange(apart + 1))
-    times = knot_times(recipe, near[near < count])
+    times = timeline.knot_times(near[near < count])
     wander = np.maximum(1 + amplitude * np.cos(np.outer(times, rates) + phases).sum(axis=1), 0.0)
     return float((wander * _shares(profile, times)).max())
 
@@ -86,10 +92,10 @@ def _largest_between(profile: Profile | None, times: FloatArray, shares: FloatAr
     return largest
 
 
-def _peak(profile: Profile, recipe: Recipe, later: float) -> float:
-    """Largest share of a profile at the knots and ``later`` [s]: at either end, or beside a point, for it is monotonic between."""
-    first, fs = knot_times(recipe, np.zeros(1, int))[0] + later, recipe.recording.sample_rate_hz
+def _peak(profile: Profile, timeline: Timeline, later: float) -> float:
+    """Largest share of a profile at the knots, each ``later`` by some [s]: it is at either end or beside a point of the profile [1]."""
+    first, fs = timeline.knot_times(np.zeros(1, int))[0] + later, timeline.fs
     before = np.floor((np.asarray(profile.times) - first) * fs)
     beside = (before[:, None] + np.array([-1, 0, 1, 2])).ravel()
-    knots = np.unique(np.clip([0, *beside, math.inf], 0, n_knots(recipe) - 1)).astype(int)
-    return float(share_at(profile, knot_times(recipe, knots) + later).max())
+    knots = np.unique(np.clip([0, *beside, math.inf], 0, timeline.knots - 1)).astype(int)
+    return float(share_at(profile, timeline.knot_times(knots) + later).max())

@@ -16,10 +16,12 @@ from scipy.signal import find_peaks, get_window, hilbert
 
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel.batch import Motion, Record, Spall, lay_out, n_terms, record_shape
+from gen.physics.inputs import KernelInput, SpallInput, Turning
+from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate
+from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine
 
 FloatArray = NDArray[np.floating]
@@ -28,7 +30,7 @@ FS = 40_000  # Hz, and the step of the integration; 320 kHz changes no value by 
 SECONDS = 1.0
 LATE = 0.05  # s, when the start has died away
 CHANNELS = ("x1", "y1", "x2", "y2")
-CRACK = Spall("inner", 2 * math.radians(10) * 15.5e-3, 1e-3, math.radians(15), profile="rectangular")
+CRACK = SpallInput("inner", 2 * math.radians(10) * 15.5e-3, 1e-3, math.radians(15), profile="rectangular")
 
 
 class Preset(NamedTuple):
@@ -51,19 +53,51 @@ class Preset(NamedTuple):
 
 PRESETS = {
     "paper": Preset(
-        11.048645198649645, 56334.797439665985, 382.79964568752894, 21986400.020285923, 35027652.04624106, 3223.9169780972675,
-        1869.8437448937823, 4915351358.039509, -7.706471349433184e-06, 99.57492683939076, -25.331799862143072, 5.9048766239125884e-08,
-        44.65571094406354,
+        housing_mass=11.048645198649645,
+        ring_stiffness=56334.797439665985,
+        ring_damping=382.79964568752894,
+        support_stiffness_x=21986400.020285923,
+        support_stiffness_y=35027652.04624106,
+        support_damping_x=3223.9169780972675,
+        support_damping_y=1869.8437448937823,
+        load_deflection_factor=4915351358.039509,
+        half_clearance=-7.706471349433184e-06,
+        load_x=99.57492683939076,
+        load_y=-25.331799862143072,
+        unbalance=5.9048766239125884e-08,
+        shaft_rate=44.65571094406354,
     ),
     "paper-hertz": Preset(
-        11.940489787243106, 1000.0, 381.2243104923242, 11684188.140637236, 34731318.32009893, 1007.8663482557035, 5648.144625327418,
-        9291800000.0, -7.116667803620017e-06, 50.53774378183503, -18.911920472496043, 1.5034348054805507e-07, 44.79141019175874,
+        housing_mass=11.940489787243106,
+        ring_stiffness=1000.0,
+        ring_damping=381.2243104923242,
+        support_stiffness_x=11684188.140637236,
+        support_stiffness_y=34731318.32009893,
+        support_damping_x=1007.8663482557035,
+        support_damping_y=5648.144625327418,
+        load_deflection_factor=9291800000.0,
+        half_clearance=-7.116667803620017e-06,
+        load_x=50.53774378183503,
+        load_y=-18.911920472496043,
+        unbalance=1.5034348054805507e-07,
+        shaft_rate=44.79141019175874,
     ),
     "paper-refit": Preset(
-        12.585841598743272, 0.0, 107.4925391902823, 9048106.579079853, 41155054.257526346, 1835.8882906640108, 4904.5205139101445,
-        9293786104.82248, -8.208390098028653e-06, 45.62703692480762, 28.797838919999588, 3.8880376266939444e-08, 46.05216100212395,
+        housing_mass=12.585841598743272,
+        ring_stiffness=0.0,
+        ring_damping=107.4925391902823,
+        support_stiffness_x=9048106.579079853,
+        support_stiffness_y=41155054.257526346,
+        support_damping_x=1835.8882906640108,
+        support_damping_y=4904.5205139101445,
+        load_deflection_factor=9293786104.82248,
+        half_clearance=-8.208390098028653e-06,
+        load_x=45.62703692480762,
+        load_y=28.797838919999588,
+        unbalance=3.8880376266939444e-08,
+        shaft_rate=46.05216100212395,
     ),
-}  # fmt: skip
+}
 
 
 class Run(NamedTuple):
@@ -82,17 +116,23 @@ def run(preset: Preset, fs: int = FS) -> Run:
 def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
     """Run several presets at once."""
     bearing = CATALOGUE["6205-paper"]
-    still, pickups = np.zeros(n_terms(bearing.n_balls)), np.eye(6)[:4]
+    still, pickups = np.zeros(n_process_terms(bearing.n_balls)), np.eye(6)[:4]
     found: dict[int, list[FloatArray]] = {0: [], 1: []}
     for cracked, spalls in enumerate(((), (CRACK,))):
         records = [
-            Record(
-                bearing, _machine(preset, bearing), Motion(preset.shaft_rate, unbalance=preset.unbalance), spalls, still, still,
-                pickups, np.empty(0), displacement=True,
+            KernelInput(
+                bearing=bearing,
+                machine=_machine(preset, bearing),
+                turning=Turning(preset.shaft_rate, unbalance=preset.unbalance),
+                spalls=spalls,
+                frequencies=still,
+                phases=still,
+                pickups=pickups,
+                displacement=True,
             )
             for preset in presets
-        ]  # fmt: skip
-        shape = record_shape(records[0])
+        ]
+        shape = input_shape(records[0])
         for first in range(0, len(records), LANES):
             some = records[first : first + LANES]
             lanes = lay_out(some, shape, 1 / fs, at_rest=False)
@@ -106,10 +146,29 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
 
 def _machine(preset: Preset, bearing: Bearing) -> Machine:
     return Machine(
-        preset.load_deflection_factor, 0.0, 1.0, preset.half_clearance, bearing.ball_diameter / 2, 5.5, preset.housing_mass, 0.0,
-        preset.ring_damping, 0.0, 0.0, preset.ring_stiffness, preset.ring_stiffness, preset.support_stiffness_x,
-        preset.support_stiffness_y, preset.support_damping_x, preset.support_damping_y, 0.0, 0.0, 0.0, preset.load_x, preset.load_y,
-    )  # fmt: skip
+        load_deflection_factor=preset.load_deflection_factor,
+        contact_damping=0.0,
+        contact_cosine=1.0,
+        half_clearance=preset.half_clearance,
+        ball_radius=bearing.ball_diameter / 2,
+        shaft_mass=5.5,
+        housing_mass=preset.housing_mass,
+        sensor_mass=0.0,
+        ring_damping=preset.ring_damping,
+        shaft_damping=0.0,
+        shaft_stiffness=0.0,
+        ring_stiffness_x=preset.ring_stiffness,
+        ring_stiffness_y=preset.ring_stiffness,
+        support_stiffness_x=preset.support_stiffness_x,
+        support_stiffness_y=preset.support_stiffness_y,
+        support_damping_x=preset.support_damping_x,
+        support_damping_y=preset.support_damping_y,
+        sensor_stiffness_x=0.0,
+        sensor_stiffness_y=0.0,
+        sensor_damping=0.0,
+        load_x=preset.load_x,
+        load_y=preset.load_y,
+    )
 
 
 class Finding(NamedTuple):

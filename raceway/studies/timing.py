@@ -9,7 +9,6 @@ import platform
 import statistics
 import tempfile
 import time
-from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.metadata import version
@@ -20,16 +19,12 @@ from features.table import part_features
 from gen.corpus import write_part
 from gen.labels import part_dataset
 from gen.measurement.measure import measure
-from gen.physics.kernel.batch import lay_out, record_shape
-from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel.decimate import decimation
-from gen.physics.kernel.equations import Shape
-from gen.physics.kernel.integrate import integrate
-from gen.physics.kernel.turning import Lanes
-from gen.plan import samples_integrated
+from gen.physics.kernel.layout import Batch
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
-from gen.simulation.simulate import Response, kernel_record, lead_samples, simulate, steps_per_sample
+from gen.simulation.batches import Group, integrate_batch
+from gen.simulation.simulate import Response, laid_out, simulate
+from gen.simulation.timeline import timeline
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5
@@ -76,13 +71,13 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
         path = Path(folder) / "part-00000.nc"
         while len(seconds["features"]) < REPEATS and time.perf_counter() - start < BUDGET_S:
             timed("draw", draw_scenarios, checked, 0, wanted)
-            batches = timed("lay_out", _batches, scenarios, checked)
-            timed("integrate", _integrate, batches, checked)
-            measured = timed("measure", measure, response, scenarios, checked)
+            in_lanes = timed("lay_out", laid_out, scenarios, checked)
+            timed("integrate", _integrate, in_lanes, checked)
+            measured = timed("measure", measure, response.acceleration, scenarios, checked)
             timed("write", _write, measured, scenarios, checked, response, path)
             timed("features", part_features, path)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
-    steps = samples_integrated(checked) * int(response.oversampling.sum())
+    steps = timeline(checked).integrated * int(response.oversampling.sum())
     making = sum(stages.values()) - stages["features"]
     return Bench(
         recipe=checked.name,
@@ -97,31 +92,9 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     )
 
 
-Batch = tuple[Shape, Lanes, int]
-"""Kernel, records in lanes, steps per sample."""
-
-
-def _batches(scenarios: list[Scenario], recipe: Recipe) -> list[Batch]:
-    """The batches :func:`gen.simulate` makes of scenarios."""
-    groups = defaultdict(list)
-    for scenario in scenarios:
-        record = kernel_record(scenario, recipe)
-        factor = steps_per_sample(record, scenario, recipe)
-        groups[record_shape(record), factor].append(record)
-    knot = 1 / recipe.recording.sample_rate_hz
-    return [
-        (shape, lay_out(some, shape, knot), factor)
-        for (shape, factor), records in groups.items()
-        for some in (records[first : first + LANES] for first in range(0, len(records), LANES))
-    ]
-
-
-def _integrate(batches: list[Batch], recipe: Recipe) -> None:
-    fs, lead = recipe.recording.sample_rate_hz, lead_samples(recipe)
-    n_out = lead + recipe.n_samples
-    for shape, lanes, factor in batches:
-        taps = decimation(factor)
-        integrate(shape, lanes, 1 / (fs * factor), factor, taps, samples_integrated(recipe) - n_out, n_out)
+def _integrate(in_lanes: list[tuple[Group, Batch]], recipe: Recipe) -> None:
+    for group, batch in in_lanes:
+        integrate_batch(group, batch, timeline(recipe))
 
 
 def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, response: Response, path: Path) -> None:

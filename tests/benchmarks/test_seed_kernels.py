@@ -9,10 +9,11 @@ import pytest
 from benchmarks import rivals
 from benchmarks.compiled import accelerations, compiled, compiler, has_avx512, in_lanes
 from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_records
-from gen.physics.kernel.batch import Record
+from gen.physics.inputs import KernelInput
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import kernel_record
+from gen.simulation.inputs import kernel_input
+from gen.simulation.timeline import timeline
 from tests.reference import march_lanes
 
 FS, SAMPLES, LANES = 100_000, 500, 8
@@ -24,7 +25,7 @@ class Case(NamedTuple):
     """Records with one profile of spall, and their first 5 ms by our kernel, in double precision as they come."""
 
     profile: int
-    records: list[Record]
+    records: list[KernelInput]
     ours: np.ndarray
     """Shape (sample, coordinate, record) [m s-2]."""
 
@@ -36,7 +37,7 @@ def case(request: pytest.FixtureRequest) -> Case:
     seed["recording"].update(RECORDING)
     seed["faults"] = [{"kind": "healthy"} if request.param == "healthy" else spall]
     recipe, profile = Recipe.model_validate(seed), PROFILES[request.param]
-    given = [kernel_record(scenario, recipe) for scenario in draw_scenarios(recipe, 0, LANES)]
+    given = [kernel_input(scenario, timeline(recipe)) for scenario in draw_scenarios(recipe, 0, LANES)]
     made = np.stack([trip.accelerations for trip in march_lanes(given, SAMPLES, 1, 1 / FS)], axis=2)
     return Case(profile, seed_records(recipe, LANES)[profile], made[:, :4])
 

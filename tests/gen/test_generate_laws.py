@@ -19,10 +19,9 @@ from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.recipe import read_recipe
 from gen.replay import replay
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, read_scenario
 
 GENERATE = importlib.import_module("gen.generate")  # the packages give the functions under these names
-SIMULATE = importlib.import_module("gen.simulation.simulate")
 
 
 class InterruptedAt:
@@ -272,7 +271,7 @@ def test_records_that_diverge_are_left_out_and_named_and_the_rest_is_a_valid_cor
     write_recipe, tmp_path, monkeypatch
 ):
     """One step per sample: the second of three rigs, a whole part, has a resonance that Runge-Kutta cannot hold."""
-    monkeypatch.setattr(SIMULATE, "COARSEST_STEP", math.inf)
+    monkeypatch.setattr("gen.simulation.steps.COARSEST_STEP", math.inf)
     resonance = {"kind": "grid", "values": [1500, 5900]}
     recipe = write_recipe(
         tmp_path / "r.yaml", {"recording.oversampling": 1, "machine.resonator.frequency_hz": resonance}
@@ -304,7 +303,7 @@ def test_labels_say_what_was_drawn(recipe_file, whole):
             assert [float(row[name]) for name in nominal._fields] == list(nominal)
             assert (float(row["largest_drop"]) > 0) == (specimen.fault != "healthy")
             assert float(row["width"]) == (0 if specimen.fault == "healthy" else pytest.approx(0.5e-3))
-            assert json.loads(str(row["draws"].values)) == json.loads(json.dumps(scenario.as_dict()))
+            assert read_scenario(str(row["draws"].values)) == scenario
 
 
 def test_a_part_can_be_read_on_its_own(whole):

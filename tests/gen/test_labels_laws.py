@@ -1,6 +1,5 @@
 """Laws of labels: what is written beside a record is what the recipe asked for, each number worked out by hand."""
 
-import json
 import math
 
 import numpy as np
@@ -9,8 +8,9 @@ import pytest
 from gen.corpus import FAULTS, SPLITS
 from gen.labels import part_dataset
 from gen.measurement.measure import measure
-from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import Response, kernel_record, lead_samples
+from gen.scenarios import draw_scenarios, read_scenario
+from gen.simulation.timeline import timeline
+from tests.responses import response_of
 
 FS = 12_000.0
 BALL, PITCH, Z = 7.94e-3, 39.04e-3, 9  # 6205
@@ -26,11 +26,8 @@ CAGE = {"kind": "cage", "pitch_error_deg": 4, "knock_n": 30}
 def labels(recipe, **given):
     """Labels of all records of a recipe whose bodies do not move: they do not depend on it."""
     scenarios = draw_scenarios(recipe)
-    n = len(scenarios)
-    still = np.zeros((n, 1, lead_samples(recipe) + recipe.n_samples), np.float32)
-    records = [kernel_record(scenario, recipe) for scenario in scenarios]
-    response = Response(still, np.arange(n) + 2, np.linspace(0.1, 0.3, n), {}, records)
-    return part_dataset(measure(response, scenarios, recipe), scenarios, recipe, response, **given)
+    response = response_of(scenarios, recipe)
+    return part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response, **given)
 
 
 @pytest.fixture
@@ -169,9 +166,8 @@ def test_loads_along_and_across_the_shaft_are_not_mixed_up(labels_with):
 def test_a_record_without_a_machine_has_no_operating_clearance(recipe_with):
     recipe = recipe_with(STEADY | {"records": 2})
     scenarios = draw_scenarios(recipe)
-    still = np.zeros((2, 1, lead_samples(recipe) + recipe.n_samples), np.float32)
-    response = Response(still, np.ones(2, int), np.zeros(2), {}, [None, kernel_record(scenarios[1], recipe)])
-    found = part_dataset(measure(response, scenarios, recipe), scenarios, recipe, response)
+    response = response_of(scenarios, recipe, impossible=[0])
+    found = part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response)
     assert np.isnan(found["operating_clearance"].values).tolist() == [True, False]
 
 
@@ -187,11 +183,10 @@ def test_what_the_run_found_stands_beside_its_record(recipe_with):
 
 def test_signal_ratio_and_clipped_samples_are_those_that_were_measured(recipe_with):
     recipe = recipe_with({"records": 3, "recording.converter": {"kind": "adc", "full_scale_m_s2": 2.0}})
-    scenarios, n = draw_scenarios(recipe), lead_samples(recipe) + recipe.n_samples
+    scenarios, n = draw_scenarios(recipe), timeline(recipe).lead + recipe.n_samples
     hiss = 4 * np.random.default_rng(0).standard_normal((3, 1, n)).astype(np.float32)
-    response = Response(hiss, np.ones(3, int), np.zeros(3), {}, [None] * 3)
-    measured = measure(response, scenarios, recipe)
-    found = part_dataset(measured, scenarios, recipe, response)
+    measured = measure(hiss, scenarios, recipe)
+    found = part_dataset(measured, scenarios, recipe, response_of(scenarios, recipe))
     np.testing.assert_array_equal(found["snr"].values, measured.snr)
     np.testing.assert_array_equal(found["clipped"].values, measured.clipped)
     np.testing.assert_array_equal(found["acceleration"].values, measured.signal)
@@ -210,4 +205,4 @@ def test_a_record_knows_its_place(recipe_with):
     assert [SPLITS[code] for code in found["split"].values] == [scenario.specimen.split for scenario in scenarios]
     assert [FAULTS[code] for code in found["fault"].values] == [scenario.specimen.fault for scenario in scenarios]
     for scenario, text in zip(scenarios, found["draws"].values, strict=True):
-        assert json.loads(text) == json.loads(json.dumps(scenario.as_dict()))
+        assert read_scenario(text) == scenario

@@ -4,13 +4,18 @@
 module       responsibility
 ============ ===================================================================
 compiling    how the kernel is compiled: one record per lane, fixed rounding
+layout       every array of the kernel, and every row in it, by name
 drop         how far a ball drops over a spall
 equations    the equations of motion
-step         the Runge-Kutta step
-turning      shaft, cage and balls from knot to knot, and the outer forces
-spalls       the gap under every ball: waviness and spalls
+step         one step of the classical Runge-Kutta method
+turning      how shaft, cage and balls turn from knot to knot
+outer_forces load, misalignment and cage knocks from knot to knot
+waviness     the gap under every ball: clearance and waviness
+spalls       the drop of every ball that passes a spall
 decimate     from the rate of the steps down to the sample rate
 batch        records laid out in lanes
-integrate    a batch from start to end, decimated on the way
+integrate    a batch from its first knot to its last
 ============ ===================================================================
+
+A function in this folder knows no file, no unit but SI, and no recipe; it works on all lanes of a batch at once.
 """

@@ -1,111 +1,52 @@
-"""Records of one shape, laid out in lanes for the kernel.
+"""Records laid out in lanes for the kernel.
 
-A record is a :class:`Machine` in :class:`Motion` with its spalls. The last batch is padded with copies of its first record.
+A batch holds at most ``LANES`` records of one shape; free lanes are filled with copies of its first record. Every row starts as NaN and is
+set by its name in :mod:`gen.physics.kernel.layout`, so a row that is forgotten makes a record diverge instead of bending its physics.
 """
-
-import math
-from typing import NamedTuple
 
 import numpy as np
 
-from gen.physics.bearing import Bearing
-from gen.physics.kernel import equations, turning
+from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, TABLE_POINTS
+from gen.physics.inputs import KernelInput, Turning, farthest_jitter, is_wavy, spall_span
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
-from gen.physics.kernel.equations import FloatArray, Shape
+from gen.physics.kernel.layout import (
+    AXES,
+    JITTER_TERMS,
+    PICKUPS,
+    STATE_ROWS,
+    Angle,
+    Batch,
+    Drive,
+    FloatArray,
+    Param,
+    Shape,
+    Site,
+    SpallRow,
+    State,
+    direction_row,
+    make_shape,
+    n_folds,
+    race_rows,
+)  # fmt: skip
+from gen.physics.kernel.turning import STRIDE
 from gen.physics.rotor import Machine, as_columns, rest
 
-WAVES = 4 * turning.N_ORDERS  # amplitudes of both races
+_SITES = {"inner": Site.INNER, "outer": Site.OUTER, "ball": Site.BALL}
 
 
-class Spall(NamedTuple):
-    """One spall, in SI units; ``ball`` says which ball carries it if ``site`` is ``ball``."""
-
-    site: str
-    width: float
-    depth: float
-    angle: float
-    ball: int = 0
-    profile: str = "geometric"
-    table: tuple[tuple[float, ...], ...] = ()
-    """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``: on the race, or for a ball on either race."""
-
-
-class Motion(NamedTuple):
-    """How one record turns and is pulled: rates, processes of unit rms with their rms, angles at the start, outer forces [SI units]."""
-
-    shaft_rate: float
-    speed_rms: float = 0.0
-    mean_slip: float = 0.0
-    slip_rms: float = 0.0
-    spin_rms: float = 0.0
-    jitter_rms: float = 0.0
-    axis_offset: float = 0.0
-    axis_rms: float = 0.0
-    axis_limit: float = 0.0
-    unbalance: float = 0.0
-    shaft_angle: float = 0.0
-    cage_angle: float = 0.0
-    spin_angle: float = 0.0
-    bow: float = 0.0
-    """Force that turns with the shaft whatever its speed: a bent shaft in its bearings [N]."""
-    twice_x: float = 0.0
-    twice_y: float = 0.0
-    """Force along a fixed direction at twice the shaft rate: misalignment [N]."""
-    knock: float = 0.0
-    knock_angle: float = 0.0
-    """Knock of the cage on the housing, once per turn of the cage when its first pocket is there [N, rad]."""
-    knock_seed: int = 0
-    """Whole number that the scatter of the knocks follows from."""
-    late_ball: int = -1
-    late_by: float = 0.0
-    """A ball that leads or lags its place in the cage [rad]."""
-
-
-class Record(NamedTuple):
-    """Everything the kernel needs of one record."""
-
-    bearing: Bearing
-    machine: Machine
-    motion: Motion
-    spalls: tuple[Spall, ...]
-    frequencies: FloatArray
-    """Frequencies of the terms of all processes, shape (term,) [Hz]; see :func:`n_terms`."""
-    phases: FloatArray
-    """Their phases, shape (term,) [rad]."""
-    pickups: FloatArray
-    """Weights of the six accelerations in each channel, shape (channel, coordinate) [1]."""
-    waves: FloatArray
-    """Waviness amplitudes [m], shape (race, real and imaginary part, order), in a row, and if the balls have some those of the balls, shape
-    (order, part, ball); or empty."""
-    schedule: FloatArray = np.empty((0, 2))
-    """Factors of shaft rate (over the knot) and load (at its start), shape (knot, 2); (0, 2) if both are constant."""
-    displacement: bool = False
-    """Whether the channels give displacements [m] instead of accelerations [m s-2]."""
-
-
-def n_terms(n_balls: int) -> int:
-    """Number of cosine terms of all processes: speed, slip, spin, spin axis, and the jitter of every ball."""
-    return turning.JITTER_FIRST + turning.JITTER_TERMS * n_balls
-
-
-def spall_reach(bearing: Bearing, spall: Spall) -> tuple[float, float]:
-    """Half the angle a spall spans [rad] and the radius on which it does [m]."""
-    arc = {"inner": bearing.inner_radius, "outer": bearing.outer_radius, "ball": bearing.ball_diameter / 2}[spall.site]
-    return 0.5 * spall.width / arc, arc
-
-
-def record_shape(record: Record) -> Shape:
+def input_shape(record: KernelInput) -> Shape:
     """Shape of the kernel that a record needs; it depends on nothing but the record."""
-    turning = record.motion
-    return equations.make_shape(
+    turning = record.turning
+    wavy = is_wavy(record.waviness)
+    return make_shape(
         record.bearing.n_balls,
         len(record.pickups),
         displacement=record.displacement,
         resonator=record.machine.sensor_mass > 0,
         damped=record.machine.contact_damping > 0,
-        wavy=record.waves.size > 0,
-        spalled=bool(record.spalls) or record.waves.size > 0,  # a wavy bearing shares its kernel with its damaged twins
+        wavy=wavy,
+        spalled=bool(record.spalls) or wavy,  # a wavy bearing shares its kernel with its damaged twins
         jittered=turning.jitter_rms > 0 or turning.late_by != 0,
         forced=record.schedule.size > 0 or bool(turning.twice_x or turning.twice_y or turning.knock),
         loose=record.machine.looseness > 0,
@@ -113,121 +54,181 @@ def record_shape(record: Record) -> Shape:
     )
 
 
-def lay_out(records: list[Record], shape: Shape, knot: float, *, at_rest: bool = True) -> turning.Lanes:
+def lay_out(records: list[KernelInput], shape: Shape, knot: float, *, at_rest: bool = True) -> Batch:
     """Records in lanes, at most ``LANES`` of them and all of ``shape``, starting from rest or from zero.
 
     ``knot`` is the time between two knots [s].
     """
     padded = records + [records[0]] * (LANES - len(records))
     machines = as_columns([record.machine for record in padded])
-    motions = Motion(*np.asarray([record.motion for record in padded], dtype=float).T)
-    n_balls = len(shape.balls)
-    state = np.zeros((equations.N_STATE, LANES))
-    cage = np.asarray(motions.cage_angle)
-    if at_rest:
-        places = cage[:, None] + 2 * np.pi * np.arange(n_balls) / n_balls
-        state[:4] = rest(machines, places).T
-        state[4:6] = state[2:4]
-    state[equations.CAGE_C], state[equations.CAGE_S] = np.cos(cage), np.sin(cage)
-    state[equations.SHAFT_C], state[equations.SHAFT_S] = np.cos(motions.shaft_angle), np.sin(motions.shaft_angle)
+    turnings = as_columns([record.turning for record in padded])
     spalls, tables = _spalls(padded)
-    return turning.Lanes(
-        state.ravel(),
-        _params(padded, machines, shape).ravel(),
-        _drive(padded, motions, machines, knot).ravel(),
-        np.stack([motions.shaft_angle, motions.cage_angle, motions.spin_angle]).ravel(),
-        spalls.ravel(),
-        _phasors(padded, knot).ravel(),
-        np.empty(0),
-        _waves(padded, shape).ravel(),
-        _schedules(padded),
-        tables,
+    return Batch(
+        state=_state(machines, turnings, shape, at_rest=at_rest).ravel(),
+        params=_params(padded, machines, shape).ravel(),
+        drive=_drive(padded, turnings, machines, knot).ravel(),
+        angles=_angles(turnings).ravel(),
+        spalls=spalls.ravel(),
+        phasors=_phasors(padded, knot).ravel(),
+        slow=np.empty(0),
+        waves=_waves(padded, shape).ravel(),
+        schedule=_schedules(padded),
+        tables=tables,
     )
 
 
-def _params(records: list[Record], machine: Machine, shape: Shape) -> FloatArray:
-    params = np.zeros((equations.direction_row(shape), LANES))
-    with np.errstate(divide="ignore"):
-        sensor = np.where(np.asarray(machine.sensor_mass) > 0, 1 / np.asarray(machine.sensor_mass), 0.0)
-    damping = np.divide(machine.contact_damping, machine.load_deflection_factor)
-    params[: equations.N_CONSTANTS] = [
-        machine.load_deflection_factor, damping, machine.contact_cosine, machine.half_clearance,
-        1 / np.asarray(machine.shaft_mass), 1 / np.asarray(machine.housing_mass), sensor, machine.ring_damping,
-        machine.shaft_damping, machine.shaft_stiffness, machine.ring_stiffness_x, machine.ring_stiffness_y,
-        machine.support_stiffness_x, machine.support_stiffness_y, machine.support_damping_x, machine.support_damping_y,
-        machine.sensor_stiffness_x, machine.sensor_stiffness_y, machine.sensor_damping, machine.looseness,
-    ]  # fmt: skip
-    params[equations.FORCES], params[equations.FORCES + 1] = machine.load_x, machine.load_y
+def unset(*shape: int) -> FloatArray:
+    """Array of NaN, of which every row is to be set by its name."""
+    return np.full(shape, np.nan)
+
+
+def _state(machine: Machine, turning: Turning, shape: Shape, *, at_rest: bool) -> FloatArray:
+    state = np.zeros((STATE_ROWS, LANES))
+    cage = np.asarray(turning.cage_angle)
+    if at_rest:
+        n_balls = len(shape.balls)
+        state[:4] = rest(machine, cage[:, None] + 2 * np.pi * np.arange(n_balls) / n_balls).T
+        state[4:AXES] = state[2:4]  # the sensor rests with the housing
+    state[State.CAGE_COS], state[State.CAGE_SIN] = np.cos(cage), np.sin(cage)
+    state[State.SHAFT_COS], state[State.SHAFT_SIN] = np.cos(turning.shaft_angle), np.sin(turning.shaft_angle)
+    return state
+
+
+def _angles(turning: Turning) -> FloatArray:
+    angles = unset(len(Angle), LANES)
+    angles[Angle.SHAFT], angles[Angle.CAGE], angles[Angle.SPIN] = (
+        turning.shaft_angle,
+        turning.cage_angle,
+        turning.spin_angle,
+    )
+    return angles
+
+
+def _params(records: list[KernelInput], machine: Machine, shape: Shape) -> FloatArray:
+    params = unset(direction_row(shape), LANES)
+    sensor = np.asarray(machine.sensor_mass)
+    params[Param.LOAD_DEFLECTION_FACTOR] = machine.load_deflection_factor
+    params[Param.CONTACT_DAMPING] = np.divide(machine.contact_damping, machine.load_deflection_factor)
+    params[Param.CONTACT_COSINE] = machine.contact_cosine
+    params[Param.HALF_CLEARANCE] = machine.half_clearance
+    params[Param.PER_SHAFT_MASS] = 1 / np.asarray(machine.shaft_mass)
+    params[Param.PER_HOUSING_MASS] = 1 / np.asarray(machine.housing_mass)
+    params[Param.PER_SENSOR_MASS] = np.divide(1.0, sensor, out=np.zeros(LANES), where=sensor > 0)
+    params[Param.RING_DAMPING] = machine.ring_damping
+    params[Param.SHAFT_DAMPING] = machine.shaft_damping
+    params[Param.SHAFT_STIFFNESS] = machine.shaft_stiffness
+    params[Param.RING_STIFFNESS_X], params[Param.RING_STIFFNESS_Y] = machine.ring_stiffness_x, machine.ring_stiffness_y
+    params[Param.SUPPORT_STIFFNESS_X] = machine.support_stiffness_x
+    params[Param.SUPPORT_STIFFNESS_Y] = machine.support_stiffness_y
+    params[Param.SUPPORT_DAMPING_X], params[Param.SUPPORT_DAMPING_Y] = (
+        machine.support_damping_x,
+        machine.support_damping_y,
+    )
+    params[Param.SENSOR_STIFFNESS_X] = machine.sensor_stiffness_x
+    params[Param.SENSOR_STIFFNESS_Y] = machine.sensor_stiffness_y
+    params[Param.SENSOR_DAMPING] = machine.sensor_damping
+    params[Param.LOOSENESS] = machine.looseness
+    params[Param.SHAFT_FORCE_X], params[Param.SHAFT_FORCE_Y] = machine.load_x, machine.load_y
     for lane, record in enumerate(records):
-        params[equations.PICKUPS :, lane] = record.pickups.ravel()
+        params[PICKUPS:, lane] = record.pickups.ravel()
     return params
 
 
-def _drive(records: list[Record], motions: Motion, machine: Machine, knot: float) -> FloatArray:
+def _drive(records: list[KernelInput], turning: Turning, machine: Machine, knot: float) -> FloatArray:
     bearings = [record.bearing for record in records]
     gamma = np.array([bearing.gamma for bearing in bearings])
     size = np.array([bearing.pitch_diameter / bearing.ball_diameter for bearing in bearings])
-    x, y = np.asarray(motions.twice_x), np.asarray(motions.twice_y)
-    twice_c, twice_s = x * x - y * y, 2 * x * y  # of twice the angle, but for their size
-    size_of_both = np.maximum(x * x + y * y, 1e-300)
-    return np.array([
-        2 * np.pi * knot * np.asarray(motions.shaft_rate), 0.5 * (1 - gamma), 0.5 * size * (1 - gamma**2), motions.mean_slip,
-        motions.speed_rms, motions.slip_rms, motions.spin_rms, motions.jitter_rms, motions.axis_offset, motions.axis_rms,
-        motions.axis_limit, motions.unbalance, machine.half_clearance, machine.ball_radius,
-        [bearing.inner_radius for bearing in bearings], [bearing.outer_radius for bearing in bearings],
-        machine.load_x, machine.load_y, motions.twice_x, motions.twice_y, twice_c / size_of_both, twice_s / size_of_both,
-        motions.bow, motions.knock, motions.knock_angle, motions.late_ball, motions.late_by, motions.knock_seed,
-    ])  # fmt: skip
+    x, y = np.asarray(turning.twice_x), np.asarray(turning.twice_y)
+    square = np.maximum(x * x + y * y, 1e-300)
+    drive = unset(len(Drive), LANES)
+    drive[Drive.SHAFT_STEP] = 2 * np.pi * knot * np.asarray(turning.shaft_rate)
+    drive[Drive.CAGE_RATIO] = 0.5 * (1 - gamma)
+    drive[Drive.SPIN_RATIO] = 0.5 * size * (1 - gamma**2)
+    drive[Drive.MEAN_SLIP] = turning.mean_slip
+    drive[Drive.SPEED_RMS], drive[Drive.SLIP_RMS] = turning.speed_rms, turning.slip_rms
+    drive[Drive.SPIN_RMS], drive[Drive.JITTER_RMS] = turning.spin_rms, turning.jitter_rms
+    drive[Drive.AXIS_OFFSET], drive[Drive.AXIS_RMS] = turning.axis_offset, turning.axis_rms
+    drive[Drive.AXIS_LIMIT] = turning.axis_limit
+    drive[Drive.UNBALANCE] = turning.unbalance
+    drive[Drive.HALF_CLEARANCE] = machine.half_clearance
+    drive[Drive.BALL_RADIUS] = machine.ball_radius
+    drive[Drive.INNER_RADIUS] = [bearing.inner_radius for bearing in bearings]
+    drive[Drive.OUTER_RADIUS] = [bearing.outer_radius for bearing in bearings]
+    drive[Drive.LOAD_X], drive[Drive.LOAD_Y] = machine.load_x, machine.load_y
+    drive[Drive.TWICE_X], drive[Drive.TWICE_Y] = turning.twice_x, turning.twice_y
+    # cosine and sine of twice the direction of (x, y)
+    drive[Drive.TWICE_COS], drive[Drive.TWICE_SIN] = (x * x - y * y) / square, 2 * x * y / square
+    drive[Drive.BOW] = turning.bow
+    drive[Drive.KNOCK], drive[Drive.KNOCK_ANGLE] = turning.knock, turning.knock_angle
+    drive[Drive.KNOCK_SEED] = turning.knock_seed
+    drive[Drive.LATE_BALL], drive[Drive.LATE_BY] = turning.late_ball, turning.late_by
+    return drive
 
 
-def _spalls(records: list[Record]) -> tuple[FloatArray, FloatArray]:
+def _spalls(records: list[KernelInput]) -> tuple[FloatArray, FloatArray]:
     """Spalls, shape (spall, row, lane), and the tables of those that have one, shape (table, point)."""
-    sites = {"inner": turning.INNER, "outer": turning.OUTER, "ball": turning.BALL_SITE}
-    spalls = np.zeros((max(len(record.spalls) for record in records), turning.SPALL_ROWS, LANES))
-    tables = [np.zeros(turning.TABLE_POINTS)]
-    # of a ball from its place in the cage, at most: all terms at their peaks
-    farthest = [r.motion.jitter_rms * math.sqrt(2 * turning.JITTER_TERMS) + abs(r.motion.late_by) for r in records]
-    spalls[:, turning.PERIOD] = 1.0
-    spalls[:, turning.REACH] = -1.0  # where there is no spall, no ball is near
+    spalls = unset(max(len(record.spalls) for record in records), len(SpallRow), LANES)
+    tables = [np.zeros(TABLE_POINTS)]
     for lane, record in enumerate(records):
-        for place, spall in enumerate(record.spalls):
-            half, arc = spall_reach(record.bearing, spall)
-            profile = PROFILES.index(spall.profile)
-            with_rings = {
-                "inner": (1, -1, 0, -spall.angle),
-                "outer": (1, 0, 0, -spall.angle),
-                "ball": (0, 0, 1, spall.angle),
-            }
-            period = np.pi if spall.site == "ball" else 2 * np.pi / record.bearing.n_balls
-            spalls[place, :, lane] = (
-                *with_rings[spall.site], period, half + farthest[lane], sites[spall.site], spall.ball, half, arc, spall.depth, profile,
-                len(tables),
-            )  # fmt: skip
-            for drops in spall.table:
-                points = np.linspace(0, len(drops) - 1, turning.TABLE_POINTS)
-                tables.append(np.interp(points, np.arange(len(drops)), drops))
+        for place in range(len(spalls)):
+            if place < len(record.spalls):
+                _spall(spalls[place, :, lane], record, place, len(tables))
+                tables += [_resampled(drops) for drops in record.spalls[place].table]
+            else:
+                _no_spall(spalls[place, :, lane])
     return spalls, np.stack(tables)
 
 
-def _waves(records: list[Record], shape: Shape) -> FloatArray:
-    """Waviness amplitudes as :class:`turning.Lanes` has them, shape (row, lane)."""
-    n_balls, terms = len(shape.balls), turning.n_terms(shape)
-    of_races = max(record.waves.size > 0 for record in records)
-    of_balls = max(record.waves.size > WAVES for record in records)
-    waves = np.zeros((turning.race_rows(shape) * of_races + 2 * turning.BALL_ORDERS * n_balls * of_balls, LANES))
+def _spall(rows: FloatArray, record: KernelInput, place: int, table: int) -> None:
+    spall = record.spalls[place]
+    half, arc = spall_span(record.bearing, spall)
+    on_ball = spall.site == "ball"
+    rows[SpallRow.WITH_CAGE] = 0 if on_ball else 1
+    rows[SpallRow.WITH_SHAFT] = -1 if spall.site == "inner" else 0
+    rows[SpallRow.WITH_SPIN] = 1 if on_ball else 0
+    rows[SpallRow.POSITION] = spall.angle if on_ball else -spall.angle
+    rows[SpallRow.PERIOD] = np.pi if on_ball else 2 * np.pi / record.bearing.n_balls
+    rows[SpallRow.REACH] = half + farthest_jitter(record.turning, JITTER_TERMS)
+    rows[SpallRow.SITE] = _SITES[spall.site]
+    rows[SpallRow.CARRIER] = spall.ball
+    rows[SpallRow.HALF], rows[SpallRow.ARC] = half, arc
+    rows[SpallRow.DEPTH] = spall.depth
+    rows[SpallRow.PROFILE] = PROFILES.index(spall.profile)
+    rows[SpallRow.TABLE] = table
+
+
+def _no_spall(rows: FloatArray) -> None:
+    """Padding of a record that has fewer spalls than another of its batch: no ball is ever within its reach."""
+    rows[:] = 0.0
+    rows[SpallRow.PERIOD] = 1.0
+    rows[SpallRow.REACH] = -1.0
+    rows[SpallRow.SITE] = Site.NONE
+
+
+def _resampled(drops: tuple[float, ...]) -> FloatArray:
+    points = np.linspace(0, len(drops) - 1, TABLE_POINTS)
+    return np.interp(points, np.arange(len(drops)), drops)
+
+
+def _waves(records: list[KernelInput], shape: Shape) -> FloatArray:
+    """Waviness amplitudes as :class:`Batch` has them, shape (row, lane); rows of round surfaces are 0 or left out."""
+    n_balls = len(shape.balls)
+    of_races = any(is_wavy(record.waviness) for record in records)
+    of_balls = any(record.waviness.balls.size > 0 for record in records)
+    waves = np.zeros((race_rows(shape) * of_races + 2 * BALL_ORDERS * n_balls * of_balls, LANES))
     for lane, record in enumerate(records):
-        if record.waves.size:
-            races = np.zeros((2, terms * n_balls, 2))
-            own = record.waves[:WAVES].reshape(2, 2, -1).transpose(0, 2, 1)
-            races[:, turning.LOWEST_ORDER : turning.HIGHEST_ORDER + 1] = own
+        if record.waviness.races.size:
+            races = np.zeros((2, n_folds(shape) * n_balls, 2))
+            races[:, LOWEST_ORDER : HIGHEST_ORDER + 1, 0] = record.waviness.races.real
+            races[:, LOWEST_ORDER : HIGHEST_ORDER + 1, 1] = record.waviness.races.imag
             waves[: races.size, lane] = races.ravel()
-        if record.waves.size > WAVES:
-            balls = record.waves[WAVES:].reshape(turning.BALL_ORDERS, 2, n_balls).transpose(0, 2, 1)
-            waves[turning.race_rows(shape) :, lane] = balls.ravel()
+        if record.waviness.balls.size:
+            balls = np.stack([record.waviness.balls.real, record.waviness.balls.imag], axis=2)
+            waves[race_rows(shape) :, lane] = balls.ravel()
     return waves
 
 
-def _schedules(records: list[Record]) -> FloatArray:
+def _schedules(records: list[KernelInput]) -> FloatArray:
     """Factors of shaft rate and load, shape (knot, 2, lane): the last ones hold, and 1 where there is no schedule."""
     length = max(len(record.schedule) for record in records)
     schedules = np.ones((length, 2, LANES))
@@ -237,7 +238,7 @@ def _schedules(records: list[Record]) -> FloatArray:
     return schedules
 
 
-def _phasors(records: list[Record], knot: float) -> FloatArray:
+def _phasors(records: list[KernelInput], knot: float) -> FloatArray:
     phases = np.stack([record.phases for record in records], axis=1)
-    turns = 2 * np.pi * knot * turning.STRIDE * np.stack([record.frequencies for record in records], axis=1)
+    turns = 2 * np.pi * knot * STRIDE * np.stack([record.frequencies for record in records], axis=1)
     return np.stack([np.cos(phases), np.sin(phases), np.cos(turns), np.sin(turns)], axis=1)

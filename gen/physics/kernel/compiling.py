@@ -1,9 +1,8 @@
 """How the kernels are compiled: one record per lane, the same bits on every machine.
 
-No floating-point shortcut is left to the compiler: what may be fused says :func:`fma`, and all else is rounded as it is written. So the
-bits of a record depend neither on the width of the vectors nor on the company it is in, nor on how far the compiler got with a loop.
-What differs between compiled variants is passed as the *length of a tuple*: lengths are part of a type, so numba compiles one kernel
-per combination and finds it again in its cache on disk, which it could not for functions built inside functions.
+Only explicit :func:`fma` calls are fused, and every other operation is rounded as it is written. So a record does not depend on vector
+width, batch or optimiser. Compiled variants differ by the *length of a tuple* that they are given: a length is part of a type, so numba
+compiles one kernel for each combination and keeps it in its cache on disk, which it cannot do for functions built inside functions.
 """
 
 from collections.abc import Callable
@@ -15,15 +14,15 @@ from numba import njit, types
 from numba.core.compiler import Compiler
 from numba.extending import intrinsic
 
-# Records advanced side by side. The kernel is as fast with 32 and the lanes that fill up a batch are fewer with 16 (domain_randomised: 19 %
-# of all instead of 36); with 8 LLVM takes the loop apart and leaves it scalar.
+# Records advanced side by side. With 32 the kernel is as fast, but more lanes stay free (domain_randomised: 36 % of all instead of 19 %);
+# with 8 LLVM unrolls the loop over lanes and leaves it scalar.
 LANES = 16
 
 
 class _NoAlias(Compiler):
-    """Compiles a function for arrays that do not overlap where it writes.
+    """Compile a function for arrays that do not overlap where it writes.
 
-    LLVM would make every loop twice, as vectors and one by one, and ask each time which it may take.
+    Otherwise LLVM compiles every loop twice, in vectors and in scalars, and tests each time which of them is allowed.
     """
 
     def __init__(self, *given: Any) -> None:
@@ -31,10 +30,10 @@ class _NoAlias(Compiler):
         self.state.flags.noalias = True
 
 
-CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # from Python too
-# Without ways in from Python no machine code is made of what is only ever inlined: half of the time a kernel takes to compile.
-# Nor are arrays counted: what is inlined makes none, and counting the views of them took a third of the time between two knots.
-# What such a function writes must not be reached through another of its arguments.
+CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # also callable from Python
+# Without wrappers for Python no machine code is made of functions that are only inlined: a kernel compiles in half the time.
+# Without _nrt references to arrays are not counted: inlined functions make no arrays, and counting views took a third of the time
+# between two knots. Such a function must not write to an array that another of its arguments shares.
 INLINE: dict[str, Any] = {
     **CALLED,
     "no_cpython_wrapper": True,
@@ -43,15 +42,15 @@ INLINE: dict[str, Any] = {
     "pipeline_class": _NoAlias,
 }
 ALLOCATING: dict[str, Any] = {**INLINE, "_nrt": True}
-# All the rest is inlined into it: a function left on its own is optimised apart in the process that compiles the kernel, and that process
-# would give other last bits than those that find the kernel in the cache.
+# Every other function is inlined into the kernel: a helper compiled on its own is optimised separately in the process that compiles the
+# kernel, and rounds differently there from the cached kernel in other processes.
 KERNEL: dict[str, Any] = {"error_model": "numpy", "nogil": True, "cache": True}
 
 
 def _make_wide(context: Any) -> Any:  # noqa: ARG001
-    """Let the loops over lanes of the function that calls this use 512-bit vectors, where LLVM would stop at 256 for a processor's sake.
+    """Allow 512-bit vectors in the loops over lanes of the calling function.
 
-    On such processors (Intel's of 2019 to 2024) half of the arithmetic would lie idle.
+    LLVM limits vectors to 256 bits on Intel processors of 2019 to 2024, and half of their arithmetic units would be unused.
     """
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
@@ -62,7 +61,7 @@ def _make_wide(context: Any) -> Any:  # noqa: ARG001
 
 
 def _make_lane_count(context: Any) -> Any:  # noqa: ARG001
-    """``LANES``, hidden from LLVM, which otherwise unrolls a short loop over lanes before it looks whether it could be vectors."""
+    """``LANES``, hidden from LLVM, which otherwise unrolls a short loop over lanes before it tries to vectorise it."""
 
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:  # noqa: ARG001
         whole, flag, eights = ir.IntType(64), ir.IntType(1), ir.Constant(ir.IntType(64), LANES // 8)
@@ -107,7 +106,7 @@ _number = cast("Callable[[int], float]", intrinsic(_make_number))
 
 @njit(**ALLOCATING)
 def zeros(size: int, kind: Any = np.float64) -> Any:
-    """Zeros from an address on where vectors do not straddle the lines of the cache: it halves the time of what streams through it."""
+    """Zeros whose address is a multiple of 64 bytes, so that no vector crosses a cache line: reading them takes half the time."""
     block = np.zeros(size + 16, kind)
     start = -block.ctypes.data % 64 // block.itemsize
     return block[start : start + size]
@@ -115,7 +114,7 @@ def zeros(size: int, kind: Any = np.float64) -> Any:
 
 @njit(**ALLOCATING)
 def copied(values: Any) -> Any:
-    """A copy, placed like :func:`zeros`."""
+    """A copy, aligned like :func:`zeros`."""
     copy = zeros(values.size)
     for i in range(values.size):
         copy[i] = values[i]
@@ -126,9 +125,9 @@ def copied(values: Any) -> Any:
 def square_root(x: float) -> float:
     """Square root of a number that is not negative, to 6e-16.
 
-    Half the exponent gives 0.79 / sqrt(x) to some per cent, a Newton step with constants that suit that [1]_ 1 / sqrt(x) to 9e-4, and the
-    series of ``(1 - e)**-0.5``, economised for the ``e`` that is left, the rest: ten multiplications and additions. A processor takes 9
-    (Zen 5) to 24 (Golden Cove) cycles for eight square roots, and 5 for these.
+    Half the exponent gives 0.79 / sqrt(x) to some per cent, a Newton step with matching constants [1]_ 1 / sqrt(x) to 9e-4, and the series
+    of ``(1 - e)**-0.5``, with coefficients fitted to the remaining ``e``, the rest. That is ten multiplications and additions. Eight
+    square roots in hardware take 9 (Zen 5) to 24 (Golden Cove) cycles; eight of these take 5.
 
     .. [1] L. Moroz et al., "Fast calculation of inverse square root with the use of magic constant: analytical approach", *Appl. Math.
            Comput.* 316 (2018) 245-255.
@@ -144,7 +143,7 @@ def square_root(x: float) -> float:
 
 @njit(**INLINE)
 def sine(x: float) -> float:
-    """Sine of an angle below 0.8 rad, to 1e-11 of its value: a polynomial, since a call would keep the loop over lanes scalar."""
+    """Sine of an angle below 0.8 rad, to 1e-11 of its value; a polynomial, because a call would keep the loop over lanes scalar."""
     y = x * x
     tail = fma(y, fma(y, fma(y, fma(y, -1 / 39916800, 1 / 362880), -1 / 5040), 1 / 120), -1 / 6)
     return fma(x * y, tail, x)

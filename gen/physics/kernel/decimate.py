@@ -1,8 +1,8 @@
-"""From the rate of the steps down to the sample rate: linear-phase low-passes over lanes, in two stages where that is cheaper.
+"""Decimation from the rate of the steps to the sample rate: linear-phase low-pass filters over lanes, in two stages where that is faster.
 
-The first stage comes down to twice the sample rate with a short filter, for what it lets through above the band the second, sharp one
-still takes out [1]_. Each pass over the history serves four outputs, so that the sums are bound by arithmetic and not by memory. All is
-in single precision, whose rounding lies 120 dB below the largest input and which takes half the time.
+The first stage decimates to twice the sample rate with a short filter; the second, sharp filter removes what the first leaves above the
+band [1]_. Each pass over the history computes four outputs, so that arithmetic and not memory limits the speed. Single precision takes
+half the time, and its rounding is 120 dB below the largest input.
 
 .. [1] R. E. Crochiere, L. R. Rabiner, *Multirate Digital Signal Processing*, Prentice-Hall, 1983, chapter 5.
 """
@@ -18,37 +18,39 @@ from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
 
 Single = NDArray[np.float32]
 
-HALF_TAPS = 26  # samples on either side of an output
-FIRST_HALF_TAPS = 6  # of the first stage, in its outputs: 80 dB from 1.4 times the sample rate on, flat to half of it
-LEAD = HALF_TAPS + FIRST_HALF_TAPS // 2  # samples by which an output lags its newest input, at most
-OUTPUTS = 4  # of a pass over the history
+HALF_TAPS = 26  # samples on each side of an output
+FIRST_HALF_TAPS = (
+    6  # of the first stage, in its outputs: 80 dB of attenuation above 1.4 times the sample rate, flat up to half of it
+)
+LAG = HALF_TAPS + FIRST_HALF_TAPS // 2  # samples by which an output lags its newest input, at most
+OUTPUTS = 4  # computed in one pass over the history
 BETA = 7.857  # of the Kaiser windows
 
 
 class Stage(NamedTuple):
-    """A low-pass and how many of its inputs there are to an output."""
+    """A low-pass filter and its decimation factor."""
 
     taps: Single
-    """Shape (input, output) for ``OUTPUTS`` successive outputs, zero where an output does not reach."""
+    """Shape (input, output) for ``OUTPUTS`` successive outputs, zero where an input does not contribute to an output."""
     factor: int
     kept: int
-    """Inputs that an output needs before its newest."""
+    """Inputs before the newest one that an output needs."""
 
 
 NO_STAGE = Stage(np.empty((0, OUTPUTS), np.float32), 1, 0)
 
 
 class Decimation(NamedTuple):
-    """Filters from ``n_steps`` per sample to one; with a single stage the ``first`` has no taps."""
+    """Filters from ``n_steps`` per sample to one; with a single stage ``first`` has no taps."""
 
     first: Stage
     last: Stage
 
 
 def decimation(n_steps: int) -> Decimation:
-    """Low-passes for ``n_steps`` steps per sample.
+    """Low-pass filters for ``n_steps`` steps per sample.
 
-    Together they pass what is below 0.8 of the new Nyquist frequency and stop, by 80 dB, all that would fold into a record.
+    Together they are flat below 0.8 of the new Nyquist frequency, and attenuate by 80 dB everything that would alias into a record.
     """
     if n_steps == 1:
         return Decimation(NO_STAGE, _stage(np.ones(1), 1))
@@ -82,7 +84,7 @@ def filter_rows(
     at: int,
     total: Single,
 ) -> None:
-    """Four rows of ``out`` from row ``at`` on: weighted sums of the rows of ``history`` from row ``first`` on.
+    """Compute four rows of ``out``, from row ``at`` on: weighted sums of the rows of ``history`` from row ``first`` on.
 
     A row has all lanes of all ``channels``; ``total`` is a work array of four rows.
     """

@@ -1,8 +1,8 @@
 """How far a ball drops as it rolls over a spall.
 
-A rigid ball over a gap rests on one edge until it swaps to the other in the middle: its drop is the sagitta of the ball plus that
-of a convex (inner) or minus that of a concave (outer) raceway, and never more than the depth of the spall. For two sharp edges that
-path is exact. The half-sine, raised-cosine and rectangular profiles are those of the literature, for comparison.
+A rigid ball over a gap rests on one edge up to the middle and on the other edge after it. Its drop is the sagitta of the ball, plus that of
+a convex (inner) or minus that of a concave (outer) raceway, and at most the depth of the spall. For two sharp edges this path is exact.
+The half-sine, raised-cosine and rectangular profiles of the literature are there for comparison.
 """
 
 import math
@@ -14,7 +14,7 @@ from gen.physics.kernel.compiling import CALLED, cosine, sine
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular", "table")
 GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR, TABLE = range(5)
 RAISED_EDGE = 0.25  # share of the half width taken by each cosine flank
-FAR_INSIDE = 0.7  # rad from an edge, where the sine still holds
+FAR_INSIDE = 0.7  # rad from an edge, within the range of sine()
 
 
 @njit(**CALLED)

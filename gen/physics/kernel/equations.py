@@ -1,11 +1,11 @@
 """The equations of motion of shaft, housing and sensor, lane by lane.
 
-A lane holds one record. Between two knots (one per output sample) every slow quantity moves along a straight line: cage and shaft turn
-at a constant rate, ball gaps, ball directions and spall offsets are linear in time.
+A lane holds one record. Between two knots (one per output sample) cage and shaft turn at a constant rate, and ball gaps, ball directions
+and outer forces change linearly with time.
 
-Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor on its resonance. Balls push along their own
-direction in the frame of the cage, in which they stand still but for their jitter. The system is that of Ophel et al. with its signs
-and reactions corrected, plus a sensor mass: Lagrange's equations of the energies in docs/model.md.
+Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor mass on its resonance. The system is that of
+Ophel et al. with its signs and reactions corrected, plus a sensor mass: Lagrange's equations of the energies in docs/model.md. The same
+equations in plain NumPy, one record at a time, are in ``tests/reference.py``.
 """
 
 import math
@@ -13,99 +13,30 @@ from typing import NamedTuple
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
 
-from gen.physics.kernel.compiling import CALLED, INLINE, LANES, fma, square_root
+from gen.physics.extent import MAX_BALLS
+from gen.physics.kernel.compiling import INLINE, LANES, fma, square_root
+from gen.physics.kernel.layout import FloatArray, Param, Shape, direction_row, gap_row
 
-FloatArray = NDArray[np.float64]
-
-MAX_BALLS = 24
 _COUNT, _BALL = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None], np.arange(MAX_BALLS)
-_ANGLE = (
-    2 * np.pi * np.where(2 * _BALL > _COUNT, _BALL - _COUNT, _BALL) / _COUNT
-)  # so that cosines of mirror images are the same bits
+# angles counted from -pi to pi, so that the cosines of mirror images have the same bits
+_ANGLE = 2 * np.pi * np.where(2 * _BALL > _COUNT, _BALL - _COUNT, _BALL) / _COUNT
 COS, SIN = np.cos(_ANGLE), np.sin(_ANGLE)  # (number of balls, ball): direction in the cage's frame
 
-AXES = 6
-# Rows of ``state``: coordinates x1 y1 x2 y2 xr yr, their rates, the directions of cage and shaft, the largest sum over all balls of
-# the slope of ``squeeze**n / n`` so far (it bounds the contact stiffness); then, of the step under way, where it began and the weighted
-# sum of its slopes.
-N_DYNAMIC = 2 * AXES
-CAGE_C, CAGE_S, SHAFT_C, SHAFT_S, STEEPEST, BEGINNING = range(N_DYNAMIC, N_DYNAMIC + 6)
-SLOPES = BEGINNING + N_DYNAMIC
-N_STATE = SLOPES + N_DYNAMIC
-# Rows of ``params``: constants of the record, what holds until the next knot (forces with their slopes per half step), the weights of
-# the pickups, direction of each ball in its pocket and gap under it with their slopes, and what spalls add to the gap at every half step.
-# The contact damping is that of a ball over its load-deflection factor, which multiplies the sum over all balls.
-(
-    STIFFNESS, DAMPING, COSA, GAP, IM1, IM2, IMR, C1, C0, K0, K1X, K1Y, K2X, K2Y, C2X, C2Y, KRX, KRY, CR, LOOSENESS, N_CONSTANTS,
-) = range(21)  # fmt: skip
-(
-    CAGE_TURN_C, CAGE_TURN_S, SHAFT_TURN_C, SHAFT_TURN_S, UNBALANCE_P, UNBALANCE_Q, FORCES, N_HELD,
-) = (*range(N_CONSTANTS, N_CONSTANTS + 7), N_CONSTANTS + 6 + 8)  # fmt: skip
-PICKUPS = N_HELD
-
-Motion = tuple[float, float, float, float]
+Relative = tuple[float, float, float, float]
+"""Displacement and velocity of the shaft relative to the housing: x, y [m], x', y' [m/s]."""
+Directions = tuple[float, float, float, float]
+"""Cosine and sine of the angle of the cage, then of the shaft."""
 Push = tuple[float, float, float]
-"""Force along the axes of the cage's frame, over the load-deflection factor of a ball, and squeeze to the power ``n - 1``."""
-
-
-class Shape(NamedTuple):
-    """What a compiled kernel contains, as lengths of tuples (see :mod:`gen.physics.kernel.compiling`); a record pays for nothing else."""
-
-    balls: tuple[None, ...]
-    channels: tuple[None, ...]
-    displacement: tuple[None, ...]
-    """Whether channels pick up displacements instead of accelerations."""
-    resonator: tuple[None, ...]
-    damped: tuple[None, ...]
-    wavy: tuple[None, ...]
-    """Whether races or balls are wavy, so that gaps change from knot to knot."""
-    spalled: tuple[None, ...]
-    """Whether balls may drop into spalls."""
-    jittered: tuple[None, ...]
-    """Whether balls leave their place in the cage."""
-    forced: tuple[None, ...]
-    """Whether forces change between knots: load profiles, misalignment, cage knocks."""
-    loose: tuple[None, ...]
-    roller: tuple[None, ...]
-
-
-def make_shape(n_balls: int, n_channels: int, **flags: bool) -> Shape:
-    """Shape of a kernel; every flag of :class:`Shape` that is not given is off."""
-    counts = {"balls": n_balls, "channels": n_channels, **flags}
-    return Shape(*((None,) * int(counts.get(field, 0)) for field in Shape._fields))
-
-
-@njit(**CALLED)
-def direction_row(shape: Shape) -> int:
-    """First row of the directions of jittered balls in ``params``: cosine and sine, then their slopes per half step, of each ball."""
-    return PICKUPS + len(shape.channels) * AXES
-
-
-@njit(**CALLED)
-def gap_row(shape: Shape) -> int:
-    """First row of the gaps in ``params``: gap and its slope per half step, of each ball."""
-    return direction_row(shape) + (4 * len(shape.balls) if len(shape.jittered) else 0)
-
-
-@njit(**CALLED)
-def drop_row(shape: Shape) -> int:
-    """First row of the drops into spalls in ``params``: half step after half step, every ball of each."""
-    return gap_row(shape) + (2 * len(shape.balls) if len(shape.wavy) else 0)
-
-
-@njit(**CALLED)
-def param_rows(shape: Shape, n_steps: int) -> int:
-    """Number of rows of ``params``."""
-    return drop_row(shape) + ((2 * n_steps + 1) * len(shape.balls) if len(shape.spalled) else 0)
+"""Force along and across the direction of the cage, over K, and the sum of ``squeeze**(n - 1)``."""
 
 
 @njit(**INLINE)
 def ninth_root(x: float) -> float:
-    """Ninth root, to 1e-13 between 1e-11 and 1e-3: Halley's steps from the eighth root, which square roots give.
+    """Ninth root, to 1e-13 of its value between 1e-11 and 1e-3.
 
-    Between those the ninth root is 1.08 to 1.42 times the eighth.
+    Three steps of Halley's method start from 1.25 times the eighth root, which is three square roots: over that range the ninth root is
+    1.08 to 1.42 times the eighth.
     """
     y = 1.25 * square_root(square_root(square_root(x))) + 1e-300
     for _ in range(3):
@@ -116,21 +47,27 @@ def ninth_root(x: float) -> float:
 
 
 class Instant(NamedTuple):
-    """A place in the time between two knots."""
+    """A time between two knots, and the drops of the balls at it."""
 
     half_step: float
     """Half steps since the last knot."""
     since: float
-    """Half steps since the directions of the balls were laid down."""
+    """Half steps since the directions of the balls were last computed."""
     drops: FloatArray
     """Drop of each ball into spalls, shape (ball * LANES + lane) [m]."""
 
 
 @njit(**INLINE)
 def add_ball(
-    shape: Shape, ball: int | np.int64, total: Push, motion: Motion, instant: Instant, lane: int, params: FloatArray
+    shape: Shape, ball: int | np.int64, total: Push, motion: Relative, instant: Instant, lane: int, params: FloatArray
 ) -> Push:
-    """Add the push of one ball to a sum."""
+    """Add the force of one ball to a sum, in the frame of the cage.
+
+    With the direction ``(c, s)`` of the ball, its squeeze and its force over K are::
+
+        squeeze = x c + y s - gap - drop
+        force   = squeeze**n  (+ c_b / K (x' c + y' s) while squeeze > 0, never below 0)        n = 3/2 for balls, 10/9 for rollers
+    """
     if ball >= len(shape.balls):
         return total
     x, y, u, v = motion
@@ -139,13 +76,13 @@ def add_ball(
         row = (direction_row(shape) + 4 * ball) * LANES + lane
         c = fma(params[row + 2 * LANES], instant.since, params[row])
         s = fma(params[row + 3 * LANES], instant.since, params[row + LANES])
-    gap = params[GAP * LANES + lane]
+    gap = params[Param.HALF_CLEARANCE * LANES + lane]
     if len(shape.wavy):
         row = (gap_row(shape) + 2 * ball) * LANES + lane
         gap = fma(params[row + LANES], instant.half_step, params[row])
-    # in this order a ball and its mirror image share the inner part if their gaps are the same
+    # in this order LLVM computes the inner part once for a ball and its mirror image if their gaps are the same
     squeeze = fma(x, c, -gap)
-    ahead = ball == 0 and len(shape.jittered) == 0  # in the direction of the cage: its sine is zero
+    ahead = ball == 0 and len(shape.jittered) == 0  # ball 0 lies in the direction of the cage: its sine is zero
     if not ahead:
         squeeze = fma(y, s, squeeze)
     if len(shape.spalled):
@@ -153,13 +90,13 @@ def add_ball(
     squeeze = max(squeeze, 0.0)
     if len(shape.roller):
         power = ninth_root(squeeze)
-    elif ball % 4 == 3:  # the divider, which would lie idle, takes some of the roots: 8 % of the time of a step
+    elif ball % 4 == 3:  # every fourth root in hardware, beside the others in software: a step takes 8 % less time
         power = math.sqrt(squeeze)
     else:
         power = square_root(squeeze)
     force = squeeze * power
     if len(shape.damped):
-        damped = max(fma(params[DAMPING * LANES + lane], fma(u, c, v * s), force), 0.0)
+        damped = max(fma(params[Param.CONTACT_DAMPING * LANES + lane], fma(u, c, v * s), force), 0.0)
         force = damped if squeeze > 0.0 else 0.0
     along, across, powers = total
     return fma(force, c, along), across if ahead else fma(force, s, across), powers + power
@@ -170,12 +107,12 @@ def add_four(
     shape: Shape,
     first: int | np.int64,
     totals: tuple[Push, ...],
-    motion: Motion,
+    motion: Relative,
     instant: Instant,
     lane: int,
     params: FloatArray,
 ) -> tuple[Push, ...]:
-    """Add four balls to four sums; a loop over balls would not be unrolled before LLVM looks at the loop over lanes."""
+    """Add four balls to four sums; LLVM would vectorise the loop over lanes before it unrolled a loop over balls."""
     return (
         add_ball(shape, first, totals[0], motion, instant, lane, params),
         add_ball(shape, first + 1, totals[1], motion, instant, lane, params),
@@ -186,19 +123,26 @@ def add_four(
 
 @njit(**INLINE)
 def contact_force(
-    shape: Shape, motion: Motion, c: float, s: float, instant: Instant, lane: int, params: FloatArray
+    shape: Shape, motion: Relative, c: float, s: float, instant: Instant, lane: int, params: FloatArray
 ) -> Push:
-    """Force that all balls together put on the housing, and its reaction on the shaft, x and y [N], and the sum of their powers.
+    """Force ``(Fx, Fy)`` of all balls on the housing [N], and the sum of ``squeeze**(n - 1)``; the shaft takes ``(-Fx, -Fy)``.
 
-    ``motion`` is displacement and velocity of the shaft relative to the housing; ``c`` and ``s`` are the direction of the cage.
+    ``motion`` is turned into the frame of the cage, whose direction is ``(c, s)``: there the balls stand still but for their jitter. Only
+    the part along the contact angle alpha squeezes a ball::
+
+        F = K cos(alpha) sum over balls of force * direction
     """
-    cosa = params[COSA * LANES + lane]
+    cosa = params[Param.CONTACT_COSINE * LANES + lane]
     x, y, u, v = motion
     c, s = cosa * c, cosa * s
     seen = (fma(x, c, y * s), fma(y, c, -(x * s)), fma(u, c, v * s), fma(v, c, -(u * s)))
-    nothing = (-0.0, -0.0, -0.0)  # to add it takes no instruction: it leaves zeros their sign
+    nothing = (
+        -0.0,
+        -0.0,
+        -0.0,
+    )  # the exact additive identity, so LLVM drops the addition; 0.0 would change the sign of -0.0
     sums = (nothing, nothing, nothing, nothing)
-    # numbers that numba does not take for types: it would compile the four balls once for each
+    # np.int64, because numba would compile the function once for each plain integer
     sums = add_four(shape, np.int64(0), sums, seen, instant, lane, params)
     sums = add_four(shape, np.int64(4), sums, seen, instant, lane, params)
     sums = add_four(shape, np.int64(8), sums, seen, instant, lane, params)
@@ -206,55 +150,81 @@ def contact_force(
     sums = add_four(shape, np.int64(16), sums, seen, instant, lane, params)
     sums = add_four(shape, np.int64(20), sums, seen, instant, lane, params)
     (ax, ay, ap), (bx, by, bp), (cx, cy, cp), (dx, dy, dp) = sums
-    stiffness = params[STIFFNESS * LANES + lane]
+    stiffness = params[Param.LOAD_DEFLECTION_FACTOR * LANES + lane]
     along, across = stiffness * ((ax + bx) + (cx + dx)), stiffness * ((ay + by) + (cy + dy))
     return fma(along, c, -(across * s)), fma(along, s, across * c), (ap + bp) + (cp + dp)
 
 
 @njit(**INLINE)
 def forces(shape: Shape, half_step: float, lane: int, params: FloatArray) -> tuple[float, float, float, float]:
-    """External forces on shaft and housing, x and y [N]."""
-    row = FORCES * LANES + lane
-    wx, wy = params[row], params[row + LANES]
+    """Outer forces on shaft and housing, x and y of each [N], ``half_step`` half steps after the knot."""
+    wx, wy = params[Param.SHAFT_FORCE_X * LANES + lane], params[Param.SHAFT_FORCE_Y * LANES + lane]
     if not len(shape.forced):
         return wx, wy, 0.0, 0.0
+    hx, hy = params[Param.HOUSING_FORCE_X * LANES + lane], params[Param.HOUSING_FORCE_Y * LANES + lane]
     return (
-        fma(params[row + 4 * LANES], half_step, wx),
-        fma(params[row + 5 * LANES], half_step, wy),
-        fma(params[row + 6 * LANES], half_step, params[row + 2 * LANES]),
-        fma(params[row + 7 * LANES], half_step, params[row + 3 * LANES]),
+        fma(params[Param.SHAFT_FORCE_X_SLOPE * LANES + lane], half_step, wx),
+        fma(params[Param.SHAFT_FORCE_Y_SLOPE * LANES + lane], half_step, wy),
+        fma(params[Param.HOUSING_FORCE_X_SLOPE * LANES + lane], half_step, hx),
+        fma(params[Param.HOUSING_FORCE_Y_SLOPE * LANES + lane], half_step, hy),
     )
 
 
 @njit(**INLINE)
 def accelerations(
-    shape: Shape, q: tuple[float, ...], turn: Motion, instant: Instant, lane: int, params: FloatArray
+    shape: Shape, q: tuple[float, ...], directions: Directions, instant: Instant, lane: int, params: FloatArray
 ) -> tuple[float, float, float, float, float, float, float]:
-    """Accelerations of the three bodies [m s-2], and the sum of powers; ``turn`` holds the directions of cage and shaft."""
+    """Accelerations of the three bodies [m s-2], and the sum of ``squeeze**(n - 1)``.
+
+    With the mark of the shaft in direction ``(cs, ss)``::
+
+        m1 x1'' = Wx + p cs + q ss - Fx - c1 (x1' - x2') - k1x (x1 - x2) - c0 x1' - k0 x1
+        m2 x2'' = Hx + Fx + c1 (x1' - x2') + k1x (x1 - x2) - c2x x2' - k2x g(x2) - krx (x2 - xr) - cr (x2' - xr')
+        mr xr'' = krx (x2 - xr) + cr (x2' - xr')
+
+    and the same in y, with ``p ss - q cs`` for the unbalance.
+
+    =========== ================================================================ ====================
+    symbol      meaning                                                          row of ``params``
+    =========== ================================================================ ====================
+    m1, m2, mr  masses of shaft, housing and sensor (their inverses are stored)  PER_SHAFT_MASS ...
+    Fx          force of the balls on the housing, :func:`contact_force`         LOAD_DEFLECTION_FACTOR ...
+    Wx, Hx      outer forces on shaft and housing, :func:`forces`                SHAFT_FORCE_X ...
+    p, q        unbalance with bent shaft along the mark, and unbalance across   UNBALANCE_RADIAL,
+                it while the speed changes                                       UNBALANCE_TANGENTIAL
+    c1, k1      between shaft and housing: grease, seals, cage                   RING_DAMPING, RING_STIFFNESS_X
+    c0, k0      between shaft and ground: its other bearing                      SHAFT_DAMPING, SHAFT_STIFFNESS
+    c2, k2      support of the housing                                           SUPPORT_DAMPING_X, SUPPORT_STIFFNESS_X
+    g           ``x - clip(x, -play, play)`` with a loose support, or ``x``      LOOSENESS
+    cr, kr      sensor resonance                                                 SENSOR_DAMPING, SENSOR_STIFFNESS_X
+    =========== ================================================================ ====================
+    """
     x1, y1, x2, y2, xr, yr, u1, v1, u2, v2, ur, vr = q
-    c, s, shaft_c, shaft_s = turn
+    c, s, shaft_c, shaft_s = directions
     dx, dy, du, dv = x1 - x2, y1 - y2, u1 - u2, v1 - v2
-    fx, fy, powers = contact_force(shape, (dx, dy, du, dv), c, s, instant, lane, params)
-    c1, c0, k0 = params[C1 * LANES + lane], params[C0 * LANES + lane], params[K0 * LANES + lane]
-    jx = fma(params[K1X * LANES + lane], dx, fma(c1, du, fx))
-    jy = fma(params[K1Y * LANES + lane], dy, fma(c1, dv, fy))
-    p, q_ = params[UNBALANCE_P * LANES + lane], params[UNBALANCE_Q * LANES + lane]
+    fx, fy, roots = contact_force(shape, (dx, dy, du, dv), c, s, instant, lane, params)
+    c1, c0 = params[Param.RING_DAMPING * LANES + lane], params[Param.SHAFT_DAMPING * LANES + lane]
+    k0 = params[Param.SHAFT_STIFFNESS * LANES + lane]
+    jx = fma(params[Param.RING_STIFFNESS_X * LANES + lane], dx, fma(c1, du, fx))
+    jy = fma(params[Param.RING_STIFFNESS_Y * LANES + lane], dy, fma(c1, dv, fy))
+    p, t = params[Param.UNBALANCE_RADIAL * LANES + lane], params[Param.UNBALANCE_TANGENTIAL * LANES + lane]
     wx, wy, hx, hy = forces(shape, instant.half_step, lane, params)
-    f1x = fma(-k0, x1, fma(-c0, u1, fma(p, shaft_c, fma(q_, shaft_s, wx)) - jx))
-    f1y = fma(-k0, y1, fma(-c0, v1, fma(p, shaft_s, fma(-q_, shaft_c, wy)) - jy))
+    f1x = fma(-k0, x1, fma(-c0, u1, fma(p, shaft_c, fma(t, shaft_s, wx)) - jx))
+    f1y = fma(-k0, y1, fma(-c0, v1, fma(p, shaft_s, fma(-t, shaft_c, wy)) - jy))
     sx, sy = x2, y2
     if len(shape.loose):
-        play = params[LOOSENESS * LANES + lane]
+        play = params[Param.LOOSENESS * LANES + lane]
         sx, sy = x2 - min(max(x2, -play), play), y2 - min(max(y2, -play), play)
-    f2x = fma(-params[K2X * LANES + lane], sx, fma(-params[C2X * LANES + lane], u2, jx))
-    f2y = fma(-params[K2Y * LANES + lane], sy, fma(-params[C2Y * LANES + lane], v2, jy))
+    k2x, k2y = params[Param.SUPPORT_STIFFNESS_X * LANES + lane], params[Param.SUPPORT_STIFFNESS_Y * LANES + lane]
+    c2x, c2y = params[Param.SUPPORT_DAMPING_X * LANES + lane], params[Param.SUPPORT_DAMPING_Y * LANES + lane]
+    f2x, f2y = fma(-k2x, sx, fma(-c2x, u2, jx)), fma(-k2y, sy, fma(-c2y, v2, jy))
     if len(shape.forced):
         f2x, f2y = f2x + hx, f2y + hy
     arx = ary = 0.0
     if len(shape.resonator):
-        cr, imr = params[CR * LANES + lane], params[IMR * LANES + lane]
-        rx = fma(params[KRX * LANES + lane], x2 - xr, cr * (u2 - ur))
-        ry = fma(params[KRY * LANES + lane], y2 - yr, cr * (v2 - vr))
+        cr, imr = params[Param.SENSOR_DAMPING * LANES + lane], params[Param.PER_SENSOR_MASS * LANES + lane]
+        rx = fma(params[Param.SENSOR_STIFFNESS_X * LANES + lane], x2 - xr, cr * (u2 - ur))
+        ry = fma(params[Param.SENSOR_STIFFNESS_Y * LANES + lane], y2 - yr, cr * (v2 - vr))
         f2x, f2y, arx, ary = f2x - rx, f2y - ry, rx * imr, ry * imr
-    im1, im2 = params[IM1 * LANES + lane], params[IM2 * LANES + lane]
-    return f1x * im1, f1y * im1, f2x * im2, f2y * im2, arx, ary, powers
+    im1, im2 = params[Param.PER_SHAFT_MASS * LANES + lane], params[Param.PER_HOUSING_MASS * LANES + lane]
+    return f1x * im1, f1y * im1, f2x * im2, f2y * im2, arx, ary, roots

@@ -1,10 +1,11 @@
-"""A batch of records from its first knot to its last, decimated on the way.
+"""A batch of records integrated from its first knot to its last, and decimated on the way.
 
-The history at the rate of the steps is kept for a few knots only: what leaves the batch are the outputs of the anti-alias filter.
+Only the decimated output is returned; the history at the rate of the steps is kept for a few knots.
 """
 
 from collections.abc import Callable
 from hashlib import sha256
+from importlib.resources import files
 from inspect import getsource
 from typing import NamedTuple
 
@@ -12,113 +13,148 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics.kernel import compiling, decimate, drop, equations, spalls, step, turning
+from gen.physics import extent
 from gen.physics.kernel.compiling import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
 from gen.physics.kernel.decimate import OUTPUTS, Decimation, Single, filter_rows
-from gen.physics.kernel.equations import COSA, N_DYNAMIC, STEEPEST, STIFFNESS, FloatArray, Shape, param_rows
-from gen.physics.kernel.spalls import N_ROTATIONS, ball_gaps, move_gaps, move_spalls
-from gen.physics.kernel.step import advance
-from gen.physics.kernel.turning import (
-    ANGLE_ROWS,
-    JITTER,
-    STRIDE,
-    Lanes,
-    keep_turning,
-    move_forces,
-    move_processes,
+from gen.physics.kernel.layout import (
+    AXES,
+    Batch,
+    FloatArray,
+    Param,
+    Process,
+    Shape,
+    State,
+    param_rows,
     slow_rows,
-    start_processes,
-    turn_rings,
-)
+)  # fmt: skip
+from gen.physics.kernel.outer_forces import move_forces
+from gen.physics.kernel.spalls import move_spalls
+from gen.physics.kernel.step import advance
+from gen.physics.kernel.turning import N_ANGLES, STRIDE, keep_turning, move_processes, start_processes, turn_rings
+from gen.physics.kernel.waviness import N_ROTATION_ROWS, ball_gaps, move_gaps
 
-FAR_OFF = 1.0  # displacement [m] beyond which a record has diverged; soft supports sag by millimetres
-BLOCK = 8  # knots between two runs of the filters, a multiple of what they give in one pass
-ROOM = 16  # blocks of outputs of the first stage, before the newest are moved to the front
+FAR_OFF = 1.0  # displacement beyond which a record has diverged [m]; soft supports sag by millimetres
+BLOCK = 8  # knots between two runs of the filters, a multiple of OUTPUTS
+ROOM = 16  # blocks of outputs of the first stage; then the newest are moved to the front
 
 Columns = tuple[Single, NDArray[np.int64], FloatArray]
 
 
 class Integral(NamedTuple):
-    """What comes out of a batch."""
+    """Result of a batch."""
 
     response: Single
-    """What the pickups give at the knots, shape (knot, channel, lane) [m s-2, or m]."""
+    """Output of the channels at the knots, shape (knot, channel, lane) [m s-2, or m]."""
     diverged: NDArray[np.int64]
-    """Knot at which a record left the finite range, -1 if it never did, shape (lane,)."""
+    """Knot at which a record was farther off than ``FAR_OFF`` or not finite, -1 if never, shape (lane,)."""
     steepest: FloatArray
-    """Largest contact stiffness at any step, summed over the balls: a bound for every direction, shape (lane,) [N/m]."""
+    """Largest contact stiffness at any step, summed over the balls: it bounds that in every direction, shape (lane,) [N/m]."""
 
 
 class Work(NamedTuple):
-    """Arrays that live as long as a batch."""
+    """Work arrays of a batch."""
 
     moves: FloatArray
-    """How far shaft, cage and ball spin move to the next knot, ANGLE_ROWS rows [rad]."""
+    """Angles by which shaft, cage and ball spin turn up to the next knot, rows of :class:`Angle` [rad]."""
     gaps: FloatArray
-    """Gap of every ball at the next knot, spalls aside [m]."""
+    """Gap of every ball at the next knot without spalls [m]."""
     dropped: FloatArray
-    """Whether a ball was in a spall, a single number."""
+    """1 if a ball was in a spall before the last knot, shape (1,)."""
     scratch: FloatArray
-    """Room for whoever is at work."""
+    """Scratch of the function that runs."""
 
 
 @njit(**ALLOCATING)
-def set_out(shape: Shape, batch: Lanes, n_steps: int) -> Lanes:
-    """The batch on its way: copies of what it was laid out in, and room for what holds between two knots."""
+def set_out(shape: Shape, batch: Batch, n_steps: int) -> Batch:
+    """A copy of a batch with all rows of ``params`` and ``slow``, for the kernel to change."""
     params = zeros(param_rows(shape, n_steps) * LANES)
     for i in range(batch.params.size):
         params[i] = batch.params[i]
-    return Lanes(
-        copied(batch.state), params, copied(batch.drive), copied(batch.angles), copied(batch.spalls), copied(batch.phasors),
-        zeros(2 * slow_rows(shape) * LANES), copied(batch.waves), batch.schedule, batch.tables,
-    )  # fmt: skip
+    return Batch(
+        state=copied(batch.state),
+        params=params,
+        drive=copied(batch.drive),
+        angles=copied(batch.angles),
+        spalls=copied(batch.spalls),
+        phasors=copied(batch.phasors),
+        slow=zeros(2 * slow_rows(shape) * LANES),
+        waves=copied(batch.waves),
+        schedule=batch.schedule,
+        tables=batch.tables,
+    )
 
 
 @njit(**ALLOCATING)
-def prepare(shape: Shape, lanes: Lanes, n_steps: int) -> Work:
-    """Work arrays, and what moves at its first knot."""
+def prepare(shape: Shape, batch: Batch, n_steps: int) -> Work:
+    """Work arrays, with processes and gaps as they are at the first knot."""
     n_balls = len(shape.balls)
-    rows = 2 * N_ROTATIONS + 2 * n_balls + JITTER
+    rows = N_ROTATION_ROWS + 2 * n_balls + Process.JITTER
     scratch = zeros(rows * LANES + 2 * n_steps + 1)
-    work = Work(zeros(ANGLE_ROWS * LANES), zeros(n_balls * LANES), zeros(1), scratch)
-    start_processes(shape, lanes)
+    work = Work(zeros(N_ANGLES * LANES), zeros(n_balls * LANES), zeros(1), scratch)
+    start_processes(shape, batch)
     if len(shape.wavy):
-        ball_gaps(shape, lanes, work.moves, work.scratch, work.gaps)
+        ball_gaps(shape, batch, work.moves, work.scratch, work.gaps)
     return work
 
 
 @njit(**INLINE)
-def to_next_knot(shape: Shape, lanes: Lanes, knot: int, n_steps: int, dt: float, work: Work) -> None:
-    """Prepare ``lanes.params`` for the steps up to the next knot, and move the angles there."""
+def to_next_knot(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float, work: Work) -> None:
+    """Set ``batch.params`` for the steps up to the next knot, and advance the angles to it."""
     if knot % STRIDE == 0:
-        move_processes(shape, lanes, n_steps, work.scratch)
-    turn_rings(shape, lanes, knot, n_steps, dt, work.moves)
+        move_processes(shape, batch, n_steps, work.scratch)
+    turn_rings(shape, batch, knot, n_steps, dt, work.moves)
     if len(shape.forced):
-        move_forces(lanes, knot, n_steps, dt, work.moves, work.scratch)
+        move_forces(batch, knot, n_steps, dt, work.moves, work.scratch)
     if len(shape.wavy):
-        move_gaps(shape, lanes, n_steps, work.moves, work.scratch, work.gaps)
+        move_gaps(shape, batch, n_steps, work.moves, work.scratch, work.gaps)
     if len(shape.spalled):
-        move_spalls(shape, lanes, n_steps, work.moves, work.scratch, work.dropped)
-    keep_turning(shape, lanes, work.moves)
+        move_spalls(shape, batch, n_steps, work.moves, work.scratch, work.dropped)
+    keep_turning(shape, batch, work.moves)
 
 
 @njit(**INLINE)
 def keep(history: Single, size: int, start: int) -> None:
-    """Move ``size`` values from ``start`` on to the front."""
+    """Move ``size`` values, from ``start`` on, to the front."""
     newest = history[start:]
     for i in range(size):
         history[i] = newest[i]
 
 
-def _cached(sources: str) -> Callable[..., Columns]:
-    """What :func:`integrate` does; a named tuple would be made in Python, where a signal could leave its making half done.
+@njit(**INLINE)
+def watch(state: FloatArray, knot: int, diverged: NDArray[np.int64]) -> None:
+    """Store the knot in ``diverged`` for the lanes that first leave the finite range at it."""
+    for lane in range(lane_count()):
+        inside = True
+        for row in range(AXES):
+            inside &= abs(state[row * LANES + lane]) < FAR_OFF
+        if not inside and diverged[lane] < 0:
+            diverged[lane] = knot
 
-    Numba looks for changes in this file alone, but what a function closes over is part of its key.
+
+@njit(**ALLOCATING)
+def largest_stiffness(shape: Shape, batch: Batch) -> FloatArray:
+    """Largest contact stiffness of each lane, shape (lane,) [N/m]: ``n K cos(alpha)^2`` times the largest sum of ``squeeze**(n - 1)``."""
+    steepest = np.empty(LANES)
+    exponent = 10 / 9 if len(shape.roller) else 1.5
+    for lane in range(lane_count()):
+        cosine, factor = (
+            batch.params[Param.CONTACT_COSINE * LANES + lane],
+            batch.params[Param.LOAD_DEFLECTION_FACTOR * LANES + lane],
+        )
+        steepest[lane] = batch.state[State.STEEPEST * LANES + lane] * (exponent * cosine**2 * factor)
+    return steepest
+
+
+def _cached(sources: str) -> Callable[..., Columns]:
+    """Kernel of :func:`integrate`, kept in numba's cache on disk as long as ``sources`` is the same.
+
+    Numba itself looks for changes in this file alone, but the variables that a function closes over are part of its key. The kernel
+    returns a plain tuple: numba builds a named tuple in Python, where a signal could interrupt it half way.
     """
 
     @njit(**KERNEL)
     def integrate_lanes(
-        shape: Shape, batch: Lanes, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
+        shape: Shape, batch: Batch, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
     ) -> Columns:
         _ = sources
         batch = set_out(shape, batch, n_steps)
@@ -139,12 +175,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
                 since = 2.0 * n_steps * (knot % STRIDE)
                 at = (kept + (knot - first) * n_steps) * n_channels
                 advance(shape, batch.state, batch.params, dt, n_steps, since, history, at)
-                for lane in range(lane_count()):
-                    inside = True
-                    for row in range(N_DYNAMIC // 2):
-                        inside &= abs(batch.state[row * LANES + lane]) < FAR_OFF
-                    if not inside and diverged[lane] < 0:
-                        diverged[lane] = knot
+                watch(batch.state, knot, diverged)
             start = 2 * BLOCK * (first // BLOCK % ROOM) if two_stages else 0
             if two_stages:
                 for output in range(0, 2 * BLOCK, OUTPUTS):
@@ -152,9 +183,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
                         shape.channels, first_stage.taps, history, output * first_stage.factor, halfway, half_kept + start + output,
                         totals,
                     )  # fmt: skip
-            out = (
-                first - lead - n_settle + BLOCK
-            )  # one block later: there is room for what comes out before the first output
+            out = first - lead - n_settle + BLOCK  # one block later, so that earlier outputs have room before the first
             if out >= 0:
                 source = halfway if two_stages else history
                 for output in range(0, BLOCK, OUTPUTS):
@@ -165,25 +194,27 @@ def _cached(sources: str) -> Callable[..., Columns]:
             keep(history, kept * width, BLOCK * n_steps * width)
             if start == 2 * BLOCK * (ROOM - 1):
                 keep(halfway, half_kept * width, 2 * BLOCK * ROOM * width)
-        steepest = np.empty(LANES)
-        exponent = 10 / 9 if len(shape.roller) else 1.5
-        for lane in range(lane_count()):
-            slope = exponent * batch.params[COSA * LANES + lane] ** 2 * batch.params[STIFFNESS * LANES + lane]
-            steepest[lane] = batch.state[STEEPEST * LANES + lane] * slope
+        steepest = largest_stiffness(shape, batch)
         return response.reshape((n_out + 2 * BLOCK, n_channels, LANES))[BLOCK : BLOCK + n_out], diverged, steepest
 
     return integrate_lanes
 
 
-integrate_lanes = _cached(
-    sha256(
-        "".join([str(LANES), *map(getsource, (compiling, drop, equations, step, turning, spalls, decimate))]).encode()
-    ).hexdigest()
-)
+def kernel_sources() -> str:
+    """Hash of every source file of this folder, and of the numbers that it shares with the recipe."""
+    folder = sorted(
+        (file for file in files("gen.physics.kernel").iterdir() if file.name.endswith(".py")),
+        key=lambda file: file.name,
+    )
+    texts = [getsource(extent), *(file.read_text(encoding="utf-8") for file in folder)]
+    return sha256("".join(texts).encode()).hexdigest()
+
+
+integrate_lanes = _cached(kernel_sources())
 
 
 def integrate(
-    shape: Shape, batch: Lanes, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
+    shape: Shape, batch: Batch, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
 ) -> Integral:
     """Integrate a batch.
 
@@ -200,6 +231,6 @@ def integrate(
     filters : Decimation
         Anti-alias filters.
     n_settle, n_out : int
-        Knots dropped before the first output, and outputs.
+        Number of knots dropped before the first output, and of outputs.
     """
     return Integral(*integrate_lanes(shape, batch, dt, n_steps, filters, n_settle, n_out))

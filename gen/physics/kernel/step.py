@@ -1,38 +1,23 @@
-"""The Runge-Kutta step that advances the equations of motion.
+"""One step of the classical Runge-Kutta method for every lane.
 
-The loop over lanes has no branch and no call, and its body is one stage of the classical step of a record in scalars, so that LLVM turns
-it into vector instructions. While the forces of one group of lanes add up, the processor is at the next; with all four stages in one
-body it is not faster, and that body takes twice as long to compile.
+The loop over lanes has no branch and no call, and its body is one stage of the step of one record in scalars, so that LLVM turns it into
+vector instructions. While the forces of one group of lanes add up, the processor works on the next group. One body with all four stages
+is not faster, and compiling it takes twice as long.
 """
 
 from numba import njit
 
 from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
-from gen.physics.kernel.equations import (
-    AXES,
-    BEGINNING,
-    CAGE_C,
-    CAGE_S,
-    CAGE_TURN_C,
-    PICKUPS,
-    SHAFT_C,
-    SHAFT_S,
-    SHAFT_TURN_C,
-    SLOPES,
-    STEEPEST,
-    FloatArray,
-    Instant,
-    Shape,
-    accelerations,
-    drop_row,
-)  # fmt: skip
+from gen.physics.kernel.equations import Instant, accelerations
+from gen.physics.kernel.layout import AXES, PICKUPS, FloatArray, Param, Shape, State, drop_row
 
-State = tuple[float, ...]
+Dynamic = tuple[float, ...]
+"""Coordinates and rates of a lane, or their slopes."""
 
 
 @njit(**INLINE)
-def read(shape: Shape, state: FloatArray, row: int, lane: int) -> State:
-    """Twelve rows of a lane; a sensor that is not there stands still."""
+def read(shape: Shape, state: FloatArray, row: int, lane: int) -> Dynamic:
+    """The twelve rows of a lane from ``row`` on; the rows of the sensor are 0 if there is none."""
     i = row * LANES + lane
     xr = yr = ur = vr = 0.0
     if len(shape.resonator):
@@ -44,8 +29,8 @@ def read(shape: Shape, state: FloatArray, row: int, lane: int) -> State:
 
 
 @njit(**INLINE)
-def write(shape: Shape, state: FloatArray, row: int, lane: int, q: State) -> None:
-    """Twelve rows of a lane, less those of a sensor that is not there; a loop over them would be a branch to LLVM."""
+def write(shape: Shape, state: FloatArray, row: int, lane: int, q: Dynamic) -> None:
+    """Store the twelve rows of a lane from ``row`` on, or eight without a sensor; LLVM would see a branch in a loop over them."""
     i = row * LANES + lane
     state[i], state[i + LANES], state[i + 2 * LANES], state[i + 3 * LANES] = q[0], q[1], q[2], q[3]
     state[i + 6 * LANES], state[i + 7 * LANES], state[i + 8 * LANES], state[i + 9 * LANES] = q[6], q[7], q[8], q[9]
@@ -59,7 +44,7 @@ def write(shape: Shape, state: FloatArray, row: int, lane: int, q: State) -> Non
 
 
 @njit(**INLINE)
-def moved(shape: Shape, q: State, slope: State, h: float) -> State:
+def moved(shape: Shape, q: Dynamic, slope: Dynamic, h: float) -> Dynamic:
     """State after ``h`` seconds along a slope."""
     xr = yr = ur = vr = 0.0
     if len(shape.resonator):
@@ -77,64 +62,75 @@ def moved(shape: Shape, q: State, slope: State, h: float) -> State:
 
 @njit(**INLINE)
 def half_turn(state: FloatArray, params: FloatArray) -> None:
-    """Turn the directions of cage and shaft by half a step."""
+    """Rotate the directions of cage and shaft by half a step."""
     wide()
     for lane in range(lane_count()):
-        for row, turn in ((CAGE_C, CAGE_TURN_C), (SHAFT_C, SHAFT_TURN_C)):
-            c, s = state[row * LANES + lane], state[(row + 1) * LANES + lane]
-            dc, ds = params[turn * LANES + lane], params[(turn + 1) * LANES + lane]
-            state[row * LANES + lane], state[(row + 1) * LANES + lane] = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
+        c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
+        dc, ds = params[Param.CAGE_TURN_COS * LANES + lane], params[Param.CAGE_TURN_SIN * LANES + lane]
+        state[State.CAGE_COS * LANES + lane] = fma(c, dc, -(s * ds))
+        state[State.CAGE_SIN * LANES + lane] = fma(s, dc, c * ds)
+        c, s = state[State.SHAFT_COS * LANES + lane], state[State.SHAFT_SIN * LANES + lane]
+        dc, ds = params[Param.SHAFT_TURN_COS * LANES + lane], params[Param.SHAFT_TURN_SIN * LANES + lane]
+        state[State.SHAFT_COS * LANES + lane] = fma(c, dc, -(s * ds))
+        state[State.SHAFT_SIN * LANES + lane] = fma(s, dc, c * ds)
 
 
 @njit(**INLINE)
 def slopes_of(
     shape: Shape, state: FloatArray, params: FloatArray, instant: Instant, lane: int
-) -> tuple[State, State, float]:
-    """State of a lane, its derivative, and the sum of the powers of its balls."""
-    q = read(shape, state, 0, lane)
-    turn = (
-        state[CAGE_C * LANES + lane], state[CAGE_S * LANES + lane], state[SHAFT_C * LANES + lane], state[SHAFT_S * LANES + lane],
-    )  # fmt: skip
-    a1x, a1y, a2x, a2y, arx, ary, powers = accelerations(shape, q, turn, instant, lane, params)
-    return q, (q[6], q[7], q[8], q[9], q[10], q[11], a1x, a1y, a2x, a2y, arx, ary), powers
+) -> tuple[Dynamic, Dynamic, float]:
+    """Coordinates and rates of a lane, their derivatives, and the sum of ``squeeze**(n - 1)`` of its balls."""
+    q = read(shape, state, State.COORDINATES, lane)
+    directions = (
+        state[State.CAGE_COS * LANES + lane],
+        state[State.CAGE_SIN * LANES + lane],
+        state[State.SHAFT_COS * LANES + lane],
+        state[State.SHAFT_SIN * LANES + lane],
+    )
+    a1x, a1y, a2x, a2y, arx, ary, roots = accelerations(shape, q, directions, instant, lane, params)
+    return q, (q[6], q[7], q[8], q[9], q[10], q[11], a1x, a1y, a2x, a2y, arx, ary), roots
 
 
 @njit(**INLINE)
 def first_stage(shape: Shape, state: FloatArray, params: FloatArray, dt: float, instant: Instant) -> None:
-    """Begin a step: note where and with which slope, and go half a step along it."""
+    """First stage: store the beginning of the step and its slope, and move half a step along that slope."""
     wide()
     for lane in range(LANES):
-        q, slope, powers = slopes_of(shape, state, params, instant, lane)
-        state[STEEPEST * LANES + lane] = max(state[STEEPEST * LANES + lane], powers)
-        write(shape, state, BEGINNING, lane, q)
-        write(shape, state, SLOPES, lane, slope)
-        write(shape, state, 0, lane, moved(shape, q, slope, 0.5 * dt))
+        q, slope, roots = slopes_of(shape, state, params, instant, lane)
+        state[State.STEEPEST * LANES + lane] = max(state[State.STEEPEST * LANES + lane], roots)
+        write(shape, state, State.BEGINNING, lane, q)
+        write(shape, state, State.SLOPES, lane, slope)
+        write(shape, state, State.COORDINATES, lane, moved(shape, q, slope, 0.5 * dt))
 
 
 @njit(**INLINE)
 def later_stage(
     shape: Shape, state: FloatArray, params: FloatArray, instant: Instant, weight: float, ahead: float, along_all: float
 ) -> None:
-    """Add a slope to the sum with its ``weight``; go ``ahead`` of the beginning along it, and ``along_all`` along the sum [s]."""
+    """A later stage: add its slope to the weighted sum of slopes, and compute the state at which the next stage begins.
+
+    That state is the beginning of the step plus ``along_all`` times the sum plus ``ahead`` times the new slope [s]; the sum counts at the
+    end of the step only.
+    """
     wide()
     for lane in range(LANES):
         _, slope, _ = slopes_of(shape, state, params, instant, lane)
-        total = moved(shape, read(shape, state, SLOPES, lane), slope, weight)
-        write(shape, state, SLOPES, lane, total)
+        total = moved(shape, read(shape, state, State.SLOPES, lane), slope, weight)
+        write(shape, state, State.SLOPES, lane, total)
         write(
             shape,
             state,
-            0,
+            State.COORDINATES,
             lane,
-            moved(shape, moved(shape, read(shape, state, BEGINNING, lane), total, along_all), slope, ahead),
+            moved(shape, moved(shape, read(shape, state, State.BEGINNING, lane), total, along_all), slope, ahead),
         )
 
 
 @njit(**INLINE)
 def pick_up(shape: Shape, state: FloatArray, params: FloatArray, received: FloatArray) -> None:
-    """Weighted sums of displacements or accelerations at the beginning of a step, one for each channel."""
+    """Weighted sum of the displacements or accelerations at the beginning of a step, for each channel."""
     wide()
-    picked = state[(BEGINNING if len(shape.displacement) else SLOPES + AXES) * LANES :]
+    picked = state[(State.BEGINNING if len(shape.displacement) else State.SLOPES + AXES) * LANES :]
     weights = params[PICKUPS * LANES :]
     for lane in range(lane_count()):
         for channel in range(len(shape.channels)):
@@ -160,24 +156,24 @@ def advance(
     Parameters
     ----------
     shape : Shape
-        What the kernel contains.
+        Parts that the kernel contains.
     state, params : array, shape (row * LANES + lane)
-        What moves, and what holds until the next knot.
+        Rows of :class:`State`, which the steps advance, and of :class:`Param`, which hold until the next knot.
     dt : float
         Step [s].
     n_steps : int
         Steps to the next knot.
     since : float
-        Half steps since the directions of the balls were laid down.
+        Half steps since the directions of the balls were last computed.
     history : array, shape (step * channel * LANES + lane)
-        Receives, from its row ``at`` on, what is picked up at the start of each step [m s-2, or m].
+        Receives, from its row ``at`` on, the value of each channel at the start of each step [m s-2, or m].
     at : int
         First row of ``history`` to fill; a row is a step and a channel.
     """
     drops, width = drop_row(shape) * LANES, len(shape.balls) * LANES if len(shape.spalled) else 0
     for step in range(n_steps):
         half_step = 2.0 * step
-        # views, since numba would look at every index whether it counts from the end
+        # a view of the drops: for an index, numba would test whether it counts from the end
         start = Instant(half_step, since + half_step, params[drops + 2 * step * width :])
         first_stage(shape, state, params, dt, start)
         pick_up(shape, state, params, history[(at + step * len(shape.channels)) * LANES :])

@@ -10,20 +10,20 @@ from scipy.signal import welch
 
 from gen.measurement.measure import LARGEST_COUNT, measure
 from gen.measurement.rig import base_excited
-from gen.scenarios import Background, Mode, Path, Tone, draw_scenarios
-from gen.simulation.simulate import Response, lead_samples
+from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios
+from gen.simulation.timeline import timeline
 
 law = settings(deadline=None, max_examples=25)
 FS = 12_000.0
 FLOAT = {"recording.converter": {"kind": "float32"}}
-QUIET = Background(0.0, 1e-6, (), (0.0, 0.0), (), (), None, None)
+QUIET = Background(0.0, 1e-6, (), ShaftModulation(), (), (), None, None)
 
 
 def response(recipe, n_records, wave):
-    """What ``wave(time)`` gives as the response of every record and channel."""
-    n = lead_samples(recipe) + recipe.n_samples
+    """``wave(time)`` as the acceleration of every record and channel, shape (record, channel, time)."""
+    n = timeline(recipe).lead + recipe.n_samples
     signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
-    return Response(signal.copy(), np.full(n_records, 8), np.full(n_records, 0.2), {}, [])
+    return signal.copy()
 
 
 def silence(recipe, n_records):
@@ -81,9 +81,11 @@ def test_the_background_does_not_know_the_class(recipe_with):
     assert rms(damaged).min() > 0.01
 
 
-def test_records_of_one_rig_share_their_colour_but_not_their_noise(recipe_with):
+def test_records_of_one_rig_share_the_spectrum_of_their_noise_but_not_its_samples(recipe_with):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0})
-    scenarios = with_rig(draw_scenarios(recipe, 0, 2), background=Background(1.0, 1e-3, (), (0, 0), (), (), None, None))
+    scenarios = with_rig(
+        draw_scenarios(recipe, 0, 2), background=Background(1.0, 1e-3, (), ShaftModulation(), (), (), None, None)
+    )
     one, other = measure(silence(recipe, 2), scenarios, recipe).signal[:, 0]
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.1
     densities = welch(np.stack([one, other]), FS, nperseg=512)[1][:, 5:-5]
@@ -93,14 +95,10 @@ def test_records_of_one_rig_share_their_colour_but_not_their_noise(recipe_with):
 def test_a_record_is_measured_alike_alone_and_among_others(recipe_with):
     recipe = recipe_with()
     scenarios = draw_scenarios(recipe)
-    heard = hiss(recipe, len(scenarios))
-    together = measure(heard, scenarios, recipe)
+    moved = hiss(recipe, len(scenarios))
+    together = measure(moved, scenarios, recipe)
     for place in (0, 7, 23):
-        alone = measure(
-            Response(heard.acceleration[place : place + 1], heard.oversampling, heard.step_phase, {}, []),
-            [scenarios[place]],
-            recipe,
-        )
+        alone = measure(moved[place : place + 1], [scenarios[place]], recipe)
         np.testing.assert_array_equal(alone.signal[0], together.signal[place])
 
 
@@ -110,8 +108,8 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
     adc = {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}}
     recipe, exact = recipe_with(adc), recipe_with(FLOAT)
     scenarios = draw_scenarios(recipe, 0, 3)
-    heard = response(recipe, 3, lambda time: 40 * np.sin(2 * np.pi * 313 * time))
-    counts, truth = measure(heard, scenarios, recipe), measure(heard, scenarios, exact)
+    moved = response(recipe, 3, lambda time: 40 * np.sin(2 * np.pi * 313 * time))
+    counts, truth = measure(moved, scenarios, recipe), measure(moved, scenarios, exact)
     assert counts.counts_per_unit == pytest.approx(LARGEST_COUNT / full_scale)
     assert counts.signal.dtype == np.int16
     assert np.abs(counts.signal.astype(int)).max() <= LARGEST_COUNT
@@ -126,11 +124,11 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
 def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
     recipe = recipe_with(FLOAT | {"path.modes": None, "path.direct": 1.0})
     scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, background_rms=0.0, gain=1.0)
-    heard = response(recipe, 1, lambda time: 1e5 * np.cos(2 * np.pi * 500 * time))
-    measured = measure(heard, scenarios, recipe)
+    moved = response(recipe, 1, lambda time: 1e5 * np.cos(2 * np.pi * 500 * time))
+    measured = measure(moved, scenarios, recipe)
     assert measured.counts_per_unit is None
     assert measured.clipped.tolist() == [0]
-    expected = heard.acceleration[:, :, lead_samples(recipe) :]
+    expected = moved[:, :, timeline(recipe).lead :]
     np.testing.assert_allclose(measured.signal, expected, rtol=1e-6, atol=1e-2)
 
 
@@ -189,10 +187,10 @@ def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
 
 def test_a_record_that_diverged_has_no_ratio_and_leaves_its_neighbours_alone(recipe_with):
     recipe = recipe_with()
-    scenarios, heard = draw_scenarios(recipe, 0, 3), hiss(recipe, 3)
-    sound = measure(heard, scenarios, recipe)
-    heard.acceleration[1] = np.nan
-    found = measure(heard, scenarios, recipe)
+    scenarios, moved = draw_scenarios(recipe, 0, 3), hiss(recipe, 3)
+    sound = measure(moved, scenarios, recipe)
+    moved[1] = np.nan
+    found = measure(moved, scenarios, recipe)
     assert np.isnan(found.snr).tolist() == [False, True, False]
     assert not found.signal[1].any()
     np.testing.assert_array_equal(found.signal[[0, 2]], sound.signal[[0, 2]])
@@ -200,11 +198,11 @@ def test_a_record_that_diverged_has_no_ratio_and_leaves_its_neighbours_alone(rec
 
 def tone_through(recipe, scenarios, frequency):
     """Amplitude and phase of a tone of amplitude 1 behind the path, as a complex number."""
-    n = lead_samples(recipe) + recipe.n_samples
+    n = timeline(recipe).lead + recipe.n_samples
     tone = round(frequency * n / FS) * FS / n  # whole cycles: the filter runs around the ends
-    heard = response(recipe, 1, lambda time: np.cos(2 * np.pi * tone * time))
-    seen = measure(heard, scenarios, recipe).signal[0, 0].astype(float)
-    time = (lead_samples(recipe) + np.arange(recipe.n_samples)) / FS
+    moved = response(recipe, 1, lambda time: np.cos(2 * np.pi * tone * time))
+    seen = measure(moved, scenarios, recipe).signal[0, 0].astype(float)
+    time = (timeline(recipe).lead + np.arange(recipe.n_samples)) / FS
     model = np.stack([np.cos(2 * np.pi * tone * time), -np.sin(2 * np.pi * tone * time)], axis=1)
     real, imaginary = np.linalg.lstsq(model, seen)[0]
     return tone, complex(real, imaginary)
@@ -222,7 +220,7 @@ def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonanc
     recipe = recipe_with(FLOAT)
     scenarios = with_rig(
         draw_scenarios(recipe, 0, 1),
-        path=Path(direct, tuple(modes), (0.0, 0.0)),
+        path=Path(direct, tuple(modes), ShaftModulation()),
         gain=1.0,
         background_rms=0.0,
     )
@@ -245,8 +243,8 @@ def test_a_resonance_follows_slow_motion_and_amplifies_at_its_frequency(frequenc
 @pytest.mark.parametrize("slope", [-0.3, 0.0, 1.0, 2.0])
 def test_the_noise_falls_with_the_drawn_slope_and_has_the_drawn_rms(recipe_with, slope):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 20.0})
-    coloured = replace(QUIET, slope=slope)
-    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=coloured, background_rms=0.3, gain=1.0)
+    sloped = replace(QUIET, slope=slope)
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=sloped, background_rms=0.3, gain=1.0)
     noise = measure(silence(recipe, 1), scenarios, recipe).signal[0, 0].astype(float)
     frequency, density = welch(noise, FS, nperseg=4096)
     band = (frequency > 100) & (frequency < 5500)
@@ -287,10 +285,18 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
 def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
     recipe = recipe_with(FLOAT | {"recording.duration_s": 4.0, "operation.shaft_rpm": 1800})
     plain = with_rig(
-        draw_scenarios(recipe, 0, 1), path=Path(1.0, (), (0.0, 0.0)), background=QUIET, background_rms=0.0, gain=1.0
+        draw_scenarios(recipe, 0, 1),
+        path=Path(1.0, (), ShaftModulation()),
+        background=QUIET,
+        background_rms=0.0,
+        gain=1.0,
     )
-    heard = response(recipe, 1, lambda time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
-    signal = measure(heard, with_rig(plain, path=Path(1.0, (), (0.6, 0.2))), recipe).signal[0, 0].astype(float)
+    moved = response(recipe, 1, lambda time: np.sqrt(2) * np.cos(2 * np.pi * 2000 * time))
+    signal = (
+        measure(moved, with_rig(plain, path=Path(1.0, (), ShaftModulation(0.6, 0.2))), recipe)
+        .signal[0, 0]
+        .astype(float)
+    )
     assert line(signal, 2000) == pytest.approx(1.0, abs=1e-3)
     for order, depth in ((1, 0.6), (2, 0.2)):
         assert line(signal, 2000 + 30 * order) == pytest.approx(depth / 2, abs=1e-3)
@@ -312,12 +318,12 @@ def test_a_record_that_diverged_leaves_the_others_as_they_are(recipe_with):
     recipe = recipe_with()
     scenarios = draw_scenarios(recipe, 0, 4)
     fine, broken = hiss(recipe, 4), hiss(recipe, 4)
-    broken.acceleration[2] = np.nan
+    broken[2] = np.nan
     whole, rest = measure(fine, scenarios, recipe), measure(broken, scenarios, recipe)
     np.testing.assert_array_equal(rest.signal[[0, 1, 3]], whole.signal[[0, 1, 3]])
 
 
-def test_a_channel_with_a_path_of_its_own_hears_the_bearing_through_it(recipe_with):
+def test_a_channel_with_a_path_of_its_own_measures_the_bearing_behind_it(recipe_with):
     channels = [
         {"name": "drive_end", "body": "housing"},
         {"name": "fan_end", "body": "housing", "path": {"direct": 0.25}},

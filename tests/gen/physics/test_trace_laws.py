@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
+from gen.physics.extent import TABLE_POINTS
 from gen.physics.kernel.drop import GEOMETRIC, drop, sagitta
-from gen.physics.kernel.turning import TABLE_POINTS
-from gen.physics.trace import felt, places, rolled, roughened
+from gen.physics.trace import ball_path, contact_mean, places, with_roughness
 
 law = settings(deadline=None, max_examples=40)
 BEARING = CATALOGUE["6205"]
@@ -28,14 +28,14 @@ def test_over_sound_edges_and_a_flat_floor_a_ball_follows_the_geometric_path(wid
     """A spall this narrow is as good as flat: chord and arc differ by 2e-4, and the sagitta by twice that."""
     arc = abs(race)
     expected = [drop(GEOMETRIC, x / arc, width / 2 / arc, arc, BALL, race, depth) for x in places(width)]
-    found = rolled(np.full(9, depth), width, BALL, race)
+    found = ball_path(np.full(9, depth), width, BALL, race)
     np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-15)
 
 
 @law
 @given(surfaces, st.floats(0.15e-3, 12e-3), races)
 def test_a_ball_goes_no_deeper_than_the_surface_under_it_and_never_above_a_sound_one(surface, width, race):
-    path = rolled(np.array(surface), width, BALL, race)
+    path = ball_path(np.array(surface), width, BALL, race)
     under = np.interp(np.linspace(0, 1, TABLE_POINTS), np.linspace(0, 1, len(surface)), surface)
     assert path.shape == (TABLE_POINTS,)
     assert path[0] == path[-1] == 0
@@ -46,7 +46,7 @@ def test_a_ball_goes_no_deeper_than_the_surface_under_it_and_never_above_a_sound
 @law
 @given(surfaces, widths, races, st.floats(1.1, 3.0))
 def test_a_larger_ball_drops_less(surface, width, race, larger):
-    small, large = (rolled(np.array(surface), width, BALL * size, race) for size in (1.0, larger))
+    small, large = (ball_path(np.array(surface), width, BALL * size, race) for size in (1.0, larger))
     assert (large <= small + 1e-18).all()
 
 
@@ -58,7 +58,7 @@ def test_a_wide_ball_bridges_a_narrow_scratch(half, race):
     surface = np.zeros(TABLE_POINTS)
     surface[middle - half + 1 : middle + half] = 1e-4
     lip = half * width / (TABLE_POINTS - 1)
-    path = rolled(surface, width, BALL, race)
+    path = ball_path(surface, width, BALL, race)
     assert path.max() == pytest.approx(float(sagitta(lip, BALL) + sagitta(lip, race)), rel=1e-6)
     assert path.max() < 1e-5
     assert not path[np.abs(places(width)) >= lip].any()
@@ -67,8 +67,8 @@ def test_a_wide_ball_bridges_a_narrow_scratch(half, race):
 @law
 @given(surfaces, widths, races, st.floats(5e-6, 2e-4), st.floats(0, 1e-4))
 def test_a_contact_feels_the_area_of_the_path_and_nothing_higher(surface, width, race, footprint, more):
-    path, margin = rolled(np.array(surface), width, BALL, race), footprint + more
-    found = felt(path, width, footprint, margin)
+    path, margin = ball_path(np.array(surface), width, BALL, race), footprint + more
+    found = contact_mean(path, width, footprint, margin)
     area = np.trapezoid(path, places(width))
     assert np.trapezoid(found, places(width + 2 * margin)) == pytest.approx(area, rel=2e-3, abs=1e-15)
     assert found.max() <= path.max() * (1 + 1e-12)
@@ -78,27 +78,27 @@ def test_a_contact_feels_the_area_of_the_path_and_nothing_higher(surface, width,
 @law
 @given(surfaces, widths, races, st.floats(5e-6, 2e-4))
 def test_a_symmetric_path_is_felt_symmetrically(surface, width, race, footprint):
-    path = rolled(np.array(surface + surface[::-1]), width, BALL, race)
-    found = felt(path, width, footprint, footprint)
+    path = ball_path(np.array(surface + surface[::-1]), width, BALL, race)
+    found = contact_mean(path, width, footprint, footprint)
     np.testing.assert_allclose(found, found[::-1], rtol=1e-9, atol=1e-18)
 
 
 @pytest.mark.parametrize("site", RACES)
 def test_a_narrower_contact_feels_more_of_the_path_and_in_the_end_all_of_it(site):
     width = 0.5e-3
-    path = rolled(np.full(9, 1e-4), width, BALL, RACES[site])
+    path = ball_path(np.full(9, 1e-4), width, BALL, RACES[site])
     contacts = (2e-4, 1e-4, 5e-5, 1e-5, 1e-7)
-    peaks = [felt(path, width, footprint, footprint).max() for footprint in contacts]
+    peaks = [contact_mean(path, width, footprint, footprint).max() for footprint in contacts]
     assert peaks == sorted(peaks)
     assert peaks[0] < 0.75 * path.max()
-    np.testing.assert_allclose(felt(path, width, 1e-8, 0.0), path, rtol=0, atol=1e-3 * path.max())
+    np.testing.assert_allclose(contact_mean(path, width, 1e-8, 0.0), path, rtol=0, atol=1e-3 * path.max())
 
 
 def test_under_a_contact_the_pressure_weighs_as_half_an_ellipse():
     """Over a step the contact feels the share of its load that has crossed it: 1/2 + (u sqrt(1 - u^2) + asin u) / pi."""
     width, footprint = 2e-3, 1e-4
     at = places(width + 2 * footprint)
-    found = felt(np.ones(TABLE_POINTS), width, footprint, footprint)
+    found = contact_mean(np.ones(TABLE_POINTS), width, footprint, footprint)
     across = np.abs(at + width / 2) < 0.9 * footprint
     u = (at[across] + width / 2) / footprint
     np.testing.assert_allclose(found[across], 0.5 + (u * np.sqrt(1 - u**2) + np.arcsin(u)) / math.pi, atol=0.05)
@@ -108,8 +108,8 @@ def test_under_a_contact_the_pressure_weighs_as_half_an_ellipse():
 @given(st.integers(0, 2**32), st.floats(1e-8, 5e-5))
 def test_a_rough_floor_has_the_asked_rms_about_its_depth(seed, rms):
     floor = np.full(TABLE_POINTS, 1e-3)
-    rough = roughened(floor, rms, np.random.default_rng(seed)) - floor
+    rough = with_roughness(floor, rms, np.random.default_rng(seed)) - floor
     assert math.sqrt(np.mean(rough**2)) == pytest.approx(rms, rel=1e-6)
     assert abs(rough.mean()) < 1e-6 * rms + 1e-15
-    shallow = roughened(np.full(TABLE_POINTS, rms / 2), rms, np.random.default_rng(seed))
+    shallow = with_roughness(np.full(TABLE_POINTS, rms / 2), rms, np.random.default_rng(seed))
     assert shallow.min() == 0

@@ -5,9 +5,10 @@ import pytest
 
 from gen.measurement.measure import measure
 from gen.scenarios import draw_scenarios
-from gen.simulation.machine import true_motion
-from gen.simulation.simulate import Response, lead_samples, simulate
+from gen.simulation.simulate import simulate
+from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
+from tests.responses import truth
 
 FS = 12_000.0
 RATE, MASS = 30.0, 10.0  # of the shaft [Hz], of shaft and housing [kg]
@@ -44,7 +45,7 @@ def signal_of(recipe_with):
         recipe = recipe_with(STEADY | changes)
         response = simulate(draw_scenarios(recipe, 0, 1), recipe)
         assert response.failures == {}
-        return response.acceleration[0, 0, lead_samples(recipe) :]
+        return response.acceleration[0, 0, timeline(recipe).lead :]
 
     return made
 
@@ -106,9 +107,8 @@ def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):
         }
     )
     scenarios = draw_scenarios(recipe, 0, 2)
-    moved = np.random.default_rng(1).normal(size=(2, 1, lead_samples(recipe) + recipe.n_samples))
-    response = Response(np.repeat(moved, 4, axis=1), np.ones(2, int), np.zeros(2), {}, [])
-    heard = measure(response, scenarios, recipe).signal
+    moved = np.random.default_rng(1).normal(size=(2, 1, timeline(recipe).lead + recipe.n_samples))
+    heard = measure(np.repeat(moved, 4, axis=1), scenarios, recipe).signal
     np.testing.assert_allclose(heard[:, 1], 0.5 * heard[:, 0], atol=1e-5)
     np.testing.assert_allclose(heard[:, 3], 4 * heard[:, 0], atol=1e-5)
     assert heard[:, 2].std() > 1.2 * heard[:, 1].std()
@@ -122,5 +122,5 @@ def test_everything_at_once_moves_and_stays_within_its_step(recipe_with):
     assert np.isfinite(response.acceleration).all()
     assert (response.acceleration.std(axis=2) > 1e-3).all()
     assert (response.step_phase < 0.5).all()
-    rates = [true_motion(scenario, recipe)[0] / scenario.record.conditions["shaft"] for scenario in scenarios]
+    rates = [truth(scenario, recipe).true_shaft_rate / scenario.record.conditions["shaft"] for scenario in scenarios]
     assert rates == pytest.approx([0.85] * len(rates), rel=0.01)

@@ -10,8 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.errors import RecipeError
-from gen.scenarios import Purpose, draw_scenarios, fault_of_each_specimen, stream
-from gen.simulation.machine import physical_record
+from gen.scenarios import Purpose, draw_scenarios, fault_of_each_specimen, scenario_texts, stream
+from gen.simulation.inputs import kernel_input
+from gen.simulation.timeline import timeline
 
 law = settings(deadline=None, max_examples=25)
 SAMPLINGS = ("random", "sobol", "halton")
@@ -204,11 +205,12 @@ def test_a_record_without_its_fault_is_the_same_record(recipe_with):
         twin = scenario.without_fault()
         assert (twin.rig, twin.record, twin.seed) == (scenario.rig, scenario.record, scenario.seed)
         assert (twin.specimen.fault, twin.specimen.spalls) == ("healthy", ())
-        damaged, sound = physical_record(scenario, recipe), physical_record(twin, recipe)
+        damaged, sound = kernel_input(scenario, timeline(recipe)), kernel_input(twin, timeline(recipe))
         assert bool(damaged.spalls) == (scenario.specimen.fault != "healthy")
         assert sound.machine == damaged.machine
-        assert sound.motion == damaged.motion._replace(axis_offset=0.0, axis_rms=0.0, axis_limit=0.0)
-        for field in ("frequencies", "phases", "pickups", "waves"):
+        assert sound.turning == damaged.turning._replace(axis_offset=0.0, axis_rms=0.0, axis_limit=0.0)
+        np.testing.assert_array_equal(sound.waviness.races, damaged.waviness.races)
+        for field in ("frequencies", "phases", "pickups"):
             np.testing.assert_array_equal(getattr(sound, field), getattr(damaged, field))
 
 
@@ -227,7 +229,7 @@ def test_streams_of_different_places_and_purposes_are_different():
 
 def test_a_scenario_is_plain_enough_to_be_stored_beside_its_record(recipe_with):
     for scenario in draw_scenarios(recipe_with(), 0, 4):
-        stored = json.loads(json.dumps(scenario.as_dict()))
+        stored = json.loads(scenario_texts([scenario])[0])
         assert stored["rig"]["machine"] == scenario.rig.machine
         assert stored["specimen"]["properties"] == scenario.specimen.properties
         assert stored["record"]["conditions"] == scenario.record.conditions

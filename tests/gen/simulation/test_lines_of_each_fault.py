@@ -75,7 +75,7 @@ class Envelope:
 def envelopes(recipe):
     """Fault and envelope spectrum of every record of a recipe."""
     scenarios = draw_scenarios(recipe)
-    signals = measure(simulate(scenarios, recipe), scenarios, recipe).signal[:, 0]
+    signals = measure(simulate(scenarios, recipe).acceleration, scenarios, recipe).signal[:, 0]
     return [
         (scenario.specimen.fault, Envelope(signal, scenario.record.conditions["shaft"]))
         for scenario, signal in zip(scenarios, signals, strict=True)

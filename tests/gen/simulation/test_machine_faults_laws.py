@@ -13,8 +13,8 @@ from scipy.stats import kstest
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel.batch import Motion, Spall
-from gen.physics.kernel.turning import KNOCK_SCATTER, KNOCK_SECONDS
+from gen.physics.inputs import SpallInput, Turning
+from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.rotor import as_columns, rest
 from tests.reference import knock_scatter, march_lanes
 from tests.strategies import RIG, angles, record
@@ -22,7 +22,7 @@ from tests.strategies import RIG, angles, record
 law = settings(deadline=None, max_examples=15)
 KNOT = 1 / 12_000
 TIGHT = RIG._replace(looseness=1e-30)
-STANDING, CONSTANT = Motion(0.0), np.ones((1, 2))
+STANDING, CONSTANT = Turning(0.0), np.ones((1, 2))
 PLACES = 2 * np.pi * np.arange(9)[None] / 9  # of the balls of a cage that has not turned
 loads = st.floats(-500, -50) | st.floats(50, 500)
 plays = st.floats(1e-7, 1e-4)
@@ -47,7 +47,7 @@ def test_a_loose_housing_lies_at_one_end_of_its_play(load_x, load_y, play):
 @law
 @given(angles, st.floats(10, 60))
 def test_a_support_without_play_is_a_tight_one(cage, shaft_rate):
-    motion = Motion(shaft_rate, cage_angle=cage, unbalance=2.75e-5)
+    motion = Turning(shaft_rate, cage_angle=cage, unbalance=2.75e-5)
     loose, none = scheduled(RIG._replace(looseness=1e-5), motion), scheduled(RIG, motion)
     tight = march_lanes([record(RIG, motion)], 240, 8, KNOT)[0]
     assert np.array_equal(march_lanes([loose, none], 240, 8, KNOT)[1].states, tight.states)
@@ -68,7 +68,7 @@ def swings(motions, turns=4):
 def test_a_bow_pulls_alike_at_any_speed_and_an_unbalance_with_its_square():
     """Far below the first resonance, some 400 Hz; the rest is its share of the rotor, (20 / 400)^2."""
     bow_10, bow_20, unbalance_10, unbalance_20 = swings(
-        [Motion(10.0, bow=50.0), Motion(20.0, bow=50.0), Motion(10.0, unbalance=1e-2), Motion(20.0, unbalance=1e-2)]
+        [Turning(10.0, bow=50.0), Turning(20.0, bow=50.0), Turning(10.0, unbalance=1e-2), Turning(20.0, unbalance=1e-2)]
     )[:, 0]
     np.testing.assert_allclose(bow_20 / bow_10, 1, rtol=5e-3)
     np.testing.assert_allclose(unbalance_20 / unbalance_10, 4, rtol=5e-3)
@@ -76,7 +76,7 @@ def test_a_bow_pulls_alike_at_any_speed_and_an_unbalance_with_its_square():
 
 
 def test_misalignment_shakes_the_shaft_along_its_direction_at_twice_the_shaft_rate():
-    along_x, along_y, straight = swings([Motion(20.0, twice_x=50.0), Motion(20.0, twice_y=50.0), Motion(20.0)])
+    along_x, along_y, straight = swings([Turning(20.0, twice_x=50.0), Turning(20.0, twice_y=50.0), Turning(20.0)])
     assert along_x[1, 0] > 100 * max(along_x[0, 0], along_x[1, 1], straight[1, 0])
     assert along_y[1, 1] > 100 * max(along_y[0, 1], along_y[1, 0], straight[1, 1])
 
@@ -89,7 +89,7 @@ def test_a_cage_knocks_once_a_turn_with_the_momentum_of_a_half_sine(knots_per_se
         half_clearance=1e-2, ring_damping=0.0, support_stiffness_x=1e-9, support_stiffness_y=1e-9,
         support_damping_x=0.0, support_damping_y=0.0, load_x=0.0, load_y=0.0,
     )  # fmt: skip
-    motion = Motion(60.0, cage_angle=place - ahead, knock=strength, knock_angle=place, knock_seed=round(1e6 * ahead))
+    motion = Turning(60.0, cage_angle=place - ahead, knock=strength, knock_angle=place, knock_seed=round(1e6 * ahead))
     turn = 1 / (60 * orders(CATALOGUE["6205"]).ftf)
     knot, n_steps = 1 / knots_per_second, math.ceil(100_000 / knots_per_second)
     n_knots = math.ceil(1.9 * turn / knot)
@@ -126,7 +126,7 @@ def test_a_run_up_turns_the_shaft_by_the_integral_of_its_rate(begin, end, shaft_
     n_knots, half = 400, 200
     shares = begin + (end - begin) * (np.arange(half) + 0.5) / half
     schedule = np.stack([np.append(shares, end), np.ones(half + 1)], axis=1)
-    motion = Motion(shaft_rate, knock=10.0)
+    motion = Turning(shaft_rate, knock=10.0)
     trip = march_lanes([scheduled(TIGHT, motion, schedule)], n_knots, 8, KNOT)[0]
     turns = shaft_rate * half * KNOT * ((begin + end) / 2 + end)
     expected = 2 * np.pi * turns * np.array([1, orders(CATALOGUE["6205"]).ftf])
@@ -135,7 +135,7 @@ def test_a_run_up_turns_the_shaft_by_the_integral_of_its_rate(begin, end, shaft_
 
 
 def test_a_schedule_that_is_over_holds_whatever_its_neighbours_do():
-    motion, short = Motion(30.0), np.linspace([1.0, 1.0], [1.5, 2.0], 50)
+    motion, short = Turning(30.0), np.linspace([1.0, 1.0], [1.5, 2.0], 50)
     long = scheduled(TIGHT, motion, np.linspace([1.0, 1.0], [0.5, 3.0], 500))
     alone = march_lanes([scheduled(TIGHT, motion, short)], 600, 8, KNOT)[0]
     beside = march_lanes([scheduled(TIGHT, motion, short), long], 600, 8, KNOT)[0]
@@ -157,9 +157,9 @@ def test_a_ball_meets_a_spall_wherever_it_is_in_its_pocket(late_by):
 
     Jitter and damping that are all but none, and a spall of no depth, leave one kernel for both, which other tests use too.
     """
-    motion = Motion(1e-6, jitter_rms=1e-12, late_ball=0, late_by=late_by)
+    motion = Turning(1e-6, jitter_rms=1e-12, late_ball=0, late_by=late_by)
     across = {"load_x": 300 * math.cos(late_by), "load_y": 300 * math.sin(late_by)}
     machine = RIG._replace(half_clearance=0.0, contact_damping=1e-3, **across)
-    records = [record(machine, motion, [Spall("outer", 0.5e-3, depth, late_by)]) for depth in (0.0, 1e-3)]
+    records = [record(machine, motion, [SpallInput("outer", 0.5e-3, depth, late_by)]) for depth in (0.0, 1e-3)]
     sound, spalled = (trip.states[-1] for trip in march_lanes(records, 600, 8, KNOT))
     assert (spalled - sound)[:2] @ [math.cos(late_by), math.sin(late_by)] > 1e-6

@@ -11,12 +11,15 @@ from gen.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor
-from gen.physics.kernel.batch import record_shape
+from gen.physics.kernel.batch import input_shape
 from gen.physics.lubricant import STEEL_EXPANSION
 from gen.scenarios import draw_scenarios
-from gen.simulation.machine import cosine_sum, heaviest_ball_load, physical_record, true_motion
-from gen.simulation.simulate import Response, lead_samples
+from gen.simulation.inputs import kernel_input
+from gen.simulation.machine import heaviest_ball_load
+from gen.simulation.motion import cosine_sum
+from gen.simulation.timeline import timeline
 from tests.reference import slow_motion
+from tests.responses import response_of, truth
 
 FS = 12_000.0
 OIL = {"contact.lubricant": {}}
@@ -34,7 +37,7 @@ def record_of(recipe_with):
 
     def made(changes):
         recipe = recipe_with(changes)
-        return physical_record(draw_scenarios(recipe, 0, 1)[0], recipe)
+        return kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(recipe))
 
     return made
 
@@ -42,10 +45,8 @@ def record_of(recipe_with):
 def labels(recipe):
     """Labels of a corpus whose bodies do not move, for they do not depend on it."""
     scenarios = draw_scenarios(recipe)
-    n = len(scenarios)
-    still = np.zeros((n, 1, lead_samples(recipe) + recipe.n_samples))
-    response = Response(still, np.ones(n, int), np.zeros(n), {}, [None] * n)
-    return part_dataset(measure(response, scenarios, recipe), scenarios, recipe, response)
+    response = response_of(scenarios, recipe)
+    return part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response)
 
 
 def test_a_hotter_inner_ring_takes_up_clearance_as_steel_expands(record_of):
@@ -89,7 +90,7 @@ def test_a_bearing_of_ones_own_reaches_the_kernel(record_of):
     assert found.machine.ball_radius == pytest.approx(0.0045)
     assert found.machine.contact_cosine == pytest.approx(math.cos(math.radians(15)))
     assert found.machine.contact_exponent == POINT_EXPONENT
-    assert len(record_shape(found).balls) == 11
+    assert len(input_shape(found).balls) == 11
 
 
 ROLLERS = {
@@ -105,7 +106,7 @@ ROLLERS = {
 
 @pytest.mark.parametrize("kind", ROLLERS)
 def test_rollers_push_back_by_the_power_ten_ninths(record_of, kind):
-    machine, shape = record_of({"bearing": ROLLERS[kind]}).machine, record_shape(record_of({"bearing": ROLLERS[kind]}))
+    machine, shape = record_of({"bearing": ROLLERS[kind]}).machine, input_shape(record_of({"bearing": ROLLERS[kind]}))
     assert machine.contact_exponent == LINE_EXPONENT
     assert machine.load_deflection_factor == pytest.approx(load_deflection_factor(CATALOGUE["NU206"]), rel=1e-9)
     assert len(shape.roller) == 1
@@ -130,7 +131,7 @@ def test_outer_spalls_alone_count_from_the_load_in_the_kernel_and_in_the_labels(
     }
     recipe = recipe_with(changes)
     expected = math.radians(-50 if site == "outer" else 10)
-    assert physical_record(draw_scenarios(recipe, 0, 1)[0], recipe).spalls[0].angle == pytest.approx(expected)
+    assert kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(recipe)).spalls[0].angle == pytest.approx(expected)
     assert labels(recipe)["angle"].values == pytest.approx(expected)
 
 
@@ -169,12 +170,12 @@ def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profi
     recipe = recipe_with(changes | {"operation.speed_profile": profile})
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 3):
-        rate, orders = true_motion(scenario, recipe)
-        angles = slow_motion(physical_record(scenario, recipe), 1 / FS, start + n).angles
+        found = truth(scenario, recipe)
+        angles = slow_motion(kernel_input(scenario, timeline(recipe)), 1 / FS, start + n).angles
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
-        assert shaft * FS / n == pytest.approx(rate, rel=2e-5)
-        assert rate == pytest.approx(30 * mean, rel=0.05)
-        assert cage / shaft == pytest.approx(orders.ftf, rel=2e-4)
+        assert shaft * FS / n == pytest.approx(found.true_shaft_rate, rel=2e-5)
+        assert found.true_shaft_rate == pytest.approx(30 * mean, rel=0.05)
+        assert cage / shaft == pytest.approx(found.true_ftf, rel=2e-4)
 
 
 def test_a_profile_starts_with_the_record_and_not_with_its_settling(record_of):
@@ -213,7 +214,7 @@ def test_steady_records_have_no_schedule(record_of):
 
 def test_waviness_that_would_fold_down_is_left_out(record_of):
     smooth = {"specimen.waviness_nm": 20, "specimen.ball_waviness_nm": 2, "operation.shaft_rpm": 6000}
-    whole, cut = (record_of(smooth | {"recording.sample_rate_hz": fs}).waves for fs in (48_000, 6_000))
+    whole, cut = (record_of(smooth | {"recording.sample_rate_hz": fs}).waviness.races for fs in (48_000, 6_000))
     kept = cut != 0
     assert (whole != 0).all()
     assert 0.2 < kept.mean() < 0.9

@@ -9,13 +9,15 @@ from hypothesis import strategies as st
 
 from gen.errors import SimulationError
 from gen.generate import compile_kernels
-from gen.physics.kernel.batch import record_shape
+from gen.physics.kernel.batch import input_shape
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
-from gen.simulation.machine import schedule
-from gen.simulation.outline import outlined_record
-from gen.simulation.simulate import kernel_record, steps_per_sample
+from gen.simulation.inputs import kernel_input
+from gen.simulation.motion import schedule_of
+from gen.simulation.outline import outlined_input
+from gen.simulation.steps import steps_per_sample
+from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
 
 GENERATE = importlib.import_module("gen.generate")
@@ -46,7 +48,7 @@ profiles = st.one_of(
 
 
 def needs(record, scenario, recipe):
-    return record_shape(record), steps_per_sample(record, scenario, recipe)
+    return input_shape(record), steps_per_sample(record, scenario.record.number, recipe)
 
 
 @settings(deadline=None, max_examples=200)
@@ -62,7 +64,7 @@ def test_the_highest_speed_and_load_are_those_of_the_whole_schedule(recipe_with,
     changes |= {f"operation.{key}_profile": value for key, value in (("speed", speed), ("load", load)) if value}
     recipe = recipe_with(changes | {"seed": seed})
     scenario = draw_scenarios(recipe, 0, 1)[0]
-    whole, found = schedule(scenario, recipe), outlined_record(scenario, recipe).schedule
+    whole, found = schedule_of(scenario, timeline(recipe)), outlined_input(scenario, timeline(recipe)).schedule
     assert len(found) == min(len(whole), 1)
     if len(whole):
         np.testing.assert_allclose(found[0], whole.max(axis=0), rtol=1e-12)
@@ -76,22 +78,22 @@ def test_the_peak_of_a_wandering_load_is_found_however_sparsely_it_is_looked_at(
     monkeypatch.setattr("gen.simulation.outline.SAMPLES_PER_TURN", samples_per_turn)
     recipe = recipe_with({"operation.load_wander_percent": 50, "operation.shaft_rpm": 6000, "operation.load_n": 100})
     for scenario in draw_scenarios(recipe):
-        found = outlined_record(scenario, recipe).schedule[0, 1]
-        assert found == pytest.approx(schedule(scenario, recipe)[:, 1].max(), rel=1e-12)
+        found = outlined_input(scenario, timeline(recipe)).schedule[0, 1]
+        assert found == pytest.approx(schedule_of(scenario, timeline(recipe))[:, 1].max(), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", shipped_recipes())
 def test_shape_and_steps_of_shipped_recipes_are_those_of_whole_records(name):
     recipe = read_recipe(name)
     for scenario in draw_scenarios(recipe, 0, 48):
-        whole, found = kernel_record(scenario, recipe), outlined_record(scenario, recipe)
+        whole, found = kernel_input(scenario, timeline(recipe)), outlined_input(scenario, timeline(recipe))
         assert needs(found, scenario, recipe) == needs(whole, scenario, recipe)
 
 
 def test_shape_and_steps_of_a_record_with_everything_are_those_of_the_whole_record(recipe_with):
     recipe = recipe_with(EVERYTHING | {"operation.load_wander_percent": 50})
     for scenario in draw_scenarios(recipe):
-        whole, found = kernel_record(scenario, recipe), outlined_record(scenario, recipe)
+        whole, found = kernel_input(scenario, timeline(recipe)), outlined_input(scenario, timeline(recipe))
         assert needs(found, scenario, recipe) == needs(whole, scenario, recipe)
 
 
@@ -108,7 +110,7 @@ def test_a_record_that_cannot_be_has_no_outline_for_the_same_reason(recipe_with,
     recipe = recipe_with(changes)
     scenario = draw_scenarios(recipe, 0, 1)[0]
     sentences = []
-    for make in (kernel_record, outlined_record):
+    for make in (kernel_input, outlined_input):
         with pytest.raises(SimulationError, match="record 0: ") as caught:
             make(scenario, recipe)
         sentences.append(str(caught.value))
@@ -121,18 +123,18 @@ def test_a_plan_builds_no_whole_record(write_recipe, tmp_path, monkeypatch):
     def refused(*_args):
         raise AssertionError
 
-    for name in ("kernel_spalls", "waviness", "schedule"):
-        monkeypatch.setattr(f"gen.simulation.machine.{name}", refused)
+    for name in ("spall_inputs", "waviness_of", "schedule_of"):
+        monkeypatch.setattr(f"gen.simulation.inputs.{name}", refused)
     assert plan(write_recipe(tmp_path / "r.yaml", EVERYTHING)).steps_per_sample.keys()
 
 
 def test_one_whole_record_is_built_for_each_kernel_that_is_compiled(recipe_with, monkeypatch):
     built = []
-    monkeypatch.setattr(GENERATE, "kernel_record", lambda scenario, _recipe: built.append(scenario))
+    monkeypatch.setattr(GENERATE, "kernel_input", lambda scenario, _recipe: built.append(scenario))
     monkeypatch.setattr(GENERATE, "compile_kernel", lambda _record: None)
     recipe = recipe_with({"operation.jitter_deg": {"kind": "grid", "values": [0, 0.3]}})
     compile_kernels(recipe)
-    assert len(built) == len({record_shape(kernel_record(s, recipe)) for s in draw_scenarios(recipe)}) == 2
+    assert len(built) == len({input_shape(kernel_input(s, timeline(recipe))) for s in draw_scenarios(recipe)}) == 2
 
 
 def test_a_plan_with_dear_loads_draws_fewer_records_and_says_so(write_recipe, tmp_path):

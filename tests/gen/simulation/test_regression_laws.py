@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from gen import CorpusError, draw_scenarios, generate, simulate
-from gen.simulation.machine import physical_record
+from gen.simulation.inputs import kernel_input
+from gen.simulation.timeline import timeline
 
 
 def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe_with):
@@ -17,7 +18,7 @@ def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe
         }
     )
     scenarios = draw_scenarios(recipe)
-    assert len({physical_record(scenario, recipe).waves.size for scenario in scenarios}) == 2
+    assert len({kernel_input(scenario, timeline(recipe)).waviness.races.size for scenario in scenarios}) == 2
     together = simulate(scenarios, recipe).acceleration
     for place in (0, len(scenarios) - 1):
         np.testing.assert_array_equal(simulate(scenarios[place : place + 1], recipe).acceleration[0], together[place])

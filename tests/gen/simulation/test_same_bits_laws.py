@@ -19,7 +19,7 @@ recipe = read_recipe(sys.argv[1])
 scenarios = draw_scenarios(recipe)
 response = simulate(scenarios, recipe)
 assert len(response.failures) < len(scenarios) / 4
-for array in (response.acceleration, measure(response, scenarios, recipe).signal):
+for array in (response.acceleration, measure(response.acceleration, scenarios, recipe).signal):
     print(hashlib.sha256(array.tobytes()).hexdigest())
 """
 # what a processor of 2013 can do, to numba, to NumPy and to its linear algebra

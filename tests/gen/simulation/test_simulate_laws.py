@@ -1,6 +1,5 @@
 """Laws of the simulation of scenarios: what a record gives is its own, and fine enough, or it is refused."""
 
-import importlib
 import math
 
 import numpy as np
@@ -9,12 +8,14 @@ import pytest
 from gen.errors import SimulationError
 from gen.physics.rotor import fastest_swing, likely_stiffness
 from gen.scenarios import draw_scenarios
-from gen.simulation.machine import physical_record, true_motion
-from gen.simulation.simulate import FINE_STEP, lead_samples, simulate, steps_per_sample
+from gen.simulation.inputs import kernel_input
+from gen.simulation.simulate import simulate
+from gen.simulation.steps import FINE_STEP, steps_per_sample
+from gen.simulation.timeline import timeline
 from tests.reference import decimation_taps, march_lanes, slow_motion, waviness
+from tests.responses import truth
 
 FS = 12_000.0
-MODULE = importlib.import_module("gen.simulation.simulate")  # the package gives the function under this name
 
 
 @pytest.fixture(scope="module")
@@ -27,7 +28,7 @@ def simulated(recipe_with):
 
 def test_every_record_of_the_small_recipe_moves_and_none_diverges(simulated):
     recipe, scenarios, response = simulated
-    assert response.acceleration.shape == (len(scenarios), 1, lead_samples(recipe) + recipe.n_samples)
+    assert response.acceleration.shape == (len(scenarios), 1, timeline(recipe).lead + recipe.n_samples)
     assert np.isfinite(response.acceleration).all()
     assert (response.acceleration.std(axis=2) > 1e-3).all()
     assert response.failures == {}
@@ -76,7 +77,7 @@ def test_a_response_is_the_decimated_motion_of_its_bodies_along_its_channels(rec
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     taps = decimation_taps(8)
     for trip, found in zip(
-        march_lanes([physical_record(scenario, recipe) for scenario in scenarios], n_knots, 8, 1 / FS),
+        march_lanes([kernel_input(scenario, timeline(recipe)) for scenario in scenarios], n_knots, 8, 1 / FS),
         response,
         strict=True,
     ):
@@ -104,17 +105,17 @@ def test_decimation_passes_the_band_and_stops_what_would_fold_into_it(factor):
 def test_the_step_is_the_coarsest_that_is_fine_for_the_stiffest_mode(simulated):
     recipe, scenarios, response = simulated
     for scenario, factor in zip(scenarios, response.oversampling, strict=True):
-        record = physical_record(scenario, recipe)
+        record = kernel_input(scenario, timeline(recipe))
         swing = float(fastest_swing(record.machine, likely_stiffness(record.machine, record.bearing.n_balls)))
         assert swing / (FS * factor) <= FINE_STEP
-        assert factor == steps_per_sample(record, scenario, recipe)
+        assert factor == steps_per_sample(record, scenario.record.number, recipe)
 
 
 def test_a_step_too_coarse_for_the_stiffest_mode_is_refused_before_it_runs(recipe_with, monkeypatch):
     def never(*_args):
         pytest.fail("the kernel ran")
 
-    monkeypatch.setattr(MODULE, "integrate", never)
+    monkeypatch.setattr("gen.simulation.batches.integrate", never)
     recipe = recipe_with({"recording.oversampling": 1, "machine.resonator.frequency_hz": 3500})
     need = r"is too fast for a step of 83\.3 us; raise recording\.oversampling to \d+ or leave it out\.$"
     with pytest.raises(SimulationError, match=r"^record 0: its stiffest mode of \d+ Hz " + need):
@@ -130,7 +131,7 @@ def test_a_machine_too_stiff_for_any_step_is_refused(recipe_with):
 
 def test_a_record_that_diverges_is_named_and_leaves_the_others_as_they_are(recipe_with, monkeypatch):
     """Two rigs, one step per sample: a resonance at 5.9 kHz is beyond what Runge-Kutta holds (2.83 / dt), one at 1.5 kHz is not."""
-    monkeypatch.setattr(MODULE, "COARSEST_STEP", math.inf)
+    monkeypatch.setattr("gen.simulation.steps.COARSEST_STEP", math.inf)
     changes = {
         "corpus.rigs": 2,
         "recording.oversampling": 1,
@@ -170,26 +171,26 @@ def test_the_labels_hold_the_mean_rates_at_which_shaft_and_cage_really_turned(re
     recipe = recipe_with(wandering)
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 6):
-        rate, found = true_motion(scenario, recipe)
-        angles = slow_motion(physical_record(scenario, recipe), 1 / FS, start + n).angles
+        found = truth(scenario, recipe)
+        angles = slow_motion(kernel_input(scenario, timeline(recipe)), 1 / FS, start + n).angles
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
-        assert shaft * FS / n == pytest.approx(rate, rel=1e-4)
-        assert cage / shaft == pytest.approx(
-            found.ftf, rel=1e-3
-        )  # the mean of a product is not the product of the means
-        assert found.bpfo + found.bpfi == pytest.approx(9)
+        assert shaft * FS / n == pytest.approx(found.true_shaft_rate, rel=1e-4)
+        # the mean of a product is not the product of the means
+        assert cage / shaft == pytest.approx(found.true_ftf, rel=1e-3)
+        assert found.true_bpfo + found.true_bpfi == pytest.approx(9)
 
 
 def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_with_the_record(recipe_with):
     recipe = recipe_with({"specimen.waviness_nm": 25})
     scenarios = draw_scenarios(recipe, 0, 4)
     turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
-    first, again, other = (physical_record(scenarios[place], recipe) for place in (0, 1, 2))
-    np.testing.assert_array_equal(first.waves, again.waves)
-    assert not np.array_equal(first.waves, other.waves)
+    first, again, other = (kernel_input(scenarios[place], timeline(recipe)) for place in (0, 1, 2))
+    np.testing.assert_array_equal(first.waviness.races, again.waviness.races)
+    assert not np.array_equal(first.waviness.races, other.waviness.races)
     for record in (first, other):
         both = waviness(record, turn, turn)
-        inner = waviness(record._replace(waves=record.waves * np.repeat([1, 0], len(record.waves) // 2)), turn, turn)
+        alone = record.waviness._replace(races=record.waviness.races * [[1], [0]])
+        inner = waviness(record._replace(waviness=alone), turn, turn)
         assert np.sqrt(np.mean(inner**2)) == pytest.approx(25e-9, rel=1e-6)
         assert np.sqrt(np.mean((both - inner) ** 2)) == pytest.approx(25e-9, rel=1e-6)
 
@@ -197,5 +198,5 @@ def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_wi
 def test_outer_spalls_count_their_angle_from_the_load(recipe_with):
     outer = [{"kind": "outer", "width_mm": 0.5, "angle_deg": 10}]
     recipe = recipe_with({"faults": outer, "machine.load_angle_deg": -60})
-    spall = physical_record(draw_scenarios(recipe, 0, 1)[0], recipe).spalls[0]
+    spall = kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(recipe)).spalls[0]
     assert spall.angle == pytest.approx(math.radians(-50))

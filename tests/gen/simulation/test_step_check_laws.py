@@ -11,8 +11,10 @@ from gen.generate import generate
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import fastest_swing
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
-from gen.simulation.machine import physical_record
-from gen.simulation.simulate import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places, simulate, step_errors
+from gen.simulation.inputs import kernel_input
+from gen.simulation.simulate import simulate, step_errors
+from gen.simulation.steps import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places
+from gen.simulation.timeline import timeline
 from tests.reference import contact_stiffness, contacts, march_lanes, slow_motion
 
 FS = 12_000.0
@@ -152,7 +154,7 @@ def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
     """At every knot of the march the contacts are looked at again; between two knots they get little stiffer."""
     recipe, scenarios, response, _ = checked
     some = [0, 3]
-    records = [physical_record(scenarios[place], recipe) for place in some]
+    records = [kernel_input(scenarios[place], timeline(recipe)) for place in some]
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     for place, record in zip(some, records, strict=True):
         factor = int(response.oversampling[place])
@@ -209,7 +211,7 @@ def test_oil_too_thick_for_the_formulas_leaves_the_record_out(recipe_with):
     thick = {"contact": {"lubricant": {"viscosity_40_mm2_s": 1000}}, "operation.temperature_celsius": -20}
     recipe = recipe_with(thick)
     failures = simulate(draw_scenarios(recipe, 0, 1), recipe).failures
-    assert "um is beyond what film formulas hold for, 10 um; take thinner or warmer oil." in failures[0]
+    assert "um is above the 10 um for which film formulas hold; take thinner or warmer oil." in failures[0]
 
 
 def test_a_contact_too_steep_for_a_radial_bearing_is_refused(recipe_with):

@@ -14,7 +14,7 @@ from scipy.special import ellipk
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import effective_modulus, ellipticity, footprints, race_curvatures, race_factors
-from gen.physics.trace import felt, rolled
+from gen.physics.trace import ball_path, contact_mean
 from tests.paths import ROOT
 from tests.strategies import bearings
 
@@ -76,8 +76,8 @@ def test_the_contact_of_a_roller_is_the_strip_of_two_cylinders():
 
 def test_the_model_page_says_how_far_a_ball_drops_into_a_narrow_spall_through_its_contact():
     bearing, width = CATALOGUE["6205"], 0.18e-3
-    path = rolled(np.full(3, 280e-6), width, bearing.ball_diameter / 2, bearing.inner_radius)
+    path = ball_path(np.full(3, 280e-6), width, bearing.ball_diameter / 2, bearing.inner_radius)
     footprint = footprints(bearing, LOAD)[0]
-    through = felt(path, width, footprint, footprint).max()
+    through = contact_mean(path, width, footprint, footprint).max()
     page = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
     assert f"under {LOAD:.0f} N by {1e6 * through:.2f} um instead of {1e6 * path.max():.2f} um" in page

@@ -7,7 +7,8 @@ from scipy.signal import find_peaks, hilbert
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel.batch import Motion, Spall, lay_out, record_shape
+from gen.physics.inputs import SpallInput, Turning
+from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate
@@ -23,7 +24,7 @@ EVEN = 1e-12  # jitter, and waviness [m]: one kernel for every test here, with d
 def responses(records, n_steps, n_settle, n_out):
     """What the two channels of every record give, shape (record, channel, time) [m s-2]."""
     records = [drawn._replace(pickups=Y_OF_SENSOR) for drawn in records]
-    shape = record_shape(records[0])
+    shape = input_shape(records[0])
     batch = lay_out(records, shape, 1 / FS)
     made = integrate(shape, batch, 1 / (FS * n_steps), n_steps, decimation(n_steps), n_settle, n_out)
     assert (made.diverged == -1).all()
@@ -34,12 +35,12 @@ def wandering_rig(rng):
     """The rig with a spall that is heard; contacts are all but undamped, since damping jumps where a ball touches."""
     site = rng.choice(list(LINES))
     start = rng.uniform(-np.pi, np.pi, 3)
-    motion = Motion(
+    motion = Turning(
         rng.uniform(10, 60), 1e-3, 0.0, 0.01, 5e-3, 5e-3, 0.0, 0.05, 0.15,
         unbalance=2.75e-5, shaft_angle=start[0], cage_angle=start[1], spin_angle=start[2],
     )  # fmt: skip
     angle = -np.pi / 2 if site == "outer" else rng.uniform(-np.pi, np.pi)
-    spall = Spall(site, rng.uniform(0.3e-3, 0.53e-3), 2.8e-4, angle)
+    spall = SpallInput(site, rng.uniform(0.3e-3, 0.53e-3), 2.8e-4, angle)
     return record(RIG._replace(contact_damping=1.0), motion, [spall], seed=rng.integers(2**32), waviness=2e-8)
 
 
@@ -58,11 +59,11 @@ def test_a_record_with_random_processes_does_not_depend_on_the_step(seed):
 def turning(site, shaft_rate, rng, *, mean_slip=0.0, load=100.0):
     """A spall of 0.5 mm in a preloaded bearing: every passage is heard, and all are alike without a load."""
     start = rng.uniform(-np.pi, np.pi, 3)
-    motion = Motion(
+    motion = Turning(
         shaft_rate, mean_slip=mean_slip, jitter_rms=EVEN, shaft_angle=start[0], cage_angle=start[1], spin_angle=start[2]
     )
     tight = RIG._replace(half_clearance=-5e-6, contact_damping=50.0, load_x=0.0, load_y=-load)
-    return record(tight, motion, [Spall(site, 0.5e-3, 3e-4, rng.uniform(-np.pi, np.pi))], waviness=EVEN)
+    return record(tight, motion, [SpallInput(site, 0.5e-3, 3e-4, rng.uniform(-np.pi, np.pi))], waviness=EVEN)
 
 
 def envelope(signal):
@@ -105,7 +106,7 @@ def test_a_late_ball_comes_late_once_a_turn_of_the_cage():
     drawn, lags = [], rng.uniform(0.05, 0.15, LANES)
     for lag in lags * rng.choice([-1, 1], LANES):
         there = turning("outer", 20.0, rng, load=0.0)
-        drawn.append(there._replace(motion=there.motion._replace(late_ball=int(rng.integers(9)), late_by=lag)))
+        drawn.append(there._replace(turning=there.turning._replace(late_ball=int(rng.integers(9)), late_by=lag)))
     period = FS / (LINES["outer"] * 20.0)
     for lag, channels in zip(lags, responses(drawn, 8, 600, FS), strict=True):
         off = np.abs(np.diff(passages(channels, period)) / period - 1)
@@ -122,7 +123,7 @@ def test_a_late_ball_comes_late_once_a_turn_of_the_cage():
 @given(wandering_records())
 def test_a_record_comes_out_of_every_lane_with_the_same_bits(drawn):
     drawn = drawn._replace(pickups=Y_OF_SENSOR)
-    shape = record_shape(drawn)
+    shape = input_shape(drawn)
     made = integrate(shape, lay_out([drawn] * LANES, shape, 1 / FS), 1 / (4 * FS), 4, decimation(4), 0, 32)
     assert (made.response == made.response[..., :1]).all()
     assert (made.steepest == made.steepest[0]).all()

@@ -7,7 +7,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from gen.physics.bearing import Bearing
-from gen.physics.kernel.batch import Motion, Record, Spall, n_terms
+from gen.physics.inputs import KernelInput, SpallInput, Turning
+from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine
 from tests.paths import GOLDEN
 from tests.reference import EVERY_ACCELERATION, march_lanes, right_hand_side, slow_motion
@@ -20,23 +21,22 @@ STEPS_AT_192_KHZ = 16
 
 def golden_record(half_clearance, *, with_spalls):
     bearing = Bearing("golden", **GOLDEN["bearing"])
-    still = np.zeros(n_terms(bearing.n_balls))
-    return Record(
-        bearing,
-        Machine(**GOLDEN["machine"])._replace(half_clearance=half_clearance),
-        Motion(**GOLDEN["motion"]),
-        tuple(Spall(**spall) for spall in GOLDEN["spalls"]) if with_spalls else (),
-        still,
-        still,
-        EVERY_ACCELERATION,
-        np.empty(0),
+    still = np.zeros(n_process_terms(bearing.n_balls))
+    return KernelInput(
+        bearing=bearing,
+        machine=Machine(**GOLDEN["machine"])._replace(half_clearance=half_clearance),
+        turning=Turning(**GOLDEN["motion"]),
+        spalls=tuple(SpallInput(**spall) for spall in GOLDEN["spalls"]) if with_spalls else (),
+        frequencies=still,
+        phases=still,
+        pickups=EVERY_ACCELERATION,
     )
 
 
 def later(record, time):
     """The record as it stands after ``time``: the rates hold, so one knot is enough to know the angles."""
     shaft, cage, spin = slow_motion(record, time, 1).angles[1] if time else slow_motion(record, 1.0, 0).angles[0]
-    return record._replace(motion=record.motion._replace(shaft_angle=shaft, cage_angle=cage, spin_angle=spin))
+    return record._replace(turning=record.turning._replace(shaft_angle=shaft, cage_angle=cage, spin_angle=spin))
 
 
 @pytest.mark.parametrize("case", GOLDEN["right_hand_sides"], ids=lambda case: f"t={case['time']}")

@@ -5,14 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.kernel.batch import Motion, Spall
+from gen.physics.inputs import SpallInput, Turning
 from gen.physics.kernel.compiling import LANES
 from tests.reference import march_lanes
-from tests.strategies import RIG, machines, record, steady_motions, wandering_records
+from tests.strategies import RIG, machines, record, steady_turnings, wandering_records
 
 law = settings(deadline=None, max_examples=20)
 KNOT = 1 / 12_000
-STANDING = Motion(0.0)
+STANDING = Turning(0.0)
 UNDAMPED = RIG._replace(
     ring_damping=0.0, shaft_damping=0.0, support_damping_x=0.0, support_damping_y=0.0, sensor_damping=0.0
 )
@@ -32,7 +32,7 @@ def displaced(*, along, by, clearance):
 
 
 def test_the_error_of_a_smooth_trajectory_falls_with_the_fourth_power_of_the_step():
-    smooth = record(RIG._replace(half_clearance=-12e-6), Motion(29.95, unbalance=2.75e-5))
+    smooth = record(RIG._replace(half_clearance=-12e-6), Turning(29.95, unbalance=2.75e-5))
     start = np.array([1e-6, -18e-6, 3e-7, -6e-6, 3e-7, -6e-6, 1e-4, -2e-4, 0, 1e-4, 0, 0])
     steps = [4, 8, 16, 32]  # 48 to 384 kHz
     exact, *trips = (march_lanes([smooth], 240, n, KNOT, start)[0].states[:, :6] for n in [128, *steps])
@@ -67,7 +67,7 @@ def test_without_damping_and_rotation_the_energy_stays_and_the_more_so_the_finer
 
 
 @law
-@given(machines(contact_damping=0.0), steady_motions(), st.integers(0, 2**32 - 1))
+@given(machines(contact_damping=0.0), steady_turnings(), st.integers(0, 2**32 - 1))
 def test_the_bearing_moves_momentum_but_makes_none(machine, motion, seed):
     still = motion._replace(unbalance=0.0)
     start = np.random.default_rng(seed).normal(size=12) * np.repeat([1e-5, 1e-2], 6)
@@ -108,8 +108,8 @@ def test_the_force_of_a_ball_grows_with_the_power_three_halves_of_its_deflection
 def test_a_damped_contact_never_pulls(speed, deflection):
     damped = record(
         RIG._replace(load_x=0.0, load_y=0.0, contact_damping=600.0, ring_damping=0.0, shaft_damping=0.0),
-        Motion(0.0, jitter_rms=1e-9),
-        [Spall("outer", 2e-4, 1e-4, 2.0), Spall("outer", 2e-4, 1e-4, 2.0)],
+        Turning(0.0, jitter_rms=1e-9),
+        [SpallInput("outer", 2e-4, 1e-4, 2.0), SpallInput("outer", 2e-4, 1e-4, 2.0)],
     )
     start = displaced(along=0.0, by=deflection, clearance=RIG.half_clearance)
     start[6] = -speed  # away from the ball
@@ -121,7 +121,7 @@ def test_a_damped_contact_never_pulls(speed, deflection):
 def test_a_bearing_at_rest_stays_there_until_the_shaft_turns():
     trip = march_lanes([record(RIG, STANDING)], 600, 8, KNOT)[0]
     assert np.abs(trip.states[-1] - trip.states[0]).max() < 1e-12
-    turning = march_lanes([record(RIG, Motion(29.95))], 600, 8, KNOT)[0]
+    turning = march_lanes([record(RIG, Turning(29.95))], 600, 8, KNOT)[0]
     assert np.abs(turning.states[-1, :6] - turning.states[0, :6]).max() > 1e-8
 
 

@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.bearing import slipping_orders
-from gen.physics.kernel.batch import Spall
-from gen.physics.kernel.turning import SPEED_TERMS
+from gen.physics.inputs import SpallInput
+from gen.physics.kernel.layout import SPEED_TERMS
 from tests.reference import march_lanes, process, slow_motion
-from tests.strategies import angles, machines, record, seeds, wandering_motions, wandering_records
+from tests.strategies import angles, machines, record, seeds, wandering_records, wandering_turnings
 
 law = settings(deadline=None, max_examples=15)
 KNOT = 1 / 12_000
@@ -40,10 +40,10 @@ def test_how_a_record_turns_does_not_depend_on_the_step(drawn, n_steps):
 @law
 @given(wandering_records())
 def test_without_wander_shaft_cage_and_balls_turn_at_the_rates_of_their_orders(drawn):
-    steady = drawn._replace(motion=drawn.motion._replace(speed_rms=0.0, slip_rms=0.0, spin_rms=0.0))
+    steady = drawn._replace(turning=drawn.turning._replace(speed_rms=0.0, slip_rms=0.0, spin_rms=0.0))
     trip = march_lanes([steady], 120, 1, KNOT)[0]
-    turns = (trip.angles[-1] - trip.angles[0]) / (2 * np.pi * 120 * KNOT * steady.motion.shaft_rate)
-    found = slipping_orders(steady.bearing, steady.motion.mean_slip)
+    turns = (trip.angles[-1] - trip.angles[0]) / (2 * np.pi * 120 * KNOT * steady.turning.shaft_rate)
+    found = slipping_orders(steady.bearing, steady.turning.mean_slip)
     np.testing.assert_allclose(turns, [1.0, found.ftf, found.bsf], rtol=1e-9)
 
 
@@ -56,12 +56,12 @@ def test_the_processes_have_the_rms_they_were_drawn_with(drawn):
 
 
 @law
-@given(machines(), wandering_motions(), angles, seeds)
+@given(machines(), wandering_turnings(), angles, seeds)
 def test_a_ball_whose_axis_has_left_the_track_does_not_feel_its_spalls(machine, motion, angle, seed):
     """The ball bears the load as the record begins; one that goes unloaded feels none on the track either."""
     under_load = math.atan2(machine.load_y, machine.load_x) - 2 * 2 * math.pi / 9
     off_track = motion._replace(cage_angle=under_load, axis_offset=0.2, axis_rms=0.0, axis_limit=0.1)
-    spalls = [Spall("ball", 1e-3, 1e-4, angle, 2), Spall("ball", 1e-3, 1e-4, angle + 1, 2)]
+    spalls = [SpallInput("ball", 1e-3, 1e-4, angle, 2), SpallInput("ball", 1e-3, 1e-4, angle + 1, 2)]
     smooth = [spall._replace(depth=0.0) for spall in spalls]
     on_track = off_track._replace(axis_offset=0.0)
     missed, healthy, felt = march_lanes(
@@ -79,10 +79,10 @@ def test_a_ball_whose_axis_has_left_the_track_does_not_feel_its_spalls(machine, 
 
 
 @law
-@given(machines(), wandering_motions(), seeds)
+@given(machines(), wandering_turnings(), seeds)
 def test_a_wavy_race_shakes_what_an_even_one_does_not(machine, motion, seed):
     even = motion._replace(jitter_rms=1e-12)
-    flat = [Spall("inner", 1e-4, 0.0, 0.0), Spall("inner", 1e-4, 0.0, 1.0)]
+    flat = [SpallInput("inner", 1e-4, 0.0, 0.0), SpallInput("inner", 1e-4, 0.0, 1.0)]
     calm, wavy = (
         march_lanes([record(machine, even, flat, seed=seed, waviness=rms)], 1200, 8, KNOT)[0] for rms in (0.0, 1e-7)
     )

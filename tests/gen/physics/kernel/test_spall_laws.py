@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
+from gen.physics.extent import TABLE_POINTS
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, RECTANGULAR, TABLE, drop, largest_drop
 from gen.physics.kernel.spalls import tabulated
-from gen.physics.kernel.turning import TABLE_POINTS
 from tests.reference import rigid_path
 from tests.strategies import depths
 

@@ -7,12 +7,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel.batch import WAVES, Spall, lay_out, record_shape
+from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
+from gen.physics.inputs import SpallInput, Waviness
+from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
-from gen.physics.kernel.equations import N_DYNAMIC
-from gen.physics.kernel.turning import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
+from gen.physics.kernel.layout import N_DYNAMIC
 from tests.reference import march_lanes
-from tests.strategies import RIG, angles, record, steady_motions, troubled_records
+from tests.strategies import RIG, angles, record, steady_turnings, troubled_records
 
 law = settings(deadline=None, max_examples=20)
 KNOT = 1 / 12_000
@@ -36,12 +37,12 @@ def isotropic(machine):
 
 def turned_record(there, turn):
     """The record with load, misalignment, knock, shaft, cage and outer race turned; the inner race turns with the shaft."""
-    machine, motion = there.machine, there.motion
+    machine, motion = there.machine, there.turning
     load_x, load_y = turned([machine.load_x, machine.load_y], turn)
     twice_x, twice_y = turned([motion.twice_x, motion.twice_y], turn)
     return there._replace(
         machine=machine._replace(load_x=load_x, load_y=load_y),
-        motion=motion._replace(
+        turning=motion._replace(
             shaft_angle=motion.shaft_angle + turn,
             cage_angle=motion.cage_angle + turn,
             knock_angle=motion.knock_angle + turn,
@@ -56,15 +57,15 @@ def turned_record(there, turn):
 
 def rest_of(drawn):
     """State in which a record starts, shape (coordinate,)."""
-    return lay_out([drawn], record_shape(drawn), KNOT).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
+    return lay_out([drawn], input_shape(drawn), KNOT).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
 
 
 @law
 @given(troubled_records(), angles, st.floats(-1e-5, 1e-5))
 def test_a_machine_turned_as_a_whole_gives_the_turned_record(drawn, turn, off):
     """Without play in the support, which is square, and without waviness of the outer race, whose amplitudes count from x."""
-    even = np.where(np.arange(drawn.waves.size) // (WAVES // 2) == 1, 0.0, drawn.waves)
-    here = drawn._replace(machine=isotropic(drawn.machine)._replace(looseness=1e-30), waves=even)
+    even = drawn.waviness._replace(races=drawn.waviness.races * [[1], [0]])
+    here = drawn._replace(machine=isotropic(drawn.machine)._replace(looseness=1e-30), waviness=even)
     start = rest_of(here) + off * np.repeat([1.0, 100.0], 6)
     moved = turned_record(here, turn)
     one, near = (turned(way, turn) for way in (ways(here, start), nearby(here, start)))
@@ -83,12 +84,12 @@ def nearby(there, start):
     Angles add up knot by knot, and at a constant rate all roundings may go one way, in the mirror the other: after 600 knots angles of
     up to 60 rad may be so far apart, and a ball meets a spall that much earlier or later.
     """
-    motion, off = there.motion, N_KNOTS * np.spacing(60.0)
+    motion, off = there.turning, N_KNOTS * np.spacing(60.0)
     motion = motion._replace(
         shaft_angle=motion.shaft_angle - off, cage_angle=motion.cage_angle + off, spin_angle=motion.spin_angle + off
     )
     aside = 1e-11 * np.abs(start[:6]).max() * np.repeat([1.0, 0.0], 6)
-    return ways(there._replace(motion=motion), start + aside)
+    return ways(there._replace(turning=motion), start + aside)
 
 
 def assert_alike(one, other, near):
@@ -98,13 +99,11 @@ def assert_alike(one, other, near):
         np.testing.assert_array_less(apart, np.maximum.accumulate(nearby) + 1e-11 * size.max())
 
 
-def mirrored_waves(waves):
-    """Amplitudes of the waviness of rings and balls seen in the mirror x -> -x, shape (row,) [m]."""
-    inner, outer = waves[:WAVES].reshape(2, 2, -1)
+def mirrored_waviness(waviness):
+    """Waviness of rings and balls seen in the mirror x -> -x."""
+    inner, outer = np.conj(waviness.races)
     sign = (-1.0) ** np.arange(LOWEST_ORDER, HIGHEST_ORDER + 1)
-    balls = waves[WAVES:].reshape(BALL_ORDERS, 2, 9)[:, :, -np.arange(9)]
-    conjugate = np.array([[1.0], [-1.0]])
-    return np.concatenate([part.ravel() for part in (inner * conjugate, outer * conjugate * sign, balls * conjugate)])
+    return Waviness(np.stack([inner, outer * sign]), np.conj(waviness.balls[:, -np.arange(9)]))
 
 
 def mirrored_spall(spall):
@@ -115,7 +114,7 @@ def mirrored_spall(spall):
     )
 
 
-def mirrored_motion(motion):
+def mirrored_turning(motion):
     return motion._replace(
         shaft_rate=-motion.shaft_rate,
         shaft_angle=math.pi - motion.shaft_angle,
@@ -135,12 +134,12 @@ def test_a_mirrored_machine_gives_the_mirrored_record(drawn):
 
     At half the shaft rate the cage knocks once only: how hard it does later depends on the number of its turns. Jitter is as good as none.
     """
-    there = drawn._replace(motion=drawn.motion._replace(jitter_rms=1e-30, shaft_rate=drawn.motion.shaft_rate / 2))
+    there = drawn._replace(turning=drawn.turning._replace(jitter_rms=1e-30, shaft_rate=drawn.turning.shaft_rate / 2))
     mirrored = there._replace(
         machine=there.machine._replace(load_x=-there.machine.load_x),
-        motion=mirrored_motion(there.motion),
+        turning=mirrored_turning(there.turning),
         spalls=tuple(map(mirrored_spall, there.spalls)),
-        waves=mirrored_waves(there.waves),
+        waviness=mirrored_waviness(there.waviness),
     )
     sign, start = np.tile([-1.0, 1.0], 6), rest_of(there)
     one, near = (way * sign.reshape(6, 2) for way in (ways(there, start), nearby(there, start)))
@@ -148,11 +147,11 @@ def test_a_mirrored_machine_gives_the_mirrored_record(drawn):
 
 
 @law
-@given(steady_motions(), st.floats(-0.5, 0.5), st.floats(1e-5, 1e-3))
+@given(steady_turnings(), st.floats(-0.5, 0.5), st.floats(1e-5, 1e-3))
 def test_what_lies_deeper_than_a_ball_can_fall_makes_no_difference(motion, ahead, depth):
     """A rotor of 54 N over a floor at 5 um or anywhere below, in the load zone at first: the ball hangs free."""
     angle = ahead - math.pi / 2 - motion.shaft_angle
-    spall = Spall("inner", math.radians(20) * CATALOGUE["6205"].inner_radius, 5e-6, angle, profile="rectangular")
+    spall = SpallInput("inner", math.radians(20) * CATALOGUE["6205"].inner_radius, 5e-6, angle, profile="rectangular")
     light = RIG._replace(half_clearance=0.0, load_x=0.0, load_y=-54.0, support_stiffness_y=1.5e7)
     calm = motion._replace(unbalance=0.0)
     shallow, deep = (record(light, calm, [spall._replace(depth=d)]) for d in (5e-6, depth))

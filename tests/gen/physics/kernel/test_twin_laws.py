@@ -6,11 +6,11 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.kernel.batch import lay_out, record_shape
+from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
-from gen.physics.kernel.equations import N_DYNAMIC
 from gen.physics.kernel.integrate import integrate
+from gen.physics.kernel.layout import N_DYNAMIC
 from tests.reference import (
     contact_stiffness,
     contacts,
@@ -73,7 +73,7 @@ def assert_what_comes_out_is_the_twins(drawn, seed, slack):
     """
     pickups = np.random.default_rng(seed).normal(size=(2, 6))
     drawn = drawn._replace(pickups=pickups)
-    shape = record_shape(drawn)
+    shape = input_shape(drawn)
     knot, n_knots = KNOT / 4, 32
     found = integrate(shape, lay_out([drawn], shape, knot), knot, 1, decimation(1), 0, n_knots)
     start = lay_out([drawn], shape, knot).state.reshape(-1, LANES)[:N_DYNAMIC, 0]

@@ -1,0 +1,165 @@
+"""The gap under every ball at the knots: clearance, waviness of the races and of the balls.
+
+The waviness of a race is a Fourier series around it. Ball ``i`` of ``n`` is ``2 pi i / n`` further on, so orders that differ by ``n`` have
+the same phase at every ball: they are folded into one sum by Horner's rule. One Fourier transform of the ``n`` sums gives the waviness
+under every ball. The balls have even orders of their own.
+"""
+
+import math
+from enum import IntEnum
+
+import numpy as np
+from numba import njit
+
+from gen.physics.extent import BALL_ORDERS, MAX_BALLS
+from gen.physics.kernel.compiling import INLINE, LANES, cosine, fma, lane_count, sine, wide
+from gen.physics.kernel.layout import Angle, Batch, Drive, FloatArray, Shape, State, gap_row, n_folds, race_rows
+
+_TURNS = np.arange(MAX_BALLS)[:, None] * np.arange(MAX_BALLS) / np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None, None]
+COS_OF_TURNS, SIN_OF_TURNS = np.cos(2 * np.pi * _TURNS), np.sin(2 * np.pi * _TURNS)  # (number of balls, ball, order)
+# the sine of half as many turns as there are balls is exactly 0
+SIN_OF_TURNS[2 * np.arange(MAX_BALLS // 2 + 1), :, np.arange(MAX_BALLS // 2 + 1) % MAX_BALLS] = 0.0
+
+
+class Rotation(IntEnum):
+    """Rows of the work array of the waviness: three complex numbers per lane, real and imaginary part."""
+
+    DIRECTION = 0  # e^(i angle) of ball 0 relative to the race
+    POWER = 2  # DIRECTION to the power of the number of balls
+    TURN = 4  # DIRECTION to the power of the order
+
+
+N_ROTATION_ROWS = 6
+
+
+@njit(**INLINE)
+def start_rotations(shape: Shape, z: FloatArray) -> None:
+    """Set ``TURN`` to 1, and ``POWER`` from ``DIRECTION``."""
+    wide()
+    for lane in range(lane_count()):
+        c, s = z[lane], z[LANES + lane]
+        p, q = c, s
+        for _ in range(len(shape.balls) - 1):
+            p, q = fma(p, c, -(q * s)), fma(p, s, q * c)
+        z[Rotation.POWER * LANES + lane], z[(Rotation.POWER + 1) * LANES + lane] = p, q
+        z[Rotation.TURN * LANES + lane], z[(Rotation.TURN + 1) * LANES + lane] = 1.0, 0.0
+
+
+@njit(**INLINE)
+def fold_waviness(shape: Shape, waves: FloatArray, z: FloatArray, folded: FloatArray) -> None:
+    """Add the waviness of one race, rotated to the direction in ``z``, to the folded sums: two rows of ``folded`` for each ball."""
+    wide()
+    n_balls = len(shape.balls)
+    start_rotations(shape, z)
+    for first in range(n_balls):
+        amplitudes, sums = waves[2 * first * LANES :], folded[2 * first * LANES :]
+        for lane in range(lane_count()):
+            c, s = z[Rotation.POWER * LANES + lane], z[(Rotation.POWER + 1) * LANES + lane]
+            real = imag = 0.0
+            for term in range(n_folds(shape)):
+                row = 2 * (n_folds(shape) - 1 - term) * n_balls * LANES + lane
+                real, imag = (
+                    fma(real, c, fma(-imag, s, amplitudes[row])), fma(real, s, fma(imag, c, amplitudes[row + LANES])),
+                )  # fmt: skip
+            c, s = z[Rotation.TURN * LANES + lane], z[(Rotation.TURN + 1) * LANES + lane]
+            sums[lane] += fma(real, c, -(imag * s))
+            sums[LANES + lane] += fma(real, s, imag * c)
+            p, q = z[Rotation.DIRECTION * LANES + lane], z[(Rotation.DIRECTION + 1) * LANES + lane]
+            z[Rotation.TURN * LANES + lane], z[(Rotation.TURN + 1) * LANES + lane] = (
+                fma(c, p, -(s * q)),
+                fma(c, q, s * p),
+            )
+
+
+@njit(**INLINE)
+def unfold(shape: Shape, folded: FloatArray, gaps: FloatArray) -> None:
+    """Subtract the waviness under every ball, the real part of the Fourier transform of ``folded``, from ``gaps``.
+
+    Balls ``i`` and ``n - i`` have the same sums of even and of odd parts.
+    """
+    wide()
+    n_balls = len(shape.balls)
+    for lane in range(lane_count()):
+        for order in range(1, (n_balls + 1) // 2):
+            low, high = 2 * order * LANES + lane, 2 * (n_balls - order) * LANES + lane
+            folded[low] += folded[high]
+            folded[low + LANES] -= folded[high + LANES]
+    for ball in range(n_balls // 2 + 1):
+        here, mirror = gaps[ball * LANES :], gaps[(n_balls - ball) % n_balls * LANES :]
+        other = 1.0 if ball < n_balls - ball < n_balls else 0.0
+        cosines, sines = COS_OF_TURNS[n_balls, ball], SIN_OF_TURNS[n_balls, ball]
+        for lane in range(lane_count()):
+            even, odd = folded[lane], 0.0
+            for order in range(1, n_balls // 2 + 1):
+                even = fma(folded[2 * order * LANES + lane], cosines[order], even)
+                odd = fma(folded[(2 * order + 1) * LANES + lane], sines[order], odd)
+            here[lane] -= even - odd
+            mirror[lane] -= other * (even + odd)
+
+
+@njit(**INLINE)
+def subtract_ball_waviness(shape: Shape, batch: Batch, moves: FloatArray, z: FloatArray, gaps: FloatArray) -> None:
+    """Subtract the waviness of the balls, at both contacts of each, at the next knot from ``gaps``; all balls spin at the same rate."""
+    wide()
+    n_balls = len(shape.balls)
+    for lane in range(lane_count()):
+        twice = 2 * (batch.angles[Angle.SPIN * LANES + lane] + moves[Angle.SPIN * LANES + lane])
+        z[lane], z[LANES + lane] = math.cos(twice), math.sin(twice)
+    for ball in range(n_balls):
+        waves, here = batch.waves[(race_rows(shape) + 2 * ball) * LANES :], gaps[ball * LANES :]
+        for lane in range(lane_count()):
+            c, s = z[lane], z[LANES + lane]
+            real = imag = 0.0
+            for order in range(BALL_ORDERS):
+                row = 2 * (BALL_ORDERS - 1 - order) * n_balls * LANES + lane
+                real, imag = fma(real, c, fma(-imag, s, waves[row])), fma(real, s, fma(imag, c, waves[row + LANES]))
+            here[lane] -= fma(real, c, -(imag * s))
+
+
+@njit(**INLINE)
+def ball_gaps(shape: Shape, batch: Batch, moves: FloatArray, work: FloatArray, gaps: FloatArray) -> None:
+    """Gap of every ball at the next knot, with waviness and without spalls, into ``gaps`` (ball * LANES + lane) [m].
+
+    ``work`` has ``N_ROTATION_ROWS`` rows, and two for each ball.
+    """
+    wide()
+    state, n_balls = batch.state, len(shape.balls)
+    for lane in range(lane_count()):
+        for ball in range(n_balls):
+            gaps[ball * LANES + lane] = batch.drive[Drive.HALF_CLEARANCE * LANES + lane]
+    z, folded = work, work[N_ROTATION_ROWS * LANES :]
+    for lane in range(lane_count()):
+        for row in range(2 * n_balls):
+            folded[row * LANES + lane] = 0.0
+    for race in range(2):
+        for lane in range(lane_count()):
+            c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
+            dc, ds = cosine(moves[Angle.CAGE * LANES + lane]), sine(moves[Angle.CAGE * LANES + lane])
+            c, s = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
+            if race == 0:
+                p, q = state[State.SHAFT_COS * LANES + lane], state[State.SHAFT_SIN * LANES + lane]
+                dc, ds = cosine(moves[Angle.SHAFT * LANES + lane]), sine(moves[Angle.SHAFT * LANES + lane])
+                p, q = fma(p, dc, -(q * ds)), fma(q, dc, p * ds)
+                c, s = fma(c, p, s * q), fma(s, p, -(c * q))
+            z[Rotation.DIRECTION * LANES + lane], z[(Rotation.DIRECTION + 1) * LANES + lane] = c, s
+        fold_waviness(shape, batch.waves[race * (race_rows(shape) // 2) * LANES :], z, folded)
+    unfold(shape, folded, gaps)
+    if batch.waves.size > race_rows(shape) * LANES:
+        subtract_ball_waviness(shape, batch, moves, z, gaps)
+
+
+@njit(**INLINE)
+def move_gaps(
+    shape: Shape, batch: Batch, n_steps: int, moves: FloatArray, work: FloatArray, next_gaps: FloatArray
+) -> None:
+    """Set the gap of every ball at this knot and its slope to the next; ``next_gaps`` holds those at this knot, and receives the next."""
+    wide()
+    gaps, per_half_step = batch.params[gap_row(shape) * LANES :], 0.5 / n_steps
+    for lane in range(lane_count()):
+        for ball in range(len(shape.balls)):
+            gaps[2 * ball * LANES + lane] = next_gaps[ball * LANES + lane]
+    ball_gaps(shape, batch, moves, work, next_gaps)
+    for lane in range(lane_count()):
+        for ball in range(len(shape.balls)):
+            further = next_gaps[ball * LANES + lane] - gaps[2 * ball * LANES + lane]
+            gaps[(2 * ball + 1) * LANES + lane] = further * per_half_step

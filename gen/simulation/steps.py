@@ -1,0 +1,134 @@
+"""The step of the integration: chosen before the run from the stiffest mode, and checked after it by halving.
+
+A part of the records is integrated again at half the step; the relative change is stored with them.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.errors import SimulationError
+from gen.physics.inputs import KernelInput
+from gen.physics.kernel.compiling import LANES
+from gen.physics.rotor import fastest_decay, fastest_swing, likely_stiffness
+from gen.recipe import MAX_OVERSAMPLING, Recipe
+from gen.scenarios import Scenario, first_specimens
+from gen.simulation.batches import Group
+
+FloatArray = NDArray[np.float64]
+
+# omega * dt of the stiffest mode: at 0.30 the error of the acceleration is about 1e-3, at 1.0 the mode still rings at its frequency, and
+# above 2.8 the method is unstable
+FINE_STEP, COARSEST_STEP = 0.30, 1.0
+_FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
+LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
+CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # every 32nd part repeats 1 % of the records of 32 parts at half the step
+
+
+def steps_per_sample(given: KernelInput, number: int, recipe: Recipe) -> int:
+    """Steps per sample that the stiffest mode of record ``number`` needs.
+
+    Raises
+    ------
+    SimulationError
+        If the recipe asks for too few, or the mode needs more than are allowed.
+    """
+    fs, asked = recipe.recording.sample_rate_hz, recipe.recording.oversampling
+    _check_turn(given, number, fs)
+    rate = fastest_rate(given)
+    if asked is not None:
+        if rate / (asked * fs) > COARSEST_STEP:
+            need = math.ceil(rate / (fs * FINE_STEP))
+            raise SimulationError(
+                f"record {number}: its stiffest mode of {rate / 2 / math.pi:.0f} Hz is too fast for a step of "
+                f"{1e6 / (asked * fs):.3g} us; raise recording.oversampling to {need} or leave it out."
+            )
+        return asked
+    for factor in _FACTORS:
+        if rate / (factor * fs) <= FINE_STEP:
+            return factor
+    raise SimulationError(
+        f"record {number}: its stiffest mode of {rate / 2 / math.pi:.0f} Hz needs more than {_FACTORS[-1]} steps per "
+        f"sample at {fs:g} Hz; soften the machine or raise recording.sample_rate_hz."
+    )
+
+
+def _check_turn(given: KernelInput, number: int, fs: float) -> None:
+    fastest = given.turning.shaft_rate * (float(given.schedule[:, 0].max()) if given.schedule.size else 1.0)
+    if 2 * math.pi * fastest / fs > LARGEST_TURN:
+        raise SimulationError(
+            f"record {number}: its shaft turns {360 * fastest / fs:.3g} degrees per sample; raise "
+            f"recording.sample_rate_hz to {math.ceil(2 * math.pi * fastest / LARGEST_TURN)}."
+        )
+
+
+def fastest_rate(given: KernelInput) -> float:
+    """Angular frequency that the step must follow: that of the stiffest mode, or of the strongest damping [rad/s]."""
+    machine, n_balls = given.machine, given.bearing.n_balls
+    stiffness = likely_stiffness(machine, n_balls, largest_pull(given))
+    return max(float(fastest_swing(machine, stiffness)), fastest_decay(machine, n_balls) / 2.5)
+
+
+def largest_pull(given: KernelInput) -> float:
+    """Largest force on the shaft beside its steady load: unbalance, bent shaft, misalignment, profile of the load [N]."""
+    turning = given.turning
+    speeds, loads = given.schedule.T if given.schedule.size else (np.ones(1), np.ones(1))
+    unbalance = turning.unbalance * (2 * math.pi * turning.shaft_rate * float(speeds.max())) ** 2
+    steady = math.hypot(given.machine.load_x, given.machine.load_y)
+    further = steady * (float(loads.max()) - 1)
+    return max(unbalance + turning.bow + math.hypot(turning.twice_x, turning.twice_y) + further, 0.0)
+
+
+def step_phase(given: KernelInput, steepest: float, steps: int, fs: float) -> float:
+    """Fastest angular frequency at the contact stiffness ``steepest`` [N/m], times the step [rad]."""
+    return float(fastest_swing(given.machine, steepest)) / (fs * steps)
+
+
+def failure(number: int, steps: int, diverged: float, phase: float) -> str | None:
+    """Why record ``number`` cannot be used: it diverged at ``diverged`` [s], negative if not, or its step was too coarse."""
+    if diverged >= 0:
+        return (
+            f"record {number} diverged at t = {diverged:.4g} s with {steps} steps per sample; "
+            f"raise recording.oversampling or soften the machine."
+        )
+    if phase > COARSEST_STEP:
+        return (
+            f"record {number}: its contacts became stiffer than {steps} steps per sample can follow; "
+            f"set recording.oversampling to {math.ceil(steps * phase / FINE_STEP)}."
+        )
+    return None
+
+
+def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[int, Group]) -> list[int]:
+    """Places in a part of the records whose step is to be checked; ``groups`` has the possible records by place.
+
+    These are the first record of each class, in the part where the first specimen of the class begins; in every ``CHECKED_PARTS``-th part
+    also ``CHECKED_SHARE`` of the records of so many parts; and records that fill the batches of these at no more cost.
+    """
+    corpus, begun = recipe.corpus, {scenario.record.number for scenario in scenarios}
+    new = {fault for fault, number in first_specimens(recipe).items() if number * corpus.records_per_specimen in begun}
+    first: dict[str, int] = {}
+    for place in groups:
+        if scenarios[place].specimen.fault in new:
+            first.setdefault(scenarios[place].specimen.fault, place)
+    start, span = scenarios[0].record.number, CHECKED_PARTS * corpus.records_per_part
+    wanted = CHECKED_SHARE * min(span, recipe.n_records - start) if start % span == 0 else 0
+    chosen = _with_full_batches(list(first.values()), groups)
+    for place in groups:
+        if len(chosen) >= wanted:
+            break
+        if place not in chosen:
+            chosen = _with_full_batches([*chosen, place], groups)
+    return chosen
+
+
+def _with_full_batches(chosen: list[int], groups: Mapping[int, Group]) -> list[int]:
+    """The chosen places, and others of their groups that fill the last batch of each group."""
+    filled = list(chosen)
+    for group, count in Counter(groups[place] for place in chosen).items():
+        others = [place for place, found in groups.items() if found == group and place not in chosen]
+        filled += others[: -count % LANES]
+    return filled

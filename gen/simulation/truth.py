@@ -1,0 +1,89 @@
+"""What is true of a record by construction, computed once and stored as its labels."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from gen.physics.inputs import KernelInput
+from gen.physics.profile import mean_share, share_at
+from gen.scenarios import Scenario
+from gen.simulation.damage import largest_drop_over
+from gen.simulation.motion import mean_motion, start_of
+from gen.simulation.timeline import Timeline
+
+
+class Truth(NamedTuple):
+    """Values of one record; each has the name of the variable in the corpus that it becomes."""
+
+    shaft_rate: float
+    """Mean of the speed profile, with the drawn error of the label [Hz]."""
+    load: float
+    """Mean of the load profile [N]."""
+    true_shaft_rate: float
+    """Mean over the record, speed wander included [Hz]."""
+    first_shaft_rate: float
+    """At the start and at the end of the record, without wander [Hz]."""
+    last_shaft_rate: float
+    true_ftf: float
+    """Mean fault orders, slip included [1]."""
+    true_bpfo: float
+    true_bpfi: float
+    true_bsf: float
+    operating_clearance: float
+    """Diametral, after thermal expansion, oil film and axial load; NaN if no such machine is possible [m]."""
+    width: float
+    """Of the widest spall, 0 without a spall [m]."""
+    depth: float
+    angle: float
+    """On the outer race from the x axis, NaN without a spall [rad]."""
+    largest_drop: float
+    """Of a rigid ball over it [m]."""
+    width_share: float
+    """Its width over the distance from ball to ball, or over the circumference of a ball [1]."""
+
+
+class WidestSpall(NamedTuple):
+    """The part of the truth that describes the widest spall."""
+
+    width: float = 0.0
+    depth: float = 0.0
+    angle: float = math.nan
+    largest_drop: float = 0.0
+    width_share: float = 0.0
+
+
+def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) -> Truth:
+    """Truth of a scenario; ``given`` is its kernel input, None if no such machine is possible."""
+    record, duration = scenario.record, timeline.duration
+    start = start_of(scenario) if given is None else given
+    motion = mean_motion(scenario, timeline, start.frequencies, start.phases)
+    nominal = record.conditions["shaft"]
+    ends = [1.0, 1.0] if record.speed_profile is None else share_at(record.speed_profile, np.array([0.0, duration]))
+    return Truth(
+        shaft_rate=nominal * mean_share(record.speed_profile, duration) * (1 + record.conditions["label_error"]),
+        load=record.conditions["load"] * mean_share(record.load_profile, duration),
+        true_shaft_rate=motion.shaft_rate,
+        first_shaft_rate=nominal * ends[0],
+        last_shaft_rate=nominal * ends[1],
+        **{f"true_{name}": order for name, order in motion.orders._asdict().items()},
+        operating_clearance=math.nan if given is None else 2 * given.machine.half_clearance,
+        **widest_spall(scenario)._asdict(),
+    )
+
+
+def widest_spall(scenario: Scenario) -> WidestSpall:
+    """Size and place of the widest spall of a scenario."""
+    spalls, bearing = scenario.specimen.spalls, scenario.specimen.bearing
+    if not spalls:
+        return WidestSpall()
+    number = max(range(len(spalls)), key=lambda place: spalls[place].width)
+    widest = spalls[number]
+    circumference = 2 * math.pi * bearing.radius(widest.site)
+    return WidestSpall(
+        width=widest.width,
+        depth=widest.depth,
+        angle=widest.angle + (scenario.rig.machine["load_angle"] if widest.site == "outer" else 0.0),
+        largest_drop=largest_drop_over(scenario, number),
+        width_share=widest.width / (circumference if widest.site == "ball" else circumference / bearing.n_balls),
+    )

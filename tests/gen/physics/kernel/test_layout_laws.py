@@ -1,0 +1,117 @@
+"""Laws of the arrays of the kernel: every named row is written before the first step, and every one is read."""
+
+import numpy as np
+import pytest
+
+from gen.physics.inputs import SpallInput, Turning, Waviness
+from gen.physics.kernel.batch import input_shape, lay_out
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.drop import PROFILES
+from gen.physics.kernel.layout import PICKUPS, Angle, Drive, Param, Site, SpallRow, direction_row
+from tests.reference import march_batch
+from tests.strategies import RIG, ball_waves, race_waves, record
+
+KNOT, N_KNOTS, N_STEPS = 1 / 12_000, 240, 4
+HELD = range(Param.CAGE_TURN_COS, PICKUPS)  # set anew at every knot
+
+MACHINE = RIG._replace(
+    contact_damping=100.0, contact_cosine=0.98, shaft_stiffness=1e5, ring_stiffness_x=1e5, ring_stiffness_y=2e5, looseness=1e-7
+)  # fmt: skip
+TURNING = Turning(
+    shaft_rate=50.0, speed_rms=0.01, mean_slip=0.01, slip_rms=0.01, spin_rms=0.02, jitter_rms=0.005, axis_offset=0.05,
+    axis_rms=0.05, axis_limit=0.3, unbalance=1e-4, shaft_angle=0.4, cage_angle=-1.7, spin_angle=0.2, bow=20.0, twice_x=15.0,
+    twice_y=10.0, knock=30.0, knock_angle=-1.7, knock_seed=12, late_ball=2, late_by=0.03,
+)  # fmt: skip
+RAMP = tuple(np.linspace(0, 4e-6, 9))
+SPALLS = (
+    SpallInput("inner", 2e-3, 2e-6, -1.7),
+    SpallInput("outer", 2e-3, 5e-6, -1.4, profile="table", table=(RAMP,)),
+    SpallInput("ball", 2e-3, 2e-6, 0.5, ball=0),
+)
+# rows that count or name something, and REACH, which may be larger than it must be: another value that matters
+OTHER = {
+    Drive.LATE_BALL: 5,
+    Drive.KNOCK_SEED: 77,
+    SpallRow.REACH: -1.0,
+    SpallRow.SITE: Site.OUTER,
+    SpallRow.CARRIER: 1,
+    SpallRow.PROFILE: PROFILES.index("rectangular"),
+    SpallRow.TABLE: 0,
+}
+
+
+@pytest.fixture(scope="module")
+def laid_out():
+    """A shape, and a batch that holds one record with every feature in all its lanes."""
+    drawn = record(MACHINE, TURNING, SPALLS)._replace(
+        waviness=Waviness(race_waves(3, 5e-8), ball_waves(3, 5e-8)), schedule=np.linspace([0.9, 1.1], [1.1, 0.9], 20)
+    )
+    shape = input_shape(drawn)
+    return shape, lay_out([drawn], shape, KNOT)
+
+
+def test_every_row_that_a_batch_needs_is_written(laid_out):
+    shape, batch = laid_out
+    params = batch.params.reshape(direction_row(shape), LANES)
+    unwritten = {row for row in range(len(params)) if np.isnan(params[row]).any()}
+    assert unwritten <= set(HELD)
+    for name in ("state", "drive", "angles", "spalls", "phasors", "waves"):
+        assert not np.isnan(getattr(batch, name)).any(), name
+
+
+def test_every_row_that_holds_until_the_next_knot_is_written_before_the_first_step(laid_out):
+    trip = march_batch(*laid_out, N_KNOTS, N_STEPS, KNOT)[0]
+    assert np.isfinite(trip.accelerations).all()
+
+
+def changed(values, row):
+    """Another value of a row."""
+    return OTHER.get(row, values * 1.02 + (values == 0) * 0.02)
+
+
+def rows_without_effect(laid_out, name, rows, place=0, n_rows=None):
+    """Names of the rows of array ``name`` of which another value does not change the motion.
+
+    Lane 0 keeps its values; every other lane has one row changed.
+    """
+    shape, batch = laid_out
+    rows, without_effect = list(rows), []
+    for first in range(0, len(rows), LANES - 1):
+        array = getattr(batch, name).copy()
+        by_row = array.reshape(-1, LANES)
+        some = rows[first : first + LANES - 1]
+        for lane, row in enumerate(some, start=1):
+            at = place * (n_rows or 0) + row
+            by_row[at, lane] = changed(by_row[at, lane], row)
+        trips = march_batch(shape, batch._replace(**{name: array}), N_KNOTS, N_STEPS, KNOT)
+        without_effect += [
+            row.name
+            for lane, row in enumerate(some, start=1)
+            if np.array_equal(trips[lane].accelerations, trips[0].accelerations)
+        ]
+    return without_effect
+
+
+def test_every_constant_of_a_machine_is_read(laid_out):
+    constants = [row for row in Param if row not in HELD]
+    # the steady load is among the rows that hold until the next knot here, and half the clearance is in the gaps of wavy balls
+    assert rows_without_effect(laid_out, "params", constants) == ["HALF_CLEARANCE"]
+
+
+def test_every_row_that_drives_the_motion_is_read(laid_out):
+    assert rows_without_effect(laid_out, "drive", Drive) == []
+
+
+def test_every_angle_is_read(laid_out):
+    assert rows_without_effect(laid_out, "angles", Angle) == []
+
+
+def test_every_row_of_a_spall_is_read(laid_out):
+    """A row need not matter for every kind of spall: depth does not for a table, nor a table for an edge."""
+    kinds = [rows_without_effect(laid_out, "spalls", SpallRow, place, len(SpallRow)) for place in range(3)]
+    assert set.intersection(*map(set, kinds)) == set()
+
+
+def test_sites_and_profiles_have_one_number_each():
+    assert len({*Site}) == 4
+    assert len(set(PROFILES)) == len(PROFILES)
