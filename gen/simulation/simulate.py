@@ -6,7 +6,7 @@ chosen before the run from what the machine should do, and held against what its
 
 import math
 from collections import Counter, defaultdict
-from collections.abc import Hashable, Iterator, Mapping
+from collections.abc import Callable, Hashable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
@@ -50,7 +50,7 @@ class Response:
     """What the kernel was given, None for a record that cannot be."""
 
 
-def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
+def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int], None] = lambda _: None) -> Response:
     """Integrate scenarios.
 
     Parameters
@@ -59,6 +59,8 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
         Records to simulate.
     recipe : Recipe
         Gives sample rate, duration and settling time.
+    report : callable, optional
+        Called after each batch with the number of records integrated so far.
 
     Returns
     -------
@@ -80,7 +82,7 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
             failures[place] = str(error)
     possible = {place: record for place, record in enumerate(records) if record is not None}
     factors = {place: steps_per_sample(record, scenarios[place], recipe) for place, record in possible.items()}
-    made, phases = _integrated(list(possible.values()), list(factors.values()), recipe)
+    made, phases = _integrated(list(possible.values()), list(factors.values()), recipe, report)
     for row, (place, factor) in enumerate(factors.items()):
         number = scenarios[place].record.number
         if made.diverged[row] >= 0:
@@ -103,7 +105,9 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
     return Response(acceleration, oversampling, step_phase, failures, records)
 
 
-def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tuple[Integral, FloatArray]:
+def _integrated(
+    records: list[Record], factors: list[int], recipe: Recipe, report: Callable[[int], None] = lambda _: None
+) -> tuple[Integral, FloatArray]:
     """What :class:`Integral` describes, record by record in place of lane by lane, and the step phases."""
     fs, lead = recipe.recording.sample_rate_hz, lead_samples(recipe)
     n_settle, n_out = max(round(recipe.recording.settle_s * fs) - lead, 0), lead + recipe.n_samples
@@ -112,6 +116,7 @@ def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tu
         batches[record_shape(record), factors[place]].append(place)
     response = np.empty((len(records), len(recipe.recording.channels), n_out), np.float32)
     diverged, steepest = np.empty(len(records), np.int64), np.empty(len(records))
+    done = 0
     for (shape, factor), places in batches.items():
         for first in range(0, len(places), LANES):
             some = places[first : first + LANES]
@@ -119,6 +124,8 @@ def _integrated(records: list[Record], factors: list[int], recipe: Recipe) -> tu
             made = integrate(shape, lanes, 1 / (fs * factor), factor, decimation(factor), n_settle, n_out)
             response[some] = made.response.T[: len(some)]
             diverged[some], steepest[some] = made.diverged[: len(some)], made.steepest[: len(some)]
+            done += len(some)
+            report(done)
     phases = [
         float(fastest_swing(record.machine, stiffness)) / (fs * factor)
         for record, stiffness, factor in zip(records, steepest, factors, strict=True)

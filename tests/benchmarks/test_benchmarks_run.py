@@ -7,7 +7,7 @@ from benchmarks import features, kernel, opening, pipeline, reading, rivals, roo
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
 from benchmarks.profile import PARTS, kernel_parts
-from gen.generate import generate
+from gen.generation import generate
 from gen.recipe import read_recipe
 
 

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.generate import generate
+from gen.generation import generate
 from gen.plan import MOST_DRAWN, plan, some_ranges
 from gen.recipe import read_recipe
 

@@ -106,7 +106,7 @@ def test_generate_tells_what_it_made_and_a_second_call_keeps_it(told, tiny_recip
 
 
 def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tmp_path, monkeypatch):
-    module = importlib.import_module("gen.generate")  # the package gives the function under this name
+    module = importlib.import_module("gen.generation")  # the package gives the function under this name
     simulate = module.simulate
 
     def first_diverges(scenarios, recipe):

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.errors import SimulationError
-from gen.generate import compile_kernels
+from gen.generation import compile_kernels
 from gen.physics.kernel.batch import record_shape
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
@@ -18,7 +18,7 @@ from gen.simulation.outline import outlined_record
 from gen.simulation.simulate import kernel_record, steps_per_sample
 from tests.recipes import EVERYTHING
 
-GENERATE = importlib.import_module("gen.generate")
+GENERATE = importlib.import_module("gen.generation")
 
 percents = st.floats(10, 1000)
 profiles = st.one_of(
