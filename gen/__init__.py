@@ -18,6 +18,7 @@ scenarios   rigs, specimens and records, fully drawn
 simulation  scenarios to accelerations
 measurement accelerations to stored counts, as a data-acquisition card gives
 labels      variables written beside each record
+pace        seconds that some records take on this machine
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
 plan        counts, size and steps of a corpus before it is made

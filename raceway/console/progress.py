@@ -1,4 +1,4 @@
-"""How far a long command has come, on standard error: a bar on a terminal, else a plain line now and then."""
+"""Progress of a long command on standard error: a bar on a terminal, else a plain line every ten seconds."""
 
 import sys
 import time
@@ -15,9 +15,9 @@ SECONDS_BETWEEN_LINES = 10.0
 
 @contextmanager
 def progress(doing: str, unit: str) -> Iterator[Progress]:
-    """Something to call with the number of units done and of all.
+    """Show progress; yields a function to call with the number of units done and of all units.
 
-    ``doing`` is what goes on, such as "generating"; ``unit`` what is counted, such as "records".
+    ``doing`` is the activity, such as "generating"; ``unit`` is the unit that is counted, such as "records".
     """
     if sys.stderr.isatty():
         with _bar(doing, unit) as report:
@@ -28,7 +28,7 @@ def progress(doing: str, unit: str) -> Iterator[Progress]:
 
 @contextmanager
 def _bar(doing: str, unit: str) -> Iterator[Progress]:
-    from rich import progress as rich  # not above: raceway --help is to answer at once
+    from rich import progress as rich  # not at the top: help needs no rich
     from rich.console import Console
 
     columns = (
@@ -58,7 +58,7 @@ def _lines(doing: str, unit: str) -> Progress:
 
 
 def _pace(unit: str) -> Callable[[int, int], str]:
-    """Rate and time left; from the third report on since the first, which may tell of what was there before."""
+    """Rate and time left; from the third report on since the first report, which may count units that were kept from before."""
     marks = [(time.monotonic(), 0)]
 
     def pace(done: int, total: int) -> str:
@@ -78,24 +78,22 @@ def notice(sentence: str) -> None:
 
 @contextmanager
 def compilation_noticed() -> Iterator[None]:
-    """Say so when numba starts to compile a kernel, which keeps one waiting once per machine."""
+    """Print a sentence when numba starts to compile a kernel, which happens once per machine."""
     from numba.core import event
 
     class Once(event.Listener):
-        """Speaks at the first compilation only."""
+        """Prints the sentence at the first compilation only."""
 
         said = False
 
         def on_start(self, event: Any) -> None:
-            for_keeps = (
-                event.data["dispatcher"].stats.cache_path is not None
-            )  # the others are small, and compiled each time
-            if for_keeps and not self.said:
+            cached = event.data["dispatcher"].stats.cache_path is not None  # other functions compile in milliseconds
+            if cached and not self.said:
                 self.said = True
-                notice("compiling kernels for this machine: some seconds each, and kept for the next time.")
+                notice("compiling kernels for this machine; they are kept for the next time.")
 
         def on_end(self, event: Any) -> None:
-            """Nothing to say."""
+            """Do nothing."""
 
     with event.install_listener("numba:compile", Once()):
         yield

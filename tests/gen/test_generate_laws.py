@@ -299,7 +299,7 @@ def test_seed_and_size_given_in_the_call_are_remembered(recipe_file, whole, tmp_
 def test_a_recipe_changed_behind_the_corpus_cannot_replay_it(copied):
     text = (copied / "recipe.yaml").read_text()
     (copied / "recipe.yaml").write_text(text.replace("seed: 3", "seed: 4"))
-    with pytest.raises(CorpusError, match="is not the recipe the corpus was made from"):
+    with pytest.raises(CorpusError, match="is not the recipe of the corpus"):
         replay(copied, 0)
 
 

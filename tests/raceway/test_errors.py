@@ -8,6 +8,7 @@ import pytest
 
 from features.baselines import save_model, train
 from features.table import feature_table
+from features.table_files import write_table
 from raceway.console import ending, show
 
 
@@ -21,6 +22,7 @@ def places(tiny_recipe, tiny_corpus, tmp_path_factory):
     (here / "binary.yaml").write_bytes(bytes(range(256)))
     table = feature_table(tiny_corpus)
     save_model(train(table, "majority"), here / "model.skops")
+    write_table(table, here / "table.nc")
     whole = (here / "model.skops").read_bytes()
     (here / "cut.skops").write_bytes(whole[: len(whole) // 2])
     for name, (whole, broken) in RECIPES.items():
@@ -133,7 +135,11 @@ TABLE = [
     ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
     ("info {nowhere}", "nowhere: no such folder; give the folder of a corpus"),
-    ("info {file}", "file.txt: no such folder; give the folder of a corpus"),
+    ("info {file}", "file.txt: is a file; give the folder of a corpus, the one that holds manifest.json."),
+    ("info {table}", "table.nc: is a feature table; give the folder of a corpus, the one that holds manifest.json."),
+    ("info {corpus}/manifest.json", "manifest.json: is one file of a corpus; give the folder of the corpus, {corpus}."),
+    ("plot {corpus}/parts/part-00000.nc --record 0 -o {new}.png", "is one file of a corpus; give the folder of the corpus, {corpus}."),
+    ("benchmark {corpus} -o {new} --test {table}", "table.nc: is a feature table; give the folder of a corpus"),
     ("validate {folder}", "folder: holds no manifest.json, so it is no corpus; make one with raceway generate."),
     ("features {no_json} -o {new}.nc", "manifest.json: not a corpus manifest"),
     ("info {a_list}", "manifest.json: not a corpus manifest"),
@@ -146,7 +152,7 @@ TABLE = [
     ("train {altered_part} -o {new}", "part-00002.nc: altered"),
     ("info {no_index}", "corpus.nc: missing; copy it again"),
     ("features {pointing_elsewhere} -o {new}.nc", "corpus.nc: altered, it is not the file the manifest names"),
-    ("replay {other_recipe} --record 0", "is not the recipe the corpus was made from; restore it to replay."),
+    ("replay {other_recipe} --record 0", "is not the recipe of the corpus; restore it to replay."),
     ("replay {no_recipe} --record 0", "holds no recipe.yaml"),
     ("replay {corpus} --record 48", "record 48 is not in it; it has records 0 to 47."),
     ("replay {corpus} --record -1", "record -1 is not in it; it has records 0 to 47."),
@@ -173,9 +179,16 @@ def test_bad_usage_or_input_gets_a_sentence_and_exit_code_2(run, places, line, s
     assert result.stdout == ""
     said = [line for line in result.stderr.splitlines() if not line.startswith("computing features")]
     assert len(said) == 1
-    assert sentence in said[0]
+    assert sentence.format(**places) in said[0]
     assert said[0].endswith((".", "?"))
     assert not [path for path in places["new"].parent.iterdir() if path.name.startswith((".", "new"))]
+
+
+def test_a_scheduler_that_does_not_answer_leaves_no_folder(run, tiny_recipe, tmp_path):
+    result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--scheduler", "nowhere")
+    assert result.exit_code == 2
+    assert "scheduler nowhere: does not answer" in result.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
@@ -220,7 +233,7 @@ def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch)
     assert result.exit_code == 70
     assert result.stderr == (
         "internal error (ZeroDivisionError: float division by zero); "
-        "please report it with what RACEWAY_TRACEBACK=1 shows.\n"
+        "please report it with the output of RACEWAY_TRACEBACK=1.\n"
     )
     monkeypatch.setenv("RACEWAY_TRACEBACK", "1")
     assert "Traceback" in run("info", places["corpus"]).stderr
@@ -235,7 +248,7 @@ def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch)
             "/locked/x: Permission denied; choose another place",
         ),
         (RuntimeError("NetCDF: HDF error"), 2, "a file of the corpus cannot be read (NetCDF: HDF error)"),
-        (type("KilledWorker", (Exception,), {})("part-3"), 2, "the workers of the cluster died again and again"),
+        (type("KilledWorker", (Exception,), {})("part-3"), 2, "several workers of the cluster died"),
         (KeyboardInterrupt(), 130, "interrupted."),
     ],
 )

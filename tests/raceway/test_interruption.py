@@ -64,7 +64,7 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
     output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, output) == (130, "")
     said = re.fullmatch(
-        rf"interrupted; (\d+) of {N_PARTS} parts are kept in {re.escape(str(folder))}, and the same command goes on from there.\n",
+        rf"interrupted; (\d+) of {N_PARTS} parts kept in {re.escape(str(folder))}; the same command completes the corpus.\n",
         errors,
     )
     assert said, errors
@@ -119,7 +119,7 @@ def test_an_interrupted_command_of_another_kind_leaves_nothing(start, tmp_path):
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, output) == (130, "")
-    assert errors == "interrupted; nothing is left half done, the same command starts again.\n"
+    assert errors == "interrupted; no unfinished file is left; the same command starts again.\n"
     assert not list(tmp_path.glob("*corpus*"))
 
 

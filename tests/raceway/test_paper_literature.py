@@ -7,7 +7,8 @@ import pytest
 from benchmarks.paper_search import holding
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
-from raceway.studies.paper import FS, PRESETS, findings, run
+from raceway.studies.paper import FS, PRESETS, run
+from raceway.studies.statements import findings
 
 # values of MODEL.md 7.2, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
 PAPER = {
