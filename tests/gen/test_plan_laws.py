@@ -7,6 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.generation import generate
+from gen.pace import Pace
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.integrate import integrate
 from gen.plan import MOST_DRAWN, plan, some_ranges
 from gen.recipe import read_recipe
 
@@ -31,12 +34,28 @@ def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
 
 
 @pytest.mark.parametrize(("key", "factor"), [("corpus.rigs", 3), ("recording.duration_s", 1)])
-def test_more_records_take_more_time_and_room(write_recipe, tmp_path, key, factor):
+def test_more_records_take_more_time_and_room(write_recipe, tmp_path, monkeypatch, key, factor):
+    monkeypatch.setattr("gen.plan.measured_pace", lambda *_: Pace(lane_step=1e-8, record=1e-4))
     small = plan(write_recipe(tmp_path / "small.yaml"))
     large = plan(write_recipe(tmp_path / "large.yaml", {key: 9 if factor == 3 else 1.0}))
     assert large.records == factor * small.records
     assert large.bytes > 1.3 * small.bytes
     assert large.estimated_seconds > 1.3 * small.estimated_seconds
+
+
+def test_the_time_of_a_plan_counts_every_lane_that_generation_integrates(write_recipe, tmp_path, monkeypatch):
+    """One second per step of a lane: the lanes of all batches of a part, and those of the check at half the step."""
+    counted = []
+
+    def count(shape, lanes, dt, n_steps, taps, n_settle, n_out):
+        counted.append(n_steps * (n_settle + n_out) * LANES)
+        return integrate(shape, lanes, dt, n_steps, taps, n_settle, n_out)
+
+    path = write_recipe(tmp_path / "r.yaml", {"corpus.records_per_part": 20})
+    monkeypatch.setattr("gen.simulation.simulate.integrate", count)
+    generate(path, tmp_path / "corpus")
+    monkeypatch.setattr("gen.plan.measured_pace", lambda *_: Pace(lane_step=1.0, record=0.0))
+    assert plan(path).estimated_seconds == pytest.approx(sum(counted), rel=1e-6)
 
 
 def test_what_a_plan_refuses_generate_refuses_with_the_same_sentence(write_recipe, tmp_path):
