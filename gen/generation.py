@@ -236,9 +236,10 @@ class Tally:
         self.counts[part] = max(self.counts[part], records)
 
     def show(self) -> None:
-        """Call ``progress`` with the sum of the counts."""
-        if self.progress is not None:
-            self.progress(sum(self.counts), self.recipe.n_records)
+        """Call ``progress`` with the sum of the counts, once it is not 0."""
+        done = sum(self.counts)
+        if self.progress is not None and done:
+            self.progress(done, self.recipe.n_records)
 
     def note_and_show(self, part: int, records: int) -> None:
         """Set the count of a part and call ``progress``."""

@@ -2,6 +2,7 @@
 
 import sys
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,6 +12,7 @@ from raceway.console import show
 Progress = Callable[[int, int], None]
 
 SECONDS_BETWEEN_LINES = 10.0
+REPORTS_IN_SPEED = 32
 
 
 @contextmanager
@@ -58,13 +60,16 @@ def _lines(doing: str, unit: str) -> Progress:
 
 
 def _pace(unit: str) -> Callable[[int, int], str]:
-    """Rate and time left; from the third report on since the first report, which may count units that were kept from before."""
-    marks = [(time.monotonic(), 0)]
+    """Speed over the last reports, and time left at that speed; parts that were kept from before soon leave the window."""
+    marks = deque([(time.monotonic(), 0)], maxlen=REPORTS_IN_SPEED)
 
     def pace(done: int, total: int) -> str:
-        marks.append((time.monotonic(), done))
-        (then, before), (now, _) = marks[0 if len(marks) < 4 else 1], marks[-1]
-        rate = max(done - before, 1e-9) / max(now - then, 1e-9)
+        if done > marks[-1][1]:
+            marks.append((time.monotonic(), done))
+        (then, before), (now, latest) = marks[0], marks[-1]
+        if latest == before:
+            return "speed not known yet"
+        rate = (latest - before) / max(now - then, 1e-9)
         left = f", {show.duration((total - done) / rate)} left" if done < total else ""
         return f"{rate:,.3g} {unit}/s{left}"
 

@@ -65,7 +65,7 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
     assert (process.returncode, output) == (130, "")
     said = re.fullmatch(
         rf"interrupted; (\d+) of {N_PARTS} parts kept in {re.escape(str(folder))}; the same command completes the corpus.\n",
-        errors,
+        "".join(line for line in errors.splitlines(keepends=True) if not line.startswith("generating: ")),
     )
     assert said, errors
     kept = listed(folder)
