@@ -86,23 +86,13 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     checked = read_recipe(recipe, seed=seed, records=records)
     start = time.perf_counter()
     parts = [draw_scenarios(checked, first, stop) for first, stop in some_ranges(checked)]
-    drawing = time.perf_counter() - start
+    n_drawn = sum(map(len, parts))
+    drawing = (time.perf_counter() - start) / n_drawn
     failures: list[str] = []
     groups = [_groups(part, checked, failures) for part in parts]
-    drawn = [scenario.specimen for part in parts for scenario in part]
-    if len(failures) == len(drawn):
+    if len(failures) == n_drawn:
         raise SimulationError(failures[0])
-    scale = checked.n_records / len(drawn)
-
-    def scaled(counts: Counter[Any], order: Iterable[Any]) -> dict[Any, int]:
-        return {key: round(counts[key] * scale) for key in order if counts[key]}
-
-    factors: Counter[int] = Counter()
-    for part in groups:
-        for (_, factor), places in part.items():
-            factors[factor] += len(places)
-    recording = checked.recording
-    specimens = math.ceil(checked.n_records / checked.corpus.records_per_specimen)
+    recording, specimens = checked.recording, math.ceil(checked.n_records / checked.corpus.records_per_specimen)
     seconds = _seconds_per_record(list(zip(parts, groups, strict=True)), checked)
     return Plan(
         recipe=checked.name,
@@ -115,16 +105,32 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         sample_rate=recording.sample_rate_hz,
         duration=recording.duration_s,
         channels=tuple(channel.name for channel in recording.channels),
-        classes=scaled(Counter(specimen.fault for specimen in drawn), FAULTS),
-        splits=scaled(Counter(specimen.split for specimen in drawn), SPLITS),
-        steps_per_sample=scaled(factors, sorted(factors)),
         kernels=len({shape for part in groups for shape, _ in part}),
         bytes=_bytes(checked),
-        estimated_seconds=None if seconds is None else seconds * checked.n_records + drawing * scale,
-        drawn=len(drawn),
-        left_out=round(len(failures) * scale),
+        estimated_seconds=None if seconds is None else (seconds + drawing) * checked.n_records,
+        drawn=n_drawn,
+        left_out=round(len(failures) * checked.n_records / n_drawn),
         first_left_out=failures[0] if failures else None,
+        **_counts(parts, groups, checked.n_records / n_drawn),
     )
+
+
+def _counts(parts: list[list[Scenario]], groups: list[Groups], scale: float) -> dict[str, dict[Any, int]]:
+    """Number of records by class, by split and by steps per sample, scaled up from those drawn."""
+    specimens = [scenario.specimen for part in parts for scenario in part]
+    factors: Counter[int] = Counter()
+    for part in groups:
+        for (_, factor), places in part.items():
+            factors[factor] += len(places)
+
+    def scaled(counts: Counter[Any], order: Iterable[Any]) -> dict[Any, int]:
+        return {key: round(counts[key] * scale) for key in order if counts[key]}
+
+    return {
+        "classes": scaled(Counter(specimen.fault for specimen in specimens), FAULTS),
+        "splits": scaled(Counter(specimen.split for specimen in specimens), SPLITS),
+        "steps_per_sample": scaled(factors, sorted(factors)),
+    }
 
 
 def _seconds_per_record(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> float | None:

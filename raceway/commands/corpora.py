@@ -5,7 +5,7 @@ import shlex
 import time
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -145,36 +145,29 @@ def generate(
     from gen.recipe import read_recipe
 
     wanted = read_recipe(recipe, seed=seed, records=records)
-    from gen.generation import generate as generate_corpus
-
     start = time.monotonic()
-    with (
-        if_interrupted(partial(_kept, output, wanted)),
-        compilation_noticed(),
-        progress("generating", "records") as report,
-    ):
-        made = generate_corpus(
-            recipe,
-            output,
-            workers=workers or _default_workers(wanted),
-            scheduler=scheduler,
-            seed=seed,
-            records=records,
-            progress=report,
-        )
+    workers = workers or _default_workers(wanted)
+    with if_interrupted(partial(_kept, output, wanted)):
+        made = _generated(recipe, output, workers=workers, scheduler=scheduler, seed=seed, records=records)
     for failure in made.failures:
         notice(f"left out: {failure}")
     useless = complaint(made.signals, made.records)
     if useless is not None:
         notice(useless)
     if as_json:
-        names = ("records", "parts", "kept", "failures")
-        facts = {name: getattr(made, name) for name in names}
+        facts = {name: getattr(made, name) for name in ("records", "parts", "kept", "failures")}
         seconds = round(time.monotonic() - start, 3)
         show.as_json({"corpus": made.directory, **facts, "signals": made.signals._asdict(), "seconds": seconds})
     else:
         _show_generated(made)
     return DONE if useless is None else FOUND_WANTING
+
+
+def _generated(recipe: str, output: Path, **options: Any) -> "Generated":
+    from gen.generation import generate as generate_corpus
+
+    with compilation_noticed(), progress("generating", "records") as report:
+        return generate_corpus(recipe, output, **options, progress=report)
 
 
 def _show_generated(made: "Generated") -> None:
