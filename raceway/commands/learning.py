@@ -210,9 +210,9 @@ def _show_scores(scores: "Scores") -> None:
 def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int, seed: int, as_json: bool) -> None:
     """Measure the scores of all baselines on DIR.
 
-    (raceway bench measures speed.) Cross-validation keeps all records of a specimen (or rig) on one side of each split. Three controls
-    are shown beside each score: a split of random records, which leaks; labels permuted among specimens, which must score at chance; and
-    with --test, the score on DIR2 of models trained on all of DIR.
+    (raceway bench measures speed.) Cross-validation keeps all records of a specimen (or rig) on one side of each split. Two controls
+    are shown beside each score: a split of random records, which leaks, and labels permuted among specimens, which must score at chance.
+    With --test, models trained on all of DIR are also scored on DIR2.
 
       raceway benchmark corpus -o report
       raceway benchmark corpus --test cwru -o report --by rig

@@ -10,7 +10,8 @@ from gen.generation import generate
 from gen.pace import Pace
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.integrate import integrate
-from gen.plan import MOST_DRAWN, plan, some_ranges
+from gen.plan import BYTES_PER_FILE, MOST_DRAWN, plan, some_ranges
+from gen.plan import _bytes as plan_bytes
 from gen.recipe import read_recipe
 
 
@@ -72,3 +73,19 @@ def test_a_plan_follows_seed_and_number_of_records(write_recipe, tmp_path):
     path = write_recipe(tmp_path / "small.yaml")
     assert plan(path, seed=8, records=5).records == 5
     assert plan(path, seed=8).seed == read_recipe(path, seed=8).seed == 8
+
+
+def test_the_time_of_a_plan_contains_the_time_to_draw_every_record(write_recipe, tmp_path, monkeypatch):
+    monkeypatch.setattr("gen.plan.measured_pace", lambda *_: Pace(lane_step=0.0, record=0.0))
+    small = plan(write_recipe(tmp_path / "small.yaml")).estimated_seconds
+    large = plan(write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500})).estimated_seconds
+    assert small > 0
+    assert large > 20 * small
+
+
+@pytest.mark.parametrize("per_part", [1, 5, 24])
+def test_the_size_of_a_plan_has_one_overhead_for_each_part_and_one_for_the_index(recipe_with, per_part):
+    recipe = recipe_with({"corpus.records_per_part": per_part})
+    lean = recipe_with({"corpus.records_per_part": 1000})
+    assert plan_bytes(recipe) - plan_bytes(lean) == (recipe.n_parts - 1) * BYTES_PER_FILE
+    assert plan_bytes(lean) > 2 * BYTES_PER_FILE

@@ -1,4 +1,4 @@
-"""What each command gives, to people and to programs."""
+"""Output of each command, as text and as JSON."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ from raceway.commands import learning
 
 
 def leaves(command, path=("raceway",)):
-    """Every command with its path, groups opened."""
+    """Every command with its path; the commands of groups too."""
     for name, inner in getattr(command, "commands", {}).items():
         yield (*path, name), inner
         yield from leaves(inner, (*path, name))
@@ -63,7 +63,7 @@ def loaded(arguments, modules):
     return set(run.stdout.splitlines()[-1].split()[1:])
 
 
-def test_help_and_version_wait_for_no_heavy_library():
+def test_help_and_version_load_no_heavy_library():
     heavy = {"numpy", "numba", "xarray", "distributed", "sklearn", "matplotlib", "rich", "gen", "features"}
     assert loaded(["--help"], heavy) == loaded(["--version"], heavy) == loaded(["generate", "--help"], heavy) == set()
 
@@ -72,13 +72,13 @@ SIMULATOR = {"numba", "distributed", "scipy.stats", "sklearn", "matplotlib"}
 
 
 @pytest.mark.parametrize("line", ["recipes", "plan quikstart", "generate quikstart -o new", "bench quikstart"])
-def test_a_list_of_recipes_and_a_misspelt_name_wait_for_no_simulator(line):
+def test_a_list_of_recipes_and_a_misspelt_name_load_no_simulator(line):
     assert loaded(line.split(), SIMULATOR | {"xarray", "netCDF4"}) == set()
 
 
-def test_info_waits_for_no_simulator(tiny_corpus):
+def test_info_loads_no_simulator(tiny_corpus):
     assert loaded(["info", tiny_corpus], SIMULATOR | {"scipy"}) == set()
-    assert loaded(["info", tiny_corpus], {"xarray"}) == {"xarray"}  # the list is not empty for another reason
+    assert loaded(["info", tiny_corpus], {"xarray"}) == {"xarray"}  # so that the test above can fail
 
 
 def test_the_package_runs_as_the_command():
@@ -86,12 +86,12 @@ def test_the_package_runs_as_the_command():
     assert run.stdout == f"raceway {version('raceway')}\n"
 
 
-def test_the_estimators_on_offer_are_those_of_the_registry(run):
+def test_the_choices_of_train_are_the_estimators_of_the_registry(run):
     assert tuple(ESTIMATORS) == learning.ESTIMATORS
     assert f"default: {DEFAULT_ESTIMATOR}" in " ".join(run("train", "--help").stdout.split())
 
 
-def test_recipes_are_listed_with_what_they_are_for(run, told):
+def test_recipes_are_listed_with_their_purpose(run, told):
     listed = told("recipes")["recipes"]
     assert {"quickstart", "domain_randomised", "ophel2025"} <= {recipe["name"] for recipe in listed}
     for recipe in listed:
@@ -119,7 +119,7 @@ def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
     assert "healthy 12, inner 12, outer 12, ball 12" in run("plan", tiny_recipe).stdout
 
 
-def test_a_plan_says_that_the_time_is_not_known_before_it_is_measured(run, tiny_recipe, monkeypatch):
+def test_a_plan_without_a_measured_time_names_the_command_that_measures_it(run, tiny_recipe, monkeypatch):
     monkeypatch.setattr("gen.plan.measured_pace", lambda *_: None)
     shown = run("plan", tiny_recipe).stdout
     assert f"not known yet; raceway bench {tiny_recipe} compiles the kernels and measures the speed" in shown
@@ -131,7 +131,7 @@ def test_a_plan_writes_nothing(run, tiny_recipe, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_generate_tells_what_it_made_and_a_second_call_keeps_it(told, tiny_recipe, tmp_path):
+def test_generate_counts_its_records_and_a_second_call_keeps_them(told, tiny_recipe, tmp_path):
     made = told("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 20, "--seed", 9)
     assert (made["records"], made["parts"], made["kept"], made["failures"]) == (20, 2, 0, [])
     assert made["seconds"] > 0
@@ -185,7 +185,7 @@ def test_info_shows_the_range_of_the_severities_of_each_class(run, told, tiny_co
     with open_corpus(tiny_corpus) as corpus:
         widths = corpus["width"].values[corpus["fault"].values == FAULTS.index("outer")]
     assert found["outer"]["width"] == [widths.min(), widths.max()]
-    assert set(found["outer"]) == {"width", "depth"}  # what is 0 in all records is left out
+    assert set(found["outer"]) == {"width", "depth"}  # severities that are 0 in all records are left out
     shown = run("info", tiny_corpus).stdout
     assert f"outer     width {1e3 * widths.min():.3g} to {1e3 * widths.max():.3g} mm, depth " in shown
 
@@ -219,7 +219,7 @@ def test_features_are_written_as_netcdf_and_parquet(told, tiny_corpus, tmp_path)
     assert parquet.read_table(tmp_path / "features.parquet").num_rows == 48
 
 
-def test_train_keeps_the_test_split_for_an_honest_score(told, run, tiny_corpus, tmp_path):
+def test_train_scores_on_the_test_split_and_trains_on_the_other_records(told, run, tiny_corpus, tmp_path):
     path = tmp_path / "model.skops"
     made = told("train", tiny_corpus, "-o", path, "--estimator", "logistic_regression")
     assert (made["records"], made["test"]["records"], made["test"]["seen"]) == (36, 12, 0)

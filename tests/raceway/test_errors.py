@@ -14,7 +14,7 @@ from raceway.console import ending, show
 
 @pytest.fixture(scope="module")
 def places(tiny_recipe, tiny_corpus, tmp_path_factory):
-    """Paths of what is there and what is wrong, by the names that stand in the table below."""
+    """Sound, damaged and absent files and folders, by their names in the table below."""
     here = tmp_path_factory.mktemp("places")
     (here / "file.txt").write_text("not what is wanted\n")
     (here / "folder").mkdir()
@@ -173,7 +173,7 @@ TABLE = [
 
 
 @pytest.mark.parametrize(("line", "sentence"), TABLE, ids=[line for line, _ in TABLE])
-def test_bad_usage_or_input_gets_a_sentence_and_exit_code_2(run, places, line, sentence):
+def test_bad_usage_or_input_ends_in_one_sentence_and_exit_code_2(run, places, line, sentence):
     result = run(*line.format(**places).split())
     assert result.exit_code == 2, result.output
     assert result.stdout == ""
@@ -216,15 +216,15 @@ def test_a_record_that_replays_differently_is_found_wanting(run, tiny_corpus, tm
     assert "differs" in run("replay", folder, "--record", 3).stdout
 
 
-def test_a_part_that_cannot_be_read_gets_a_sentence(run, places):
-    """Replay compares sizes alone, so it is HDF5 that meets the damage."""
+def test_a_part_that_cannot_be_read_ends_in_one_sentence(run, places):
+    """Replay compares only sizes with the manifest, so HDF5 reads the damaged bytes."""
     for record in range(24, 36):
         result = run("replay", places["altered_part"], "--record", record)
         assert result.exit_code in (0, 1, 2)
         assert result.exit_code < 2 or "a file of the corpus cannot be read" in result.stderr
 
 
-def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch):
+def test_an_unforeseen_error_ends_in_one_sentence_too(run, places, monkeypatch):
     def fail(_folder):
         raise ZeroDivisionError("float division by zero")
 
@@ -252,7 +252,7 @@ def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch)
         (KeyboardInterrupt(), 130, "interrupted."),
     ],
 )
-def test_an_exception_that_gets_through_ends_in_a_sentence(capsys, error, code, sentence):
+def test_an_exception_of_a_library_ends_in_one_sentence(capsys, error, code, sentence):
     def fail():
         raise error
 
@@ -260,7 +260,7 @@ def test_an_exception_that_gets_through_ends_in_a_sentence(capsys, error, code, 
     assert sentence in capsys.readouterr().err
 
 
-def test_text_from_strangers_steers_no_terminal(run, tiny_recipe, tmp_path):
+def test_control_characters_of_a_recipe_are_not_printed(run, tiny_recipe, tmp_path):
     path = tmp_path / "rude.yaml"
     path.write_text(tiny_recipe.read_text().replace("title: Tiny corpus", 'title: "Tiny \\e[2J corpus"'))
     shown = run("plan", path).stdout
@@ -268,5 +268,5 @@ def test_text_from_strangers_steers_no_terminal(run, tiny_recipe, tmp_path):
     assert "\x1b" not in shown
 
 
-def test_json_has_no_word_for_nan():
+def test_json_has_null_for_nan_and_infinity():
     assert show.plain({"load": [float("nan"), 1.5], "rate": float("inf")}) == {"load": [None, 1.5], "rate": None}

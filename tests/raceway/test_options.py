@@ -1,4 +1,4 @@
-"""Options reach the functions they are for, and every key of the JSON objects has its meaning."""
+"""Options reach the functions that they set, and keys of the JSON objects have the right values."""
 
 import json
 import re
@@ -18,7 +18,7 @@ def given(monkeypatch):
 
         def called(*_positional, **named):
             options.update(named)
-            raise CorpusError("enough seen.")
+            raise CorpusError("stopped by the test.")
 
         monkeypatch.setattr(path, called)
         return options
@@ -26,7 +26,7 @@ def given(monkeypatch):
     return replace
 
 
-def test_benchmark_hands_on_grouping_folds_and_seed(run, given, tiny_corpus, tmp_path):
+def test_benchmark_passes_on_grouping_folds_and_seed(run, given, tiny_corpus, tmp_path):
     options = given("features.baselines.benchmark")
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report")
     assert run(*line, "--by", "rig", "--folds", 2, "--seed", 9).exit_code == 2
@@ -36,7 +36,7 @@ def test_benchmark_hands_on_grouping_folds_and_seed(run, given, tiny_corpus, tmp
 
 
 @pytest.mark.parametrize("name", ["cwru", "mfpt", "generic"])
-def test_import_hands_on_the_length_of_a_record(run, given, tmp_path, name):
+def test_import_passes_on_the_length_of_a_record(run, given, tmp_path, name):
     options = given(f"gen.importers.import_{name}")
     line = ("import", name, tmp_path, "-o", tmp_path / "new")
     assert run(*line, "--window", 0.25).exit_code == 2
@@ -45,7 +45,7 @@ def test_import_hands_on_the_length_of_a_record(run, given, tmp_path, name):
     assert options["window"] == 0.5
 
 
-def test_import_hands_on_the_subset(run, given, tmp_path):
+def test_import_passes_on_the_subset(run, given, tmp_path):
     options = given("gen.importers.import_cwru")
     run("import", "cwru", tmp_path, "-o", tmp_path / "new", "--subset", "wang")
     assert options["subset"] == "wang"
@@ -53,7 +53,7 @@ def test_import_hands_on_the_subset(run, given, tmp_path):
     assert options["subset"] == "all"
 
 
-def test_generate_hands_on_scheduler_workers_seed_and_size(run, given, tiny_recipe, tmp_path):
+def test_generate_passes_on_scheduler_workers_seed_and_size(run, given, tiny_recipe, tmp_path):
     options = given("gen.generation.generate")
     run("generate", tiny_recipe, "-o", tmp_path / "new", "--workers", 3, "--scheduler", "tcp://a:1", "--seed", 5)
     assert (options["workers"], options["scheduler"], options["seed"], options["records"]) == (3, "tcp://a:1", 5, None)

@@ -1,4 +1,4 @@
-"""The seed paper's statements: those that held when they were first measured still do, with the same values."""
+"""Statements of the seed paper: those that held when they were first measured still hold, with the same values."""
 
 import math
 
@@ -45,7 +45,7 @@ def test_the_refit_has_the_contact_of_the_geometry_and_the_weight_of_the_rotor_p
     assert preset.load_y > 0
 
 
-def test_whatever_does_not_hold_says_why(runs):
+def test_every_statement_that_does_not_hold_has_a_reason(runs):
     for preset, made in runs.items():
         assert all(finding.holds or finding.why for finding in findings(preset, made))
 
