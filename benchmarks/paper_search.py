@@ -18,7 +18,8 @@ from scipy.optimize import differential_evolution
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
-from raceway.studies.paper import PRESETS, Finding, Preset, findings, run_many
+from raceway.studies.paper import PRESETS, Preset, run_many
+from raceway.studies.statements import Finding, findings
 
 LOGARITHMIC = {
     "housing_mass": (3, 25), "ring_stiffness": (1e3, 1e6), "ring_damping": (50, 3000), "support_stiffness_x": (4e6, 6e7),

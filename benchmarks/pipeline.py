@@ -1,6 +1,6 @@
 """From a recipe to validated parts on disk: against the kernel alone, with two workers, as a corpus grows, and from a cold start.
 
-Everything goes through :func:`gen.generate.generate` into a temporary folder, in this process unless the row says otherwise.
+Everything goes through :func:`gen.generate` into a temporary folder, in this process unless the row says otherwise.
 """
 
 import json
@@ -18,7 +18,7 @@ from ruamel.yaml import YAML
 
 from benchmarks.kernel import FULL
 from benchmarks.pairs import Line, interleaved, row, seconds
-from gen.generate import generate
+from gen.generation import generate
 from raceway.studies.timing import bench
 
 SHORT = Path(__file__).with_name("short.yaml")
@@ -29,7 +29,7 @@ SCALES = (1000, 20_000)
 _PEAK = """
 import json, sys, time
 from pathlib import Path
-from gen.generate import generate
+from gen.generation import generate
 recipe, folder, records = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3])
 generate(recipe, folder / "first", records=1)
 start = time.perf_counter()

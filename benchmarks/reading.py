@@ -14,7 +14,7 @@ import xarray as xr
 from benchmarks.pairs import Line, interleaved, row, seconds
 from benchmarks.pipeline import SHORT, variant
 from gen.corpus import SIGNAL, files, open_corpus, part_paths
-from gen.generate import generate
+from gen.generation import generate
 
 BLOCK = 64  # records read at a time
 PROCESSES = 4

@@ -1,6 +1,6 @@
 """Features of vibration records: a corpus in, a feature table, scores and a report out.
 
-It knows the format of a corpus and not the simulator, so that recordings of real machines are treated alike.
+It uses the format of a corpus and not the simulator, so that recordings of real machines are treated in the same way.
 
 ``corpus -> feature_table -> evaluate -> report``
 
@@ -9,15 +9,32 @@ module      responsibility
 =========== =================================================================================
 signal      spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
 indicators  the feature vector of records, in four groups [pure]
-transformer the same as a scikit-learn transformer
+transformer the feature vector as a scikit-learn transformer
 table       corpus -> feature table (record, feature), part by part
 table_files feature tables on disk
 baselines   classifiers on a feature table, scored by specimen or rig beside their controls
-report      records, corpora and scores as figures, and one page of all that
+report      figures of records, corpora and scores, and one page with all of them
 =========== =================================================================================
 """
 
-from features.baselines import evaluate
-from features.table import feature_table
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from features.baselines import evaluate
+    from features.table import feature_table
 
 __all__ = ["evaluate", "feature_table"]
+
+_MODULES = {"evaluate": "features.baselines", "feature_table": "features.table"}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used, since scikit-learn takes a second."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_MODULES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

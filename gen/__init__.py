@@ -5,7 +5,7 @@
 =========== ==================================================================
 module      responsibility
 =========== ==================================================================
-errors      what can go wrong, one sentence each
+errors      one exception class per stage; each carries one sentence
 limits      how much a file from elsewhere may ask for
 cluster     independent tasks on dask
 plain_files files opened only if they are no pipes or devices
@@ -16,24 +16,31 @@ importers   real recordings into the same format
 recipe      YAML to a frozen model
 scenarios   rigs, specimens and records, fully drawn
 simulation  scenarios to accelerations
-measurement accelerations to what a data-acquisition card stores
-labels      what is written beside each record
-generate    a corpus, part by part, with dask
-replay      any record again, bit for bit
-plan        what a recipe would make, without making it
+measurement accelerations to stored counts, as a data-acquisition card gives
+labels      variables written beside each record
+pace        seconds that some records take on this machine
+generation  a corpus, part by part, with dask
+replaying   any record made again, bit for bit
+plan        counts, size and steps of a corpus before it is made
 pages       documentation pages written from the code
 =========== ==================================================================
 
-Data flows down this list; a module imports only modules above it.
+Data flows down this list; a module imports only modules above it. Public names are imported when they are first used, so that
+opening a corpus loads neither numba nor distributed. No public name is the name of a module: importing a module would replace it.
 """
 
-from gen.corpus import open_corpus, validate_corpus
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
 from gen.errors import ClusterError, CorpusError, RacewayError, RecipeError, SimulationError
-from gen.generate import generate
-from gen.recipe import read_recipe
-from gen.replay import replay
-from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import simulate
+
+if TYPE_CHECKING:
+    from gen.corpus import open_corpus, validate_corpus
+    from gen.generation import generate
+    from gen.recipe import read_recipe
+    from gen.replaying import replay
+    from gen.scenarios import draw_scenarios
+    from gen.simulation.simulate import simulate
 
 __all__ = [
     "ClusterError",
@@ -49,3 +56,24 @@ __all__ = [
     "simulate",
     "validate_corpus",
 ]
+
+_MODULES = {
+    "draw_scenarios": "gen.scenarios",
+    "generate": "gen.generation",
+    "open_corpus": "gen.corpus",
+    "read_recipe": "gen.recipe",
+    "replay": "gen.replaying",
+    "simulate": "gen.simulation.simulate",
+    "validate_corpus": "gen.corpus",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_MODULES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,7 +1,7 @@
-"""Independent tasks on dask, their results as they come, and a sentence when the cluster is lost.
+"""Independent tasks on dask, their results in the order in which they finish, and a sentence when the cluster is lost.
 
-A few tasks for each thread of the workers are under way at a time, so that memory does not grow with their number. A task may run twice, as
-dask repeats what a lost worker was doing.
+Two tasks per thread of the workers are submitted at a time, so that memory does not grow with their number. A task may run twice: dask
+repeats the tasks of a lost worker.
 """
 
 import time
@@ -10,8 +10,9 @@ from concurrent.futures import CancelledError
 from contextlib import contextmanager
 from itertools import islice
 from typing import Any, TypeVar
+from uuid import uuid4
 
-from distributed import Client, Future, KilledWorker, LocalCluster, wait
+from distributed import Client, Future, KilledWorker, LocalCluster, get_worker, wait
 from distributed import TimeoutError as DaskTimeoutError
 from distributed.comm.core import CommClosedError
 
@@ -22,7 +23,7 @@ Result = TypeVar("Result")
 
 POLL_S = 2.0
 PATIENCE_S = 60.0
-"""How long a cluster may have no workers before the work is given up."""
+"""How long a cluster may be without workers before the call ends with an error [s]."""
 
 
 @contextmanager
@@ -37,20 +38,20 @@ def local_client(workers: int | None = None) -> Iterator[Client]:
 
 @contextmanager
 def client_of(scheduler: str) -> Iterator[Client]:
-    """Client of the dask scheduler at an address, which must have workers.
+    """Client of the dask scheduler at an address.
 
     Raises
     ------
     ClusterError
-        If nobody answers there, or no worker comes within ten seconds.
+        If no scheduler answers there, or it has no worker within ten seconds.
     """
     try:
-        # asked by a client that is not the default one: if nobody answers, that would stay, and xarray ask it for locks
+        # the first client is not the default one: a default client without a scheduler stays, and xarray asks it for locks
         Client(scheduler, timeout="10s", set_as_default=False).close()
     except (OSError, ValueError, TimeoutError) as error:
         reason = " ".join(str(error).split())
         raise ClusterError(
-            f"scheduler {scheduler}: does not answer ({reason}); give the address dask scheduler printed."
+            f"scheduler {scheduler}: does not answer ({reason}); give the address that dask scheduler printed."
         ) from None
     with Client(scheduler) as client:
         try:
@@ -62,13 +63,29 @@ def client_of(scheduler: str) -> Iterator[Client]:
         yield client
 
 
-def run_tasks(client: Client, task: Callable[[Item], Result], items: Iterable[Item]) -> Iterator[Result]:
-    """Results of ``task`` on every item, in the order in which they are done.
+def listen(client: Client, handler: Callable[..., None]) -> str:
+    """Call ``handler`` with every message published from now on, in a thread of the client; returns the topic to publish to."""
+    topic = f"raceway-{uuid4().hex}"
+    client.subscribe_topic(topic, lambda event: handler(*event[1]))
+    return topic
+
+
+def publish(topic: str, *message: int) -> None:
+    """Send a message from inside a task to the client that listens to a topic."""
+    get_worker().log_event(topic, message)
+
+
+def run_tasks(
+    client: Client, task: Callable[[Item], Result], items: Iterable[Item], meanwhile: Callable[[], None] = lambda: None
+) -> Iterator[Result]:
+    """Results of ``task`` on every item, in the order in which the tasks finish.
+
+    ``meanwhile`` is called every ``POLL_S`` seconds in which no task finishes.
 
     Raises
     ------
     ClusterError
-        If the scheduler is gone, no worker is left, or workers die on the same task again and again.
+        If the scheduler is gone, no worker is left, or several workers died on the same task.
     """
     waiting = iter(items)
     width = 2 * max(sum(_threads(client).values()), 1)
@@ -79,6 +96,7 @@ def run_tasks(client: Client, task: Callable[[Item], Result], items: Iterable[It
             future, result = _first_result(client, running)
         except (TimeoutError, DaskTimeoutError):
             alone_since = _alone_since(client, alone_since)
+            meanwhile()
             continue
         alone_since = None
         running.remove(future)
@@ -87,9 +105,9 @@ def run_tasks(client: Client, task: Callable[[Item], Result], items: Iterable[It
 
 
 def _first_result(client: Client, running: set[Future]) -> tuple[Future, Any]:
-    """One of the tasks that are done, and what it returned; TimeoutError if none is within ``POLL_S``.
+    """A finished task and its result; TimeoutError if no task finishes within ``POLL_S``.
 
-    A result is fetched with a time limit too: it can be lost with its worker, and is then waited for until some worker has made it again.
+    Fetching the result has the same time limit: a result can be lost with its worker, and another worker then computes it again.
     """
     try:
         with client.as_current():
@@ -100,7 +118,7 @@ def _first_result(client: Client, running: set[Future]) -> tuple[Future, Any]:
         return future, future.result(timeout=POLL_S)
     except KilledWorker:
         raise ClusterError(
-            "the workers of the cluster died again and again on one task; use fewer workers, or fewer records per part."
+            "several workers of the cluster died on the same task; use fewer workers, or fewer records per part."
         ) from None
     except (CancelledError, CommClosedError) as error:
         raise _lost(client) from error
@@ -115,7 +133,7 @@ def _threads(client: Client) -> dict[str, int]:
 
 
 def _alone_since(client: Client, before: float | None) -> float | None:
-    """Since when there has been no worker, None if there is one."""
+    """Time since which the cluster has had no worker [s]; None if it has one."""
     if client.status != "running":
         raise _lost(client)
     if _threads(client):
@@ -123,14 +141,14 @@ def _alone_since(client: Client, before: float | None) -> float | None:
     since = time.monotonic() if before is None else before
     if time.monotonic() - since > PATIENCE_S:
         raise ClusterError(
-            f"{_name(client)}: has had no worker for {PATIENCE_S:g} s; start workers and run the same command again, "
+            f"{_name(client)}: has had no worker for {PATIENCE_S:g} s; start workers and run the same command again; "
             "finished parts are kept."
         )
     return since
 
 
 def _lost(client: Client) -> ClusterError:
-    return ClusterError(f"{_name(client)}: is gone; start it and run the same command again, finished parts are kept.")
+    return ClusterError(f"{_name(client)}: is gone; start it and run the same command again; finished parts are kept.")
 
 
 def _name(client: Client) -> str:

@@ -1,10 +1,12 @@
-"""What a recipe would make, without making it: counts, bytes, steps and a rough time.
+"""Plan of a corpus: counts, bytes, steps and time, without generating it.
 
-Records are drawn and checked as :func:`gen.generate` would, so that what it refuses is refused here; nothing is simulated or written.
+Records are drawn and checked as :func:`gen.generate` draws and checks them, so that both refuse the same recipes. The time is measured
+on a sample of the records (:mod:`gen.pace`).
 """
 
 import math
-from collections import Counter
+import time
+from collections import Counter, defaultdict
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,33 +14,34 @@ from typing import Any
 
 from gen.corpus import FAULTS, SPLITS
 from gen.errors import SimulationError
+from gen.pace import measured_pace
+from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.batches import Group, filled_lanes, group_of
 from gen.simulation.outline import outlined_input
-from gen.simulation.steps import steps_per_sample
+from gen.simulation.steps import checked_places, steps_per_sample
 from gen.simulation.timeline import timeline
 
-MOST_DRAWN = 5000  # records, about 2 s; of a larger corpus as many parts, spread over it
-MOST_DRAWN_DEAR = 1500  # the same with an axial load or a load that wanders, which take another 0.5 ms a record each
-
-# Rough, so that a plan costs nothing: what raceway bench gave on one core of a shared machine with AVX-512
-LANE_STEPS_PER_SECOND = 18e6  # integration, lanes that pad a batch included
-SECONDS_PER_SAMPLE = 1e-7  # path, background, converter, compression, per channel
-COMPILE_SECONDS = 9.0  # per kernel
+MOST_DRAWN = 5000  # records, about 2 s; from a larger corpus whole parts are drawn, spread evenly over it
+MOST_DRAWN_DEAR = 1500  # with an axial load or a load that wanders: each takes 0.5 ms more per record
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
-COMPRESSED = {"zlib": 0.67, "zstd": 0.75, "none": 1.0}  # of vibration that uses a part of the converter's range
-BYTES_PER_RECORD, BYTES_PER_FILE = 700, 80_000  # labels and drawn values; what a part or the index takes for itself
+COMPRESSED = {"zlib": 0.67, "zstd": 0.75, "none": 1.0}  # share of vibration that uses a part of the converter's range
+BYTES_PER_RECORD = 700  # labels and drawn values
+BYTES_PER_FILE = 80_000  # overhead of a part or of the index
+
+Groups = dict[Group, list[int]]
+"""Places in a part of the records of each group."""
 
 
 @dataclass(frozen=True)
 class Plan:
-    """What a recipe would make.
+    """Counts, size and time of a corpus.
 
-    ``classes``, ``splits`` and ``steps_per_sample`` count records; the last leaves out the ``left_out`` records, which cannot be simulated.
-    If the ``drawn`` records are not all, these and the estimates are scaled up from them. ``estimated_seconds`` is for one worker;
-    ``compile_seconds`` come on top the first time on a machine.
+    ``classes``, ``splits`` and ``steps_per_sample`` count records; the last does not count the ``left_out`` records, which cannot be
+    simulated. If fewer records were ``drawn`` than the corpus has, these counts are scaled up. ``estimated_seconds`` is for one process
+    and compiled kernels; None if a kernel is not compiled on this machine, or if one batch of records takes too long for a sample.
     """
 
     recipe: str
@@ -56,49 +59,39 @@ class Plan:
     steps_per_sample: dict[int, int]
     kernels: int
     bytes: int
-    estimated_seconds: float
-    compile_seconds: float
+    estimated_seconds: float | None
     drawn: int
     left_out: int
     first_left_out: str | None
-    """Why the first of them cannot be simulated."""
+    """The sentence about the first record that cannot be simulated."""
 
 
 def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = None) -> Plan:
-    """Draw and check what a recipe would make.
+    """Draw and check the records of a recipe, and time a sample of them.
 
     Parameters
     ----------
     recipe : path or str
         Recipe file, or name of a recipe that ships with Raceway.
     seed, records : int, optional
-        Take the place of the recipe's own.
+        Replace the seed and the number of records of the recipe.
 
     Raises
     ------
     RecipeError, SimulationError
-        If the recipe asks for what cannot be, or none of its records can be simulated.
+        If the recipe cannot be simulated, or none of its records can.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
+    start = time.perf_counter()
     parts = [draw_scenarios(checked, first, stop) for first, stop in some_ranges(checked)]
+    n_drawn = sum(map(len, parts))
+    drawing = (time.perf_counter() - start) / n_drawn
     failures: list[str] = []
     groups = [_groups(part, checked, failures) for part in parts]
-    drawn = [scenario.specimen for part in parts for scenario in part]
-    if len(failures) == len(drawn):
+    if len(failures) == n_drawn:
         raise SimulationError(failures[0])
-    scale = checked.n_records / len(drawn)
-
-    def scaled(counts: Counter[Any], order: Iterable[Any]) -> dict[Any, int]:
-        return {key: round(counts[key] * scale) for key in order if counts[key]}
-
-    factors: Counter[int] = Counter()
-    for group, count in (item for part in groups for item in part.items()):
-        factors[group.steps] += count
-    lanes = sum(group.steps * filled_lanes(count) for part in groups for group, count in part.items())
-    kernels = {group.shape for part in groups for group in part}
-    recording = checked.recording
-    samples = checked.n_records * checked.n_samples * len(recording.channels)
-    specimens = math.ceil(checked.n_records / checked.corpus.records_per_specimen)
+    recording, specimens = checked.recording, math.ceil(checked.n_records / checked.corpus.records_per_specimen)
+    seconds = _seconds_per_record(list(zip(parts, groups, strict=True)), checked)
     return Plan(
         recipe=checked.name,
         title=checked.title,
@@ -110,23 +103,62 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         sample_rate=recording.sample_rate_hz,
         duration=recording.duration_s,
         channels=tuple(channel.name for channel in recording.channels),
-        classes=scaled(Counter(specimen.fault for specimen in drawn), FAULTS),
-        splits=scaled(Counter(specimen.split for specimen in drawn), SPLITS),
-        steps_per_sample=scaled(factors, sorted(factors)),
-        kernels=len(kernels),
-        bytes=round(samples * _bytes_per_sample(checked) + checked.n_records * BYTES_PER_RECORD)
-        + (checked.n_parts + 1) * BYTES_PER_FILE,
-        estimated_seconds=lanes * scale * timeline(checked).integrated / LANE_STEPS_PER_SECOND
-        + samples * SECONDS_PER_SAMPLE,
-        compile_seconds=len(kernels) * COMPILE_SECONDS,
-        drawn=len(drawn),
-        left_out=round(len(failures) * scale),
+        kernels=len({group.shape for part in groups for group in part}),
+        bytes=_bytes(checked),
+        estimated_seconds=None if seconds is None else (seconds + drawing) * checked.n_records,
+        drawn=n_drawn,
+        left_out=round(len(failures) * checked.n_records / n_drawn),
         first_left_out=failures[0] if failures else None,
+        **_counts(parts, groups, checked.n_records / n_drawn),
+    )
+
+
+def _counts(parts: list[list[Scenario]], groups: list[Groups], scale: float) -> dict[str, dict[Any, int]]:
+    """Number of records by class, by split and by steps per sample, scaled up from those drawn."""
+    specimens = [scenario.specimen for part in parts for scenario in part]
+    steps: Counter[int] = Counter()
+    for part in groups:
+        for group, places in part.items():
+            steps[group.steps] += len(places)
+
+    def scaled(counts: Counter[Any], order: Iterable[Any]) -> dict[Any, int]:
+        return {key: round(counts[key] * scale) for key in order if counts[key]}
+
+    return {
+        "classes": scaled(Counter(specimen.fault for specimen in specimens), FAULTS),
+        "splits": scaled(Counter(specimen.split for specimen in specimens), SPLITS),
+        "steps_per_sample": scaled(steps, sorted(steps)),
+    }
+
+
+def _seconds_per_record(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> float | None:
+    """Time to simulate, measure and write a record, by a sample of the group with the most steps [s]; None if not measured."""
+    samples = timeline(recipe).integrated
+    candidates = (
+        (group.steps * len(places), group.steps, scenarios, places)
+        for scenarios, groups in parts
+        for group, places in groups.items()
+    )
+    _, steps, scenarios, places = max(candidates, key=lambda candidate: candidate[0])
+    pace = measured_pace([scenarios[place] for place in places[:LANES]], recipe, samples * steps)
+    if pace is None:
+        return None
+    lane_steps = samples * sum(_lane_steps(scenarios, groups, recipe) for scenarios, groups in parts)
+    return lane_steps * pace.lane_step / sum(len(scenarios) for scenarios, _ in parts) + pace.record
+
+
+def _lane_steps(scenarios: list[Scenario], groups: Groups, recipe: Recipe) -> int:
+    """Integration steps per sample of all lanes of a part, with the records whose step is checked at half the step."""
+    of_place = {place: group for group, places in groups.items() for place in places}
+    in_order = {place: of_place[place] for place in sorted(of_place)}
+    checked = Counter(in_order[place] for place in checked_places(scenarios, recipe, in_order))
+    return sum(
+        group.steps * (filled_lanes(len(places)) + 2 * filled_lanes(checked[group])) for group, places in groups.items()
     )
 
 
 def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
-    """First and last but one record of every part, or of as many parts as ``most_drawn`` records make, spread over the corpus."""
+    """Start and stop of the records that are drawn: all parts, or parts of ``most_drawn`` records together, spread over the corpus."""
     size, most = recipe.corpus.records_per_part, most_drawn(recipe)
     parts = min(recipe.n_parts, max(1, most // size))
     firsts = [place * recipe.n_parts // parts * size for place in range(parts)]
@@ -134,24 +166,27 @@ def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
 
 
 def most_drawn(recipe: Recipe) -> int:
-    """Number of records that a plan draws at most."""
+    """Largest number of records that a plan draws."""
     operation = recipe.operation
     dear = operation.axial_load_n.support()[1] > 0 or operation.load_wander_percent.support()[1] > 0
     return MOST_DRAWN_DEAR if dear else MOST_DRAWN
 
 
-def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> Counter[Group]:
-    """Number of records of a part in each group; ``failures`` receives a sentence for each record that is left out."""
-    groups: Counter[Group] = Counter()
-    for scenario in scenarios:
+def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> Groups:
+    """Records of a part by group; the sentence of each record that cannot be simulated goes to ``failures``."""
+    groups: Groups = defaultdict(list)
+    for place, scenario in enumerate(scenarios):
         try:
             given = outlined_input(scenario, timeline(recipe))
         except SimulationError as error:
             failures.append(str(error))
             continue
-        groups[group_of(given, steps_per_sample(given, scenario.record.number, recipe))] += 1
+        groups[group_of(given, steps_per_sample(given, scenario.record.number, recipe))].append(place)
     return groups
 
 
-def _bytes_per_sample(recipe: Recipe) -> float:
-    return STORED_BYTES[recipe.recording.converter.kind] * COMPRESSED[recipe.corpus.codec]
+def _bytes(recipe: Recipe) -> int:
+    """Estimated size of the corpus [B]."""
+    samples = recipe.n_records * recipe.n_samples * len(recipe.recording.channels)
+    of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * COMPRESSED[recipe.corpus.codec]
+    return round(of_signals + recipe.n_records * BYTES_PER_RECORD) + (recipe.n_parts + 1) * BYTES_PER_FILE

@@ -16,7 +16,7 @@ from raceway.console.signals import listen_for_signals
 
 
 class Raceway(click.Group):
-    """A group that lists its commands in the order of the work, and ends as :mod:`raceway.console.ending` says."""
+    """A group that lists its commands in the order of the work; :mod:`raceway.console.ending` gives the exit code."""
 
     def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
         """Names of the commands, in the order they were added."""
@@ -28,7 +28,7 @@ class Raceway(click.Group):
         sys.exit(exit_code(lambda: super(Raceway, self).main(args, prog_name, **extra)))
 
     def invoke(self, ctx: click.Context) -> Any:
-        """Run a command; click would pass a closed output off as a plain failure."""
+        """Run a command; click alone would exit with 1 when standard output is closed."""
         try:
             result = super().invoke(ctx)
             sys.stdout.flush()
@@ -44,20 +44,20 @@ class Raceway(click.Group):
     "limits",
     multiple=True,
     metavar="NAME=NUMBER",
-    help="Raise a limit on what a file may ask for, by the name its error gives.",
+    help="Raise a limit on the contents of files, by the name in its error.",
 )
 def cli(limits: tuple[str, ...]) -> None:
-    """Make labelled vibration corpora of healthy and cracked rolling bearings, and find out what they are worth.
+    """Make labelled vibration corpora of healthy and cracked rolling bearings, and score classifiers on them.
 
-    A first round, about a minute:
+    First steps:
 
-      raceway plan quickstart                       what the recipe would make
-      raceway generate quickstart -o corpus         make it
-      raceway info corpus                           what is in it
-      raceway benchmark corpus -o report            classifiers, scored without leakage
+      raceway plan quickstart                       counts, size and time
+      raceway generate quickstart -o corpus         generate the corpus
+      raceway info corpus                           show its contents
+      raceway benchmark corpus -o report            score classifiers without leakage
 
-    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). With --json a command prints one JSON
-    object on standard output; progress and errors go to standard error.
+    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus. With --json
+    a command prints one JSON object on standard output; progress and errors go to standard error.
 
     Exit codes:
 
@@ -78,7 +78,7 @@ def cli(limits: tuple[str, ...]) -> None:
 
 
 def keep_examples(command: click.Command) -> None:
-    """Keep the lines of indented paragraphs of the help as they are; click would fill them up."""
+    """Keep the line breaks of indented paragraphs of the help; click would remove them."""
     command.help = re.sub(r"\n\n(?= )", "\n\n\b\n", inspect.cleandoc(command.help or ""))
     for inner in getattr(command, "commands", {}).values():
         keep_examples(inner)
@@ -107,7 +107,7 @@ keep_examples(cli)
 
 def main() -> NoReturn:
     """Run the command line of this process."""
-    os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # what matters of it comes as an exception
+    os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "critical")  # its errors come as exceptions too
     logging.getLogger("distributed.client").disabled = True
     listen_for_signals()
     cli.main(prog_name="raceway")

@@ -17,36 +17,41 @@ card       the data card of a corpus, and the page about the format
 ========== =====================================================
 """
 
-from gen.corpus.card import data_card, format_page
-from gen.corpus.files import (
-    check_name,
-    plain_file,
-    remove_left_behind,
-    sha256,
-    temporary_beside,
-    whole_or_not_at_all,
-    write_durably,
-    write_text_durably,
-)
-from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.index import open_corpus, write_index
-from gen.corpus.manifest import Manifest, part_paths, read_manifest, write_manifest
-from gen.corpus.part import Codec, PartRow, part_name, write_part
-from gen.corpus.reading import open_part, read_channel
-from gen.corpus.schema import (
-    DRAWS,
-    FAULTS,
-    FORMAT,
-    MISSING_COUNT,
-    ROLES,
-    SCHEMA,
-    SIGNAL,
-    SPLITS,
-    Variable,
-    make_dataset,
-)
-from gen.corpus.signals import SignalCounts, complaint, described, summed
-from gen.corpus.validation import validate_corpus
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from gen.corpus.card import data_card, format_page
+    from gen.corpus.files import (
+        check_name,
+        plain_file,
+        remove_left_behind,
+        sha256,
+        temporary_beside,
+        whole_or_not_at_all,
+        write_durably,
+        write_text_durably,
+    )
+    from gen.corpus.hdf5 import LIBRARY_LOCK
+    from gen.corpus.index import open_corpus, write_index
+    from gen.corpus.manifest import Manifest, part_paths, read_manifest, write_manifest
+    from gen.corpus.part import PartRow, part_name, write_part
+    from gen.corpus.reading import open_part, read_channel
+    from gen.corpus.schema import (
+        DRAWS,
+        FAULTS,
+        FORMAT,
+        MISSING_COUNT,
+        ROLES,
+        SCHEMA,
+        SIGNAL,
+        SPLITS,
+        Codec,
+        Variable,
+        make_dataset,
+    )
+    from gen.corpus.signals import SignalCounts, complaint, described, summed
+    from gen.corpus.validation import validate_corpus
 
 __all__ = [
     "DRAWS",
@@ -88,3 +93,72 @@ __all__ = [
     "write_part",
     "write_text_durably",
 ]
+
+_NAMES = {
+    "card": (
+        "data_card",
+        "format_page",
+    ),
+    "files": (
+        "check_name",
+        "plain_file",
+        "remove_left_behind",
+        "sha256",
+        "temporary_beside",
+        "whole_or_not_at_all",
+        "write_durably",
+        "write_text_durably",
+    ),
+    "hdf5": ("LIBRARY_LOCK",),
+    "index": (
+        "open_corpus",
+        "write_index",
+    ),
+    "manifest": (
+        "Manifest",
+        "part_paths",
+        "read_manifest",
+        "write_manifest",
+    ),
+    "part": (
+        "PartRow",
+        "part_name",
+        "write_part",
+    ),
+    "reading": (
+        "open_part",
+        "read_channel",
+    ),
+    "schema": (
+        "DRAWS",
+        "FAULTS",
+        "FORMAT",
+        "MISSING_COUNT",
+        "ROLES",
+        "SCHEMA",
+        "SIGNAL",
+        "SPLITS",
+        "Codec",
+        "Variable",
+        "make_dataset",
+    ),
+    "signals": (
+        "SignalCounts",
+        "complaint",
+        "described",
+        "summed",
+    ),
+    "validation": ("validate_corpus",),
+}
+_MODULES = {name: f"gen.corpus.{module}" for module, names in _NAMES.items() for name in names}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used: xarray, netCDF4 and h5py take 0.3 s, and a recipe needs none of them."""
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(_MODULES[name]), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -125,6 +125,8 @@ def read_manifest(directory: Path) -> Manifest:
         If it is missing, unreadable, of another format version, names a part that is no part or names one twice, or its counts disagree.
     """
     path = directory / "manifest.json"
+    if directory.is_file():
+        raise CorpusError(f"{directory}: is a file; give the folder of a corpus, the one that holds manifest.json.")
     if not directory.is_dir():
         raise CorpusError(
             f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."

@@ -2,7 +2,7 @@
 
 import zlib
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import h5py
 import netCDF4
@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 
 from gen.corpus.files import sha256, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.schema import SIGNAL
+from gen.corpus.schema import SIGNAL, Codec
 from gen.corpus.signals import SignalCounts, counted, judge
 
-Codec = Literal["zlib", "zstd", "none"]
 _CODECS: dict[Codec, dict[str, Any]] = {
     "zlib": {"zlib": True, "complevel": 1, "shuffle": True},
     "zstd": {"compression": "zstd", "complevel": 1, "shuffle": True},

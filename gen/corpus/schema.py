@@ -6,13 +6,15 @@ what an analyst on site knows (``operating``), what a classifier is to find out 
 """
 
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import ArrayLike, NDArray
 
 from gen.errors import CorpusError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 FORMAT = 2
 FAULTS = ("healthy", "inner", "outer", "ball", "cage", "compound")
@@ -21,6 +23,7 @@ ROLES = ("operating", "label", "latent", "provenance")
 SIGNAL = "acceleration"
 DRAWS = "draws"  # of simulated corpora: everything drawn for a record, as JSON of some kilobytes
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
+Codec = Literal["zlib", "zstd", "none"]
 MISSING_COUNT = -32768  # what a missing part reads as, and therefore not a count the converter gives
 
 
@@ -107,7 +110,7 @@ def make_dataset(
     extra: tuple[Variable, ...] = (),
     counts_per_unit: float | None = None,
     attributes: Mapping[str, Any],
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Records in the corpus layout, ready for :func:`gen.corpus.write_part`.
 
     Parameters
@@ -132,6 +135,8 @@ def make_dataset(
     CorpusError
         If a column is missing or unknown.
     """
+    import xarray as xr  # not at the top: recipes use the names above, and xarray takes 0.25 s to load
+
     variables = SCHEMA + extra
     names = {variable.name for variable in variables}
     if names != set(columns):
@@ -155,7 +160,7 @@ def make_dataset(
     )
 
 
-def schema_problems(dataset: xr.Dataset) -> list[str]:
+def schema_problems(dataset: "xr.Dataset") -> list[str]:
     """What keeps ``dataset`` from being in the format, one sentence each."""
     problems = [f"variable {name} is missing." for name in _missing(dataset)]
     if problems:
@@ -175,12 +180,12 @@ def schema_problems(dataset: xr.Dataset) -> list[str]:
     return problems
 
 
-def _missing(dataset: xr.Dataset) -> list[str]:
+def _missing(dataset: "xr.Dataset") -> list[str]:
     required = [SIGNAL, "channel", "elapsed_time", *(variable.name for variable in SCHEMA)]
     return [name for name in required if name not in dataset.variables]
 
 
-def _values_problems(variable: Variable, array: xr.Variable) -> list[str]:
+def _values_problems(variable: Variable, array: "xr.Variable") -> list[str]:
     if variable.dtype == "str":
         return []
     if array.dtype.kind != np.dtype(variable.dtype).kind:

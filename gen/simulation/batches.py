@@ -4,7 +4,7 @@ A record does not depend on the others in its batch.
 """
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -64,15 +64,23 @@ def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     return integrate(group.shape, batch, step, group.steps, filters, timeline.dropped, timeline.returned)
 
 
-def integrate_all(inputs: Sequence[KernelInput], steps: Sequence[int], timeline: Timeline) -> Integrated:
-    """Integrate records, each with its steps per sample."""
+def integrate_all(
+    inputs: Sequence[KernelInput],
+    steps: Sequence[int],
+    timeline: Timeline,
+    report: Callable[[int], None] = lambda _: None,
+) -> Integrated:
+    """Integrate records, each with its steps per sample; ``report`` is called with the number of records done after each batch."""
     groups = {place: group_of(given, steps[place]) for place, given in enumerate(inputs)}
     n_channels = len(inputs[0].pickups) if inputs else 0
     response = np.empty((len(inputs), n_channels, timeline.returned), np.float32)
     diverged, steepest = np.empty(len(inputs), np.int64), np.empty(len(inputs))
+    done = 0
     for group, places in batches(groups):
         batch = lay_out([inputs[place] for place in places], group.shape, 1 / timeline.fs)
         made = integrate_batch(group, batch, timeline)
         response[places] = made.response.T[: len(places)]
         diverged[places], steepest[places] = made.diverged[: len(places)], made.steepest[: len(places)]
+        done += len(places)
+        report(done)
     return Integrated(response, diverged, steepest)

@@ -1,5 +1,6 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,7 +40,7 @@ class Response:
     truth: list[Truth]
 
 
-def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
+def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int], None] = lambda _: None) -> Response:
     """Integrate scenarios.
 
     Parameters
@@ -48,6 +49,8 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
         Records to simulate.
     recipe : Recipe
         Gives sample rate, duration and settling time.
+    report : callable, optional
+        Called after each batch with the number of records integrated so far.
 
     Returns
     -------
@@ -63,7 +66,7 @@ def simulate(scenarios: list[Scenario], recipe: Recipe) -> Response:
     inputs, failures = possible_inputs(scenarios, recipe)
     given = {place: some for place, some in enumerate(inputs) if some is not None}
     steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
-    made = integrate_all(list(given.values()), list(steps.values()), axis)
+    made = integrate_all(list(given.values()), list(steps.values()), axis, report)
     acceleration = np.full((len(scenarios), len(recipe.recording.channels), axis.returned), np.nan, np.float32)
     oversampling, phases = np.zeros(len(scenarios), np.int64), np.full(len(scenarios), np.nan)
     for row, (place, some) in enumerate(given.items()):

@@ -1,14 +1,15 @@
-"""The commands: each reads its options, calls ``gen``, ``features`` or a study, and shows what these return.
+"""The commands: each reads its options, calls ``gen``, ``features`` or a study, and shows the result.
 
 ========= =====================================================================
 module    responsibility
 ========= =====================================================================
 corpora   commands that make corpora and look at them
-importing commands that bring real recordings into the format
+importing commands that convert real recordings into the format
 learning  commands from a corpus to features, models and a report
 reproduce the seed paper run again
-gallery   a page of pictures of what the model makes
+gallery   a page of pictures of simulated signals
 ========= =====================================================================
 
-Heavy libraries are imported inside the commands, so that help and version answer at once.
+Heavy libraries are imported inside the commands, so that help and version are printed at once. A command that takes a recipe looks for
+its file before it imports the simulator, so that a misspelt name is reported at once.
 """

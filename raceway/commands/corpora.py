@@ -1,10 +1,11 @@
 """Commands that make corpora and look at them: recipes, plan, generate, validate, info, replay."""
 
 import os
+import shlex
 import time
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -24,10 +25,11 @@ from raceway.console.progress import compilation_noticed, notice, progress
 from raceway.console.signals import if_interrupted
 
 if TYPE_CHECKING:
+    from gen.generation import Generated
     from gen.plan import Plan
     from gen.recipe import Recipe
 
-WORTH_WORKERS = 1000  # records; a cluster takes about as long to start as these take to make
+WORTH_WORKERS = 1000  # records; starting a local cluster takes about as long as generating these
 
 
 @click.command()
@@ -58,28 +60,33 @@ def recipes(as_json: bool) -> None:
 @records_option
 @json_option
 def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> None:
-    """Say what RECIPE would make: counts, size, time. Nothing is written.
+    """Show counts, size and time of a corpus; write nothing.
 
-    Records are drawn and checked as generate does, so that what it would refuse is refused here. The time is a rough one.
+    Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time is measured on a sample
+    of the records, if the kernels of RECIPE are compiled on this machine.
 
       raceway plan quickstart
       raceway plan my_recipe.yaml --records 100 --json
 
     Next: raceway generate RECIPE -o DIR
     """
+    from gen.recipe import find_recipe
+
+    find_recipe(recipe)
     from gen.plan import plan as plan_recipe
 
     planned = plan_recipe(recipe, seed=seed, records=records)
     if as_json:
         show.as_json(planned)
     else:
-        _show_plan(planned)
+        _show_plan(planned, recipe)
 
 
-def _show_plan(planned: "Plan") -> None:
+def _show_plan(planned: "Plan", recipe: str) -> None:
     steps = list(planned.steps_per_sample)
-    about = "" if planned.drawn == planned.records else f" (scaled up from {planned.drawn:,} that were drawn)"
+    about = "" if planned.drawn == planned.records else f" (scaled up from {planned.drawn:,} drawn records)"
     without = f", without {planned.left_out:,} that cannot be simulated{about}" if planned.left_out else ""
+    seconds = planned.estimated_seconds
     show.text(planned.title, "")
     show.facts(
         {
@@ -93,19 +100,21 @@ def _show_plan(planned: "Plan") -> None:
             "parts": f"{planned.parts:,}",
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
-            "time": f"about {show.duration(planned.estimated_seconds)} with one worker",
-            "kernels": f"{planned.kernels}, to be compiled once per machine in about {show.duration(planned.compile_seconds)}",
+            "kernels": f"{planned.kernels}; each is compiled once per machine",
+            "time": f"not known yet; raceway bench {shlex.quote(recipe)} compiles the kernels and measures the speed"
+            if seconds is None
+            else f"about {show.duration(seconds)} with one worker, from a sample measured now",
         }
     )
     if planned.first_left_out is not None:
-        show.text("", f"The first that is left out: {planned.first_left_out}")
+        show.text("", f"The first record that is left out: {planned.first_left_out}")
 
 
 @click.command()
 @recipe_argument
-@folder_option("DIR", "Folder of the corpus; new, empty, or one that this command began.")
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Processes on this machine.")
-@click.option("--scheduler", metavar="ADDR", help="Address of a dask scheduler to use instead.")
+@folder_option("DIR", "Folder of the corpus: new, empty, or begun by this command.")
+@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes on this machine.")
+@click.option("--scheduler", metavar="ADDR", help="Address of a dask scheduler, in place of --workers.")
 @seed_option
 @records_option
 @json_option
@@ -118,11 +127,11 @@ def generate(
     records: int | None,
     as_json: bool,
 ) -> int:
-    """Make the corpus of RECIPE in DIR, or complete one.
+    """Generate the corpus of RECIPE in DIR, or complete one.
 
-    The corpus is made in parts. When the command is interrupted, finished parts are kept and the same command goes on from there; the
-    result is the same to the bit, whatever the number of workers. By default there is a worker per core for more than 1000 records in
-    two parts or more, else one.
+    The corpus is generated in parts. If the command is interrupted, finished parts are kept, and the same command completes the corpus.
+    The bytes of the parts do not depend on the number of workers. By default there is one worker per core for more than 1000 records in
+    at least two parts, else one worker.
 
     Exits with 1 if more than 1 % of the records cannot be used, because they are clipped, all zeros or not numbers; the corpus is kept.
 
@@ -132,49 +141,48 @@ def generate(
 
     Next: raceway info DIR, raceway benchmark DIR -o REPORT
     """
-    from gen import generate as generate_corpus
-    from gen import read_recipe
-    from gen.corpus import complaint, described
+    from gen.corpus import complaint
+    from gen.recipe import read_recipe
 
     wanted = read_recipe(recipe, seed=seed, records=records)
     start = time.monotonic()
-    with (
-        if_interrupted(partial(_kept, output, wanted)),
-        compilation_noticed(),
-        progress("generating", "records") as report,
-    ):
-        made = generate_corpus(
-            recipe,
-            output,
-            workers=workers or _default_workers(wanted),
-            scheduler=scheduler,
-            seed=seed,
-            records=records,
-            progress=report,
-        )
+    workers = workers or _default_workers(wanted)
+    with if_interrupted(partial(_kept, output, wanted)):
+        made = _generated(recipe, output, workers=workers, scheduler=scheduler, seed=seed, records=records)
     for failure in made.failures:
         notice(f"left out: {failure}")
     useless = complaint(made.signals, made.records)
     if useless is not None:
         notice(useless)
-    ending = DONE if useless is None else FOUND_WANTING
-    seconds = time.monotonic() - start
     if as_json:
-        names = ("records", "parts", "kept", "failures")
-        facts = {name: getattr(made, name) for name in names}
-        show.as_json(
-            {"corpus": made.directory, **facts, "signals": made.signals._asdict(), "seconds": round(seconds, 3)}
-        )
-        return ending
+        facts = {name: getattr(made, name) for name in ("records", "parts", "kept", "failures")}
+        seconds = round(time.monotonic() - start, 3)
+        show.as_json({"corpus": made.directory, **facts, "signals": made.signals._asdict(), "seconds": seconds})
+    else:
+        _show_generated(made)
+    return DONE if useless is None else FOUND_WANTING
+
+
+def _generated(recipe: str, output: Path, **options: Any) -> "Generated":
+    from gen.generation import generate as generate_corpus
+
+    with compilation_noticed(), progress("generating", "records") as report:
+        return generate_corpus(recipe, output, **options, progress=report)
+
+
+def _show_generated(made: "Generated") -> None:
+    from gen.corpus import described
+
     kept = f", {made.kept} of them kept from before" if made.kept else ""
     unusable = f"; {described(made.signals)} cannot be used" if any(made.signals) else ""
-    failed = f"; {len(made.failures)} could not be simulated and are left out" if made.failures else ""
-    show.text(f"{made.directory}: {made.records:,} records in {made.parts:,} parts{kept}{failed}{unusable}.")
-    return ending
+    failed = f"; {len(made.failures):,} could not be simulated and are left out" if made.failures else ""
+    size = f"{show.counted(made.records, 'record')} in {show.counted(made.parts, 'part')}"
+    show.text(f"{made.directory}: {size}{kept}{failed}{unusable}.")
+    show.text(f"Next: raceway info {shlex.quote(str(made.directory))}")
 
 
 def _kept(corpus: Path, recipe: "Recipe") -> str:
-    """Remove what the workers were writing, and say what is kept."""
+    """Remove the unfinished files of the workers, and return a sentence about the parts that are kept."""
     from gen.corpus import read_manifest, remove_left_behind
     from gen.errors import RacewayError
 
@@ -183,9 +191,8 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
         parts = len(read_manifest(corpus).parts)
     except RacewayError:  # before the first part
         parts = 0
-    return (
-        f"interrupted; {parts} of {recipe.n_parts} parts are kept in {corpus}, and the same command goes on from there."
-    )
+    of_all = f"{parts} of {show.counted(recipe.n_parts, 'part')}"
+    return f"interrupted; {of_all} kept in {corpus}; the same command completes the corpus."
 
 
 def _default_workers(recipe: "Recipe") -> int:
@@ -200,15 +207,15 @@ def _default_workers(recipe: "Recipe") -> int:
 def validate(corpus: Path, as_json: bool) -> int:
     """Check every byte of the corpus in DIR.
 
-    Exits with 1 if anything is wrong. Looked at are the manifest, the hash and format of each part, the samples, and whether
-    corpus.nc says the same as the parts.
+    Exits with 1 if anything is wrong. The checks cover the manifest, the hash and the format of each part, the samples, and whether
+    corpus.nc agrees with the parts.
 
       raceway validate corpus && echo sound
     """
     from gen.corpus import read_manifest, validate_corpus
 
     if not (corpus / "manifest.json").exists():
-        read_manifest(corpus)  # raises: this is no corpus, not a corpus with a fault
+        read_manifest(corpus)  # raises: a folder without a manifest is bad input, not a damaged corpus
     problems = validate_corpus(corpus)
     if as_json:
         show.as_json({"corpus": corpus, "valid": not problems, "problems": problems})
@@ -223,57 +230,21 @@ def validate(corpus: Path, as_json: bool) -> int:
 @corpus_argument
 @json_option
 def info(corpus: Path, as_json: bool) -> None:
-    """Say what is in the corpus in DIR.
+    """Show the contents of the corpus in DIR.
 
-    It may be generated or imported, finished or not.
+    Origin, state, classes with the range of their severities, operating conditions, size and versions. DIR may be generated or
+    imported, finished or not; its corpus.nc stands for the folder.
 
       raceway info corpus
       raceway info corpus --json
     """
-    from raceway.console.summary import describe
+    from raceway.console.summary import describe, show_facts
 
     facts = describe(corpus)
     if as_json:
         show.as_json(facts)
     else:
-        _show_info(facts)
-
-
-def _show_info(facts: dict) -> None:
-    """Show what ``describe`` found; an unfinished corpus without a part has no content yet."""
-    from gen.corpus import SignalCounts, described
-
-    overrides = {key: value for key, value in facts.get("overrides", {}).items() if value is not None}
-    with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
-    origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
-    show.text(facts.get("title", str(facts["corpus"])), "")
-    known = {"corpus": facts["corpus"], "made by": origin}
-    known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
-    if "classes" in facts:
-        known |= {
-            "records": f"{facts['records']:,} of {facts['duration']:g} s at {facts['sample_rate']:g} Hz",
-            "channels": ", ".join(facts["channels"]),
-            "classes": show.counts(facts["classes"]),
-            "splits": show.counts(facts["splits"]),
-            "bearings": show.counts(facts["bearings"]),
-            "rigs": f"{facts['rigs']:,}",
-            "specimens": f"{facts['specimens']:,}",
-            "recordings": f"{facts['recordings']:,}",
-            "shaft rate": _range(facts["shaft_rate"], "Hz"),
-            "load": _range(facts["load"], "N"),
-        }
-    if "signals" in facts:
-        known["not usable"] = described(SignalCounts(**facts["signals"]))
-    known |= {"parts": f"{facts['parts']:,}", "size": show.size(facts["bytes"])}
-    known["versions"] = ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items())
-    show.facts(known)
-    for heading, key in (("Left out:", "failures"), ("Skipped:", "skipped"), ("Warnings:", "warnings")):
-        if facts[key]:
-            show.text("", heading, *(f"- {sentence}" for sentence in facts[key]))
-
-
-def _range(ends: list[float] | None, unit: str) -> str:
-    return "not known" if ends is None else f"{ends[0]:.3g} to {ends[1]:.3g} {unit}"
+        show_facts(facts)
 
 
 @click.command()
@@ -282,10 +253,10 @@ def _range(ends: list[float] | None, unit: str) -> str:
 @file_option("FILE.nc", "Write the new record here.", (".nc",), required=False)
 @json_option
 def replay(corpus: Path, record: int, output: Path | None, as_json: bool) -> int:
-    """Make one record of DIR again and compare.
+    """Simulate one record of DIR again and compare it.
 
-    The record is drawn and simulated from the recipe in DIR. Exits with 1 if it and the stored one are not the same to the bit, as can
-    be on a processor without fused multiply-add or with other versions of the libraries.
+    The record is drawn and simulated from the recipe in DIR. Exits with 1 if its bits differ from those of the stored record, as they can
+    on a processor without fused multiply-add or with other versions of the libraries.
 
       raceway replay corpus --record 17
       raceway replay corpus --record 17 -o record.nc
@@ -300,6 +271,6 @@ def replay(corpus: Path, record: int, output: Path | None, as_json: bool) -> int
     if as_json:
         show.as_json({"corpus": corpus, "record": record, "identical": again.identical, "output": output})
     else:
-        verdict = "identical" if again.identical else "differs; raceway info names the versions it was made with"
+        verdict = "identical" if again.identical else "differs; raceway info shows the versions that made the corpus"
         show.text(f"{corpus}: record {record}: {verdict}.", *([f"written to {output}."] if output else []))
     return DONE if again.identical else FOUND_WANTING

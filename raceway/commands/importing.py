@@ -1,4 +1,4 @@
-"""Commands that bring real recordings into the corpus format."""
+"""Commands that convert real recordings into the corpus format."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -23,10 +23,10 @@ _window: Any = click.option(
 
 @click.group("import")
 def import_() -> None:
-    """Bring real recordings into the corpus format.
+    """Convert real recordings into the corpus format.
 
-    Raceway ships no recordings; give the folder of your own copy. Each is cut into records of --window seconds. A file that cannot be
-    used is named and skipped, and whatever is assumed is said; both lists stay in the corpus (raceway info DIR).
+    Raceway ships no recordings; give the folder of your own copy. Each recording is cut into records of --window seconds. A file that
+    cannot be used is skipped with a sentence, and each assumption is a warning; both lists are kept in the corpus (raceway info DIR).
 
       raceway import cwru 12k_drive_end -o cwru
       raceway evaluate cwru --model model.skops
@@ -48,7 +48,7 @@ def import_() -> None:
 def cwru(source: Path, output: Path, window: float, subset: Any, as_json: bool) -> None:
     """Case Western Reserve University, drive end, 12 kHz.
 
-    SRC is the folder of the published MATLAB files, in any arrangement.
+    SRC is the folder of the published MATLAB files; they may be in subfolders.
 
       raceway import cwru SRC -o cwru --subset wang
     """
@@ -65,7 +65,7 @@ def cwru(source: Path, output: Path, window: float, subset: Any, as_json: bool) 
 def mfpt(source: Path, output: Path, window: float, as_json: bool) -> None:
     """MFPT fault data set of Bechhoefer, 48,828 Hz.
 
-    SRC is the folder of the published MATLAB files, in any arrangement.
+    SRC is the folder of the published MATLAB files; they may be in subfolders.
 
       raceway import mfpt SRC -o mfpt
     """
@@ -82,7 +82,7 @@ def mfpt(source: Path, output: Path, window: float, as_json: bool) -> None:
 def generic(source: Path, output: Path, window: float, as_json: bool) -> None:
     """Your own recordings, described by a mapping file.
 
-    SRC is a YAML file beside the recordings (MATLAB, text or NumPy) that says what is in them:
+    SRC is a YAML file in the folder of the recordings (MATLAB, text or NumPy) that describes them:
 
       title: Pump 7, drive side
       bearing: "6205"
@@ -112,6 +112,6 @@ def _run(bring: "Callable[[Any], Import]", as_json: bool) -> None:
         show.as_json({"corpus": facts.pop("directory"), **facts})
         return
     show.text(
-        f"{done.directory}: {done.records:,} records of {done.recordings:,} recordings; "
-        f"{len(done.skipped)} files skipped, {len(done.warnings)} warnings."
+        f"{done.directory}: {show.counted(done.records, 'record')} of {show.counted(done.recordings, 'recording')}; "
+        f"{show.counted(len(done.skipped), 'file')} skipped, {show.counted(len(done.warnings), 'warning')}."
     )

@@ -10,6 +10,7 @@ from raceway.console import show
 from raceway.console.options import (
     A_PATH,
     corpus_argument,
+    corpus_folder,
     file_option,
     folder_option,
     json_option,
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
 
     from features.baselines import Baseline, Scores
 
-# named here and not imported, so that help answers at once; a test compares them with the registry
+# a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
     "majority",
     "envelope_rule",
@@ -43,7 +44,7 @@ ESTIMATORS = (
 def plot(corpus: Path, record: int, output: Path) -> None:
     """Draw one record with its fault lines.
 
-    Waveform, power spectrum and envelope spectrum.
+    The picture has the waveform, the power spectrum and the envelope spectrum.
 
       raceway plot corpus --record 17 -o record.png
     """
@@ -60,7 +61,7 @@ def plot(corpus: Path, record: int, output: Path) -> None:
 def features(corpus: Path, output: Path, as_json: bool) -> None:
     """Compute the features of every record of DIR.
 
-    The table has a row per record: features of the signal beside everything known about the record.
+    The table has one row per record, with the features of its signal and all its labels.
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
@@ -75,8 +76,8 @@ def features(corpus: Path, output: Path, as_json: bool) -> None:
         facts = {"table": output, "records": records, "features": columns, "records_with_missing_features": missing}
         show.as_json(facts)
         return
-    lacking = f"; {missing:,} records lack some" if missing else ""
-    show.text(f"{output}: {columns} features of {records:,} records{lacking}.")
+    lacking = f"; some are missing in {show.counted(missing, 'record')}" if missing else ""
+    show.text(f"{output}: {columns} features of {show.counted(records, 'record')}{lacking}.")
 
 
 def _table(corpus: Path) -> "xr.Dataset":
@@ -101,8 +102,8 @@ def _table(corpus: Path) -> "xr.Dataset":
 def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
     """Train a classifier on the corpus in DIR.
 
-    If the corpus has a test split (raceway info DIR), the model is trained on the rest and scored on the test split, whose specimens it
-    has not seen; else it is trained on all records and not scored. Model files run no code when they are loaded.
+    If the corpus has a test split (raceway info DIR), the model is trained on the other records and scored on the test split, which has
+    other specimens. Otherwise it is trained on all records and not scored. Model files run no code when they are loaded.
 
       raceway train corpus -o model.skops
       raceway train corpus -o forest.skops --estimator random_forest
@@ -127,21 +128,23 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
             {"model": output, "estimator": estimator, **facts, "features": len(model.features), "test": scores}
         )
         return
-    show.text(f"{output}: {estimator}, trained on {model.records:,} records, classes {', '.join(model.classes)}.")
+    show.text(
+        f"{output}: {estimator}, trained on {show.counted(model.records, 'record')}, classes {', '.join(model.classes)}."
+    )
     if scores is not None:
-        show.text("", f"On the {scores.records:,} records of the test split:")
+        show.text("", f"Scores on the test split of {show.counted(scores.records, 'record')}:")
         _show_scores(scores)
 
 
 @click.command()
 @corpus_argument
-@click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Made with raceway train.")
+@click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
 @json_option
 def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
     """Score a model on every record of the corpus in DIR.
 
-    Scores are over the classes present in DIR; naming another class is an error like any. Records cut from one recording are also
-    scored together. The interval is a bootstrap over specimens.
+    Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
+    scored together, by the sum of their probabilities. The interval is a bootstrap over specimens.
 
       raceway evaluate cwru --model model.skops
     """
@@ -175,33 +178,41 @@ def _show_scores(scores: "Scores") -> None:
     show.facts(found)
     show.text("")
     show.table(
-        ("true \\ named", *scores.model_classes), zip(scores.classes, *zip(*scores.confusion, strict=True), strict=True)
+        ("true \\ predicted", *scores.model_classes),
+        zip(scores.classes, *zip(*scores.confusion, strict=True), strict=True),
     )
 
 
 @click.command()
 @corpus_argument
 @folder_option("OUTDIR", "Folder for report.html and results.json.")
-@click.option("--test", type=A_PATH, metavar="DIR2", help="Another corpus to test on, such as real recordings.")
+@click.option(
+    "--test",
+    type=A_PATH,
+    metavar="DIR2",
+    callback=corpus_folder,
+    help="Another corpus to test on, such as real recordings.",
+)
 @click.option(
     "--by",
     type=click.Choice(["specimen", "rig"]),
     default="specimen",
     show_default=True,
-    help="What stays on one side of every split.",
+    help="Unit whose records all stay on one side of a split.",
 )
 @click.option(
     "--folds", type=click.IntRange(min=2), metavar="K", default=5, show_default=True, help="Number of splits."
 )
 @click.option(
-    "--seed", type=int, default=0, show_default=True, metavar="S", help="Of splits, classifiers and bootstrap."
+    "--seed", type=int, default=0, show_default=True, metavar="S", help="Seed of splits, classifiers and bootstrap."
 )
 @json_option
 def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int, seed: int, as_json: bool) -> None:
-    """Score every baseline on DIR, beside its controls.
+    """Measure the scores of all baselines on DIR.
 
-    Cross-validation keeps all records of a specimen (or rig) on one side. Beside it stand a split of random records, which leaks; the
-    same after the labels were permuted among specimens, which must be at chance; and the score on DIR2 of models trained on all of DIR.
+    (raceway bench measures speed.) Cross-validation keeps all records of a specimen (or rig) on one side of each split. Two controls
+    are shown beside each score: a split of random records, which leaks, and labels permuted among specimens, which must score at chance.
+    With --test, models trained on all of DIR are also scored on DIR2.
 
       raceway benchmark corpus -o report
       raceway benchmark corpus --test cwru -o report --by rig
@@ -219,7 +230,7 @@ def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int
         return
     show.text(f"Balanced accuracy on {results.corpus.title}, {folds} folds by {by}:", "")
     _show_baselines(results.baselines)
-    show.text("", f"{page}: the whole report.")
+    show.text("", f"{page}: the complete report.")
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:
@@ -236,16 +247,24 @@ def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:
 
 @click.command()
 @recipe_argument
-@click.option("--records", type=click.IntRange(min=1), metavar="N", help="Records to time; by default those of a part.")
+@click.option(
+    "--records",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Number of records to time; by default those of one part.",
+)
 @json_option
 def bench(recipe: str, records: int | None, as_json: bool) -> None:
-    """Time this machine from RECIPE to features.
+    """Measure the speed of this machine on RECIPE.
 
-    One worker makes the first part of the corpus several times, stage by stage; the medians are given and nothing is kept. Steps are
-    those of real records, settling included.
+    (raceway benchmark measures scores.) One worker makes the first part of the corpus several times, stage by stage, and discards it;
+    the medians are shown. Integration steps are counted for records, settling time included, and not for empty lanes.
 
       raceway bench quickstart
     """
+    from gen.recipe import find_recipe
+
+    find_recipe(recipe)
     from raceway.studies.timing import bench as run
 
     with compilation_noticed():
@@ -254,7 +273,9 @@ def bench(recipe: str, records: int | None, as_json: bool) -> None:
         show.as_json(found)
         return
     show.text(
-        f"{found.recipe}: {found.records} records, median of {found.repeats} runs on {found.machine['processor']}", ""
+        f"{found.recipe}: {show.counted(found.records, 'record')}, median of {show.counted(found.repeats, 'run')} on "
+        f"{found.machine['processor']}",
+        "",
     )
     show.table(
         ("stage", "ms per record"),

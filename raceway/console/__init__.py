@@ -1,13 +1,13 @@
-"""What every command shares: options in; results, progress and errors out.
+"""Options, results, progress and errors: the parts that all commands share.
 
 ======== ====================================================================
 module   responsibility
 ======== ====================================================================
-signals  Ctrl-C and SIGTERM, without noise from the workers
-ending   exit codes, one sentence for what went wrong
+signals  Ctrl-C and SIGTERM end a command with one line
+ending   exit codes, and one sentence per error
 show     results on standard output, as text or as one JSON object
 options  arguments and options that several commands share
-progress how far a long command has come, on standard error
-summary  what is in a corpus
+progress progress of a long command, on standard error
+summary  contents of a corpus, for ``raceway info``
 ======== ====================================================================
 """

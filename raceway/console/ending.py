@@ -1,6 +1,6 @@
-"""How a command ends: an exit code, and for people a sentence on stderr.
+"""End of a command: an exit code, and one sentence on standard error if it failed.
 
-0 done; 1 checked and found wanting; 2 bad usage or input; 70 an error of Raceway itself; 130 interrupted; 141 nobody reads the output.
+0 done; 1 checked and found wanting; 2 bad usage or input; 70 an error of Raceway itself; 130 interrupted; 141 standard output closed.
 """
 
 import os
@@ -17,19 +17,19 @@ DONE, FOUND_WANTING, BAD_INPUT, INTERNAL_ERROR, NO_READER = 0, 1, 2, 70, 141
 
 
 class NoReader(click.ClickException):
-    """Standard output was closed by whoever read it."""
+    """The reader of standard output has closed it."""
 
     exit_code = NO_READER
 
 
 def exit_code(call: Callable[[], Any]) -> int:
-    """Run a command, say what went wrong on stderr, and return its exit code."""
+    """Run a command, print one sentence on standard error if it fails, and return its exit code."""
     try:
         return int(call() or DONE)
     except NoReader:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # what is left to flush goes nowhere
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())  # the last flush of Python must not fail
         return NO_READER
-    except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the outermost call: nothing may pass as a traceback
+    except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001 - the outermost call: no traceback may pass
         leave_if_interrupted()
         if os.environ.get("RACEWAY_TRACEBACK"):
             traceback.print_exc()
@@ -52,25 +52,25 @@ def _verdict(error: BaseException) -> tuple[int, str]:
         case _ if _is_foreseen(error):
             return BAD_INPUT, str(error)
         case _ if type(error).__name__ == "KilledWorker":
-            return BAD_INPUT, "the workers of the cluster died again and again; use fewer, or fewer records per part."
+            return BAD_INPUT, "several workers of the cluster died; use fewer workers, or fewer records per part."
         case OSError(strerror=str() as reason):
             where = f"{error.filename}: " if error.filename else ""
-            return BAD_INPUT, f"{where}{reason}; choose another place, or set it right there."
+            return BAD_INPUT, f"{where}{reason}; choose another place, or correct that one."
         case OSError() | RuntimeError() if "NetCDF" in str(error) or "HDF" in str(error):
-            return BAD_INPUT, f"a file of the corpus cannot be read ({error}); raceway validate says which."
+            return BAD_INPUT, f"a file of the corpus cannot be read ({error}); raceway validate DIR names it."
         case _:
             what = f"{type(error).__name__}: {error}"
-            return INTERNAL_ERROR, f"internal error ({what}); please report it with what RACEWAY_TRACEBACK=1 shows."
+            return INTERNAL_ERROR, f"internal error ({what}); please report it with the output of RACEWAY_TRACEBACK=1."
 
 
 def _is_foreseen(error: BaseException) -> bool:
-    """Whether ``gen`` or ``features`` made the sentence; they are not imported to find out, since that takes seconds."""
+    """Whether ``gen`` or ``features`` raised the error on purpose; their errors exist only if ``gen.errors`` is loaded."""
     errors = sys.modules.get("gen.errors")
     return errors is not None and isinstance(error, errors.RacewayError)
 
 
 def printable(text: str) -> str:
-    r"""Text without what could steer a terminal: names and titles come from strangers.
+    r"""Text without control characters: names and titles in files of others could control the terminal.
 
     >>> printable("ball\x1b[2J of a\nrig")
     'ball?[2J of a\nrig'

@@ -1,4 +1,4 @@
-"""Arguments and options that several commands share; where a file is to go is checked before any work is done."""
+"""Arguments and options that several commands share; the place for the result is checked before any work is done."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -10,13 +10,42 @@ Decorator = Callable[[Any], Any]
 
 A_PATH = click.Path(path_type=Path)
 
+
+def corpus_folder(_context: click.Context, _parameter: click.Parameter, path: Path | None) -> Path | None:
+    """Folder of a corpus; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
+    if path is None or not path.is_file():
+        return path
+    if path.name == "corpus.nc" and (path.parent / "manifest.json").is_file():
+        return path.parent
+    from gen.errors import CorpusError  # not at the top: help needs nothing of gen
+
+    for folder in path.absolute().parents[:2]:
+        if (folder / "manifest.json").is_file():
+            raise CorpusError(f"{path}: is one file of a corpus; give the folder of the corpus, {folder}.")
+    what = "a feature table" if _is_table(path) else "a file"
+    raise CorpusError(f"{path}: is {what}; give the folder of a corpus, the one that holds manifest.json.")
+
+
+def _is_table(path: Path) -> bool:
+    """Whether a file is a feature table in netCDF."""
+    if path.suffix != ".nc":
+        return False
+    import h5py
+
+    try:
+        with h5py.File(path, "r", locking=False) as content:
+            return {"features", "feature"} <= set(content)
+    except OSError:
+        return False
+
+
 json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 recipe_argument: Decorator = click.argument("recipe")
-corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_PATH)
+corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_folder)
 record_option: Decorator = click.option(
     "--record", type=int, required=True, metavar="I", help="Number of the record, from 0."
 )
-seed_option: Decorator = click.option("--seed", type=int, metavar="S", help="Take the place of the recipe's seed.")
+seed_option: Decorator = click.option("--seed", type=int, metavar="S", help="Replaces the seed of the recipe.")
 records_option: Decorator = click.option("--records", type=int, metavar="N", help="Make only the first N records.")
 
 
@@ -26,7 +55,7 @@ def folder_option(metavar: str, what: str) -> Decorator:
 
 
 def file_option(metavar: str, what: str, suffixes: tuple[str, ...] = (), *, required: bool = True) -> Decorator:
-    """Make the option that names the file for the result, of any kind or with one of ``suffixes``."""
+    """Make the option that names the file for the result, with any suffix or with one of ``suffixes``."""
 
     def check(_context: click.Context, _option: click.Parameter, path: Path | None) -> Path | None:
         if path is None:
@@ -36,7 +65,7 @@ def file_option(metavar: str, what: str, suffixes: tuple[str, ...] = (), *, requ
         if path.is_dir():
             raise click.BadParameter(f"{path} is a folder; give a file")
         if not path.parent.is_dir():
-            raise click.BadParameter(f"there is no folder {path.parent}; make it first")
+            raise click.BadParameter(f"there is no folder {path.parent}; create it first")
         return path
 
     return click.option("-o", "--output", type=A_PATH, required=required, metavar=metavar, help=what, callback=check)

@@ -1,7 +1,8 @@
-"""How far a long command has come, on standard error: a bar on a terminal, else a plain line now and then."""
+"""Progress of a long command on standard error: a bar on a terminal, else a plain line every ten seconds."""
 
 import sys
 import time
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -11,13 +12,14 @@ from raceway.console import show
 Progress = Callable[[int, int], None]
 
 SECONDS_BETWEEN_LINES = 10.0
+REPORTS_IN_SPEED = 32
 
 
 @contextmanager
 def progress(doing: str, unit: str) -> Iterator[Progress]:
-    """Something to call with the number of units done and of all.
+    """Show progress; yields a function to call with the number of units done and of all units.
 
-    ``doing`` is what goes on, such as "generating"; ``unit`` what is counted, such as "records".
+    ``doing`` is the activity, such as "generating"; ``unit`` is the unit that is counted, such as "records".
     """
     if sys.stderr.isatty():
         with _bar(doing, unit) as report:
@@ -28,7 +30,7 @@ def progress(doing: str, unit: str) -> Iterator[Progress]:
 
 @contextmanager
 def _bar(doing: str, unit: str) -> Iterator[Progress]:
-    from rich import progress as rich  # not above: raceway --help is to answer at once
+    from rich import progress as rich  # not at the top: help needs no rich
     from rich.console import Console
 
     columns = (
@@ -58,13 +60,16 @@ def _lines(doing: str, unit: str) -> Progress:
 
 
 def _pace(unit: str) -> Callable[[int, int], str]:
-    """Rate and time left; from the third report on since the first, which may tell of what was there before."""
-    marks = [(time.monotonic(), 0)]
+    """Speed over the last reports, and time left at that speed; parts that were kept from before soon leave the window."""
+    marks = deque([(time.monotonic(), 0)], maxlen=REPORTS_IN_SPEED)
 
     def pace(done: int, total: int) -> str:
-        marks.append((time.monotonic(), done))
-        (then, before), (now, _) = marks[0 if len(marks) < 4 else 1], marks[-1]
-        rate = max(done - before, 1e-9) / max(now - then, 1e-9)
+        if done > marks[-1][1]:
+            marks.append((time.monotonic(), done))
+        (then, before), (now, latest) = marks[0], marks[-1]
+        if latest == before:
+            return "speed not known yet"
+        rate = (latest - before) / max(now - then, 1e-9)
         left = f", {show.duration((total - done) / rate)} left" if done < total else ""
         return f"{rate:,.3g} {unit}/s{left}"
 
@@ -78,24 +83,22 @@ def notice(sentence: str) -> None:
 
 @contextmanager
 def compilation_noticed() -> Iterator[None]:
-    """Say so when numba starts to compile a kernel, which keeps one waiting once per machine."""
+    """Print a sentence when numba starts to compile a kernel, which happens once per machine."""
     from numba.core import event
 
     class Once(event.Listener):
-        """Speaks at the first compilation only."""
+        """Prints the sentence at the first compilation only."""
 
         said = False
 
         def on_start(self, event: Any) -> None:
-            for_keeps = (
-                event.data["dispatcher"].stats.cache_path is not None
-            )  # the others are small, and compiled each time
-            if for_keeps and not self.said:
+            cached = event.data["dispatcher"].stats.cache_path is not None  # other functions compile in milliseconds
+            if cached and not self.said:
                 self.said = True
-                notice("compiling kernels for this machine: some seconds each, and kept for the next time.")
+                notice("compiling kernels for this machine; they are kept for the next time.")
 
         def on_end(self, event: Any) -> None:
-            """Nothing to say."""
+            """Do nothing."""
 
     with event.install_listener("numba:compile", Once()):
         yield

@@ -1,4 +1,4 @@
-"""Results on standard output: tidy text for people, or one JSON object for programs."""
+"""Results on standard output: text for people, or one JSON object for programs."""
 
 import json
 import math
@@ -23,7 +23,7 @@ def json_text(facts: Any) -> str:
 
 
 def plain(value: Any) -> Any:
-    """Turn a value into what JSON knows.
+    """Value in the types of JSON.
 
     >>> plain({"rms": float("nan"), "where": Path("a/b"), "counts": (1, 2)})
     {'rms': None, 'where': 'a/b', 'counts': [1, 2]}
@@ -46,7 +46,7 @@ def text(*paragraphs: str) -> None:
 
 
 def facts(pairs: Mapping[str, Any]) -> None:
-    """Print names and values, one pair a line; an empty value is left out."""
+    """Print names and values, one pair per line; a pair with an empty value is left out."""
     shown = {name: str(value) for name, value in pairs.items() if value not in (None, "", ())}
     width = max(map(len, shown), default=0)
     for name, value in shown.items():
@@ -54,14 +54,14 @@ def facts(pairs: Mapping[str, Any]) -> None:
 
 
 def definitions(meanings: Mapping[str, str]) -> None:
-    """Print names, each with its meaning beside it in as many lines as it takes."""
+    """Print names with their meanings beside them; long meanings are wrapped."""
     formatter = click.HelpFormatter(max_width=100)
     formatter.write_dl([(name, printable(meaning)) for name, meaning in meanings.items()])
     click.echo(formatter.getvalue(), nl=False)
 
 
 def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
-    """Print columns under a header: the first to the left, the others to the right."""
+    """Print columns under a header: the first aligned left, the others aligned right."""
     lines = [list(header), *([str(cell) for cell in row] for row in rows)]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     for line in lines:
@@ -79,6 +79,15 @@ def counts(numbers: Mapping[str, int]) -> str:
     'healthy 3, inner 1,200'
     """
     return ", ".join(f"{name} {number:,}" for name, number in numbers.items())
+
+
+def counted(number: int, noun: str) -> str:
+    """Number and noun, in the plural unless the number is 1.
+
+    >>> counted(1, "part"), counted(1200, "record")
+    ('1 part', '1,200 records')
+    """
+    return f"{number:,} {noun}{'' if number == 1 else 's'}"
 
 
 def size(n_bytes: float) -> str:
@@ -101,7 +110,7 @@ def size(n_bytes: float) -> str:
 
 
 def duration(seconds: float) -> str:
-    """Time a person waits.
+    """Time for people, rounded to two digits or to seconds.
 
     >>> duration(0.31), duration(42.4), duration(150), duration(9000)
     ('1 s', '42 s', '2.5 min', '2.5 h')

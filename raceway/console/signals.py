@@ -1,9 +1,9 @@
-"""Ctrl-C and SIGTERM end a command with one line and exit code 130, without a word from its workers.
+"""Ctrl-C and SIGTERM end a command with one line and exit code 130, without output of its workers.
 
-A terminal sends Ctrl-C to every process of a command, and each worker of a dask cluster would show a traceback. So both signals are
-blocked, which threads and processes started later inherit, and one thread waits for them. It removes the files under way, says its sentence
-and ends the process at once, and its workers before. The main thread is not interrupted: an exception raised in it at any moment could
-crash compiled code, and nothing is left for it to do, since finished files have their names already.
+A terminal sends Ctrl-C to every process of a command, and each worker of a dask cluster would print a traceback. So both signals are
+blocked, also in threads and processes that start later, and one thread waits for them. It kills the workers, removes unfinished files,
+prints its sentence and ends the process at once. The main thread is not interrupted: an exception raised in it at any moment could crash
+compiled code, and it has nothing to clean up, since a file gets its name only when it is complete.
 """
 
 import multiprocessing
@@ -19,12 +19,14 @@ INTERRUPTED = 130
 
 _PATIENCE_S = 1.0
 _came = threading.Event()
-_sentences: list[Callable[[], str]] = [lambda: "interrupted; nothing is left half done, the same command starts again."]
+_sentences: list[Callable[[], str]] = [
+    lambda: "interrupted; no unfinished file is left; the same command starts again."
+]
 
 
 @contextmanager
 def if_interrupted(sentence: Callable[[], str]) -> Iterator[None]:
-    """Say what ``sentence`` returns, such as what is kept and how to go on, if a signal comes meanwhile."""
+    """If a signal comes meanwhile, print the result of ``sentence``: the state of the work, and how to continue."""
     _sentences.append(sentence)
     try:
         yield
@@ -33,19 +35,21 @@ def if_interrupted(sentence: Callable[[], str]) -> Iterator[None]:
 
 
 def listen_for_signals() -> None:
-    """Be ready for signals from here on."""
-    os.environ["PYTHONWARNINGS"] = "ignore:resource_tracker"  # it cleans up behind workers, and complains of it
+    """Start to wait for signals."""
+    os.environ["PYTHONWARNINGS"] = (
+        "ignore:resource_tracker"  # the tracker warns when it removes files of killed workers
+    )
     resource_tracker.ensure_running()  # first: it unblocks SIGINT in the thread that starts it
     del os.environ["PYTHONWARNINGS"]
     awaited = {signal.SIGTERM}
-    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # as it is in the background of a script
+    if signal.getsignal(signal.SIGINT) is not signal.SIG_IGN:  # a script ignores it for commands in the background
         awaited.add(signal.SIGINT)
     signal.pthread_sigmask(signal.SIG_BLOCK, awaited)
     threading.Thread(target=_end, args=(awaited,), daemon=True).start()
 
 
 def leave_if_interrupted() -> None:
-    """Let the thread that waits for signals end this process, if one has come: whatever went wrong is its doing."""
+    """If a signal has come, wait until its thread ends the process: the signal is the cause of any error in this thread."""
     if _came.is_set():
         threading.Event().wait()
 
@@ -59,10 +63,10 @@ def _end(awaited: set[signal.Signals]) -> None:
         worker.kill()
         worker.join(_PATIENCE_S)
     sentence = _sentences[-1]()
-    files = sys.modules.get("gen.corpus.files")  # not imported before anything is written
+    files = sys.modules.get("gen.corpus.files")  # loaded only if a file was written
     remove = (lambda: None) if files is None else files.remove_unfinished
     remove()
-    below_the_bar = "\n\x1b[?25h" if os.isatty(terminal) else ""  # where a cursor is shown again
+    below_the_bar = "\n\x1b[?25h" if os.isatty(terminal) else ""  # and show the cursor again
     os.write(terminal, f"{below_the_bar}{sentence}\n".encode())
-    remove()  # the main thread may have begun another file meanwhile
+    remove()  # the main thread may have started another file meanwhile
     os._exit(INTERRUPTED)

@@ -1,17 +1,30 @@
-"""What is in a corpus, finished or not: the facts behind ``raceway info``.
+"""Contents of a corpus, finished or not: the facts that ``raceway info`` shows.
 
-Manifest for the files, per-record variables for the content; no signal is read.
+They come from the manifest and from the per-record variables; no signal is read.
 """
 
+import math
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from gen.corpus import DRAWS, FAULTS, SPLITS, Manifest, open_corpus, open_part, plain_file, read_manifest
+from gen.corpus import (
+    DRAWS,
+    FAULTS,
+    SPLITS,
+    Manifest,
+    SignalCounts,
+    described,
+    open_corpus,
+    open_part,
+    plain_file,
+    read_manifest,
+)
+from raceway.console import show
 
-_TOLD = [
+_SHOWN = [
     "sample_rate",
     "fault",
     "split",
@@ -23,16 +36,26 @@ _TOLD = [
     "load",
     "channel",
     "elapsed_time",
+    "width",
+    "depth",
 ]
+# severity of a fault, with the unit in which it is shown and its size in SI units; the last three are variables of simulated corpora
+_SEVERITIES = {
+    "width": ("mm", 1e-3),
+    "depth": ("um", 1e-6),
+    "wear": ("um", 1e-6),
+    "pitch_error": ("deg", math.pi / 180),
+    "knock": ("N", 1.0),
+}
 
 
 def describe(directory: Path) -> dict[str, Any]:
-    """Facts about a corpus: where it comes from, how far it is, and what its records are.
+    """Facts about a corpus: origin, state and contents.
 
     Raises
     ------
     CorpusError
-        If it is no corpus, or a part is missing or altered.
+        If the folder holds no corpus, or a part is missing or altered.
     """
     manifest = read_manifest(directory)
     known = manifest.model_dump(exclude={"parts_", "complete", "records", "index", "signals"}, exclude_unset=True)
@@ -51,16 +74,21 @@ def describe(directory: Path) -> dict[str, Any]:
 
 
 def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
-    """The variables that ``info`` tells of; of an unfinished corpus those of the parts there are."""
+    """Variables that ``info`` shows; of an unfinished corpus those of its finished parts."""
     if manifest.complete:
         with open_corpus(directory, check="size") as corpus:
-            return corpus.drop_vars(DRAWS, errors="ignore")[_TOLD].load()
+            return _shown(corpus)
     found = []
     for row in manifest.parts:
         with open_part(plain_file(directory, f"parts/{row.name}")) as part:
-            found.append(part.drop_vars(DRAWS, errors="ignore")[_TOLD].load())
+            found.append(_shown(part))
     whole: Any = xr.concat(found, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
     return whole
+
+
+def _shown(records: xr.Dataset) -> xr.Dataset:
+    known = [name for name in _SEVERITIES if name in records.variables]
+    return records.drop_vars(DRAWS, errors="ignore")[[*_SHOWN, *known]].load()
 
 
 def _content(labels: xr.Dataset) -> dict[str, Any]:
@@ -79,7 +107,21 @@ def _content(labels: xr.Dataset) -> dict[str, Any]:
         "recordings": _distinct(labels["rig"].values, labels["specimen"].values, labels["recording"].values),
         "shaft_rate": _range(labels["shaft_rate"].values),
         "load": _range(labels["load"].values),
+        "severities": _severities(labels),
     }
+
+
+def _severities(labels: xr.Dataset) -> dict[str, dict[str, list[float]]]:
+    """Smallest and largest value of each severity that is known and not 0, by class, in SI units."""
+    found: dict[str, dict[str, list[float]]] = {}
+    for code, fault in enumerate(FAULTS):
+        rows = labels["fault"].values == code
+        values = {name: labels[name].values[rows] for name in _SEVERITIES if name in labels.variables}
+        ranges = {name: _range(some[some != 0]) for name, some in values.items()}
+        known = {name: ends for name, ends in ranges.items() if ends is not None}
+        if known:
+            found[fault] = known
+    return found
 
 
 def _named_counts(codes: np.ndarray, names: tuple[str, ...]) -> dict[str, int]:
@@ -96,6 +138,61 @@ def _distinct(*keys: np.ndarray) -> int:
 
 
 def _range(values: np.ndarray) -> list[float] | None:
-    """Smallest and largest value, None if none is known."""
+    """Smallest and largest known value; None if no value is known."""
     known = values[np.isfinite(values)]
     return [float(known.min()), float(known.max())] if known.size else None
+
+
+def show_facts(facts: dict[str, Any]) -> None:
+    """Print the facts of ``describe``; an unfinished corpus without a part has no contents yet."""
+    overrides = {key: value for key, value in facts.get("overrides", {}).items() if value is not None}
+    with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
+    origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
+    show.text(facts.get("title", str(facts["corpus"])), "")
+    known = {"corpus": facts["corpus"], "made by": origin}
+    known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
+    if "classes" in facts:
+        known |= _shown_content(facts)
+    known["not usable"] = described(SignalCounts(**facts["signals"]))
+    known |= {"parts": f"{facts['parts']:,}", "size": show.size(facts["bytes"])}
+    known["versions"] = ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items())
+    show.facts(known)
+    for heading, key in (("Left out:", "failures"), ("Skipped:", "skipped"), ("Warnings:", "warnings")):
+        if facts[key]:
+            show.text("", heading, *(f"- {sentence}" for sentence in facts[key]))
+
+
+def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
+    return {
+        "records": f"{facts['records']:,} of {facts['duration']:g} s at {facts['sample_rate']:g} Hz",
+        "channels": ", ".join(facts["channels"]),
+        "classes": show.counts(facts["classes"]),
+        **{f"  {fault}": _shown_severities(ranges) for fault, ranges in facts["severities"].items()},
+        "splits": show.counts(facts["splits"]),
+        "bearings": show.counts(facts["bearings"]),
+        "rigs": f"{facts['rigs']:,}",
+        "specimens": f"{facts['specimens']:,}",
+        "recordings": f"{facts['recordings']:,}",
+        "shaft rate": _shown_range(facts["shaft_rate"], "Hz"),
+        "load": _shown_range(facts["load"], "N"),
+    }
+
+
+def _shown_severities(ranges: dict[str, list[float]]) -> str:
+    parts = []
+    for name, ends in ranges.items():
+        unit, scale = _SEVERITIES[name]
+        parts.append(f"{name.replace('_', ' ')} {_shown_range([end / scale for end in ends], unit)}")
+    return ", ".join(parts)
+
+
+def _shown_range(ends: list[float] | None, unit: str) -> str:
+    """Range in words.
+
+    >>> _shown_range([2.0, 2.0], "N"), _shown_range([0.5, 1.25], "mm"), _shown_range(None, "N")
+    ('2 N', '0.5 to 1.25 mm', 'not known')
+    """
+    if ends is None:
+        return "not known"
+    low, high = (f"{end:.3g}" for end in ends)
+    return f"{low} {unit}" if low == high else f"{low} to {high} {unit}"

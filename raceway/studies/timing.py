@@ -1,7 +1,7 @@
-"""How fast this machine turns a recipe into records and features, stage by stage, with one worker.
+"""Speed of this machine from a recipe to records and features, stage by stage, with one worker.
 
-One part is made as :func:`gen.generate` makes it: draw, lay out in lanes, integrate, measure, write; then features of what was written.
-The rate of the kernel counts the steps of real records, not of the lanes that pad a batch.
+One part is made as :func:`gen.generate` makes it: draw, lay out in lanes, integrate, measure, write; then its features are computed.
+The rate of the kernel counts the steps of records, not of empty lanes.
 """
 
 import os
@@ -28,12 +28,12 @@ from gen.simulation.timeline import timeline
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5
-BUDGET_S = 15.0  # no further repeat after that
+BUDGET_S = 15.0  # no repeat starts after this time
 
 
 @dataclass(frozen=True)
 class Bench:
-    """Medians over ``repeats``; ``stage_seconds`` are for all ``records``, one stage after the other, ``integrate`` being the kernel."""
+    """Medians over ``repeats`` runs; ``stage_seconds`` are for all ``records``, and the stage ``integrate`` is the kernel."""
 
     recipe: str
     records: int
@@ -47,35 +47,18 @@ class Bench:
 
 
 def bench(recipe: Path | str, records: int | None = None) -> Bench:
-    """Time the stages on the first records of a recipe, by default on as many as make a part.
+    """Time the stages on the first records of a recipe, by default on the number of records of one part.
 
     Raises
     ------
     RecipeError, SimulationError
-        If the recipe asks for what cannot be.
+        If the recipe cannot be simulated.
     """
     checked = read_recipe(recipe)
     wanted = min(records or checked.corpus.records_per_part, checked.n_records)
     scenarios = draw_scenarios(checked, 0, wanted)
-    response = simulate(scenarios, checked)  # compiles what is not compiled yet
-    seconds: dict[str, list[float]] = {stage: [] for stage in STAGES}
-
-    def timed(stage: str, work: Callable[..., Any], *given: Any) -> Any:
-        start = time.perf_counter()
-        result = work(*given)
-        seconds[stage].append(time.perf_counter() - start)
-        return result
-
-    start = time.perf_counter()
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "part-00000.nc"
-        while len(seconds["features"]) < REPEATS and time.perf_counter() - start < BUDGET_S:
-            timed("draw", draw_scenarios, checked, 0, wanted)
-            in_lanes = timed("lay_out", laid_out, scenarios, checked)
-            timed("integrate", _integrate, in_lanes, checked)
-            measured = timed("measure", measure, response.acceleration, scenarios, checked)
-            timed("write", _write, measured, scenarios, checked, response, path)
-            timed("features", part_features, path)
+    response = simulate(scenarios, checked)  # compiles the kernels that are not compiled yet
+    seconds = _repeated(checked, scenarios, response)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
     steps = timeline(checked).integrated * int(response.oversampling.sum())
     making = sum(stages.values()) - stages["features"]
@@ -92,6 +75,29 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     )
 
 
+def _repeated(recipe: Recipe, scenarios: list[Scenario], response: Response) -> dict[str, list[float]]:
+    """Seconds of each stage in every run; ``response`` belongs to ``scenarios``, the first records of the recipe."""
+    seconds: dict[str, list[float]] = {stage: [] for stage in STAGES}
+
+    def timed(stage: str, work: Callable[..., Any], *given: Any) -> Any:
+        start = time.perf_counter()
+        result = work(*given)
+        seconds[stage].append(time.perf_counter() - start)
+        return result
+
+    start = time.perf_counter()
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "part-00000.nc"
+        while len(seconds["features"]) < REPEATS and time.perf_counter() - start < BUDGET_S:
+            timed("draw", draw_scenarios, recipe, 0, len(scenarios))
+            in_lanes = timed("lay_out", laid_out, scenarios, recipe)
+            timed("integrate", _integrate, in_lanes, recipe)
+            measured = timed("measure", measure, response.acceleration, scenarios, recipe)
+            timed("write", _write, measured, scenarios, recipe, response, path)
+            timed("features", part_features, path)
+    return seconds
+
+
 def _integrate(in_lanes: list[tuple[Group, Batch]], recipe: Recipe) -> None:
     for group, batch in in_lanes:
         integrate_batch(group, batch, timeline(recipe))
@@ -102,7 +108,7 @@ def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, response: R
 
 
 def machine() -> dict[str, Any]:
-    """Processor, cores and versions that the figures depend on."""
+    """Processor, cores and versions, which determine the figures."""
     names = ("raceway", "numba", "numpy", "scipy")
     return {
         "processor": _processor(),

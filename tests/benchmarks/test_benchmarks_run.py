@@ -3,11 +3,11 @@
 import importlib.util
 import math
 
-from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline
+from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
 from benchmarks.profile import PARTS, kernel_parts
-from gen.generate import generate
+from gen.generation import generate
 from gen.recipe import read_recipe
 
 
@@ -73,6 +73,13 @@ def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
     assert set(found) == {
         f"reading {way}" for way in ("in order", "at random", "through dask", "in processes", "hashes")
     }
+
+
+def test_short_commands_are_compared_with_the_import_of_the_libraries_they_need():
+    found = sound(starting.rows(1))
+    names = ("help", "recipes", "info", "misspelt", "import gen", "import gen.corpus", "import features")
+    assert set(found) == {f"starting {name}" for name in names}
+    assert all(line.value < 5 for line in found.values())
 
 
 def test_a_record_is_the_same_from_the_index_and_from_the_parts(few_short, tmp_path):

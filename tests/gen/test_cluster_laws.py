@@ -2,6 +2,7 @@
 
 import threading
 import time
+from functools import partial
 
 import dask
 import pytest
@@ -57,10 +58,51 @@ def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, los
         loser.join()
 
 
+def test_a_cluster_that_gets_workers_again_completes_the_work(threaded, monkeypatch):
+    monkeypatch.setattr(cluster, "POLL_S", 0.1)
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _slow, range(40))
+        found = [next(tasks)]
+        threaded.scale(0)
+        while client.nthreads():
+            time.sleep(0.05)
+        later = threading.Timer(1.0, threaded.scale, [2])
+        later.start()
+        found += list(tasks)
+        later.join()
+    assert set(found) == set(range(40))
+
+
 def test_every_item_is_worked_on_once(threaded):
     with Client(threaded, set_as_default=False) as client:
         assert sorted(cluster.run_tasks(client, abs, range(-50, 0))) == list(range(1, 51))
         assert list(cluster.run_tasks(client, abs, [])) == []
+
+
+def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
+    """Two per thread, of which there are eight: memory does not grow with the number of items."""
+    taken = 0
+
+    def items():
+        nonlocal taken
+        for item in range(200):
+            taken += 1
+            yield item
+
+    with Client(threaded, set_as_default=False) as client:
+        for done, _ in enumerate(cluster.run_tasks(client, abs, items())):
+            assert taken - done <= 2 * 8 + 1
+
+
+def test_messages_of_tasks_reach_the_client(threaded):
+    found = []
+    with Client(threaded, set_as_default=False) as client:
+        topic = cluster.listen(client, lambda *message: found.append(message))
+        list(cluster.run_tasks(client, partial(cluster.publish, topic), [4, 7]))
+        stop = time.monotonic() + 10
+        while len(found) < 2 and time.monotonic() < stop:
+            time.sleep(0.01)
+    assert sorted(found) == [(4,), (7,)]
 
 
 def test_an_error_of_a_task_comes_through(threaded):

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import shutil
+import time
 
 import h5py
 import numpy as np
@@ -13,15 +14,15 @@ import pytest
 from distributed import LocalCluster
 
 from gen.corpus import FAULTS, SIGNAL, SPLITS, open_corpus, open_part, part_name, read_manifest, validate_corpus
-from gen.errors import CorpusError, RecipeError
-from gen.generate import generate
+from gen.errors import ClusterError, CorpusError, RecipeError
+from gen.generation import generate
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.recipe import read_recipe
-from gen.replay import replay
+from gen.replaying import replay
 from gen.scenarios import draw_scenarios, read_scenario
 
-GENERATE = importlib.import_module("gen.generate")  # the packages give the functions under these names
+GENERATE = importlib.import_module("gen.generation")
 
 
 class InterruptedAt:
@@ -149,7 +150,7 @@ def test_no_part_of_other_library_versions_is_kept(recipe_file, whole, copied):
 def test_a_second_call_in_the_same_folder_is_told_so(recipe_file, copied):
     handle = os.open(copied, os.O_RDONLY)
     fcntl.flock(handle, fcntl.LOCK_EX)
-    with pytest.raises(CorpusError, match="another raceway generate is at work in it; wait until it ends"):
+    with pytest.raises(CorpusError, match="another raceway generate is writing into it; wait until it ends"):
         generate(recipe_file, copied)
     os.close(handle)
     assert generate(recipe_file, copied).kept == 3
@@ -224,9 +225,43 @@ def test_a_folder_whose_name_is_not_utf_8_is_refused_before_anything_is_made(rec
     assert list(tmp_path.iterdir()) == []
 
 
-def test_less_than_one_worker_is_refused(recipe_file, tmp_path):
+def test_less_than_one_worker_is_refused_before_anything_is_written(recipe_file, tmp_path):
     with pytest.raises(RecipeError, match="workers: 0 is not allowed; use 1 or more"):
         generate(recipe_file, tmp_path / "c", workers=0)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_scheduler_that_does_not_answer_is_refused_before_anything_is_written(recipe_file, tmp_path):
+    with pytest.raises(ClusterError, match="does not answer"):
+        generate(recipe_file, tmp_path / "c", scheduler="nowhere")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("where", ["this process", "a cluster"])
+def test_progress_moves_within_a_part_and_ends_once_at_the_whole(write_recipe, tmp_path, monkeypatch, where):
+    """Two batches of one part: the first is reported before the part is written."""
+    recipe = write_recipe(tmp_path / "one.yaml", {"corpus.records_per_part": 24})
+    done, written = [], []
+    write_part = GENERATE.write_part
+
+    def slowly(*given):
+        time.sleep(0 if where == "this process" else 0.5)  # several times POLL_S
+        written.append(len(done))
+        return write_part(*given)
+
+    monkeypatch.setattr(GENERATE, "write_part", slowly)
+    monkeypatch.setattr("gen.cluster.POLL_S", 0.05)
+    if where == "this process":
+        generate(recipe, tmp_path / "c", progress=lambda *counts: done.append(counts))
+    else:
+        with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as cluster:
+            address = cluster.scheduler_address
+            generate(recipe, tmp_path / "c", scheduler=address, progress=lambda *counts: done.append(counts))
+    numbers = [number for number, _ in done]
+    assert numbers == sorted(numbers)
+    assert {total for _, total in done} == {24}
+    assert any(0 < number < 24 for number in numbers[: written[0]])
+    assert numbers.count(24) == 1
 
 
 @pytest.mark.parametrize("record", [0, 7, 8, 23])
@@ -263,7 +298,7 @@ def test_seed_and_size_given_in_the_call_are_remembered(recipe_file, whole, tmp_
 def test_a_recipe_changed_behind_the_corpus_cannot_replay_it(copied):
     text = (copied / "recipe.yaml").read_text()
     (copied / "recipe.yaml").write_text(text.replace("seed: 3", "seed: 4"))
-    with pytest.raises(CorpusError, match="is not the recipe the corpus was made from"):
+    with pytest.raises(CorpusError, match="is not the recipe of the corpus"):
         replay(copied, 0)
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from gen.corpus import SignalCounts, open_corpus, read_manifest, validate_corpus
 from gen.errors import CorpusError
-from gen.generate import generate
+from gen.generation import generate
 from gen.importers.assemble import Collection, import_recordings
 from gen.importers.recordings import Candidate, Recording
 from gen.physics.catalogue import CATALOGUE

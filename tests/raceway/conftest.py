@@ -1,4 +1,4 @@
-"""The command line, called in this process or as one of its own."""
+"""The command line, called in this process or in a process of its own."""
 
 import json
 import os
@@ -16,7 +16,7 @@ from raceway.cli import cli
 
 _START = """
 import os, signal, sys
-signal.signal(signal.SIGINT, signal.SIG_DFL)  # ignored if the tests run in the background
+signal.signal(signal.SIGINT, signal.SIG_DFL)  # tests in the background ignore it, and so would the process
 if os.environ.get("LARGEST_FILE"):
     import resource
     resource.setrlimit(resource.RLIMIT_FSIZE, (int(os.environ["LARGEST_FILE"]),) * 2)

@@ -1,6 +1,5 @@
-"""What each command gives, to people and to programs."""
+"""Output of each command, as text and as JSON."""
 
-import importlib
 import json
 import subprocess
 import sys
@@ -13,13 +12,15 @@ import pytest
 
 from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.table_files import read_table
-from gen.corpus import SIGNAL, open_corpus
+from gen.corpus import FAULTS, SIGNAL, open_corpus
+from gen.limits import VARIABLE
+from gen.simulation.simulate import simulate
 from raceway.cli import cli
 from raceway.commands import learning
 
 
 def leaves(command, path=("raceway",)):
-    """Every command with its path, groups opened."""
+    """Every command with its path; the commands of groups too."""
     for name, inner in getattr(command, "commands", {}).items():
         yield (*path, name), inner
         yield from leaves(inner, (*path, name))
@@ -51,19 +52,46 @@ def test_the_version_is_that_of_the_distribution(run):
     assert run("--version").stdout == f"raceway {version('raceway')}\n"
 
 
-def test_help_and_version_wait_for_no_heavy_library():
+def loaded(arguments, modules):
+    """Those of the modules that are loaded after a command, in a process of its own."""
+    code = (
+        "import sys\nfrom raceway.cli import cli\n"
+        f"try: cli.main({[str(argument) for argument in arguments]!r}, prog_name='raceway')\n"
+        f"except SystemExit: print('loaded', *({set(modules)!r} & set(sys.modules)))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return set(run.stdout.splitlines()[-1].split()[1:])
+
+
+def test_help_and_version_load_no_heavy_library():
     heavy = {"numpy", "numba", "xarray", "distributed", "sklearn", "matplotlib", "rich", "gen", "features"}
-    code = f"import sys, raceway.cli; print(*({heavy!r} & set(sys.modules)))"
-    loaded = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert loaded.stdout == "\n"
+    assert loaded(["--help"], heavy) == loaded(["--version"], heavy) == loaded(["generate", "--help"], heavy) == set()
 
 
-def test_the_estimators_on_offer_are_those_of_the_registry(run):
+SIMULATOR = {"numba", "distributed", "scipy.stats", "sklearn", "matplotlib"}
+
+
+@pytest.mark.parametrize("line", ["recipes", "plan quikstart", "generate quikstart -o new", "bench quikstart"])
+def test_a_list_of_recipes_and_a_misspelt_name_load_no_simulator(line):
+    assert loaded(line.split(), SIMULATOR | {"xarray", "netCDF4"}) == set()
+
+
+def test_info_loads_no_simulator(tiny_corpus):
+    assert loaded(["info", tiny_corpus], SIMULATOR | {"scipy"}) == set()
+    assert loaded(["info", tiny_corpus], {"xarray"}) == {"xarray"}  # so that the test above can fail
+
+
+def test_the_package_runs_as_the_command():
+    run = subprocess.run([sys.executable, "-m", "raceway", "--version"], capture_output=True, text=True, check=True)
+    assert run.stdout == f"raceway {version('raceway')}\n"
+
+
+def test_the_choices_of_train_are_the_estimators_of_the_registry(run):
     assert tuple(ESTIMATORS) == learning.ESTIMATORS
     assert f"default: {DEFAULT_ESTIMATOR}" in " ".join(run("train", "--help").stdout.split())
 
 
-def test_recipes_are_listed_with_what_they_are_for(run, told):
+def test_recipes_are_listed_with_their_purpose(run, told):
     listed = told("recipes")["recipes"]
     assert {"quickstart", "domain_randomised", "ophel2025"} <= {recipe["name"] for recipe in listed}
     for recipe in listed:
@@ -87,8 +115,14 @@ def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
     )
     assert {name: planned[name] for name in same} == {name: found[name] for name in same}
     assert planned["bytes"] == pytest.approx(found["bytes"], rel=0.5)
-    assert planned["estimated_seconds"] > 0
+    assert 0 < planned["estimated_seconds"] < 60
     assert "healthy 12, inner 12, outer 12, ball 12" in run("plan", tiny_recipe).stdout
+
+
+def test_a_plan_without_a_measured_time_names_the_command_that_measures_it(run, tiny_recipe, monkeypatch):
+    monkeypatch.setattr("gen.plan.measured_pace", lambda *_: None)
+    shown = run("plan", tiny_recipe).stdout
+    assert f"not known yet; raceway bench {tiny_recipe} compiles the kernels and measures the speed" in shown
 
 
 def test_a_plan_writes_nothing(run, tiny_recipe, tmp_path, monkeypatch):
@@ -97,22 +131,35 @@ def test_a_plan_writes_nothing(run, tiny_recipe, tmp_path, monkeypatch):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_generate_tells_what_it_made_and_a_second_call_keeps_it(told, tiny_recipe, tmp_path):
+def test_generate_counts_its_records_and_a_second_call_keeps_them(told, tiny_recipe, tmp_path):
     made = told("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 20, "--seed", 9)
     assert (made["records"], made["parts"], made["kept"], made["failures"]) == (20, 2, 0, [])
+    assert made["seconds"] > 0
     again = told("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 20, "--seed", 9)
     assert (again["records"], again["kept"]) == (20, 2)
     assert told("info", tmp_path / "corpus")["overrides"] == {"seed": 9, "records": 20}
 
 
+def test_generate_counts_in_words_and_prints_the_next_step_after_its_result(run, tiny_recipe, tmp_path):
+    corpus = tmp_path / "my corpus"
+    shown = run("generate", tiny_recipe, "-o", corpus, "--records", 1, "--workers", 1).stdout
+    assert shown == f"{corpus}: 1 record in 1 part.\nNext: raceway info '{corpus}'\n"
+
+
+def test_a_limit_can_be_raised_for_one_command(run, tmp_path, monkeypatch):
+    monkeypatch.setenv(VARIABLE, "")
+    (tmp_path / "large.yaml").write_text("# " + "x" * 2_000_000 + "\n")
+    plan = ("plan", tmp_path / "large.yaml")
+    assert "yaml_bytes" in run(*plan).stderr
+    assert "yaml_bytes" not in run("--limit", "yaml_bytes=3000000", *plan).stderr
+
+
 def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tmp_path, monkeypatch):
-    module = importlib.import_module("gen.generate")  # the package gives the function under this name
-    simulate = module.simulate
+    def first_diverges(scenarios, recipe, **given):
+        response = simulate(scenarios, recipe, **given)
+        return replace(response, failures={0: f"record {scenarios[0].record.number} diverged."})
 
-    def first_diverges(scenarios, recipe):
-        return replace(simulate(scenarios, recipe), failures={0: f"record {scenarios[0].record.number} diverged."})
-
-    monkeypatch.setattr(module, "simulate", first_diverges)
+    monkeypatch.setattr("gen.generation.simulate", first_diverges)
     result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
     assert result.exit_code == 0
     assert "left out: record 0 diverged.\nleft out: record 12 diverged.\n" in result.stderr
@@ -130,6 +177,22 @@ def test_info_and_validate_find_a_sound_corpus_sound(run, told, tiny_corpus):
     shown = run("info", tiny_corpus).stdout
     for part in ("Tiny corpus", "recipe tiny", "48 of 0.1 s at 12000 Hz", "6205 48", "train 36, test 12", "complete"):
         assert part in shown
+
+
+def test_info_shows_the_range_of_the_severities_of_each_class(run, told, tiny_corpus):
+    found = told("info", tiny_corpus)["severities"]
+    assert list(found) == ["inner", "outer", "ball"]
+    with open_corpus(tiny_corpus) as corpus:
+        widths = corpus["width"].values[corpus["fault"].values == FAULTS.index("outer")]
+    assert found["outer"]["width"] == [widths.min(), widths.max()]
+    assert set(found["outer"]) == {"width", "depth"}  # severities that are 0 in all records are left out
+    shown = run("info", tiny_corpus).stdout
+    assert f"outer     width {1e3 * widths.min():.3g} to {1e3 * widths.max():.3g} mm, depth " in shown
+
+
+@pytest.mark.parametrize("command", ["info", "validate"])
+def test_the_index_of_a_corpus_stands_for_its_folder(run, tiny_corpus, command):
+    assert run(command, tiny_corpus / "corpus.nc").stdout == run(command, tiny_corpus).stdout
 
 
 def test_replay_finds_a_record_identical_and_writes_it(run, told, tiny_corpus, tmp_path):
@@ -156,7 +219,7 @@ def test_features_are_written_as_netcdf_and_parquet(told, tiny_corpus, tmp_path)
     assert parquet.read_table(tmp_path / "features.parquet").num_rows == 48
 
 
-def test_train_keeps_the_test_split_for_an_honest_score(told, run, tiny_corpus, tmp_path):
+def test_train_scores_on_the_test_split_and_trains_on_the_other_records(told, run, tiny_corpus, tmp_path):
     path = tmp_path / "model.skops"
     made = told("train", tiny_corpus, "-o", path, "--estimator", "logistic_regression")
     assert (made["records"], made["test"]["records"], made["test"]["seen"]) == (36, 12, 0)

@@ -8,12 +8,13 @@ import pytest
 
 from features.baselines import save_model, train
 from features.table import feature_table
+from features.table_files import write_table
 from raceway.console import ending, show
 
 
 @pytest.fixture(scope="module")
 def places(tiny_recipe, tiny_corpus, tmp_path_factory):
-    """Paths of what is there and what is wrong, by the names that stand in the table below."""
+    """Sound, damaged and absent files and folders, by their names in the table below."""
     here = tmp_path_factory.mktemp("places")
     (here / "file.txt").write_text("not what is wanted\n")
     (here / "folder").mkdir()
@@ -21,6 +22,7 @@ def places(tiny_recipe, tiny_corpus, tmp_path_factory):
     (here / "binary.yaml").write_bytes(bytes(range(256)))
     table = feature_table(tiny_corpus)
     save_model(train(table, "majority"), here / "model.skops")
+    write_table(table, here / "table.nc")
     whole = (here / "model.skops").read_bytes()
     (here / "cut.skops").write_bytes(whole[: len(whole) // 2])
     for name, (whole, broken) in RECIPES.items():
@@ -133,7 +135,11 @@ TABLE = [
     ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
     ("info {nowhere}", "nowhere: no such folder; give the folder of a corpus"),
-    ("info {file}", "file.txt: no such folder; give the folder of a corpus"),
+    ("info {file}", "file.txt: is a file; give the folder of a corpus, the one that holds manifest.json."),
+    ("info {table}", "table.nc: is a feature table; give the folder of a corpus, the one that holds manifest.json."),
+    ("info {corpus}/manifest.json", "manifest.json: is one file of a corpus; give the folder of the corpus, {corpus}."),
+    ("plot {corpus}/parts/part-00000.nc --record 0 -o {new}.png", "is one file of a corpus; give the folder of the corpus, {corpus}."),
+    ("benchmark {corpus} -o {new} --test {table}", "table.nc: is a feature table; give the folder of a corpus"),
     ("validate {folder}", "folder: holds no manifest.json, so it is no corpus; make one with raceway generate."),
     ("features {no_json} -o {new}.nc", "manifest.json: not a corpus manifest"),
     ("info {a_list}", "manifest.json: not a corpus manifest"),
@@ -146,7 +152,7 @@ TABLE = [
     ("train {altered_part} -o {new}", "part-00002.nc: altered"),
     ("info {no_index}", "corpus.nc: missing; copy it again"),
     ("features {pointing_elsewhere} -o {new}.nc", "corpus.nc: altered, it is not the file the manifest names"),
-    ("replay {other_recipe} --record 0", "is not the recipe the corpus was made from; restore it to replay."),
+    ("replay {other_recipe} --record 0", "is not the recipe of the corpus; restore it to replay."),
     ("replay {no_recipe} --record 0", "holds no recipe.yaml"),
     ("replay {corpus} --record 48", "record 48 is not in it; it has records 0 to 47."),
     ("replay {corpus} --record -1", "record -1 is not in it; it has records 0 to 47."),
@@ -167,15 +173,22 @@ TABLE = [
 
 
 @pytest.mark.parametrize(("line", "sentence"), TABLE, ids=[line for line, _ in TABLE])
-def test_bad_usage_or_input_gets_a_sentence_and_exit_code_2(run, places, line, sentence):
+def test_bad_usage_or_input_ends_in_one_sentence_and_exit_code_2(run, places, line, sentence):
     result = run(*line.format(**places).split())
     assert result.exit_code == 2, result.output
     assert result.stdout == ""
     said = [line for line in result.stderr.splitlines() if not line.startswith("computing features")]
     assert len(said) == 1
-    assert sentence in said[0]
+    assert sentence.format(**places) in said[0]
     assert said[0].endswith((".", "?"))
     assert not [path for path in places["new"].parent.iterdir() if path.name.startswith((".", "new"))]
+
+
+def test_a_scheduler_that_does_not_answer_leaves_no_folder(run, tiny_recipe, tmp_path):
+    result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--scheduler", "nowhere")
+    assert result.exit_code == 2
+    assert "scheduler nowhere: does not answer" in result.stderr
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize(
@@ -203,15 +216,15 @@ def test_a_record_that_replays_differently_is_found_wanting(run, tiny_corpus, tm
     assert "differs" in run("replay", folder, "--record", 3).stdout
 
 
-def test_a_part_that_cannot_be_read_gets_a_sentence(run, places):
-    """Replay compares sizes alone, so it is HDF5 that meets the damage."""
+def test_a_part_that_cannot_be_read_ends_in_one_sentence(run, places):
+    """Replay compares only sizes with the manifest, so HDF5 reads the damaged bytes."""
     for record in range(24, 36):
         result = run("replay", places["altered_part"], "--record", record)
         assert result.exit_code in (0, 1, 2)
         assert result.exit_code < 2 or "a file of the corpus cannot be read" in result.stderr
 
 
-def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch):
+def test_an_unforeseen_error_ends_in_one_sentence_too(run, places, monkeypatch):
     def fail(_folder):
         raise ZeroDivisionError("float division by zero")
 
@@ -220,7 +233,7 @@ def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch)
     assert result.exit_code == 70
     assert result.stderr == (
         "internal error (ZeroDivisionError: float division by zero); "
-        "please report it with what RACEWAY_TRACEBACK=1 shows.\n"
+        "please report it with the output of RACEWAY_TRACEBACK=1.\n"
     )
     monkeypatch.setenv("RACEWAY_TRACEBACK", "1")
     assert "Traceback" in run("info", places["corpus"]).stderr
@@ -235,11 +248,11 @@ def test_what_nobody_foresaw_is_told_in_a_sentence_too(run, places, monkeypatch)
             "/locked/x: Permission denied; choose another place",
         ),
         (RuntimeError("NetCDF: HDF error"), 2, "a file of the corpus cannot be read (NetCDF: HDF error)"),
-        (type("KilledWorker", (Exception,), {})("part-3"), 2, "the workers of the cluster died again and again"),
+        (type("KilledWorker", (Exception,), {})("part-3"), 2, "several workers of the cluster died"),
         (KeyboardInterrupt(), 130, "interrupted."),
     ],
 )
-def test_an_exception_that_gets_through_ends_in_a_sentence(capsys, error, code, sentence):
+def test_an_exception_of_a_library_ends_in_one_sentence(capsys, error, code, sentence):
     def fail():
         raise error
 
@@ -247,7 +260,7 @@ def test_an_exception_that_gets_through_ends_in_a_sentence(capsys, error, code, 
     assert sentence in capsys.readouterr().err
 
 
-def test_text_from_strangers_steers_no_terminal(run, tiny_recipe, tmp_path):
+def test_control_characters_of_a_recipe_are_not_printed(run, tiny_recipe, tmp_path):
     path = tmp_path / "rude.yaml"
     path.write_text(tiny_recipe.read_text().replace("title: Tiny corpus", 'title: "Tiny \\e[2J corpus"'))
     shown = run("plan", path).stdout
@@ -255,5 +268,5 @@ def test_text_from_strangers_steers_no_terminal(run, tiny_recipe, tmp_path):
     assert "\x1b" not in shown
 
 
-def test_json_has_no_word_for_nan():
+def test_json_has_null_for_nan_and_infinity():
     assert show.plain({"load": [float("nan"), 1.5], "rate": float("inf")}) == {"load": [None, 1.5], "rate": None}

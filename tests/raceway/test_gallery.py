@@ -1,4 +1,4 @@
-"""The page of pictures, made once."""
+"""The gallery, written once."""
 
 
 def test_the_gallery_shows_the_paper_every_fault_and_the_run_ups(tmp_path, told):

@@ -1,8 +1,9 @@
-"""Whatever stops a command, what is finished stays, nothing half done stands under its name, and the same command goes on."""
+"""After any interruption finished files are kept, no file is incomplete, and the same command completes the work."""
 
 import json
 import os
 import re
+import shutil
 import signal
 import time
 
@@ -10,6 +11,8 @@ import pytest
 
 from gen import generate
 from gen.corpus import validate_corpus
+from gen.recipe import read_recipe
+from raceway.commands.corpora import _kept
 
 N_PARTS = 12
 PATIENCE_S = 60
@@ -17,7 +20,7 @@ PATIENCE_S = 60
 
 @pytest.fixture(scope="module")
 def recipe(tiny_recipe, tmp_path_factory):
-    """The tiny recipe in many small parts, each of which takes as long as a large one."""
+    """The tiny recipe in many small parts; a part of one batch takes the same time for any number of records."""
     path = tmp_path_factory.mktemp("many") / "many.yaml"
     path.write_text(tiny_recipe.read_text().replace("records_per_part: 12", "records_per_part: 4"))
     return path
@@ -25,7 +28,7 @@ def recipe(tiny_recipe, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(recipe, tmp_path_factory):
-    """Bytes of the parts of an uninterrupted run."""
+    """Bytes of the parts that an uninterrupted call writes."""
     return part_bytes(generate(recipe, tmp_path_factory.mktemp("whole") / "corpus").directory)
 
 
@@ -41,16 +44,16 @@ def listed(folder):
 
 
 def wait_for(found, process, pause=5e-3):
-    """Return as soon as ``found()`` is true; the process must be at work until then."""
+    """Return as soon as ``found()`` is true; fail if the process ends before that."""
     stop = time.monotonic() + PATIENCE_S
     while not found():
         if process.poll() is not None or time.monotonic() > stop:
-            pytest.fail(f"came to an end ({process.poll()}) before there was anything to interrupt")
+            pytest.fail(f"the process ended ({process.poll()}) before it could be interrupted")
         time.sleep(pause)
 
 
 def a_file(folder, pattern):
-    """Whether a file of that name is in the folder of parts, to be asked often."""
+    """Make a function that looks for a file of that name in the folder of parts."""
     matches = re.compile(pattern).fullmatch
     return lambda: any(matches(path.name) for path in folder.glob("parts/*"))
 
@@ -64,8 +67,8 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
     output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, output) == (130, "")
     said = re.fullmatch(
-        rf"interrupted; (\d+) of {N_PARTS} parts are kept in {re.escape(str(folder))}, and the same command goes on from there.\n",
-        errors,
+        rf"interrupted; (\d+) of {N_PARTS} parts kept in {re.escape(str(folder))}; the same command completes the corpus.\n",
+        "".join(line for line in errors.splitlines(keepends=True) if not line.startswith("generating: ")),
     )
     assert said, errors
     kept = listed(folder)
@@ -75,6 +78,16 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
     assert generate(recipe, folder).kept == len(kept)
     assert part_bytes(folder) == whole
     assert validate_corpus(folder) == []
+
+
+def test_the_last_sentence_counts_the_parts_after_the_files_of_killed_workers_are_removed(
+    tiny_corpus, tiny_recipe, tmp_path
+):
+    folder = shutil.copytree(tiny_corpus, tmp_path / "corpus")
+    (folder / "parts" / ".part-00003.nc.4.5.tmp").write_bytes(b"half a part")
+    said = _kept(folder, read_recipe(tiny_recipe))
+    assert said == f"interrupted; 4 of 4 parts kept in {folder}; the same command completes the corpus."
+    assert not list(folder.glob("**/.*"))
 
 
 def test_a_process_killed_while_it_writes_leaves_no_half_part(start, recipe, whole, tmp_path):
@@ -92,7 +105,7 @@ def test_a_process_killed_while_it_writes_leaves_no_half_part(start, recipe, who
     assert validate_corpus(folder) == []
 
 
-def test_a_full_disk_gets_a_sentence_and_room_lets_the_command_go_on(start, recipe, whole, tmp_path):
+def test_a_full_disk_ends_in_one_sentence_and_the_same_command_completes_the_corpus(start, recipe, whole, tmp_path):
     folder = tmp_path / "corpus"
     largest_file = str(len(whole["part-00000.nc"]) // 2)
     process = start("generate", recipe, "-o", folder, "--workers", 1, LARGEST_FILE=largest_file)
@@ -106,7 +119,7 @@ def test_a_full_disk_gets_a_sentence_and_room_lets_the_command_go_on(start, reci
     assert part_bytes(folder) == whole
 
 
-def test_an_interrupted_command_of_another_kind_leaves_nothing(start, tmp_path):
+def test_an_interrupted_import_leaves_no_file(start, tmp_path):
     for number in range(2000):
         (tmp_path / f"{number}.npy").write_bytes(b"no recording")
     mapping = tmp_path / "mapping.yaml"
@@ -119,11 +132,11 @@ def test_an_interrupted_command_of_another_kind_leaves_nothing(start, tmp_path):
     os.killpg(process.pid, signal.SIGINT)
     output, errors = process.communicate(timeout=PATIENCE_S)
     assert (process.returncode, output) == (130, "")
-    assert errors == "interrupted; nothing is left half done, the same command starts again.\n"
+    assert errors == "interrupted; no unfinished file is left; the same command starts again.\n"
     assert not list(tmp_path.glob("*corpus*"))
 
 
-def test_a_reader_that_has_left_gets_no_traceback(start):
+def test_a_closed_output_ends_the_command_without_a_traceback(start):
     process = start("recipes")
     process.stdout.close()
     assert process.stderr.read() == ""

@@ -1,4 +1,4 @@
-"""The seed paper's statements: those that held when they were first measured still do, with the same values."""
+"""Statements of the seed paper: those that held when they were first measured still hold, with the same values."""
 
 import math
 
@@ -7,7 +7,8 @@ import pytest
 from benchmarks.paper_search import holding
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
-from raceway.studies.paper import FS, PRESETS, findings, run
+from raceway.studies.paper import FS, PRESETS, run
+from raceway.studies.statements import findings
 
 # values of MODEL.md 7.2, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
 PAPER = {
@@ -44,7 +45,7 @@ def test_the_refit_has_the_contact_of_the_geometry_and_the_weight_of_the_rotor_p
     assert preset.load_y > 0
 
 
-def test_whatever_does_not_hold_says_why(runs):
+def test_every_statement_that_does_not_hold_has_a_reason(runs):
     for preset, made in runs.items():
         assert all(finding.holds or finding.why for finding in findings(preset, made))
 

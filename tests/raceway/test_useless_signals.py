@@ -1,4 +1,4 @@
-"""How the commands speak of records that cannot be used."""
+"""Messages of the commands about records that cannot be used."""
 
 import pytest
 
@@ -31,14 +31,14 @@ def test_generate_keeps_a_corpus_that_cannot_be_used_but_says_so_and_exits_with_
     assert SENTENCE in again.stderr
 
 
-def test_programs_are_told_the_counts(told, loud_recipe, tiny_recipe, tmp_path):
+def test_json_has_the_counts(told, loud_recipe, tiny_recipe, tmp_path):
     found = told("generate", loud_recipe, "-o", tmp_path / "loud", "--workers", 1, exit_code=FOUND_WANTING)
     assert found["signals"] == NONE | {"clipped": 48}
     assert told("info", tmp_path / "loud")["signals"] == found["signals"]
     assert told("generate", tiny_recipe, "-o", tmp_path / "c", "--workers", 1, exit_code=DONE)["signals"] == NONE
 
 
-def test_info_says_how_many_records_cannot_be_used(run, loud_recipe, tiny_corpus, tmp_path):
+def test_info_shows_how_many_records_cannot_be_used(run, loud_recipe, tiny_corpus, tmp_path):
     run("generate", loud_recipe, "-o", tmp_path / "c", "--workers", 1)
     shown = " ".join(run("info", tmp_path / "c").stdout.split())
     assert "not usable 48 clipped" in shown

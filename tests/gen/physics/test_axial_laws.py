@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import root
 
 from gen.corpus import open_corpus
-from gen.generate import generate
+from gen.generation import generate
 from gen.physics.axial import HALF_LOADED, axial_approach
 from gen.physics.hertz import LINE_EXPONENT
 from gen.plan import plan

@@ -3,7 +3,7 @@
 import pytest
 
 from gen.errors import SimulationError
-from gen.generate import generate
+from gen.generation import generate
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import LEAST_SAFETY, computed_rating, static_rating
 from gen.plan import plan

@@ -7,7 +7,7 @@ import pytest
 
 from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
 from gen.errors import RecipeError, SimulationError
-from gen.generate import generate
+from gen.generation import generate
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import fastest_swing
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens

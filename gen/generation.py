@@ -1,22 +1,21 @@
-"""A recipe becomes a corpus, part by part, on one machine or many.
+"""Generate a corpus from a recipe, part by part, on one machine or many.
 
-One task draws, simulates, measures and writes one part and returns its row of the manifest. An interrupted corpus is completed by the
-same call: a part that the manifest lists and that is the file it lists is kept, and every other one is made again.
+One task draws, simulates, measures and writes one part and returns its row of the manifest. The same call completes an interrupted
+corpus: a part is kept if the manifest lists it with the size and hash of the file; every other part is made again.
 """
 
 import fcntl
 import functools
 import json
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Generator, Iterator
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from gen.cluster import client_of, local_client, run_tasks
 from gen.corpus import (
     PartRow,
     SignalCounts,
@@ -46,6 +45,9 @@ from gen.simulation.outline import outlined_input
 from gen.simulation.simulate import compile_kernel, simulate, step_errors
 from gen.simulation.timeline import timeline
 
+if TYPE_CHECKING:
+    from distributed import Client
+
 Progress = Callable[[int, int], None]
 
 _HOW = (
@@ -56,22 +58,22 @@ _HOW = (
 
 @dataclass(frozen=True)
 class Generated:
-    """What a call to :func:`generate` leaves behind."""
+    """Result of :func:`generate`."""
 
     directory: Path
     records: int
     parts: int
     kept: int
-    """Parts that were there already."""
+    """Number of parts that were kept from an earlier call."""
     failures: tuple[str, ...]
-    """A sentence for each record that could not be simulated and is left out."""
+    """One sentence for each record that is left out because it could not be simulated."""
     signals: SignalCounts
-    """Records that cannot be used."""
+    """Number of records that cannot be used."""
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a task returns; the records stay on disk."""
+    """Result of a task; the records stay on disk."""
 
     row: PartRow
     kept: bool
@@ -88,51 +90,55 @@ def generate(
     records: int | None = None,
     progress: Progress | None = None,
 ) -> Generated:
-    """Make a corpus, or complete one.
+    """Generate a corpus, or complete an interrupted one.
 
     Parameters
     ----------
     recipe : path or str
         Recipe file, or name of a recipe that ships with Raceway.
     directory : path
-        Folder of the corpus; made if it is not there. Must be empty, or hold the same corpus unfinished or finished.
+        Folder of the corpus; created if it does not exist. It must be empty or hold the same corpus, unfinished or finished.
     workers : int
-        Processes on this machine; 1 works in this process.
+        Number of processes on this machine; 1 works in this process.
     scheduler : str, optional
-        Address of a dask scheduler whose workers see ``directory`` under the same path; takes the place of ``workers``.
+        Address of a dask scheduler whose workers see ``directory`` under the same path; replaces ``workers``.
     seed, records : int, optional
-        Take the place of the recipe's own.
+        Replace the seed and the number of records of the recipe.
     progress : callable, optional
-        Called with the number of records done and of all records.
+        Called in this thread with the number of records done and of all records. The last record of a part counts when the part is
+        written, every other record when it is simulated.
 
     Raises
     ------
     RecipeError, SimulationError
-        If the recipe asks for what cannot be.
+        If the recipe cannot be simulated.
     CorpusError
-        If the folder holds something else, or the disk refuses a file.
+        If the folder holds something else, or a file cannot be written.
+    ClusterError
+        If the scheduler does not answer or has no workers, before anything is written; or if the cluster is lost.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
+    if workers < 1:
+        raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
     directory = Path(directory)
     facts = _facts(checked, seed, records)
-    with _claimed(directory):
+    tally = Tally(checked, progress, [0] * checked.n_parts)
+    with _client_of(scheduler) as client, _claimed(directory):
         known = _prepare(directory, Path(find_recipe(recipe)), facts)
         outcomes: dict[int, Outcome] = {}
-        done = 0
-        with _making(workers, scheduler, checked) as run:
-            for part, outcome in run(directory, known):
+        with closing(_made(tally, directory, known, workers, client)) as made:
+            for part, outcome in made:
                 outcomes[part] = outcome
-                done += min(checked.corpus.records_per_part, checked.n_records - part * checked.corpus.records_per_part)
-                rows = [outcomes[number].row for number in sorted(outcomes) if outcomes[number].row.records]
                 if len(outcomes) < checked.n_parts:
+                    rows = [outcomes[number].row for number in sorted(outcomes) if outcomes[number].row.records]
                     write_manifest(directory, rows, complete=False, **facts)
-                if progress is not None:
-                    progress(done, checked.n_records)
+                tally.note(part, len(_numbers(checked, part)))
+                tally.show()
         return _finished(directory, [outcomes[number] for number in sorted(outcomes)], checked, facts)
 
 
 def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: dict[str, Any]) -> Generated:
-    """Write index, manifest and data card over the parts."""
+    """Write index, manifest and data card of the finished parts."""
     rows = [outcome.row for outcome in outcomes if outcome.row.records]
     if not rows:
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
@@ -148,7 +154,7 @@ def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: d
 
 @contextmanager
 def _claimed(directory: Path) -> Iterator[None]:
-    """Make the folder, and keep every other call out of it."""
+    """Create the folder and lock it against other calls."""
     check_name(directory)
     if directory.exists() and not directory.is_dir():
         raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
@@ -162,7 +168,7 @@ def _claimed(directory: Path) -> Iterator[None]:
     except BlockingIOError:
         os.close(handle)
         raise CorpusError(
-            f"{directory}: another raceway generate is at work in it; wait until it ends, or choose another folder."
+            f"{directory}: another raceway generate is writing into it; wait until it ends, or choose another folder."
         ) from None
     except OSError:  # a file system without locks
         pass
@@ -173,9 +179,9 @@ def _claimed(directory: Path) -> Iterator[None]:
 
 
 def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, PartRow]:
-    """Make the folder ready, and return the rows of the parts that may be kept.
+    """Prepare the folder, and return the rows of the parts that may be kept, by name.
 
-    The manifest comes first: with it, a corpus of which nothing else is there yet can be told from a folder of something else.
+    The manifest is written first: it tells a corpus without any part from a folder that holds something else.
     """
     known: dict[str, PartRow] = {}
     begun = (directory / "manifest.json").exists()
@@ -188,7 +194,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
                 raise CorpusError(
                     f"{directory}: holds a corpus of another recipe, seed or size; choose another folder."
                 )
-            if manifest.versions == facts["versions"]:  # else the bytes of new parts may differ from those of old ones
+            if manifest.versions == facts["versions"]:  # other versions may write other bytes
                 known = {row.name: row for row in manifest.parts}
         elif manifest is None and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
@@ -205,7 +211,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
 
 @functools.cache
 def _versions() -> dict[str, str]:
-    """Versions of what the bytes of a part depend on."""
+    """Versions of the libraries that determine the bytes of a part."""
     return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
 
 
@@ -219,66 +225,109 @@ def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, A
     }
 
 
-Run = Callable[[Path, dict[str, PartRow]], Iterator[tuple[int, Outcome]]]
+@dataclass(frozen=True)
+class Tally:
+    """Number of records of each part that are done; ``counts`` is changed by the thread that listens to the workers too."""
+
+    recipe: Recipe
+    progress: Progress | None
+    counts: list[int]
+
+    def note(self, part: int, records: int) -> None:
+        """Set the count of a part; a task that dask repeats does not lower it."""
+        self.counts[part] = max(self.counts[part], records)
+
+    def show(self) -> None:
+        """Call ``progress`` with the sum of the counts, once it is not 0."""
+        done = sum(self.counts)
+        if self.progress is not None and done:
+            self.progress(done, self.recipe.n_records)
+
+    def note_and_show(self, part: int, records: int) -> None:
+        """Set the count of a part and call ``progress``."""
+        self.note(part, records)
+        self.show()
 
 
-@contextmanager
-def _making(workers: int, scheduler: str | None, recipe: Recipe) -> Iterator[Run]:
-    """Something that makes all parts and yields them as they are done: this process, its own cluster, or a given one."""
-    if workers < 1:
-        raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
-    parts = range(recipe.n_parts)
-    if scheduler is None and workers == 1:
-        yield lambda directory, known: map(partial(_numbered_part, recipe, directory), _tasks(parts, known))
-        return
+def _client_of(scheduler: str | None) -> "AbstractContextManager[Client | None]":
+    """Client of the scheduler at an address; None if no address is given."""
     if scheduler is None:
+        return nullcontext()
+    from gen.cluster import (
+        client_of,
+    )  # not at the top: distributed takes 0.3 s to load, and work in this process needs none
+
+    return client_of(scheduler)
+
+
+def _made(
+    tally: Tally, directory: Path, known: dict[str, PartRow], workers: int, client: "Client | None"
+) -> Generator[tuple[int, Outcome]]:
+    """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
+    recipe = tally.recipe
+    tasks = ((part, known.get(part_name(part))) for part in range(recipe.n_parts))
+    if client is None and workers == 1:
+        yield from map(partial(_numbered_part, recipe, directory, tally.note_and_show), tasks)
+        return
+    from gen.cluster import listen, local_client, publish, run_tasks
+
+    if client is None:
         compile_kernels(recipe)
-    with local_client(workers) if scheduler is None else client_of(scheduler) as client:
-        yield lambda directory, known: run_tasks(
-            client, partial(_numbered_part, recipe, directory.resolve()), _tasks(parts, known)
-        )
+    with local_client(workers) if client is None else nullcontext(client) as crew:
+        report = partial(publish, listen(crew, tally.note))
+        task = partial(_numbered_part, recipe, directory.resolve(), report)
+        yield from run_tasks(crew, task, tasks, meanwhile=tally.show)
 
 
-Task = tuple[int, PartRow | None]
-"""Number of a part, and its row of the manifest if it is there already."""
+def _numbers(recipe: Recipe, part: int) -> range:
+    """Numbers of the records of a part."""
+    size = recipe.corpus.records_per_part
+    return range(part * size, min((part + 1) * size, recipe.n_records))
 
 
-def _tasks(parts: range, known: dict[str, PartRow]) -> Iterator[Task]:
-    return ((part, known.get(part_name(part))) for part in parts)
-
-
-def _numbered_part(recipe: Recipe, directory: Path, task: Task) -> tuple[int, Outcome]:
+def _numbered_part(
+    recipe: Recipe, directory: Path, report: Callable[[int, int], None], task: tuple[int, PartRow | None]
+) -> tuple[int, Outcome]:
     part, known = task
-    return part, make_part(recipe, part, directory, known)
+    return part, make_part(recipe, part, directory, known, partial(report, part))
 
 
 def compile_kernels(recipe: Recipe) -> None:
-    """Compile every kernel a recipe needs into numba's cache on disk, before several processes would do it at once."""
+    """Compile the kernels of a recipe into numba's cache on disk, before several processes compile the same ones."""
     compile_mixing(draw_scenarios(recipe, 0, 1)[0], recipe)
     done = set()
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
         for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
             try:
                 shape = input_shape(outlined_input(scenario, timeline(recipe)))
-            except SimulationError:  # left out when its part is made
+            except SimulationError:  # the record is left out when its part is made
                 continue
             if shape not in done:
                 done.add(shape)
                 compile_kernel(kernel_input(scenario, timeline(recipe)))
 
 
-def make_part(recipe: Recipe, part: int, directory: Path, known: PartRow | None = None) -> Outcome:
-    """Write one part, unless it is there as ``known``, its row of the manifest, says."""
+def make_part(
+    recipe: Recipe,
+    part: int,
+    directory: Path,
+    known: PartRow | None = None,
+    report: Callable[[int], None] = lambda _: None,
+) -> Outcome:
+    """Write one part, unless the file is the one that ``known``, its row of the manifest, lists.
+
+    ``report`` is called with the number of simulated records; the last record is not reported before the part is written.
+    """
     path = directory / "parts" / part_name(part)
     kept = None if known is None else _kept_part(path, known)
     if kept is not None:
         return kept
-    first = part * recipe.corpus.records_per_part
-    scenarios = draw_scenarios(recipe, first, first + recipe.corpus.records_per_part)
-    response = simulate(scenarios, recipe)
+    numbers = _numbers(recipe, part)
+    scenarios = draw_scenarios(recipe, numbers.start, numbers.stop)
+    response = simulate(scenarios, recipe, report=lambda done: report(min(done, len(scenarios) - 1)))
     measured = measure(response.acceleration, scenarios, recipe)
-    fine = [place for place in range(len(scenarios)) if place not in response.failures]
     failures = tuple(response.failures[place] for place in sorted(response.failures))
+    fine = [place for place in range(len(scenarios)) if place not in response.failures]
     if not fine:
         return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
     errors = step_errors(scenarios, recipe, response)
@@ -294,6 +343,7 @@ def make_part(recipe: Recipe, part: int, directory: Path, known: PartRow | None 
 
 
 def _kept_part(path: Path, known: PartRow) -> Outcome | None:
+    """Outcome of the part at ``path`` if it has the size and hash of ``known``; None otherwise."""
     if not path.is_file() or path.stat().st_size != known.bytes or sha256(path) != known.sha256:
         return None
     with open_part(path) as dataset:

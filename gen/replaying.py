@@ -1,4 +1,4 @@
-"""Any record of a generated corpus, made again from its recipe and compared with what is stored."""
+"""Simulate a record of a generated corpus again, from the recipe in the corpus, and compare it with the stored record."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,12 +16,12 @@ from gen.simulation.simulate import simulate
 
 
 def corpus_recipe(directory: Path) -> Recipe:
-    """Recipe of a generated corpus, with the seed and size it was made with.
+    """Recipe of a generated corpus, with the seed and the number of records of the call that generated it.
 
     Raises
     ------
     CorpusError
-        If the corpus was not generated, or its recipe is not the one the manifest names.
+        If the corpus was not generated, or its recipe does not have the hash in the manifest.
     """
     manifest = read_manifest(directory)
     path = directory / "recipe.yaml"
@@ -29,29 +29,29 @@ def corpus_recipe(directory: Path) -> Recipe:
         raise CorpusError(f"{directory}: holds no recipe.yaml, so it was not generated and cannot be replayed.")
     recipe = read_recipe(path, seed=manifest.overrides.seed, records=manifest.overrides.records)
     if recipe_hash(recipe) != manifest.recipe_sha256:
-        raise CorpusError(f"{path}: is not the recipe the corpus was made from; restore it to replay.")
+        raise CorpusError(f"{path}: is not the recipe of the corpus; restore it to replay.")
     return recipe
 
 
 @dataclass(frozen=True)
 class Replayed:
-    """A record made again."""
+    """A record that was simulated again."""
 
     dataset: xr.Dataset
-    """The new record, one row, in the corpus layout (undecoded)."""
+    """The new record, one row, in the layout of the corpus (undecoded)."""
     identical: bool
-    """Whether its samples are those in the corpus, bit for bit."""
+    """Whether its samples equal those of the stored record, bit for bit."""
 
 
 def replay(directory: Path | str, record: int) -> Replayed:
-    """Make one record of a generated corpus again from its recipe, and compare it with the stored one.
+    """Simulate one record of a generated corpus again, and compare it with the stored record.
 
-    ``record`` counts the records of the corpus from 0.
+    ``record`` is the number of the record in the corpus, from 0.
 
     Raises
     ------
     CorpusError
-        If there is no such record, or the corpus was not generated.
+        If the corpus has no such record, or was not generated.
     """
     directory = Path(directory)
     recipe = corpus_recipe(directory)

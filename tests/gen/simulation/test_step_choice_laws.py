@@ -1,0 +1,50 @@
+"""Laws of the choice of the step: which contact stiffness it assumes before the run."""
+
+import math
+
+import pytest
+
+from gen.physics.rotor import likely_stiffness
+from gen.scenarios import draw_scenarios
+from gen.simulation.inputs import kernel_input
+from gen.simulation.steps import FINE_STEP, largest_pull, steps_per_sample
+from gen.simulation.timeline import timeline
+
+
+@pytest.fixture
+def drawn(recipe_with):
+    """A recipe, a scenario of it and its record, with no mode that is faster than that of the contacts."""
+    recipe = recipe_with()
+    (scenario,) = draw_scenarios(recipe, 0, 1)
+    record = kernel_input(scenario, timeline(recipe))
+    machine = record.machine._replace(sensor_mass=0.0, half_clearance=1e-6, contact_damping=0.0)
+    return recipe, scenario, record._replace(machine=machine)
+
+
+def stiffness_of_three_balls(record):
+    """Hertz stiffness of three balls, each under three times the heaviest static ball load 5 W / Z of Stribeck [N/m]."""
+    machine = record.machine
+    load = math.hypot(machine.load_x, machine.load_y) + largest_pull(record)
+    ball_load = 3 * 5 * load / record.bearing.n_balls
+    return 3 * 1.5 * machine.load_deflection_factor ** (2 / 3) * ball_load ** (1 / 3)
+
+
+def test_the_assumed_stiffness_is_that_of_three_balls_under_three_times_the_stribeck_load(drawn):
+    _, _, record = drawn
+    found = likely_stiffness(record.machine, record.bearing.n_balls, largest_pull(record))
+    assert found == pytest.approx(stiffness_of_three_balls(record), rel=1e-12)
+
+
+@pytest.mark.parametrize(("share", "steps"), [(1.005, 4), (0.995, 6)])
+def test_the_step_resolves_the_mode_of_that_stiffness_and_is_no_finer(drawn, share, steps):
+    """Four steps per sample are enough up to a sample rate where the mode turns by ``FINE_STEP`` in a step; a little lower, six are."""
+    recipe, scenario, record = drawn
+    machine = record.machine
+    square = (stiffness_of_three_balls(record) + max(machine.ring_stiffness_x, machine.ring_stiffness_y)) * (
+        1 / machine.shaft_mass + 1 / machine.housing_mass
+    )
+    square += machine.shaft_stiffness / machine.shaft_mass
+    square += max(machine.support_stiffness_x, machine.support_stiffness_y) / machine.housing_mass
+    rate = share * math.sqrt(square) / (4 * FINE_STEP)
+    sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
+    assert steps_per_sample(record, scenario.record.number, sampled) == steps

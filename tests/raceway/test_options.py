@@ -1,0 +1,131 @@
+"""Options reach the functions that they set, and keys of the JSON objects have the right values."""
+
+import json
+import re
+
+import pytest
+
+from gen.errors import CorpusError
+from raceway.studies import paper, statements
+
+
+@pytest.fixture
+def given(monkeypatch):
+    """Replace a function by one that keeps the options it is called with and ends the command: ``given(path)``."""
+
+    def replace(path):
+        options = {}
+
+        def called(*_positional, **named):
+            options.update(named)
+            raise CorpusError("stopped by the test.")
+
+        monkeypatch.setattr(path, called)
+        return options
+
+    return replace
+
+
+def test_benchmark_passes_on_grouping_folds_and_seed(run, given, tiny_corpus, tmp_path):
+    options = given("features.baselines.benchmark")
+    line = ("benchmark", tiny_corpus, "-o", tmp_path / "report")
+    assert run(*line, "--by", "rig", "--folds", 2, "--seed", 9).exit_code == 2
+    assert (options["by"], options["folds"], options["seed"]) == ("rig", 2, 9)
+    run(*line)
+    assert (options["by"], options["folds"], options["seed"]) == ("specimen", 5, 0)
+
+
+@pytest.mark.parametrize("name", ["cwru", "mfpt", "generic"])
+def test_import_passes_on_the_length_of_a_record(run, given, tmp_path, name):
+    options = given(f"gen.importers.import_{name}")
+    line = ("import", name, tmp_path, "-o", tmp_path / "new")
+    assert run(*line, "--window", 0.25).exit_code == 2
+    assert options["window"] == 0.25
+    run(*line)
+    assert options["window"] == 0.5
+
+
+def test_import_passes_on_the_subset(run, given, tmp_path):
+    options = given("gen.importers.import_cwru")
+    run("import", "cwru", tmp_path, "-o", tmp_path / "new", "--subset", "wang")
+    assert options["subset"] == "wang"
+    run("import", "cwru", tmp_path, "-o", tmp_path / "new")
+    assert options["subset"] == "all"
+
+
+def test_generate_passes_on_scheduler_workers_seed_and_size(run, given, tiny_recipe, tmp_path):
+    options = given("gen.generation.generate")
+    run("generate", tiny_recipe, "-o", tmp_path / "new", "--workers", 3, "--scheduler", "tcp://a:1", "--seed", 5)
+    assert (options["workers"], options["scheduler"], options["seed"], options["records"]) == (3, "tcp://a:1", 5, None)
+
+
+@pytest.mark.parametrize(
+    ("records", "per_part", "workers"), [(2000, 500, 2), (1000, 500, 1), (2000, 2000, 1), (4000, 500, 4)]
+)
+def test_large_corpora_of_several_parts_get_a_worker_per_core(
+    run, given, tiny_recipe, tmp_path, monkeypatch, records, per_part, workers
+):
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: range(2 if workers < 4 else 4))
+    text = tiny_recipe.read_text().replace("rigs: 2", f"rigs: {records // 24 + 1}")
+    recipe = tmp_path / "large.yaml"
+    recipe.write_text(text.replace("records_per_part: 12", f"records_per_part: {per_part}"))
+    options = given("gen.generation.generate")
+    run("generate", recipe, "-o", tmp_path / "new", "--records", records)
+    assert options["workers"] == workers
+
+
+def test_a_plan_counts_the_records_that_cannot_be_simulated(run, told, tiny_recipe, tmp_path):
+    text = tiny_recipe.read_text().replace("waviness_nm: 20", "waviness_nm: 20, contact_angle_deg: 10")
+    loose = tmp_path / "loose.yaml"
+    loose.write_text(text.replace("operation: {", "operation: {axial_load_n: {kind: uniform, low: 10, high: 200}, "))
+    planned = told("plan", loose)
+    assert 0 < planned["left_out"] < planned["records"] == planned["drawn"] == 48
+    assert sum(planned["steps_per_sample"].values()) == 48 - planned["left_out"]
+    assert planned["kernels"] == 1
+    assert re.search(r"record \d+: an axial load of .* N is too small", planned["first_left_out"])
+    shown = run("plan", loose).stdout
+    assert f"without {planned['left_out']} that cannot be simulated" in shown
+    assert f"The first record that is left out: {planned['first_left_out']}" in shown
+
+
+def test_info_gives_the_operating_conditions_and_the_files(told, tiny_corpus):
+    found = told("info", tiny_corpus)
+    assert found["samples"] == found["duration"] * found["sample_rate"] == 1200
+    assert 4500 / 60 <= found["shaft_rate"][0] < found["shaft_rate"][1] <= 6000 / 60
+    assert found["load"] == [300, 300]
+    assert (found["failures"], found["warnings"], found["skipped"]) == ([], [], [])
+    assert found["bytes"] == sum(path.stat().st_size for path in tiny_corpus.rglob("*") if path.is_file())
+
+
+def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_path, monkeypatch):
+    made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
+    assert made["records_with_missing_features"] == 0
+    one = {"records_with_missing_features": 1}
+    monkeypatch.setattr("features.table_files.write_table", lambda table, _: table.attrs.update(one))
+    made = told("features", tiny_corpus, "-o", tmp_path / "features.nc")
+    assert made["records_with_missing_features"] == 1
+    shown = run("features", tiny_corpus, "-o", tmp_path / "features.nc").stdout
+    assert "features of 48 records; some are missing in 1 record." in shown
+
+
+def test_bench_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, monkeypatch):
+    monkeypatch.setattr("raceway.studies.timing.REPEATS", 1)
+    found = told("bench", tiny_recipe, "--records", 1)
+    assert (found["records"], found["repeats"]) == (1, 1)
+    assert found["features_records_per_second"] == pytest.approx(1 / found["stage_seconds"]["features"])
+    assert found["machine"].keys() == {"processor", "cores", "python", "raceway", "numba", "numpy", "scipy"}
+    shown = run("bench", tiny_recipe, "--records", 1).stdout
+    assert shown.startswith(f"tiny: 1 record, median of 1 run on {found['machine']['processor']}\n")
+
+
+def test_the_seed_paper_is_drawn_and_its_statements_are_listed(run, told, tmp_path, monkeypatch):
+    monkeypatch.setattr(statements, "PRESETS", {"paper": paper.PRESETS["paper"]})
+    folder = tmp_path / "ophel"
+    found = told("reproduce", "ophel2025", "-o", folder)
+    assert found == json.loads((folder / "findings.json").read_text())
+    assert sorted(path.name for path in folder.glob("*.png")) == [f"paper-figure{n}.png" for n in (3, 4, 5, 6)]
+    holding = [finding["id"] for finding in found["findings"] if finding["holds"]]
+    shown = run("reproduce", "ophel2025", "-o", folder).stdout
+    assert f"paper: {len(holding)} of {len(found['findings'])} statements hold." in shown
+    for finding in found["findings"]:
+        assert (f"paper {finding['id']} " in shown) == (not finding["holds"])
