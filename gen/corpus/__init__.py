@@ -4,6 +4,7 @@
 module     responsibility
 ========== =====================================================
 schema     dimensions, variables, units and roles
+simulated  further variables of simulated corpora
 hdf5       one thread at a time, values of the file itself only
 layout     what a file of a corpus may hold
 files      written whole or not at all, known by their hash
@@ -46,6 +47,7 @@ from gen.corpus.schema import (
     make_dataset,
 )
 from gen.corpus.signals import SignalCounts, complaint, described, summed
+from gen.corpus.simulated import SIMULATED
 from gen.corpus.validation import validate_corpus
 
 __all__ = [
@@ -57,6 +59,7 @@ __all__ = [
     "ROLES",
     "SCHEMA",
     "SIGNAL",
+    "SIMULATED",
     "SPLITS",
     "Codec",
     "Manifest",

@@ -3,8 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS
+from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS, Variable
 from gen.corpus.signals import CLIPPED_SHARE, SignalCounts, described
+from gen.corpus.simulated import SIMULATED
 
 
 def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
@@ -75,21 +76,29 @@ fixed-length characters. Every other variable has one value per record, and a `r
 
 A corpus may hold further per-record variables with a `long_name` and a `role`: numbers that are not packed, or text. These it must have:
 
-| variable | type | unit | role | what it is |
-|---|---|---|---|---|
+"""
+
+
+_SIMULATED = """
+A corpus that `raceway generate` made also has these; `draws` holds every drawn value of the record, by the names of the recipe's keys:
+
 """
 
 
 def format_page() -> str:
-    """Markdown page about the format, its table from the schema."""
-    rows = []
-    for variable in SCHEMA:
+    """Markdown page about the format; its tables are the schemas of all and of simulated corpora."""
+    return _FORMAT + _table(SCHEMA) + _SIMULATED + _table(SIMULATED)
+
+
+def _table(variables: tuple[Variable, ...]) -> str:
+    rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
+    for variable in variables:
         flags = (
             f" ({', '.join(f'{code} {name}' for code, name in enumerate(variable.flags))})" if variable.flags else ""
         )
         cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
         rows.append(f"| {' | '.join(cells)} |")
-    return _FORMAT + "\n".join(rows) + "\n"
+    return "\n".join(rows) + "\n"
 
 
 def plain_text(text: object) -> str:
