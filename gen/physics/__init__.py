@@ -3,6 +3,7 @@
 ========== ================================================================
 module     responsibility
 ========== ================================================================
+extent     sizes of the model, without loading the kernel
 bearing    geometry, fault frequencies in orders of the shaft
 elementary powers and logarithms with the same bits everywhere
 catalogue  bearings by designation, with ratings and sources

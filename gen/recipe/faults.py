@@ -4,7 +4,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictInt, model_validator
 
-from gen.physics.kernel.turning import HIGHEST_ORDER, LOWEST_ORDER
+from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
 from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Section, Weight
 

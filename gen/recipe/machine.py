@@ -8,7 +8,7 @@ from pydantic import Field, model_validator
 
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel.equations import MAX_BALLS
+from gen.physics.extent import MAX_BALLS
 from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Count, Name, Section
 
