@@ -78,7 +78,7 @@ DAMAGES = {
 
 RECIPES = {
     "unknown_bearing": ('"6205"', "NU205"),
-    "crowded": ('["6205"]', "[mine], entries: {mine: {n_balls: 20, pitch_mm: 50, ball_mm: 9}}"),
+    "crowded": ('["6205"]', "[mine], entries: {mine: {n_balls: 20, pitch_diameter_mm: 50, ball_diameter_mm: 9}}"),
     "untraced": ("{kind: outer,", "{kind: outer, profile: trace,"),
     "hasty": ("operation: {", "operation: {load_profile: {kind: steps, levels_percent: [50, 99]}, "),
     "twice": ("{kind: healthy}", "{kind: compound, parts: [{kind: cage}, {kind: cage}]}"),
@@ -122,9 +122,9 @@ TABLE = [
     ("generate {recipe} -o {new} --records 0", "records: 0 is not allowed here; it must be greater than or equal to 1."),
     ("generate {recipe} -o {begun} --scheduler nowhere", "scheduler nowhere: does not answer (missing port number"),
     ("plan {unknown_bearing}", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
-    ("plan {crowded}", "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_mm below 7.461."),
+    ("plan {crowded}", "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_diameter_mm below 7.461."),
     ("plan {untraced}", "faults[2].profile: trace and trace_um belong together; give both or neither."),
-    ("generate {hasty} -o {new}", "operation.load_profile.step_s: 0.1 s leaves the levels no time; keep it below 0.05."),
+    ("generate {hasty} -o {new}", "operation.load_profile.step_s: 0.1 s is longer than a level; keep it below 0.05."),
     ("generate {twice} -o {new}", "faults[0].parts: cage, cage are not all different; several spalls of one part need no compound."),
     ("plan {straight}", "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."),
     ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
