@@ -41,7 +41,7 @@ WORTH_WORKERS = 1000  # records; a cluster takes about as long to start as these
 )
 @json_option
 def recipes(prefix: str | None, as_json: bool) -> None:
-    """List the recipes that ship with Raceway, or the keys of recipes.
+    """List the shipped recipes, or the keys of recipes.
 
     Give any of the names where a command wants a RECIPE. To write your own, copy the nearest one and change it. For each key, --keys
     prints its unit, allowed values, default and meaning; `distribution` has the keys of distributions.

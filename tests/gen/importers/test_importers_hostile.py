@@ -266,7 +266,7 @@ def test_a_pattern_that_names_too_many_files_is_refused(tmp_path, monkeypatch):
     )
     (tmp_path / "mapping.yaml").write_text(mapping % "{path: '*.npy'}, {path: '*.npy'}")
     with pytest.raises(
-        CorpusError, match=r"files\[1\]\.path: \*\.npy and those before name 30 files, and the limit is 20;"
+        CorpusError, match=r"files\[1\]\.path: \*\.npy and the patterns before match 30 files, and the limit is 20;"
     ):
         import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus")
     for number in range(15, 25):
