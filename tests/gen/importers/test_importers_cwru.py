@@ -234,8 +234,8 @@ def test_the_corpus_tells_what_was_skipped_and_done(source, output):
 DAMAGES = {
     "empty": (lambda path: path.write_bytes(b""), "is empty (0 bytes); copy it again"),
     "truncated": (lambda path: path.write_bytes(path.read_bytes()[:50_000]), "is truncated or damaged"),
-    "cut_in_the_header": (lambda path: path.write_bytes(path.read_bytes()[:60]), "is no MATLAB file"),
-    "text": (lambda path: path.write_text("not found\n" * 50), "is no MATLAB file of level 5 or 7.3"),
+    "cut_in_the_header": (lambda path: path.write_bytes(path.read_bytes()[:60]), "is not a MATLAB file"),
+    "text": (lambda path: path.write_text("not found\n" * 50), "is not a MATLAB file of level 5 or 7.3"),
     "of_another_recording": (
         lambda path: scipy.io.savemat(path, {"X222_DE_time": noise(), "X222RPM": 1796}),
         "holds X222_DE_time, X222RPM, not X106_DE_time",
@@ -250,11 +250,11 @@ DAMAGES = {
     ),
     "complex": (
         lambda path: scipy.io.savemat(path, {"X106_DE_time": noise() * 1j}),
-        "holds X106_DE_time, but neither as real numbers nor as text",
+        "holds X106_DE_time, but neither real numbers nor text in it",
     ),
     "cell": (
         lambda path: scipy.io.savemat(path, {"X106_DE_time": np.array([noise(), "a"], dtype=object)}),
-        "holds X106_DE_time, but neither as real numbers nor as text",
+        "holds X106_DE_time, but neither real numbers nor text in it",
     ),
     "not_finite": (
         lambda path: scipy.io.savemat(path, {"X106_DE_time": np.where(np.arange(13_000) < 3, np.nan, 1.5)}),
@@ -275,7 +275,7 @@ DAMAGES = {
     ),
     "two_columns": (
         lambda path: scipy.io.savemat(path, {"X106_DE_time": noise().reshape(-1, 2)}),
-        "holds 2 columns there and none is chosen",
+        "has 2 columns and none is chosen",
     ),
 }
 

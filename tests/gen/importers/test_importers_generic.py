@@ -137,17 +137,17 @@ UNUSABLE = {
     "missing.npy": (None, "no file beside mapping.yaml matches"),
     "empty.csv": (lambda path: path.write_bytes(b""), "is empty"),
     "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no line of numbers among its first 2"),
-    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is no readable delimited text file"),
+    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is not a readable delimited text file"),
     "nan.csv": (
         lambda path: path.write_text("1\nnan\n" * 2000),
         "has 2000 samples of 4000 that are not finite",
     ),
-    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "holds 2 columns there and none is chosen"),
+    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "has 2 columns and none is chosen"),
     "objects.npy": (
         lambda path: np.save(path, np.array([{}]), allow_pickle=True),
-        "is no readable NumPy file",
+        "is not a readable NumPy file",
     ),
-    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is no readable NumPy file"),
+    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is not a readable NumPy file"),
     "sound.wav": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy"),
     "a.mat": (lambda path: scipy.io.savemat(path, {"x": SIGNAL}), "is a MATLAB file; give the key variable"),
     "broken_7_3.mat": (
@@ -179,7 +179,7 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
         tmp_path,
         COMMON + "variable: x\nfiles: [{path: good.npy, variable: null}, {path: half.mat}, {path: whole.mat}]\n",
     )
-    assert "half.mat:x: is no readable MATLAB 7.3 file" in done.skipped[0]
+    assert "half.mat:x: is not a readable MATLAB 7.3 file" in done.skipped[0]
     assert done.skipped[1] == "whole.mat:x: holds vibration, not x; skipped."
 
 
