@@ -18,12 +18,12 @@ from gen.recipe.reading import recipe_purpose, recipe_schema, shipped_recipes
 _HEAD = """# Recipes
 
 A recipe is a YAML file. `raceway plan RECIPE` reports what it makes, `raceway generate RECIPE -o DIR` makes it, and
-`raceway recipes --keys PREFIX` prints the keys of this page. Keys end in their unit. Where the allowed value is a range
-alone, such as `[0, 10]`, the value is a number or a distribution:
+`raceway recipes --keys PREFIX` prints the keys of this page. Keys end in their unit. Where the allowed value is a
+range alone, such as `[0, 10]`, the value is a number or a distribution:
 """
 
-_KEYS = """A key belongs to the values of `kind` in its row, or to all if the row has none. A bracket includes the end of a range, a
-parenthesis excludes it. `NAME` stands for a name of your choice.
+_KEYS = """A key belongs to the values of `kind` in its row, or to all if the row has none. A bracket includes the end of a
+range, a parenthesis excludes it. `NAME` stands for a name of your choice.
 """
 
 

@@ -56,31 +56,34 @@ A corpus is a folder:
 | `recipe.yaml` | the recipe, if the corpus was simulated |
 | `README.md` | the data card |
 
-HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds the number
-of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it reads, refuses a
-missing or altered file, and reads the signal from the parts. `raceway validate` checks everything. Further checks of a
-corpus from strangers: [security.md](security.md).
+HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds
+the number of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it
+reads, refuses a missing or altered file, and reads the signal from the parts. `raceway validate` checks everything.
+Further checks of a corpus from strangers: [security.md](security.md).
 
-`signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of a channel are at
-the ends of the converter, or in floating point at the largest and smallest value of the channel; `dead` if all samples of
-a channel are zero, `constant` if they all have one other value, `not_finite` if a sample is missing or not a number.
+`signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
+a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
+`dead` if all samples of a channel are zero, `constant` if they all have one other value, `not_finite` if a sample
+is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
-and netCDF4 apply when they read, or 32-bit floating point. Text is stored as fixed-length characters. Every other variable
-has one value per record, and a `role`:
+and netCDF4 apply when they read, or 32-bit floating point. Text is stored as fixed-length characters. Every other
+variable has one value per record, and a `role`:
 
 - `operating`: known to an analyst on site; features may use it,
 - `label`: the target of a classifier,
 - `latent`: known to the simulator alone,
 - `provenance`: origin of the record.
 
-Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a `long_name` and a `role`:
+Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
+`long_name` and a `role`:
 
 """
 
 
 _SIMULATED = """
-A corpus that `raceway generate` made also has these; `draws` holds every drawn value of the record, by the names of the recipe's keys:
+A corpus that `raceway generate` made also has these; `draws` holds every drawn value of the record, by the names of
+the recipe's keys:
 
 """
 

@@ -32,14 +32,13 @@ from gen.recipe.model import Recipe
 from gen.recipe.operation import ProfileSection
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
 from gen.recipe.section import Section
-from gen.recipe.sensing import MAX_OVERSAMPLING, Channel, Modes, Modulation, PathSection
+from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
 
 __all__ = [
     "MAX_OVERSAMPLING",
     "BallFault",
     "CageFault",
     "CatalogueBearing",
-    "Channel",
     "CompoundFault",
     "DistributedFault",
     "Fault",

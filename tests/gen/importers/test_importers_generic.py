@@ -187,7 +187,7 @@ REFUSED = {
     "no_files": (COMMON, "mapping.yaml: files is missing; give it there."),
     "files_empty": (COMMON + "files: []", "files: [] is not allowed; list should have at least 1 item"),
     "not_yaml": ("files: [", "mapping.yaml: line 1: is not valid YAML ("),
-    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit is there twice)"),
+    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit occurs twice)"),
     "a_list": ("- 1\n- 2", "mapping.yaml: holds no keys"),
     "missing_key": (
         "bearing: '6205'\nunit: g\nfiles: [{path: a.npy, sample_rate_hz: 9, shaft_rpm: 9, specimen: A}]",
@@ -261,7 +261,7 @@ REFUSED = {
     ),
     "half_a_character": (
         COMMON + 'origin: "\\ud800"\nfiles: [{path: a}]',
-        "is not valid YAML (half a character (a lone surrogate))",
+        "is not valid YAML (a lone surrogate, which is half a character)",
     ),
     "long_title": (
         COMMON + f"title: {'t' * 6000}\nfiles: [{{path: a}}]",
