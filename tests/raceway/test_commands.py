@@ -222,10 +222,10 @@ def test_recordings_are_imported_and_counted(run, told, tmp_path):
     result = run("import", "generic", mapping, "-o", tmp_path / "pump", "--window", 0.25, "--json")
     made = json.loads(result.stdout)
     assert (made["recordings"], made["records"], len(made["skipped"])) == (2, 16, 1)
-    assert "lost.npy: no such file" in result.stderr
+    assert "lost.npy: no file beside" in result.stderr
     found = told("info", tmp_path / "pump")
     assert (found["importer"], found["classes"]) == ("generic", {"healthy": 8, "outer": 8})
-    assert "lost.npy: no such file" in run("info", tmp_path / "pump").stdout
+    assert "lost.npy: no file beside" in run("info", tmp_path / "pump").stdout
 
 
 def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):

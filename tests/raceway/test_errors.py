@@ -143,7 +143,7 @@ TABLE = [
     ("info {leading_out}", "'../../secret.nc' is not the name of a part"),
     ("plot {missing_part} --record 0 -o {new}.png", "part-00001.nc: is missing; copy it again"),
     ("features {altered_part} -o {new}.nc", "part-00002.nc: is altered: its size or hash differs from the manifest"),
-    ("train {altered_part} -o {new}", "part-00002.nc: altered"),
+    ("train {altered_part} -o {new}", "part-00002.nc: is altered"),
     ("info {no_index}", "corpus.nc: is missing; copy it again"),
     ("features {pointing_elsewhere} -o {new}.nc", "corpus.nc: is altered: its size or hash differs from the manifest"),
     ("replay {other_recipe} --record 0", "is not the recipe the corpus was made from; restore it to replay."),
