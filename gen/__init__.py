@@ -7,6 +7,7 @@ module      responsibility
 =========== ==================================================================
 errors      one exception class per stage; each carries one sentence
 limits      how much a file from elsewhere may ask for
+units       units of recipes and mapping files, turned into SI
 cluster     independent tasks on dask
 plain_files files opened only if they are no pipes or devices
 yaml_files  recipes and mapping files, read within the limits

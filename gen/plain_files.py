@@ -1,4 +1,4 @@
-"""Files from elsewhere: opened only if they are plain files, since a pipe never ends and a device may answer to being read."""
+"""Open files from strangers only if they are plain files: a pipe can block for ever, and reading a device can have effects."""
 
 import errno
 import os
@@ -8,19 +8,19 @@ from typing import BinaryIO
 
 
 def open_plain(path: Path) -> BinaryIO:
-    """Open a plain file for reading; it is never waited for.
+    """Open a plain file for reading, without blocking.
 
     Raises
     ------
     OSError
-        If there is no such file, it may not be read, or it is a folder, a pipe, a socket or a device.
+        If the file is missing or not readable, or is a folder, a pipe, a socket or a device.
     """
     try:
-        # a pipe without a writer would keep the opening waiting
+        # without O_NONBLOCK, opening a pipe that has no writer blocks
         descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOCTTY | os.O_CLOEXEC)
     except ValueError as error:  # a NUL in the name
         raise OSError(errno.EINVAL, str(error), str(path)) from None
     if not stat.S_ISREG(os.fstat(descriptor).st_mode):
         os.close(descriptor)
-        raise OSError(errno.EINVAL, "is a folder, a pipe or a device and no plain file", str(path))
+        raise OSError(errno.EINVAL, "is a folder, a pipe or a device, not a plain file", str(path))
     return os.fdopen(descriptor, "rb")

@@ -1,8 +1,8 @@
-"""Recipes and mapping files out of YAML 1.2, read so that a few bytes from a stranger cannot ask for much.
+"""Reader of recipes and mapping files in YAML 1.2, safe for files from strangers.
 
-A value repeated by an alias (``*name``) or merged from one (``<<: *name``) counts with all the values it repeats, so an alias cannot
-swell; values are counted as they are read, and reading stops at the limit. Only null, booleans, numbers, text, lists and mappings are
-built: a date is text, and a tag other than those of these types is refused, so a file can run no code.
+An alias (``*name``) or a merge (``<<: *name``) counts with all the values that it repeats, so that nested aliases cannot grow beyond the
+limit; values are counted while they are read, and reading stops at the limit. Only null, booleans, numbers, text, lists and mappings are
+built. A date is text, and other tags are refused, so that a file cannot run code.
 """
 
 import codecs
@@ -29,7 +29,7 @@ from gen.errors import RacewayError
 from gen.limits import check_limit, limit
 from gen.plain_files import open_plain
 
-DEEPEST = 50  # levels, aliases written out; a recipe has some six
+DEEPEST = 50  # levels, with aliases expanded; a recipe has about six
 LONGEST_NUMBER = 100  # characters
 
 _WORDS: dict[str, bool | None] = {
@@ -42,14 +42,14 @@ _FLOAT = re.compile(
     r"|[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)"
 )
 _BASES = {"0b": 2, "0o": 8, "0x": 16}
-_LONG_TAG = re.compile(r"(?:^|[\s,\[{:-])!\S{500}")  # ruamel.yaml takes 7 s for a tag of a megabyte
+_LONG_TAG = re.compile(r"(?:^|[\s,\[{:-])!\S{500}")  # ruamel.yaml needs 7 s for a tag of one megabyte
 _SURROGATE = re.compile("[\ud800-\udfff]")
 _TAG = "tag:yaml.org,2002:"
 _TYPES = {"null": type(None), "bool": bool, "int": int, "float": (int, float)}
 
 
 class _Flaw(Exception):  # noqa: N818 - never leaves this file
-    """What is wrong with the YAML, and the line on which it stands."""
+    """An error in the YAML, with its line."""
 
     def __init__(self, problem: str, event: Event) -> None:
         super().__init__(problem)
@@ -57,7 +57,7 @@ class _Flaw(Exception):  # noqa: N818 - never leaves this file
 
 
 class _Node(NamedTuple):
-    """A value, the number of values in it with aliases written out, and the levels below it."""
+    """A value, the number of values in it with aliases expanded, and the levels below it."""
 
     value: Any
     size: int
@@ -77,7 +77,7 @@ def read_yaml(path: Path, error: type[RacewayError]) -> Any:
     Raises
     ------
     RacewayError
-        Of class ``error``, if the file cannot be read, is no YAML of these few types, or is larger than the limits ``yaml_bytes`` and
+        Of class ``error``, if the file cannot be read, is not YAML of these types, or exceeds the limits ``yaml_bytes`` or
         ``yaml_values``.
     """
     try:
@@ -104,7 +104,7 @@ def read_yaml(path: Path, error: type[RacewayError]) -> Any:
 
 
 def _told(flaw: Exception) -> tuple[str, str]:
-    """Where a flaw is, if that is known, and what it is."""
+    """Line of an error, if it is known, and the reason."""
     line = getattr(flaw, "line", None)
     reason = str(flaw)
     if isinstance(flaw, MarkedYAMLError):
@@ -114,7 +114,7 @@ def _told(flaw: Exception) -> tuple[str, str]:
 
 
 class _Document:
-    """A document while it is read: its events, the values counted so far, and those that aliases may repeat."""
+    """State of reading a document: its events, the count of values, and the values that aliases can repeat."""
 
     def __init__(self, text: str, path: Path, error: type[RacewayError]) -> None:
         self.events: Iterator[Event] = YAML(typ="safe", pure=True).parse(text)
@@ -138,7 +138,7 @@ class _Document:
         return value
 
     def node(self, event: Any, depth: int) -> _Node:
-        """Build the value that begins with ``event``, ``depth`` levels down."""
+        """Build the value that begins with ``event``, at ``depth`` levels."""
         if isinstance(event, AliasEvent):
             return self.repeated(event, depth)
         if depth > DEEPEST:
@@ -161,28 +161,28 @@ class _Document:
         return found
 
     def add(self, values: int, event: Event) -> None:
-        """Count values, and stop at the limit."""
+        """Count values; stop at the limit."""
         self.count += values
         if self.count > self.most:
             line = event.start_mark.line + 1
             check_limit(
-                "yaml_values", self.count, f"{self.path}: up to line {line}, aliases written out, holds", self.error
+                "yaml_values", self.count, f"{self.path}: up to line {line}, with aliases expanded, holds", self.error
             )
 
     def repeated(self, event: Any, depth: int) -> _Node:
-        """Value that an alias repeats, counted once more."""
+        """Value that an alias repeats; it is counted again."""
         if event.anchor not in self.anchors:
             raise _Flaw(f"there is no &{event.anchor} before *{event.anchor}", event)
         found = self.anchors[event.anchor]
         if found is None:
-            raise _Flaw(f"*{event.anchor} stands within the value it repeats", event)
+            raise _Flaw(f"*{event.anchor} is inside the value that it repeats", event)
         if depth + found.height > DEEPEST:
             raise _Flaw(f"more than {DEEPEST} levels deep", event)
         self.add(found.size, event)
         return found
 
     def sequence(self, start: Any, depth: int) -> tuple[list[Any], int]:
-        """List that begins with ``start``, and the levels below it."""
+        """List that begins with ``start``, and the number of levels below it."""
         _check_tag(start, "seq")
         values: list[Any] = []
         height = 0
@@ -193,7 +193,7 @@ class _Document:
         return values, height
 
     def mapping(self, start: Any, depth: int) -> tuple[dict[Any, Any], int]:
-        """Mapping that begins with ``start``, merged mappings first, and the levels below it."""
+        """Mapping that begins with ``start``, with merged mappings first, and the number of levels below it."""
         _check_tag(start, "map")
         own: dict[Any, Any] = {}
         merged: dict[Any, Any] | None = None
@@ -202,7 +202,7 @@ class _Document:
             key = self.key(key_event)
             merging = key == "<<" and isinstance(key_event, ScalarEvent) and key_event.implicit[0]
             if (merging and merged is not None) or (not merging and key in own):
-                raise _Flaw(f"the key {str(key)[:60]} is there twice", key_event)
+                raise _Flaw(f"the key {str(key)[:60]} occurs twice", key_event)
             event = next(self.events)
             value, _, below = self.node(event, depth + 1)
             height = max(height, below + 1)
@@ -213,7 +213,7 @@ class _Document:
         return (own if merged is None else merged | own), height
 
     def key(self, event: Any) -> Any:
-        """Key of a mapping: one value, not a list or mapping."""
+        """Key of a mapping, which cannot be a list or mapping."""
         if isinstance(event, AliasEvent):
             key = self.repeated(event, 0).value
         elif isinstance(event, ScalarEvent):
@@ -223,12 +223,12 @@ class _Document:
         else:
             key = []
         if isinstance(key, list | dict):
-            raise _Flaw("a key is one word, not a list or mapping", event)
+            raise _Flaw("a key must be one word, not a list or mapping", event)
         return key
 
 
 def _merged(value: Any, event: Event) -> dict[Any, Any]:
-    """Keys that ``<<`` brings in, of a mapping or of several, the first of which wins."""
+    """Keys that ``<<`` merges from one mapping or several; the first mapping takes precedence."""
     merged: dict[Any, Any] = {}
     for found in reversed(value) if isinstance(value, list) else (value,):
         if not isinstance(found, dict):
@@ -243,14 +243,14 @@ def _check_tag(event: Any, kind: str) -> None:
 
 
 def _refuse_tag(event: Any) -> NoReturn:
-    raise _Flaw(f"the tag {str(event.tag)[:60]} is not read", event)
+    raise _Flaw(f"the tag {str(event.tag)[:60]} is not allowed", event)
 
 
 def _scalar(event: Any) -> Any:
     """Value of a scalar: null, a boolean, a number or text."""
     text, tag = event.value, event.tag
     if _SURROGATE.search(text):
-        raise _Flaw("half a character (a lone surrogate)", event)
+        raise _Flaw("a lone surrogate, which is half a character", event)
     if tag in (None, "!"):
         return text if event.style else _plain(text, event)
     if tag == _TAG + "str":
@@ -260,12 +260,12 @@ def _scalar(event: Any) -> Any:
         _refuse_tag(event)
     value = _plain(text, event)
     if not isinstance(value, _TYPES[kind]) or (isinstance(value, bool) and kind != "bool"):
-        raise _Flaw(f"{text[:60]} is no {kind}", event)
+        raise _Flaw(f"{text[:60]} is not of type {kind}", event)
     return float(value) if kind == "float" else value
 
 
 def _plain(text: str, event: Any) -> Any:
-    """Value of text without quotes, as YAML 1.2 reads it."""
+    """Value of text without quotes, by the rules of YAML 1.2."""
     if text in _WORDS:
         return _WORDS[text]
     if text[0] not in "-+.0123456789":

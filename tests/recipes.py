@@ -3,7 +3,7 @@
 EVERY_FAULT = [
     {"kind": "healthy"},
     {"kind": "inner", "width_mm": 0.5, "roughness_um": 1},
-    {"kind": "outer", "width_mm": 3, "depth_um": 15, "spalls": 2, "profile": "half_sine"},
+    {"kind": "outer", "width_mm": 3, "depth_um": 15, "n_spalls": 2, "profile": "half_sine"},
     {"kind": "ball", "width_mm": 0.5, "axis_wander_deg": 4},
     {"kind": "cage"},
     {"kind": "distributed", "site": "inner", "waviness_um": 0.3, "order": 10},

@@ -1,19 +1,20 @@
-"""The corpus format: records in, a folder that any netCDF-4 tool reads as one file, and the same records out.
+"""The corpus format: a folder of records that any netCDF-4 tool reads as one file.
 
 ========== =====================================================
 module     responsibility
 ========== =====================================================
 schema     dimensions, variables, units and roles
-hdf5       one thread at a time, values of the file itself only
-layout     what a file of a corpus may hold
-files      written whole or not at all, known by their hash
-signals    whether a stored signal can be used
-part       one self-describing netCDF-4 file of records
-manifest   which files belong to a corpus, with size and hash
-reading    records read when touched, a few files open at a time
-index      ``corpus.nc`` over the parts, opening
-validation everything that can be checked of a corpus
-card       the data card of a corpus, and the page about the format
+simulated  further variables of simulated corpora
+hdf5       lock of the HDF5 library, refusal of links to other files
+layout     allowed shapes, types and attributes in a file
+files      atomic writing, hashes
+signals    records that cannot be used
+part       one netCDF-4 file of records
+manifest   files of a corpus with size and hash
+reading    lazy reading, with a few files open at a time
+index      ``corpus.nc`` over the parts; opening a corpus
+validation all checks of a corpus
+card       data card of a corpus, page about the format
 ========== =====================================================
 """
 
@@ -51,6 +52,7 @@ if TYPE_CHECKING:
         make_dataset,
     )
     from gen.corpus.signals import SignalCounts, complaint, described, summed
+    from gen.corpus.simulated import SIMULATED
     from gen.corpus.validation import validate_corpus
 
 __all__ = [
@@ -62,6 +64,7 @@ __all__ = [
     "ROLES",
     "SCHEMA",
     "SIGNAL",
+    "SIMULATED",
     "SPLITS",
     "Codec",
     "Manifest",
@@ -142,6 +145,7 @@ _NAMES = {
         "Variable",
         "make_dataset",
     ),
+    "simulated": ("SIMULATED",),
     "signals": (
         "SignalCounts",
         "complaint",

@@ -1,14 +1,15 @@
-"""Pages in Markdown: the data card of a corpus, for whoever finds the folder, and the format, for whoever reads one."""
+"""Pages in Markdown: the data card of a corpus, and the description of the format."""
 
 import numpy as np
 import xarray as xr
 
-from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS
+from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS, Variable
 from gen.corpus.signals import CLIPPED_SHARE, SignalCounts, described
+from gen.corpus.simulated import SIMULATED
 
 
 def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
-    """Markdown page about a corpus; ``origin`` is a paragraph on where it comes from and what one may do with it.
+    """Markdown page about a corpus; ``origin`` is a paragraph on its source and licence.
 
     ``signals`` counts the records that cannot be used.
     """
@@ -35,7 +36,7 @@ def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
             lines.append(
                 f"| {name} | {of_class.sum()} | " + " | ".join(str(count) for count in (*units, *parts)) + " |"
             )
-    lines += ["", "| variable | unit | role | what it is |", "|---|---|---|---|"]
+    lines += ["", "| variable | unit | role | meaning |", "|---|---|---|---|"]
     for name, variable in corpus.variables.items():
         if name != SIGNAL and variable.dims == ("record",):
             attributes = (variable.attrs.get(key, "") for key in ("units", "role", "long_name"))
@@ -47,53 +48,64 @@ _FORMAT = f"""# The corpus format, version {FORMAT}
 
 A corpus is a folder:
 
-| file | what it is |
+| file | content |
 |---|---|
-| `corpus.nc` | every per-record variable, and the signal as an HDF5 virtual dataset over the parts: one file to any netCDF-4 reader |
+| `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: any netCDF-4 reader sees one file |
 | `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
 | `manifest.json` | whether the corpus is complete; `signals`; bytes and SHA-256 of `corpus.nc` and of each part; recipe hash, versions |
-| `recipe.yaml` | the recipe it was made from, if it was simulated |
+| `recipe.yaml` | the recipe, if the corpus was simulated |
 | `README.md` | the data card |
 
-HDF5 reads a part that it cannot open as missing values, without an error: one that is not there, or one too many for the
-files a process may open. `gen.open_corpus` therefore compares every file with the manifest before anything is read, refuses
-what is missing or altered, and reads the signal from the parts. `raceway validate` looks at everything. What else is
-checked of a corpus from elsewhere: [security.md](security.md).
+HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds
+the number of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it
+reads, refuses a missing or altered file, and reads the signal from the parts. `raceway validate` checks everything.
+Further checks of a corpus from strangers: [security.md](security.md).
 
-`signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of a channel lie at
-the ends of the converter, or in floating point at the channel's own largest and smallest value; `dead` if a channel is
-all zeros, `constant` if it is all one other value, `not_finite` if a sample is missing or not a number.
+`signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
+a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
+`dead` if all samples of a channel are zero, `constant` if they all have one other value, `not_finite` if a sample
+is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
-and netCDF4 undo by themselves, or 32-bit floating point. Text is stored as
-fixed-length characters. Every other variable has one value per record, and a `role`:
+and netCDF4 apply when they read, or 32-bit floating point. Text is stored as fixed-length characters. Every other
+variable has one value per record, and a `role`:
 
-- `operating`: what an analyst on site knows; features may use it,
-- `label`: what a classifier is to find out,
-- `latent`: the truth of a simulation,
-- `provenance`: where the record comes from.
+- `operating`: known to an analyst on site; features may use it,
+- `label`: the target of a classifier,
+- `latent`: known to the simulator alone,
+- `provenance`: origin of the record.
 
-A corpus may hold further per-record variables with a `long_name` and a `role`: numbers that are not packed, or text. These it must have:
+Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
+`long_name` and a `role`:
 
-| variable | type | unit | role | what it is |
-|---|---|---|---|---|
+"""
+
+
+_SIMULATED = """
+A corpus that `raceway generate` made also has these; `draws` holds every drawn value of the record, by the names of
+the recipe's keys:
+
 """
 
 
 def format_page() -> str:
-    """Markdown page about the format, its table from the schema."""
-    rows = []
-    for variable in SCHEMA:
+    """Markdown page about the format; its tables are the schemas of all and of simulated corpora."""
+    return _FORMAT + _table(SCHEMA) + _SIMULATED + _table(SIMULATED)
+
+
+def _table(variables: tuple[Variable, ...]) -> str:
+    rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
+    for variable in variables:
         flags = (
             f" ({', '.join(f'{code} {name}' for code, name in enumerate(variable.flags))})" if variable.flags else ""
         )
         cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
         rows.append(f"| {' | '.join(cells)} |")
-    return _FORMAT + "\n".join(rows) + "\n"
+    return "\n".join(rows) + "\n"
 
 
 def plain_text(text: object) -> str:
-    """Text from elsewhere as one line that stays text in a page: no tag, link, picture, code or cell of a table.
+    """Text from a stranger as one line without Markdown: no tag, link, picture, code or table cell.
 
     >>> plain_text("a|b <script> [x](http://y)  `z` ")
     "a/b (script) [x] (http://y) 'z'"

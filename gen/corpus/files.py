@@ -1,6 +1,6 @@
-"""Files on disk: written whole or not at all, known by their hash, and plain files inside the folder they belong to.
+"""Files on disk: atomic writing, hashes, and refusal of anything but plain files inside the folder of a corpus.
 
-A file is written to a temporary name, flushed to disk and renamed, so that a killed writer leaves no half file under the wanted name.
+A file is written under a temporary name, flushed to disk and renamed, so that a killed writer leaves no partial file under the final name.
 """
 
 import hashlib
@@ -15,22 +15,22 @@ from pathlib import Path
 from gen.errors import CorpusError
 
 Stamp = tuple[int, int]
-"""Size and time of the last change [ns]: a file with another stamp is another file."""
+"""Size and time of the last change [ns]; a file with a different stamp has changed."""
 
-_CLOCK_TICK = 1_000_000_000  # ns; two changes within a tick of the file system's clock can leave one stamp
+_CLOCK_TICK = 1_000_000_000  # ns; two changes within one tick of the clock of the file system can have the same stamp
 _MOST_HASHES = 100_000
 _hashes: dict[tuple[str, Stamp], str] = {}
 _unfinished: set[Path] = set()
 
 
 def stamp(path: Path | str) -> Stamp:
-    """Stamp of a file; OSError if there is none."""
+    """Stamp of a file; OSError if there is no file."""
     found = Path(path).stat()
     return found.st_size, found.st_mtime_ns
 
 
 def sha256(path: Path) -> str:
-    """SHA-256 of a file, in hexadecimal; a file of the same stamp is not hashed again in this process."""
+    """SHA-256 of a file, in hexadecimal; kept in this process until the stamp of the file changes."""
     key = (str(path.absolute()), stamp(path))
     known = _hashes.get(key)
     if known is not None:
@@ -45,49 +45,49 @@ def sha256(path: Path) -> str:
 
 
 def forget_hashes() -> None:
-    """Hash every file again when it is asked for."""
+    """Forget all kept hashes."""
     _hashes.clear()
 
 
 def plain_file(directory: Path, name: str) -> Path:
-    """Path of a file of a corpus: a plain file that lies in the folder itself.
+    """Path of a file of a corpus: a plain file inside the folder.
 
     Raises
     ------
     CorpusError
-        If there is no such file, it is no plain file (a folder, a pipe, a device), or a link leads out of the folder.
+        If the file is missing, is not a plain file (a folder, a pipe, a device), or is a link that leads out of the folder.
     """
     path = directory / name
-    # links are rare, and to resolve every path takes ten times as long
+    # links are rare, and resolving every path takes ten times as long
     linked = path.is_symlink() or (path.parent != directory and path.parent.is_symlink())
     if linked and path.exists() and not path.resolve().is_relative_to(directory.resolve()):
-        raise CorpusError(f"{path}: is a link out of the corpus; copy the file itself to its place.")
+        raise CorpusError(f"{path}: is a link that leads out of the corpus; replace it with a copy of the file.")
     if not path.is_file():
-        reason = "is no plain file" if path.exists() else "missing"
+        reason = "is not a plain file" if path.exists() else "is missing"
         raise CorpusError(f"{path}: {reason}; copy it again, or run the command that made the corpus again.")
     return path
 
 
 def check_name(path: Path) -> None:
-    """Refuse a name that cannot be given to netCDF."""
+    """Refuse a name that netCDF cannot open."""
     try:
         str(path).encode()
     except UnicodeEncodeError:
-        raise CorpusError(f"{path}: the name is not UTF-8, which netCDF needs; choose another.") from None
+        raise CorpusError(f"{path}: the name is not UTF-8, and netCDF needs UTF-8; choose another.") from None
 
 
 @contextmanager
 def whole_or_not_at_all(path: Path) -> Iterator[Path]:
-    """Temporary path to write to; flushed to disk it takes the place of ``path`` in one step, or is removed if anything fails.
+    """Temporary path to write to: it is flushed to disk and then replaces ``path`` in one step, or is removed if anything fails.
 
     Raises
     ------
     CorpusError
-        If the disk refuses the file, with the reason it gives.
+        If writing fails, with the reason that the system gives.
     """
     check_name(path)
     if path.exists() and not path.is_file():
-        raise CorpusError(f"{path}: is no plain file, which would be replaced; choose another name.")
+        raise CorpusError(f"{path}: exists and is not a plain file, so it cannot be replaced; choose another name.")
     try:
         with temporary_beside(path) as temporary:
             yield temporary
@@ -100,7 +100,7 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
             finally:
                 os.close(folder)
     except (OSError, RuntimeError) as error:
-        code = getattr(error, "errno", None)  # HDF5 adds addresses and line breaks to its own text
+        code = getattr(error, "errno", None)  # the text of HDF5 errors has addresses and line breaks
         reason = os.strerror(code) if code else " ".join(str(error).split())
         raise CorpusError(
             f"{path}: could not be written ({reason}); free some space or choose another folder."
@@ -109,7 +109,7 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def temporary_beside(path: Path) -> Iterator[Path]:
-    """Hidden path in the folder of ``path`` for a file or folder under way; whatever is there at the end is removed."""
+    """Hidden path in the folder of ``path`` for an unfinished file or folder; it is removed at the end if it still exists."""
     temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_native_id()}.tmp")
     _unfinished.add(temporary)
     try:
@@ -120,13 +120,13 @@ def temporary_beside(path: Path) -> Iterator[Path]:
 
 
 def remove_unfinished() -> None:
-    """Remove every temporary file and folder of this process: it is about to end at once."""
+    """Remove all temporary files and folders of this process, just before it ends."""
     for temporary in tuple(_unfinished):
         _remove(temporary)
 
 
 def remove_left_behind(directory: Path, pattern: str) -> None:
-    """Remove what killed processes have left of files whose names match; no other process may be writing them."""
+    """Remove temporary files that killed processes have left, by a pattern of names; no other process may be writing them."""
     for temporary in directory.glob(f".{pattern}.*.*.tmp"):
         _remove(temporary)
 
@@ -140,11 +140,11 @@ def _remove(temporary: Path) -> None:
 
 
 def write_durably(content: bytes, path: Path) -> None:
-    """Write a file, whole or not at all; CorpusError if the disk refuses it."""
+    """Write a file atomically; CorpusError if writing fails."""
     with whole_or_not_at_all(path) as temporary:
         temporary.write_bytes(content)
 
 
 def write_text_durably(text: str, path: Path) -> None:
-    """Write a text file, whole or not at all; CorpusError if the disk refuses it."""
+    """Write a text file atomically; CorpusError if writing fails."""
     write_durably(text.encode(), path)

@@ -1,7 +1,7 @@
-"""The corpus as one file: ``corpus.nc`` over the parts, and how a corpus is opened.
+"""The index ``corpus.nc`` over the parts, and the opening of a corpus.
 
-``corpus.nc`` holds every per-record variable and, for the signal, an HDF5 virtual dataset over the parts, so that any netCDF-4
-reader sees one file. :func:`open_corpus` takes only the variables from it and reads the signal from the parts.
+``corpus.nc`` holds all per-record variables and, for the signal, an HDF5 virtual dataset over the parts, so that any netCDF-4
+reader sees one file. :func:`open_corpus` reads the variables from it, and the signal from the parts.
 """
 
 from pathlib import Path
@@ -21,32 +21,32 @@ from gen.corpus.schema import MISSING_COUNT, SIGNAL
 
 _COMMENT = (
     f"{SIGNAL} is an HDF5 virtual dataset over the files in parts/. HDF5 reads a part that it cannot open as missing values, without an "
-    "error: one that is not there, or beyond the number of files a process may open. It also looks for parts/ in the folder that the "
+    "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
     "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
 )
-_COPIED_RECORDS = 256  # text of that many records is a chunk
+_COPIED_RECORDS = 256  # records whose text forms one chunk
 
 
 def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
-    """Open a corpus as one dataset, read when touched.
+    """Open a corpus as one dataset, which is read lazily.
 
     Parameters
     ----------
     directory : path
         The folder that holds ``corpus.nc``.
     check : {"sha256", "size"}
-        How each file is compared with the manifest before anything is read.
+        Comparison of each file with the manifest before anything is read.
 
     Returns
     -------
     Dataset
         ``acceleration (record, channel, elapsed_time)`` [m s-2] and the variables of :data:`gen.corpus.SCHEMA`. It can be pickled,
-        and chunked with ``.chunk({"record": n})`` for dask.
+        and chunked for dask with ``.chunk({"record": n})``.
 
     Raises
     ------
     CorpusError
-        If the corpus is unfinished, or a file of it is missing, altered or outside its folder.
+        If the corpus is unfinished, or one of its files is missing, altered or outside its folder.
     """
     directory = Path(directory)
     paths = part_paths(directory, check)
@@ -54,12 +54,12 @@ def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
 
 
 def write_index(directory: Path, rows: list[PartRow]) -> None:
-    """Write ``corpus.nc`` over the finished parts, whole or not at all; the same parts give the same bytes.
+    """Write ``corpus.nc`` over the finished parts atomically; the same parts give the same bytes.
 
     Raises
     ------
     CorpusError
-        If the disk refuses the file, with the reason it gives.
+        If writing fails, with the reason that the system gives.
     """
     with whole_or_not_at_all(directory / INDEX_NAME) as temporary, LIBRARY_LOCK:
         _write_variables(directory, rows, temporary)
@@ -67,7 +67,7 @@ def write_index(directory: Path, rows: list[PartRow]) -> None:
 
 
 def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
-    """Copy every variable but the signal, part by part; text is as wide as its longest in any part."""
+    """Copy all variables except the signal, part by part; the width of a text is that of the longest in any part."""
     lengths: dict[str, int] = {}
     for row in rows:
         with netCDF4.Dataset(directory / "parts" / row.name) as part:

@@ -1,6 +1,6 @@
-"""What a file of a corpus may hold: shapes, types and attributes of the signal and of the variables beside it.
+"""Allowed shapes, types and attributes of the signal and of the other variables in a file of a corpus.
 
-Files come from elsewhere: whatever the format does not know is refused here, before xarray could act on it.
+Files can come from strangers: anything that is not part of the format is refused here, before xarray interprets it.
 """
 
 from typing import Any, NamedTuple
@@ -23,7 +23,7 @@ _ACTED_ON = (*PACKING, "missing_value", "_Unsigned", "dtype", "calendar", "bound
 
 
 class Packing(NamedTuple):
-    """How a signal is stored: in which type, and by which factor counts become m s-2."""
+    """Storage of a signal: its type, the factor from counts to m s-2, and the count that stands for a missing sample."""
 
     dtype: np.dtype[Any]
     scale: float | None
@@ -46,7 +46,7 @@ class Packing(NamedTuple):
 
 
 def packing_of(stored: h5py.Dataset) -> Packing:
-    """How a signal is stored; ValueError if it is packed in a way that the format does not know."""
+    """Storage of a signal; ValueError if it is packed in a way that the format does not have."""
     attributes = {name: _plain(stored.attrs[name], name) for name in PACKING if name in stored.attrs}
     if stored.dtype == np.dtype(np.float32):
         if attributes.keys() & {"scale_factor", "add_offset"}:
@@ -65,7 +65,7 @@ def packing_of(stored: h5py.Dataset) -> Packing:
 
 
 def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
-    """Shape of a signal: three dimensions, of a type and a size that a corpus may have."""
+    """Shape of a signal after a check of its dimensions, type and size."""
     if stored.ndim != 3 or stored.dtype not in (np.dtype(np.int16), np.dtype(np.float32)):
         raise ValueError(f"{SIGNAL} is of type {stored.dtype} and shape {stored.shape}")
     records, channels, samples = stored.shape
@@ -79,19 +79,19 @@ def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
 
 
 def is_deflated(stored: h5py.Dataset) -> bool:
-    """Whether the chunks of a signal are counts, shuffled and deflated, as :func:`gen.corpus.part.deflated` makes them."""
+    """Whether the chunks of a signal are shuffled and deflated counts, as from :func:`gen.corpus.part.deflated`."""
     plain = stored.scaleoffset is None and not stored.fletcher32
     return stored.dtype == np.dtype(np.int16) and stored.compression == "gzip" and stored.shuffle and plain
 
 
 def is_bare_dimension(stored: h5py.Dataset) -> bool:
-    """Whether netCDF keeps a dataset for the size of a dimension alone."""
+    """Whether a dataset only stores the size of a netCDF dimension."""
     label = stored.attrs.get("NAME", b"")
     return bytes(label).startswith(b"This is a netCDF dimension but not a netCDF variable")
 
 
 def is_text(stored: h5py.Dataset, name: str, dimension: str, size: int) -> bool:
-    """Whether a variable is text, stored as one character per column, and not numbers; ValueError if it is neither."""
+    """Whether a variable is text, with one character per column; ValueError if it is neither text nor numbers."""
     text = stored.dtype == np.dtype("S1") and stored.ndim == 2
     if stored.shape[:1] != (size,) or stored.ndim != 1 + text or (not text and stored.dtype.kind not in "iuf"):
         raise ValueError(
@@ -101,18 +101,18 @@ def is_text(stored: h5py.Dataset, name: str, dimension: str, size: int) -> bool:
 
 
 def plain_attributes(stored: h5py.Dataset, name: str) -> dict[str, Any]:
-    """Attributes of a variable that is not packed."""
+    """Attributes of a variable that is not packed; ValueError if it has one that readers would act on."""
     attributes = attributes_of(stored)
     attributes.pop("coordinates", None)
     wrong = next((key for key in _ACTED_ON if key in attributes), None)
     encoding = attributes.get("_Encoding")
     if wrong is not None or encoding not in (None, "utf-8") or (encoding is not None and stored.ndim == 1):
-        raise ValueError(f"{name} has the attribute {wrong or '_Encoding'}, which it may not have")
+        raise ValueError(f"{name} has the attribute {wrong or '_Encoding'}, which it must not have")
     return attributes
 
 
 def attributes_of(node: h5py.Dataset | h5py.File) -> dict[str, Any]:
-    """Attributes of a netCDF variable or file, without those by which HDF5 ties dimensions to variables."""
+    """Attributes of a netCDF variable or file, without those that link dimensions to variables in HDF5."""
     return {name: _plain(node.attrs[name], name) for name in node.attrs if name not in _HDF5_OWN}
 
 

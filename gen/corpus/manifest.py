@@ -1,6 +1,6 @@
-"""The manifest of a corpus: which files belong to it, with size and hash, and whether they are all there.
+"""The manifest of a corpus: its files with size and hash, and whether it is complete.
 
-``manifest.json`` is the root of every check: a part or an index that is not the file it names is refused before anything is read from it.
+All checks start at ``manifest.json``: a part or an index with another size or hash is refused before anything is read from it.
 """
 
 import json
@@ -31,46 +31,46 @@ _Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 _Texts = tuple[str, ...]
 
 
-class _Section(BaseModel):
+class _Strict(BaseModel):
     model_config = ConfigDict(strict=True, frozen=True, extra="allow")
 
 
-class FileRow(_Section):
-    """What the manifest says of a file: its size and its SHA-256."""
+class FileRow(_Strict):
+    """Size and SHA-256 of a file, as listed in the manifest."""
 
     bytes: _Count
     sha256: _Hash
 
 
-class _Signals(_Section):
+class _ListedSignals(_Strict):
     clipped: _Count
     dead: _Count
     constant: _Count
     not_finite: _Count
 
 
-class _Part(FileRow):
+class _ListedPart(FileRow):
     name: str
     records: _Count
-    signals_: Annotated[_Signals, Field(alias="signals")]
+    signals_: Annotated[_ListedSignals, Field(alias="signals")]
 
 
-class Overrides(_Section):
-    """What was given in place of the recipe's own seed and number of records."""
+class Overrides(_Strict):
+    """Seed and number of records that replaced those of the recipe."""
 
     seed: int | None = None
     records: int | None = None
 
 
-class Manifest(_Section):
-    """``manifest.json``, read and checked; what only simulated or only imported corpora have is None in the others."""
+class Manifest(_Strict):
+    """Contents of ``manifest.json`` after its check; fields of simulated corpora are None in imported ones, and the other way round."""
 
     raceway_format: int
     complete: bool
     records: _Count
     index: FileRow | None = None
-    """``corpus.nc``; there is none before the corpus is complete."""
-    parts_: Annotated[tuple[_Part, ...], Field(alias="parts")]
+    """``corpus.nc``; None until the corpus is complete."""
+    parts_: Annotated[tuple[_ListedPart, ...], Field(alias="parts")]
     title: str | None = None
     recipe: str | None = None
     recipe_sha256: str | None = None
@@ -92,14 +92,14 @@ class Manifest(_Section):
 
     @property
     def signals(self) -> SignalCounts:
-        """Records that cannot be used."""
+        """Counts of the records that cannot be used."""
         return summed(row.signals for row in self.parts)
 
 
 def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, **facts: Any) -> None:
-    """Write ``manifest.json``: the parts so far, whether they are all, and ``facts`` such as recipe hash and versions.
+    """Write ``manifest.json``: the finished parts, whether they are all, and ``facts`` such as recipe hash and versions.
 
-    The index of a complete corpus must have been written before.
+    For a complete corpus the index must exist.
     """
     rows = list(rows)
     parts = [row._asdict() | {"signals": row.signals._asdict()} for row in rows]
@@ -117,12 +117,12 @@ def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, 
 
 
 def read_manifest(directory: Path) -> Manifest:
-    """Read and check ``manifest.json``; its part names cannot lead out of the corpus.
+    """Read and check ``manifest.json``; names of parts that lead out of the corpus are refused.
 
     Raises
     ------
     CorpusError
-        If it is missing, unreadable, of another format version, names a part that is no part or names one twice, or its counts disagree.
+        If it is missing, unreadable or of another format version, has a wrong or repeated name of a part, or its counts disagree.
     """
     path = directory / "manifest.json"
     if directory.is_file():
@@ -132,7 +132,7 @@ def read_manifest(directory: Path) -> Manifest:
             f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."
         )
     if not path.exists():
-        raise CorpusError(f"{directory}: holds no manifest.json, so it is no corpus; make one with raceway generate.")
+        raise CorpusError(f"{directory}: has no manifest.json, so it is not a corpus; make one with raceway generate.")
     plain_file(directory, path.name)
     try:
         check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
@@ -146,7 +146,7 @@ def read_manifest(directory: Path) -> Manifest:
     if manifest.raceway_format != FORMAT:
         found = manifest.raceway_format
         raise CorpusError(
-            f"{path}: corpus format {found}, this version of raceway reads format {FORMAT}; make it again."
+            f"{path}: corpus format {found}, this version of raceway reads format {FORMAT}; make the corpus again."
         )
     problem = _inconsistency(manifest)
     if problem is not None:
@@ -155,7 +155,7 @@ def read_manifest(directory: Path) -> Manifest:
 
 
 def _first(error: ValidationError) -> str:
-    """Where the first thing is wrong, and what."""
+    """Place and reason of the first error."""
     item = error.errors(include_url=False, include_input=False)[0]
     place = ".".join(str(step) for step in item["loc"])
     reason = item["msg"][0].lower() + item["msg"][1:]
@@ -173,13 +173,13 @@ def _inconsistency(manifest: Manifest) -> str | None:
     if manifest.records != records:
         return f"it counts {manifest.records} records, its parts {records}"
     if manifest.complete and (manifest.index is None or not names):
-        return "it calls the corpus complete without a hash of corpus.nc, or without parts"
+        return "it is marked complete but has no hash of corpus.nc or no parts"
     check_limit("records", records, str(names and "the corpus holds"), CorpusError)
     return None
 
 
 def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str]:
-    """Missing and altered files, one sentence each; the index counts once the corpus is complete."""
+    """Missing and altered files, one sentence each; the index is included if the corpus is complete."""
     wanted = {f"parts/{row.name}": FileRow(bytes=row.bytes, sha256=row.sha256) for row in manifest.parts}
     if manifest.complete and manifest.index is not None:
         wanted[INDEX_NAME] = manifest.index
@@ -187,7 +187,7 @@ def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str
     if check == "size":
         found = [judge(item) for item in items]
     else:
-        threads = min(8, len(os.sched_getaffinity(0)))  # hashing lets other threads run
+        threads = min(8, len(os.sched_getaffinity(0)))  # hashing releases the interpreter lock
         with ThreadPoolExecutor(threads) as pool:
             shares = pool.map(lambda first: [judge(item) for item in items[first::threads]], range(threads))
             found = [problem for share in shares for problem in share]
@@ -202,25 +202,23 @@ def _file_problem(directory: Path, check: Check, item: tuple[str, FileRow]) -> s
         return str(error)
     if path.stat().st_size == row.bytes and (check == "size" or sha256(path) == row.sha256):
         return None
-    return (
-        f"{path}: altered, it is not the file the manifest names; copy it again or delete it and make the corpus again."
-    )
+    return f"{path}: is altered: its size or hash differs from the manifest; copy it again, or delete it and make the corpus again."
 
 
 def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
-    """Paths of all parts of a finished corpus, each there and unaltered.
+    """Paths of all parts of a finished corpus, after a check of every file.
 
-    ``check="size"`` looks at sizes only: for a corpus too large to be hashed again.
+    ``check="size"`` compares sizes only, for corpora that take too long to hash.
 
     Raises
     ------
     CorpusError
-        If the corpus is unfinished, or a file of it is missing, altered or outside its folder.
+        If the corpus is unfinished, or one of its files is missing, altered or outside its folder.
     """
     directory = Path(directory)
     manifest = read_manifest(directory)
     if not manifest.complete:
-        raise CorpusError(f"{directory}: unfinished; the raceway generate command that began it completes it.")
+        raise CorpusError(f"{directory}: is unfinished; run the raceway generate command that began it again.")
     problems = file_problems(directory, manifest, check)
     if problems:
         raise CorpusError(problems[0])

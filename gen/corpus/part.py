@@ -1,4 +1,4 @@
-"""One part of a corpus: a complete netCDF-4 file of some hundred records, there whole or not there at all."""
+"""One part of a corpus: a complete netCDF-4 file of some hundred records, written atomically."""
 
 import zlib
 from pathlib import Path
@@ -24,14 +24,14 @@ _INCOMPRESSIBLE = 7.8  # bits per byte
 
 
 class PartRow(NamedTuple):
-    """What the manifest says of a part."""
+    """Entry of a part in the manifest."""
 
     name: str
     records: int
     bytes: int
     sha256: str
     signals: SignalCounts = SignalCounts()
-    """Records that cannot be used."""
+    """Counts of the records that cannot be used."""
 
 
 def part_name(number: int) -> str:
@@ -44,14 +44,14 @@ def part_name(number: int) -> str:
 
 
 def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRow:
-    """Write records as a part, whole or not at all, one chunk per record and channel.
+    """Write records as a part, atomically, with one chunk per record and channel.
 
-    ``zlib`` can be read everywhere; ``zstd`` writes several times faster, but plain h5py and stock ncdump cannot read it.
+    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``.
 
     Raises
     ------
     CorpusError
-        If the disk refuses the file, with the reason it gives.
+        If writing fails, with the reason that the system gives.
     """
     signal = dataset[SIGNAL].values
     chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
@@ -60,7 +60,7 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
             file.setncatts(dataset.attrs)
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)
-            # all is declared before anything is written: to and fro costs a third of the time
+            # all variables are declared before any is written: alternating takes 50 % longer
             declared = [_declare(file, str(name), dataset, codec) for name in dataset.variables]
             for stored, values in declared:
                 if stored.name != SIGNAL or not chunks:
@@ -73,9 +73,9 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
 def _declare(
     file: netCDF4.Dataset, name: str, dataset: xr.Dataset, codec: Codec
 ) -> tuple[netCDF4.Variable, NDArray[Any]]:
-    """Declare a variable, and return it with what to write into it.
+    """Declare a variable, and return it with its values.
 
-    Text goes into fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed.
+    Text is stored as fixed-length characters: HDF5 2.2 can crash on variable-length strings after another file was closed.
     """
     variable = dataset.variables[name]
     values, dimensions, attributes = variable.values, tuple(map(str, variable.dims)), dict(variable.attrs)
@@ -103,7 +103,7 @@ def _declare(
 
 
 def _write_chunks(chunks: dict[tuple[int, ...], bytes], path: Path) -> None:
-    """Write the chunks of the signal as they are: HDF5's own way through zlib takes more than twice as long."""
+    """Write compressed chunks of the signal directly: the zlib filter of HDF5 takes more than twice as long."""
     with h5py.File(path, "r+") as file:
         stored: Any = file[SIGNAL]
         for (record, channel), chunk in chunks.items():
@@ -111,10 +111,10 @@ def _write_chunks(chunks: dict[tuple[int, ...], bytes], path: Path) -> None:
 
 
 def deflated(samples: NDArray[Any]) -> bytes:
-    r"""Samples after HDF5's shuffle as a zlib stream, about as short as level 1 makes it.
+    r"""Samples after the shuffle of HDF5 as a zlib stream, of about the size of level 1.
 
-    The lower bytes of a noisy signal are noise that no code shortens: planes of evenly spread bytes are stored as they are. In the
-    others runs are all that repeats.
+    The lower bytes of a noisy signal cannot be compressed: planes with evenly distributed bytes are stored as they are. The other planes
+    are run-length coded, because only runs repeat in them.
 
     >>> zlib.decompress(deflated(np.array([1, 2, 3], np.int16)))
     b'\x01\x02\x03\x00\x00\x00'
@@ -129,7 +129,7 @@ def deflated(samples: NDArray[Any]) -> bytes:
 
 
 def inflated(chunk: bytes, samples: int) -> NDArray[np.int16]:
-    """Counts out of a zlib stream of their shuffled bytes, as :func:`deflated` makes it; ValueError if it is not of as many ``samples``.
+    """Counts from a zlib stream of their shuffled bytes, as from :func:`deflated`; ValueError if their number is not ``samples``.
 
     >>> inflated(deflated(np.array([1, -2, 300], np.int16)), 3)
     array([  1,  -2, 300], dtype=int16)
@@ -146,7 +146,7 @@ def inflated(chunk: bytes, samples: int) -> NDArray[np.int16]:
 
 
 def _entropy(values: NDArray[np.uint8]) -> float:
-    """Bits that each of ``values`` takes."""
+    """Entropy of bytes [bit per byte]."""
     counts = np.bincount(values)
     shares = counts[counts > 0] / len(values)
     return -float(shares @ np.log2(shares))

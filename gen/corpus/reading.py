@@ -1,8 +1,8 @@
-"""Records read when touched, straight from the files that hold them, a few of which are open at a time.
+"""Lazy reading of records from the parts, with a limited number of open files.
 
-Every reader of the project comes through here. A signal is read from the part that stores it, never through the virtual dataset of
-``corpus.nc``: HDF5 keeps every part of such a dataset open, and returns missing values without an error when it can open no more files.
-Datasets hold paths and no handles, so they can be pickled, sent to dask workers and shared with forked processes.
+All code of the project that reads a corpus uses this module. A signal is read from its part, never through the virtual dataset of
+``corpus.nc``: HDF5 keeps all parts of such a dataset open, and returns missing values without an error when it cannot open more files.
+Datasets hold paths instead of handles, so they can be pickled, sent to dask workers and shared with forked processes.
 """
 
 import math
@@ -41,20 +41,20 @@ from gen.errors import CorpusError
 from gen.limits import check_limit
 
 MOST_OPEN = 64
-"""Files that are open at a time. A process may open 256 or more; to close one and open another takes 0.4 ms."""
+"""Largest number of open files. A process can open 256 or more; closing one file and opening another takes 0.4 ms."""
 
 _BLOCK_SAMPLES = 10_000_000
 
 
 class Source(NamedTuple):
-    """A file as it was when it was checked."""
+    """Path of a file, and its stamp when it was checked."""
 
     path: str
     stamp: Stamp
 
 
 class _OpenFile(NamedTuple):
-    """Handle of a file, and of its datasets that have been checked."""
+    """Handle of a file, and its datasets that have been checked."""
 
     handle: h5py.File
     checked: dict[object, h5py.Dataset]
@@ -64,7 +64,7 @@ _open_files: OrderedDict[Source, _OpenFile] = OrderedDict()
 
 
 def source_of(path: Path | str) -> Source:
-    """File as it is now; CorpusError if there is none."""
+    """Path and present stamp of a file; CorpusError if there is no file."""
     try:
         return Source(str(Path(path).absolute()), stamp(path))
     except OSError as error:
@@ -75,13 +75,13 @@ def source_of(path: Path | str) -> Source:
 
 @contextmanager
 def _opened(source: Source) -> Iterator[_OpenFile]:
-    """Open file behind a source, with the libraries to oneself; whatever they raise becomes a sentence."""
+    """Open file of a source, under the lock of the libraries; all their errors become a CorpusError."""
     with LIBRARY_LOCK:
         try:
             yield _open_file(source)
         except CorpusError:
             raise
-        except Exception as error:  # damaged bytes make h5py raise a dozen unrelated types
+        except Exception as error:  # h5py raises a dozen unrelated types on damaged bytes
             reason = (str(error) or type(error).__name__).splitlines()[0]
             raise CorpusError(
                 f"{source.path}: not a readable netCDF-4 part or index ({reason}); generate or copy it again."
@@ -89,7 +89,7 @@ def _opened(source: Source) -> Iterator[_OpenFile]:
 
 
 def _open_file(source: Source) -> _OpenFile:
-    """A file, from those that are open or opened in place of the one used longest ago."""
+    """Open file of a source; if too many are open, the least recently used one is closed."""
     if stamp(source.path) != source.stamp:
         raise CorpusError(f"{source.path}: changed since the corpus was opened; open the corpus again.")
     if source not in _open_files:
@@ -108,7 +108,7 @@ def _close(sources: Sequence[Source]) -> None:
 
 
 class _Column(BackendArray):
-    """Values of a per-record variable or of an axis, as they are stored."""
+    """Stored values of a per-record variable or of an axis."""
 
     def __init__(self, source: Source, name: str, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
         self.source, self.name, self.shape, self.dtype = source, name, shape, dtype
@@ -131,7 +131,7 @@ class _Column(BackendArray):
 
 
 class _Signal(BackendArray):
-    """Signal (record, channel, elapsed_time) of parts one after the other, decoded."""
+    """Decoded signal (record, channel, elapsed_time) of consecutive parts."""
 
     def __init__(self, parts: Sequence[Source], counts: Sequence[int], row: tuple[int, int], packing: Packing) -> None:
         self.parts, self.packing = tuple(parts), packing
@@ -142,7 +142,7 @@ class _Signal(BackendArray):
         return indexing.explicit_indexing_adapter(key, self.shape, indexing.IndexingSupport.OUTER, self._read)
 
     def _read(self, key: tuple[int | slice | NDArray[np.integer[Any]], ...]) -> NDArray[Any]:
-        """Read each run of neighbouring records of a part at once: whole chunks, since a record of a channel is one."""
+        """Read runs of consecutive records of a part in one call, in whole chunks of one record and channel."""
         chosen = [_numbers_of(item, size) for size, item in zip(self.shape, key, strict=True)]
         records, channels, samples = map(np.atleast_1d, chosen)
         parts = np.searchsorted(self.starts, records, side="right") - 1
@@ -160,7 +160,7 @@ class _Signal(BackendArray):
         return values.reshape([len(item) for item in chosen if item.ndim])
 
     def _decode(self, part: int, records: range, channels: range, out: NDArray[Any]) -> None:
-        """Write neighbouring records of a part into ``out``. Chunks are inflated without the lock, so that threads do it side by side."""
+        """Decode consecutive records of a part into ``out``. Chunks are inflated without the lock, so that threads run in parallel."""
         with self._stored(part) as stored:
             if not is_deflated(stored):
                 self.packing.decode(stored[records.start : records.stop, channels.start : channels.stop], out)
@@ -176,28 +176,28 @@ class _Signal(BackendArray):
 
     @contextmanager
     def _stored(self, part: int) -> Iterator[h5py.Dataset]:
-        """Stored signal of a part, which must be of the shape and packing of the corpus."""
+        """Stored signal of a part; CorpusError unless it has the shape and packing of the corpus."""
         with _opened(self.parts[part]) as file:
             expected = (int(self.starts[part + 1] - self.starts[part]), *self.shape[1:]), self.packing
             if expected not in file.checked:
                 stored = own_dataset(file.handle, SIGNAL)
                 if (checked_shape(stored), packing_of(stored)) != expected:
                     raise CorpusError(
-                        f"{self.parts[part].path}: its signal is not of the shape or type that the corpus says; do not trust this corpus."
+                        f"{self.parts[part].path}: its signal has another shape or type than the corpus; do not trust this corpus."
                     )
                 file.checked[expected] = stored
             yield file.checked[expected]
 
 
 def _numbers_of(key: int | slice | NDArray[np.integer[Any]], size: int) -> NDArray[np.integer[Any]]:
-    """Numbers of the items that a key chooses out of ``size``."""
+    """Numbers of the items that a key selects from ``size`` items."""
     if isinstance(key, slice):
         return np.arange(*key.indices(size))
     return np.asarray(key) + size * (np.asarray(key) < 0)
 
 
 class _Records(BackendEntrypoint):
-    """How xarray opens the records of a part, or of the index of a corpus and its parts."""
+    """Backend with which xarray opens a part, or an index with its parts."""
 
     open_dataset_parameters = ("filename_or_obj", "drop_variables", "parts", "counts")
 
@@ -205,11 +205,11 @@ class _Records(BackendEntrypoint):
         self,
         filename_or_obj: Any,
         *,
-        drop_variables: Any = None,  # noqa: ARG002 - xarray hands it over
+        drop_variables: Any = None,  # noqa: ARG002 - an argument that xarray passes
         parts: Sequence[Path],
         counts: Sequence[int] | None,
     ) -> xr.Dataset:
-        """Variables of one file, with the signal of ``parts``, each of which holds as many records as ``counts`` says."""
+        """Variables of one file with the signal of ``parts``; ``counts`` are their numbers of records."""
         source, sources = source_of(filename_or_obj), [source_of(path) for path in parts]
         with _opened(source) as file:
             stored = own_dataset(file.handle, SIGNAL, virtual=counts is not None)
@@ -237,26 +237,26 @@ class _Records(BackendEntrypoint):
 
 
 def open_records(path: Path, parts: Sequence[Path], counts: Sequence[int] | None = None) -> xr.Dataset:
-    """Open the per-record variables of ``path`` with the signal of ``parts``, read when touched.
+    """Open the per-record variables of ``path`` with the signal of ``parts``, lazily.
 
-    ``counts`` are the records of each part if ``path`` is the index over them; without, ``path`` is a part itself.
+    ``counts`` are the numbers of records of the parts if ``path`` is their index; without them ``path`` is a part itself.
 
     Raises
     ------
     CorpusError
-        If a file is missing, unreadable, or holds what no corpus holds: links, values in other files, unknown dimensions.
+        If a file is missing or unreadable, or has links, values in other files or unknown dimensions.
     """
     opened: Any = xr.open_dataset(path, engine=_Records, parts=parts, counts=counts)
     return opened
 
 
 def open_part(path: Path) -> xr.Dataset:
-    """Records of one part, decoded to m s-2 and read when touched.
+    """Records of one part, decoded to m s-2 and read lazily.
 
     Raises
     ------
     CorpusError
-        If the file is missing or no part.
+        If the file is missing or is not a part.
     """
     return open_records(path, [path])
 
@@ -264,7 +264,7 @@ def open_part(path: Path) -> xr.Dataset:
 def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
     """Signal of one channel of a part in single precision, shape (record, elapsed_time) [m s-2], and columns by name.
 
-    For features: in half the time of :func:`open_part`, which decodes in double precision.
+    It takes half the time of :func:`open_part`, which decodes in double precision; features use it.
     """
     with _opened(source_of(path)) as file:
         stored = own_dataset(file.handle, SIGNAL)
@@ -279,7 +279,7 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
 
 
 def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
-    """Stored signal of a part, some records at a time: counts of the converter, or accelerations [m s-2]."""
+    """Stored signal of a part in blocks of records: counts of the converter, or accelerations [m s-2]."""
     source, first, records = source_of(path), 0, 1
     while first < records:
         with _opened(source) as file:
@@ -298,7 +298,7 @@ def _numbers(stored: h5py.Dataset, name: str, records: int) -> NDArray[Any]:
 
 
 def _variables(file: _OpenFile, source: Source, sizes: dict[str, int]) -> dict[str, xr.Variable]:
-    """Every variable of a file but the signal."""
+    """All variables of a file except the signal."""
     found: dict[str, xr.Variable] = {}
     for name in map(str, file.handle):
         if name != SIGNAL:

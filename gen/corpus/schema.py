@@ -1,8 +1,8 @@
-"""What a corpus holds: the dimensions, the variables, their units and the role each one plays.
+"""Schema of a corpus: dimensions, variables, units and roles.
 
-``acceleration (record, channel, elapsed_time)`` is the signal; every other variable has one value per record and a ``role``:
-what an analyst on site knows (``operating``), what a classifier is to find out (``label``), what only the simulator knows
-(``latent``) and where the record comes from (``provenance``). Features may use the signal and ``operating`` alone.
+``acceleration (record, channel, elapsed_time)`` is the signal. Every other variable has one value per record and a ``role``:
+``operating`` (known to an analyst on site), ``label`` (the target of a classifier), ``latent`` (known to the simulator alone) or
+``provenance`` (origin of the record). Features may use the signal and ``operating`` variables only.
 """
 
 from collections.abc import Mapping
@@ -21,10 +21,10 @@ FAULTS = ("healthy", "inner", "outer", "ball", "cage", "compound")
 SPLITS = ("train", "validation", "test")
 ROLES = ("operating", "label", "latent", "provenance")
 SIGNAL = "acceleration"
-DRAWS = "draws"  # of simulated corpora: everything drawn for a record, as JSON of some kilobytes
+DRAWS = "draws"  # variable of simulated corpora: all drawn values of a record, as JSON of some kilobytes
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
 Codec = Literal["zlib", "zstd", "none"]
-MISSING_COUNT = -32768  # what a missing part reads as, and therefore not a count the converter gives
+MISSING_COUNT = -32768  # value that a missing part reads as; the converter never gives it
 
 
 class Variable(NamedTuple):
@@ -66,14 +66,14 @@ SCHEMA = (
     ),
     Variable("rig", "i4", "1", "provenance", "number of the machine"),
     Variable("specimen", "i4", "1", "provenance", "number of the physical bearing"),
-    Variable("recording", "i4", "1", "provenance", "number of the recording the record was cut from"),
-    Variable("split", "i1", "1", "provenance", "part of the corpus the record is meant for", SPLITS),
-    Variable("source", "str", "1", "provenance", "where the record comes from"),
+    Variable("recording", "i4", "1", "provenance", "number of the recording that the record was cut from"),
+    Variable("split", "i1", "1", "provenance", "split that the record belongs to", SPLITS),
+    Variable("source", "str", "1", "provenance", "file or recipe that the record comes from, and its place there"),
 )
 
 
 def signal_attributes(counts_per_unit: float | None) -> dict[str, Any]:
-    """Attributes of the signal; with ``counts_per_unit``, those by which readers undo the converter (CF-1.11, 8.1)."""
+    """Attributes of the signal; with ``counts_per_unit``, also those for the conversion of counts to m s-2 (CF-1.11, section 8.1)."""
     attributes: dict[str, Any] = {
         "units": "m s-2",
         "long_name": "acceleration of the sensor",
@@ -124,11 +124,11 @@ def make_dataset(
     columns : mapping
         One array of shape (record,) for each variable of ``SCHEMA`` and of ``extra``.
     extra : tuple of Variable
-        Further per-record variables, such as what only the simulator knows.
+        Further per-record variables, such as those of simulated corpora.
     counts_per_unit : float, optional
         Converter counts per m s-2, for int16 signals.
     attributes : mapping
-        Global attributes: ``title``, ``history`` and what else describes the corpus.
+        Global attributes: ``title``, ``history`` and others that describe the corpus.
 
     Raises
     ------
@@ -161,7 +161,7 @@ def make_dataset(
 
 
 def schema_problems(dataset: "xr.Dataset") -> list[str]:
-    """What keeps ``dataset`` from being in the format, one sentence each."""
+    """Deviations of ``dataset`` from the format, one sentence each."""
     problems = [f"variable {name} is missing." for name in _missing(dataset)]
     if problems:
         return problems

@@ -1,7 +1,7 @@
-"""What a stored signal is worth: sound, or one that no analysis can use, judged from its samples alone.
+"""Detection of records that no analysis can use, from the samples of their stored signals.
 
-A recipe with a full scale, a gain or a load far from what fits gives records that are cut off, all zeros or not numbers. They are written
-like any others, so they are counted when a part is written; the manifest holds the counts.
+A recipe with an unsuitable full scale, gain or load gives records that are clipped, all zeros or not numbers. They are written like
+other records, and counted when a part is written; the manifest holds the counts.
 """
 
 from collections.abc import Iterable
@@ -14,10 +14,10 @@ from gen.corpus.schema import MISSING_COUNT
 
 VERDICTS = ("sound", "clipped", "dead", "constant", "not_finite")
 
-# Of the samples of a channel. Faulty records of quickstart cut off at 1, 5 and 10 % of their samples kept 89, 60 and 40 % of their
-# power, and features of their fault lines moved by 0.1, 0.3 and 0.3 of their spread over the corpus: some clipped impacts do no harm.
+# Share of the samples of a channel. Faulty records of quickstart clipped at 1, 5 and 10 % of their samples kept 89, 60 and 40 % of their
+# power, and features of their fault lines changed by 0.1, 0.3 and 0.3 of their spread over the corpus: a few clipped impacts do no harm.
 CLIPPED_SHARE = 0.05
-USELESS_SHARE = 0.01  # of the records of a corpus, above which generate finds the recipe wanting
+USELESS_SHARE = 0.01  # share of the records of a corpus above which generate reports the recipe as unsuitable
 
 _ADVICE = {
     "clipped": "raise recording.converter.full_scale_m_s2, or lower operation.load_n, level.gain or level.rms_m_s2",
@@ -28,7 +28,7 @@ _ADVICE = {
 
 
 class SignalCounts(NamedTuple):
-    """Number of records that cannot be used, by what is wrong with them; the others are sound."""
+    """Number of records that cannot be used, by reason; all others are sound."""
 
     clipped: int = 0
     dead: int = 0
@@ -37,19 +37,19 @@ class SignalCounts(NamedTuple):
 
 
 def judge(signal: NDArray[np.integer] | NDArray[np.floating]) -> NDArray[np.int8]:
-    """Verdict on each record, shape (record,): a place in ``VERDICTS``.
+    """Verdict on each record, shape (record,), as an index of ``VERDICTS``.
 
-    A record is judged by its worst channel: not finite if a sample is not a number, or missing; dead if all samples are zero; constant if
-    all have one other value; clipped if more than ``CLIPPED_SHARE`` of them lie at the ends of the converter. The ends of counts are
-    the largest and the smallest count there is. A signal in floating point does not say what its ends are: they are its own largest and
-    smallest value, which a signal that was not cut off seldom takes again.
+    The worst channel counts: not finite if a sample is missing or not a number; dead if all samples are zero; constant if all have one
+    other value; clipped if more than ``CLIPPED_SHARE`` of them are at the ends of the converter. The ends of counts are the largest and
+    the smallest count. The ends of a floating-point signal are unknown; its own largest and smallest value are used, which an unclipped
+    signal seldom takes more than once.
 
     Parameters
     ----------
     signal : array, shape (record, channel, time)
         Counts of a 16-bit converter, or accelerations [m s-2].
     """
-    return np.array([_verdict(record) for record in signal], np.int8)  # one by one: a part may be most of the memory
+    return np.array([_verdict(record) for record in signal], np.int8)  # one by one: a part can take most of the memory
 
 
 def _verdict(record: NDArray[Any]) -> int:
@@ -67,7 +67,7 @@ def _verdict(record: NDArray[Any]) -> int:
 
 
 def counted(verdicts: NDArray[np.int8]) -> SignalCounts:
-    """Number of records of each verdict but ``sound``.
+    """Number of records of each verdict except ``sound``.
 
     >>> counted(np.array([0, 1, 1, 4], np.int8))
     SignalCounts(clipped=2, dead=0, constant=0, not_finite=1)
@@ -76,12 +76,12 @@ def counted(verdicts: NDArray[np.int8]) -> SignalCounts:
 
 
 def summed(counts: Iterable[SignalCounts]) -> SignalCounts:
-    """Counts of several parts together."""
+    """Sum of the counts of several parts."""
     return SignalCounts(*np.array([SignalCounts(), *counts]).sum(axis=0).tolist())
 
 
 def described(counts: SignalCounts) -> str:
-    """Counts in words, without those that are 0.
+    """Counts in words; counts of 0 are left out.
 
     >>> described(SignalCounts(clipped=1204, not_finite=2)), described(SignalCounts())
     ('1,204 clipped, 2 not finite', 'none')
@@ -90,7 +90,7 @@ def described(counts: SignalCounts) -> str:
 
 
 def complaint(counts: SignalCounts, records: int) -> str | None:
-    """Sentence that says how many records of a generated corpus cannot be used and what to change, None if they are few."""
+    """Sentence with the number of records that cannot be used and the keys to change; None if they are few."""
     useless = sum(counts)
     if useless <= USELESS_SHARE * records:
         return None

@@ -1,4 +1,4 @@
-"""Everything that can be checked of a corpus: its files, the format of each part, and whether ``corpus.nc`` says the same as the parts."""
+"""Validation of a corpus: its files, the format of each part, and the agreement of ``corpus.nc`` with the parts."""
 
 from pathlib import Path
 
@@ -18,17 +18,17 @@ from gen.errors import CorpusError
 
 
 def validate_corpus(directory: Path | str) -> list[str]:
-    """Everything that is wrong with a corpus, one sentence each; an empty list if nothing is.
+    """All problems of a corpus, one sentence each; an empty list if it has none.
 
-    Looks at the manifest, the bytes of every file, the format of every part, the values of the signal, and whether
-    ``corpus.nc`` says the same as the parts. Memory holds one part at a time.
+    Checks the manifest, the bytes of every file, the format of every part, the values of the signal, and the agreement of ``corpus.nc``
+    with the parts. One part at a time is held in memory.
     """
     directory, problems = Path(directory), []
     try:
         manifest = read_manifest(directory)
         problems = file_problems(directory, manifest, "sha256")
         if problems or not manifest.complete:
-            return problems or [f"{directory}: unfinished; the raceway generate command that began it completes it."]
+            return problems or [f"{directory}: is unfinished; run the raceway generate command that began it again."]
         problems = _mapping_problems(directory, manifest)
         if problems:
             return problems
@@ -41,7 +41,7 @@ def validate_corpus(directory: Path | str) -> list[str]:
                         found = part.sizes["record"]
                         return [
                             *problems,
-                            f"{path}: {found} records, the manifest says {row.records}; do not trust this corpus.",
+                            f"{path}: {found} records, the manifest lists {row.records}; do not trust this corpus.",
                         ]
                     here = index.isel(record=slice(first, first + row.records))
                     problems += [
@@ -54,7 +54,7 @@ def validate_corpus(directory: Path | str) -> list[str]:
 
 
 def _mapping_problems(directory: Path, manifest: Manifest) -> list[str]:
-    """What is wrong with the virtual dataset of ``corpus.nc``, which readers other than :func:`gen.open_corpus` rely on."""
+    """Problems of the virtual dataset in ``corpus.nc``, which readers other than :func:`gen.open_corpus` use."""
     path, expected, first = directory / INDEX_NAME, [], 0
     for row in manifest.parts:
         expected.append((f"parts/{row.name}", SIGNAL, first, first + row.records - 1))
@@ -81,7 +81,7 @@ def _signal_problems(path: Path, row: PartRow) -> list[str]:
     problems = [f"record {record} of the part has samples that are not finite." for record in lost]
     if counted(verdicts) != row.signals:
         problems.append(
-            f"{described(counted(verdicts))} of its records cannot be used, the manifest says {described(row.signals)}."
+            f"{described(counted(verdicts))} of its records cannot be used, the manifest lists {described(row.signals)}."
         )
     return problems
 
@@ -93,13 +93,17 @@ def _part_problems(part: xr.Dataset, index: xr.Dataset) -> list[str]:
     if set(part.variables) != set(index.variables) or part.sizes != index.sizes:
         return ["corpus.nc has other variables or sizes; make or copy the corpus again."]
     for name, variable in part.variables.items():
-        same = _alike(variable, index[name].variable) if name == SIGNAL else variable.identical(index[name].variable)
+        same = (
+            _same_storage(variable, index[name].variable)
+            if name == SIGNAL
+            else variable.identical(index[name].variable)
+        )
         if not same:
             problems.append(f"{name} differs from corpus.nc; make or copy the corpus again.")
     return problems
 
 
-def _alike(part: xr.Variable, index: xr.Variable) -> bool:
-    """Whether two signals are described and packed alike; their values are those of the part in any case."""
+def _same_storage(part: xr.Variable, index: xr.Variable) -> bool:
+    """Whether two signals have the same attributes and packing; both read their values from the part."""
     one, other = ([str(variable.encoding.get(key)) for key in PACKING] for variable in (part, index))
     return part.attrs == index.attrs and one == other

@@ -1,7 +1,7 @@
-"""Reading in a process apart: a library that a damaged file sends astray takes no more with it than that process.
+"""Reading in a child process, so that a library that crashes or hangs on a damaged file does not end the import.
 
-The HDF5 library can turn in circles on a damaged file, or end the process; no Python code can stop either. The values come back through a
-pipe.
+The HDF5 library can loop for ever on a damaged file, or end the process; Python code cannot prevent either. The child sends the values
+through a pipe.
 """
 
 import faulthandler
@@ -20,25 +20,25 @@ from numpy.typing import NDArray
 
 from gen.importers.files import UnusableError
 
-CPU_SECONDS = 3  # to open a file; waiting for a slow disk does not count
-_CPU_SECONDS_PER_BYTE = 2e-7  # 30 times what inflating takes
+CPU_SECONDS = 3  # processor time to open a file; waiting for a slow disk is not included
+_CPU_SECONDS_PER_BYTE = 2e-7  # 30 times the time that inflating takes
 
 
 def read_apart(read: Callable[[], NDArray[Any]], size: int) -> NDArray[Any]:
-    """Give the numbers that ``read`` gives in a process of its own, from a file of ``size`` bytes.
+    """Result of ``read`` in a child process, for a file of ``size`` bytes.
 
     Raises
     ------
     UnusableError
-        As ``read`` does, or if the process ended or ran for too long.
+        If ``read`` raises it, or if the process ended or ran for too long.
     ValueError
-        In place of any other error of ``read``, with its text.
+        If ``read`` raises any other error; with its text.
     """
     receiving, sending = os.pipe()
     with warnings.catch_warnings():
         warnings.simplefilter(
             "ignore", DeprecationWarning
-        )  # of Python 3.12, if there are threads: the child starts none and uses no lock
+        )  # Python 3.12 warns of fork with threads: the child starts no thread and takes no lock
         child = os.fork()
     if child == 0:
         _serve(read, sending, CPU_SECONDS + int(size * _CPU_SECONDS_PER_BYTE))
@@ -52,9 +52,9 @@ def read_apart(read: Callable[[], NDArray[Any]], size: int) -> NDArray[Any]:
 
 
 def _serve(read: Callable[[], NDArray[Any]], sending: int, seconds: int) -> None:
-    """Read, send and end; what was begun in the parent is not ended a second time here."""
+    """Read, send and exit without the exit handlers that the child has inherited from its parent."""
     try:
-        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent is interrupted, and ends this process
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent receives the interrupt and ends this process
         faulthandler.disable()
         resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
         resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -64,7 +64,7 @@ def _serve(read: Callable[[], NDArray[Any]], sending: int, seconds: int) -> None
                 head = {"dtype": values.dtype.str, "shape": values.shape}
             except UnusableError as reason:
                 values, head = np.empty(0), {"unusable": str(reason)}
-            except BaseException as error:  # noqa: BLE001 - all of it is told to the parent
+            except BaseException as error:  # noqa: BLE001 - the parent reports every error
                 values, head = np.empty(0), {"error": str(error) or type(error).__name__}
             text = json.dumps(head).encode()
             stream.write(struct.pack("<Q", len(text)) + text)
@@ -76,7 +76,7 @@ def _serve(read: Callable[[], NDArray[Any]], sending: int, seconds: int) -> None
 def _received(stream: BufferedReader) -> NDArray[Any]:
     size = stream.read(8)
     if len(size) < 8:
-        raise UnusableError("is damaged: the HDF5 library crashes on it or comes to no end")
+        raise UnusableError("is damaged: the HDF5 library crashes on it or does not finish")
     head = json.loads(stream.read(struct.unpack("<Q", size)[0]))
     if "unusable" in head:
         raise UnusableError(head["unusable"])
@@ -84,5 +84,5 @@ def _received(stream: BufferedReader) -> NDArray[Any]:
         raise ValueError(head["error"])
     values = np.empty(head["shape"], head["dtype"])
     if stream.readinto(values.reshape(-1).view(np.uint8).data) < values.nbytes:
-        raise UnusableError("is damaged: the HDF5 library crashes on it or comes to no end")
+        raise UnusableError("is damaged: the HDF5 library crashes on it or does not finish")
     return values

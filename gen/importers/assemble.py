@@ -1,7 +1,7 @@
-"""From the files of a set to a corpus, whole or not at all.
+"""Write the recordings of a set as a corpus; a failed import leaves nothing behind.
 
-Files are read one after the other, and their records are written part by part into a folder beside the wanted
-one, which takes its name when index, data card and manifest are written.
+Files are read one after the other, and their records are written part by part into a temporary folder, which is renamed when index, data
+card and manifest are written.
 """
 
 import math
@@ -41,7 +41,7 @@ _PART_BYTES = 64_000_000
 
 
 class Collection(NamedTuple):
-    """What the recordings of a set have in common; ``origin`` says whose they are and under what licence."""
+    """Facts that all recordings of a set share; ``origin`` is their owner and licence."""
 
     importer: str
     title: str
@@ -52,7 +52,7 @@ class Collection(NamedTuple):
 
 
 class Import(NamedTuple):
-    """The new corpus, its counts, and a sentence for each file skipped and each thing done or assumed."""
+    """The new corpus, its counts, and a sentence for each skipped file, each assumption and each change of a signal."""
 
     directory: Path
     recordings: int
@@ -62,7 +62,7 @@ class Import(NamedTuple):
 
 
 class _Log(NamedTuple):
-    """What is noted while files are read: recordings and records by fault, and sentences."""
+    """Counts of recordings and records by fault, and sentences, collected while files are read."""
 
     recordings: Counter[str]
     records: Counter[str]
@@ -80,36 +80,38 @@ def import_recordings(
     warnings: Sequence[str] = (),
     progress: Progress | None = None,
 ) -> Import:
-    """Make a corpus of every usable candidate.
+    """Write a corpus of all usable candidates.
 
     Parameters
     ----------
     collection : Collection
-        What the recordings have in common.
+        Facts that all recordings share.
     candidates : sequence of Candidate
-        The files; one that cannot be used is skipped with a sentence.
+        The files; a file that cannot be used is skipped with a sentence.
     output : Path
-        Folder of the new corpus, which must not exist or be empty.
+        Folder of the new corpus; it must be empty or not exist.
     window : float
         Length of a record [s].
     skipped, warnings : sequence of str
-        Sentences the lists begin with.
+        Sentences that the lists of the result begin with.
     progress : callable, optional
         Called with the number of files done and the number of all.
 
     Raises
     ------
     CorpusError
-        If the folder is taken, the window holds no signal, no file can be used, or the disk refuses.
+        If the folder is not empty, the window is shorter than two samples, no file can be used, or writing fails.
     """
     output = output.resolve()
     if output.exists() and (not output.is_dir() or any(output.iterdir())):
-        message = f"{output}: exists and is not an empty folder; give a new one, or remove it first."
+        message = f"{output}: exists and is not an empty folder; give a new folder, or remove this one first."
         raise CorpusError(message)
     samples = window * collection.fs
     length = round(samples) if math.isfinite(samples) else 0
     if length < 2:
-        message = f"window: {window} s holds no signal; give the length of a record in seconds, such as 0.5."
+        message = (
+            f"window: {window} s is shorter than two samples; give the length of a record in seconds, such as 0.5."
+        )
         raise CorpusError(message)
     check_limit("record_samples", length, f"window: {window:g} s are", CorpusError)
     log = _Log(Counter(), Counter(), list(skipped), list(warnings))
@@ -184,7 +186,7 @@ def _finish(collection: Collection, rows: list[PartRow], log: _Log, length: int,
 
 def _nothing_usable(importer: str, skipped: list[str]) -> str:
     if not skipped:
-        return f"import {importer}: no recording of the set was found; give the folder that holds it."
+        return f"import {importer}: no recording of the set was found; give the folder that holds them."
     return f"import {importer}: no recording can be used; the first of {len(skipped)} skipped: {skipped[0]}"
 
 
@@ -202,6 +204,6 @@ def _data_card(collection: Collection, log: _Log, length: int, signals: SignalCo
         "|---|---|---|",
         *(f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |" for fault in FAULTS if log.recordings[fault]),
     ]
-    for heading, sentences in (("What was done or assumed", log.warnings), ("What was skipped", log.skipped)):
+    for heading, sentences in (("Assumptions and changes", log.warnings), ("Skipped files", log.skipped)):
         lines += ["", f"## {heading}", "", *(f"- {plain_text(sentence)}" for sentence in sentences or ("Nothing.",))]
     return "\n".join(lines) + "\n"

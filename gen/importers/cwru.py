@@ -1,7 +1,7 @@
 """The Case Western Reserve University set: seeded faults in the drive-end bearing of a 2 hp motor, 12 kHz.
 
-Recordings are known by their published numbers, wherever the files lie. Each oddity of the published files
-[1]_ that is met is handled and told in a warning; nothing is corrected in silence.
+Recordings are found by their published numbers, in any arrangement of folders. Known errors of the published files [1]_ are handled,
+and each gives a warning; no label is corrected.
 
 .. [1] W. A. Smith, R. B. Randall, "Rolling element bearing diagnostics using the Case Western Reserve
    University data: A benchmark study", Mech. Syst. Signal Process. 64-65 (2015) 100-131.
@@ -15,29 +15,26 @@ from functools import partial
 from pathlib import Path
 from typing import Literal, NamedTuple
 
-import scipy.signal
-
 from gen.corpus import Variable
 from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, Progress, import_recordings
 from gen.importers.files import FloatArray, UnusableError, one_column
 from gen.importers.matlab import read_matlab
-from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below, name_of
+from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.physics.catalogue import CATALOGUE
+from gen.units import HORSEPOWER, MIL, STANDARD_GRAVITY, rpm_to_hertz
 
 Subset = Literal["all", "wang"]
 
 FS = 12_000.0
-_HORSEPOWER = 745.69987  # W
-_MIL = 25.4e-6  # m
 _NOMINAL_RPM = (1797, 1772, 1750, 1730)
-_SPEED_TOLERANCE = 0.05
-_DEPTH = {7: 11 * _MIL, 14: 11 * _MIL, 21: 11 * _MIL}
+_SPEED_TOLERANCE = 0.05  # of the nominal speed
+_DEPTH = {7: 11 * MIL, 14: 11 * MIL, 21: 11 * MIL}
 _CLOCK_ANGLE: dict[int | None, float] = {3: 0.0, 6: -math.pi / 2, 12: math.pi / 2}
 
 
-class Specimen(NamedTuple):
-    """One bearing: its fault, diameter [mil] and clock position, and its recordings at 0, 1, 2 and 3 hp."""
+class SeededBearing(NamedTuple):
+    """One bearing: fault, diameter [mil] and clock position of the fault, and numbers of its recordings at 0, 1, 2 and 3 hp."""
 
     fault: str
     diameter: int
@@ -46,35 +43,35 @@ class Specimen(NamedTuple):
 
 
 SPECIMENS = (
-    Specimen("healthy", 0, None, (97, 98, 99, 100)),
-    Specimen("inner", 7, None, (105, 106, 107, 108)),
-    Specimen("inner", 14, None, (169, 170, 171, 172)),
-    Specimen("inner", 21, None, (209, 210, 211, 212)),
-    Specimen("inner", 28, None, (3001, 3002, 3003, 3004)),
-    Specimen("ball", 7, None, (118, 119, 120, 121)),
-    Specimen("ball", 14, None, (185, 186, 187, 188)),
-    Specimen("ball", 21, None, (222, 223, 224, 225)),
-    Specimen("ball", 28, None, (3005, 3006, 3007, 3008)),
-    Specimen("outer", 7, 6, (130, 131, 132, 133)),
-    Specimen("outer", 7, 3, (144, 145, 146, 147)),
-    Specimen("outer", 7, 12, (156, 158, 159, 160)),
-    Specimen("outer", 14, 6, (197, 198, 199, 200)),
-    Specimen("outer", 21, 6, (234, 235, 236, 237)),
-    Specimen("outer", 21, 3, (246, 247, 248, 249)),
-    Specimen("outer", 21, 12, (258, 259, 260, 261)),
+    SeededBearing("healthy", 0, None, (97, 98, 99, 100)),
+    SeededBearing("inner", 7, None, (105, 106, 107, 108)),
+    SeededBearing("inner", 14, None, (169, 170, 171, 172)),
+    SeededBearing("inner", 21, None, (209, 210, 211, 212)),
+    SeededBearing("inner", 28, None, (3001, 3002, 3003, 3004)),
+    SeededBearing("ball", 7, None, (118, 119, 120, 121)),
+    SeededBearing("ball", 14, None, (185, 186, 187, 188)),
+    SeededBearing("ball", 21, None, (222, 223, 224, 225)),
+    SeededBearing("ball", 28, None, (3005, 3006, 3007, 3008)),
+    SeededBearing("outer", 7, 6, (130, 131, 132, 133)),
+    SeededBearing("outer", 7, 3, (144, 145, 146, 147)),
+    SeededBearing("outer", 7, 12, (156, 158, 159, 160)),
+    SeededBearing("outer", 14, 6, (197, 198, 199, 200)),
+    SeededBearing("outer", 21, 6, (234, 235, 236, 237)),
+    SeededBearing("outer", 21, 3, (246, 247, 248, 249)),
+    SeededBearing("outer", 21, 12, (258, 259, 260, 261)),
 )
 
 _HELD_AS = {3001: 56, 3002: 57, 3003: 58, 3004: 59, 3005: 48, 3006: 49, 3007: 50, 3008: 51}
 _LONGEST_AT_12_KHZ = 200_000
 _NOTES = (
-    (158, 158, "its labelled speed is about 2 % off its own fault line; the label is left as it is"),
-    (197, 200, "they show no outer-race line and look healthy; the label is left as it is"),
+    (158, 158, "the labelled speed differs by about 2 % from that of its fault line; the label is kept"),
+    (197, 200, "these recordings show no outer-race line and look healthy; the label is kept"),
     (
         3001,
         3004,
-        "a bearing of another maker, with lines at 3.68 and 5.32 orders; the orders of the 6205 are kept",
+        "a bearing of another maker, with lines at 3.68 and 5.32 orders; the nominal orders are those of the 6205",
     ),
-    (3005, 3008, "a bearing of another maker; the orders of the 6205 are kept"),
+    (3005, 3008, "a bearing of another maker; the nominal orders are those of the 6205"),
 )
 _COLLECTION = Collection(
     importer="cwru",
@@ -85,12 +82,12 @@ _COLLECTION = Collection(
     ),
     fs=FS,
     channel="drive end",
-    extra=(Variable("motor_load", "f8", "W", "operating", "power taken from the motor as labelled"),),
+    extra=(Variable("motor_load", "f8", "W", "operating", "labelled power of the motor"),),
 )
 
 
 class _Label(NamedTuple):
-    """What the published tables say of a recording."""
+    """Published facts about a recording."""
 
     number: int
     specimen: int
@@ -105,15 +102,15 @@ def import_cwru(
     subset: Subset = "all",
     progress: Progress | None = None,
 ) -> Import:
-    """Bring the drive-end recordings found below ``source`` into a corpus at 12 kHz.
+    """Convert the drive-end recordings below ``source`` into a corpus at 12 kHz.
 
-    Each (fault, diameter, clock position) is one specimen recorded at four motor loads, and has the same
-    number in every subset. The radial load is unknown; that of the motor is stored as ``motor_load`` [W].
+    Each combination of fault, diameter and clock position is one specimen, recorded at four motor loads; its number is the same in every
+    subset. The radial load is unknown; the load of the motor is stored as ``motor_load`` [W].
 
     Parameters
     ----------
     source : Path
-        Folder of the published MATLAB files, in any arrangement.
+        Folder of the published MATLAB files; subfolders are searched.
     output : Path
         Folder of the new corpus.
     window : float
@@ -138,9 +135,9 @@ def import_cwru(
     for path in files_below(source, ".mat"):
         name, number = name_of(path, source), recording_number(path.stem)
         if number not in published:
-            skipped.append(f"{name}: has no number of a drive-end recording at 12 kHz in its name; skipped.")
+            skipped.append(f"{name}: the name has no number of a drive-end recording at 12 kHz; skipped.")
         elif number in found:
-            skipped.append(f"{name}: is {number} once more, after {found[number].source}; skipped.")
+            skipped.append(f"{name}: is recording {number} again, which {found[number].source} holds; skipped.")
         elif number in wanted:
             found[number] = Candidate(path, name, partial(_read, path, wanted[number]))
     return import_recordings(
@@ -155,7 +152,7 @@ def import_cwru(
 
 
 def recording_number(stem: str) -> int | None:
-    """Find the published number in a file name: what it begins with, or ends in after an underscore.
+    """Published number in a file name: at its beginning, or at its end after an underscore.
 
     >>> [recording_number(stem) for stem in ("130@6_0", "98_Normal_1_12k", "B007_0_118", "IR007")]
     [130, 98, 118, None]
@@ -171,7 +168,7 @@ def _labels(subset: Subset) -> Iterator[_Label]:
 
 
 def _warnings(found: AbstractSet[int], wanted: AbstractSet[int]) -> list[str]:
-    """Tell what is known to be odd about the recordings found, and which were not."""
+    """Known errors of the recordings found, and the numbers of those not found."""
     warnings = [
         f"{first if first == last else f'{first}-{last}'}: {note}."
         for first, last, note in _NOTES
@@ -190,7 +187,7 @@ def _read(path: Path, label: _Label) -> Recording:
     warnings: list[str] = []
     signal = one_column(read_matlab(path, f"X{held:03d}_DE_time")) * STANDARD_GRAVITY
     if held != label.number:
-        warnings.append(f"holds X{held:03d}_DE_time, which is recording {label.number} as published")
+        warnings.append(f"holds the variable X{held:03d}_DE_time, as published for recording {label.number}")
     if fault == "healthy":
         signal, warning = _at_12_khz(signal)
         warnings.append(warning)
@@ -200,44 +197,45 @@ def _read(path: Path, label: _Label) -> Recording:
         rig=0,
         specimen=label.specimen,
         bearing=CATALOGUE["6205"],
-        shaft_rate=rpm / 60,
+        shaft_rate=rpm_to_hertz(rpm),
         fault=fault,
         signal=signal,
-        extra={"motor_load": label.motor_load * _HORSEPOWER},
+        extra={"motor_load": label.motor_load * HORSEPOWER},
         warnings=(*warnings, *complaints),
     )
     if fault == "healthy":
         return recording
     return recording._replace(
         n_spalls=1,
-        width=diameter * _MIL,
+        width=diameter * MIL,
         depth=_DEPTH.get(diameter, math.nan),
         angle=_CLOCK_ANGLE.get(clock, math.nan),
     )
 
 
 def _at_12_khz(signal: FloatArray) -> tuple[FloatArray, str]:
-    """Healthy recording at 12 kHz, and how it got there.
+    """Healthy recording at 12 kHz, and a sentence on how it was obtained.
 
-    All four were published at 48 kHz, and copies resampled to 12 kHz are about. A file does not say which
-    it is, but its length does: 244 thousand samples (97) or 484 thousand at 48 kHz, at most 121 thousand at
-    12 kHz.
+    All four were published at 48 kHz; copies resampled to 12 kHz exist. The files do not state their sample rate, so it is taken from the
+    length: 244,000 samples (97) or 484,000 at 48 kHz, at most 121,000 at 12 kHz.
     """
+    from scipy.signal import resample_poly  # loads scipy.stats
+
     if signal.size <= _LONGEST_AT_12_KHZ:
-        return signal, f"its {signal.size} samples are taken as resampled to 12 kHz before, from 48 kHz"
-    resampled = scipy.signal.resample_poly(signal, 1, 4)
+        return signal, f"its {signal.size} samples are taken as resampled from 48 to 12 kHz by somebody else"
+    resampled = resample_poly(signal, 1, 4)
     return resampled, (
         f"its {signal.size} samples are taken as recorded at 48 kHz and resampled to 12 kHz with "
-        "scipy.signal.resample_poly(x, 1, 4), which rolls off above 5 kHz: compare below it"
+        "scipy.signal.resample_poly(x, 1, 4), which attenuates above 5 kHz: compare below 5 kHz"
     )
 
 
 def _labelled_rpm(path: Path, variable: str, nominal: int) -> tuple[float, tuple[str, ...]]:
-    """Speed in the file, or the nominal one with a warning if the file has none that can be meant [rpm]."""
+    """Speed in the file, or the nominal speed with a warning if the file has none or one far from it [rpm]."""
     try:
         rpm = float(one_column(read_matlab(path, variable))[0])
     except UnusableError as reason:
         return nominal, (f"{reason}: the nominal {nominal} rpm of its motor load are used",)
     if not abs(rpm / nominal - 1) <= _SPEED_TOLERANCE:
-        return nominal, (f"says {rpm:g} rpm in {variable}: the nominal {nominal} rpm of its load are used",)
+        return nominal, (f"has {rpm:g} rpm in {variable}: the nominal {nominal} rpm of its motor load are used",)
     return rpm, ()

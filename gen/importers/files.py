@@ -1,7 +1,6 @@
-"""Columns of numbers out of text and NumPy files, and what to say of a file that has none.
+"""Columns of numbers in text and NumPy files.
 
-Whatever goes wrong becomes an :class:`UnusableError`, which says why without naming the file: the caller
-knows the name that the user knows.
+Every error becomes an :class:`UnusableError` with a reason and without the name of the file: the caller adds the name.
 """
 
 import io
@@ -22,23 +21,23 @@ FloatArray = NDArray[np.floating]
 Value = TypeVar("Value")
 
 _HEAD_LINES = 100
-_LONGEST_LINE = 2_000_000  # characters; a recording may stand on one line
+_LONGEST_LINE = 2_000_000  # characters; a whole recording can be on one line
 
 
 class UnusableError(Exception):
-    """Why a file cannot be used."""
+    """Reason why a file cannot be used."""
 
 
 def read_text(path: Path, column: int | str | None = None, delimiter: str | None = None) -> NDArray[np.float64]:
     """Columns of a delimited text file, shape (time,) for one ``column`` and (time, column) for all.
 
-    Lines before the first one of numbers are a header. ``column`` is counted from 0 or named as in the
-    header. Without ``delimiter`` it is the tab, semicolon or comma found in the first lines, or blanks.
+    Lines before the first line of numbers are a header. ``column`` is a number, from 0, or a name in the header. The default of
+    ``delimiter`` is the tab, semicolon or comma found in the first lines, or blanks.
 
     Raises
     ------
     UnusableError
-        If the file is no such text or has no such column.
+        If the file is not such a text, or does not have the column.
     """
     with open_plain(path) as stream:
         check_limit("file_bytes", os.fstat(stream.fileno()).st_size, "is", UnusableError)
@@ -56,7 +55,7 @@ def read_text(path: Path, column: int | str | None = None, delimiter: str | None
 
 
 def _check_lines(stream: BinaryIO) -> None:
-    """Refuse a text with an endless line, each number of which takes ten times its letters while the line is taken apart."""
+    """Refuse a text with a very long line: splitting it takes ten times its length in memory."""
     while block := stream.read(_LONGEST_LINE):
         if len(block) == _LONGEST_LINE and b"\n" not in block and b"\r" not in block:
             message = f"has a line of more than {_LONGEST_LINE} characters"
@@ -65,7 +64,7 @@ def _check_lines(stream: BinaryIO) -> None:
 
 
 def _head(text: TextIO) -> list[str]:
-    """First lines of a text, which are looked at for a header."""
+    """First lines of a text, which can contain the header."""
     head: list[str] = []
     for line in islice(text, _HEAD_LINES):
         head.append(line)
@@ -80,18 +79,18 @@ def read_numpy(path: Path) -> NDArray[Any]:
     Raises
     ------
     UnusableError
-        If the file is no such file.
+        If the file is not a NumPy file.
     """
     with open_plain(path) as stream:
         check_limit("file_bytes", os.fstat(stream.fileno()).st_size, "is", UnusableError)
-    # a memory map refuses a header that promises more than the file holds before anything is allocated
+    # a memory map compares the size in the header with the file before anything is allocated
     return guarded("NumPy", lambda: np.array(np.lib.format.open_memmap(path, mode="r")))
 
 
 def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
     """Vector of real numbers, shape (time,).
 
-    In a table time runs along the longer axis, and ``column`` counts along the other.
+    In a table the longer axis is time; ``column`` is a number along the other axis.
 
     >>> one_column(np.array([[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]), 1)
     array([4., 5., 6.])
@@ -99,35 +98,35 @@ def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
     Raises
     ------
     UnusableError
-        If the values are no real numbers, no table, or a table of several columns with none chosen.
+        If the values are not real numbers, not a table, or a table of several columns without a chosen one.
     """
     if values.dtype.kind not in "iuf" or values.size == 0 or values.ndim > 2:
-        message = f"holds {values.dtype} of shape {values.shape} there, not one column of real numbers"
+        message = f"holds {values.dtype} of shape {values.shape}, not one column of real numbers"
         raise UnusableError(message)
     columns = np.atleast_2d(values)
     if columns.shape[0] > columns.shape[1]:
         columns = columns.T
     if column is None and columns.shape[0] > 1:
-        message = f"holds {columns.shape[0]} columns there and none is chosen; say which with column"
+        message = f"has {columns.shape[0]} columns and none is chosen; choose one with column"
         raise UnusableError(message)
     chosen = column or 0
     if not 0 <= chosen < columns.shape[0]:
-        message = f"has columns 0 to {columns.shape[0] - 1} there, not {chosen}"
+        message = f"has columns 0 to {columns.shape[0] - 1}, not {chosen}"
         raise UnusableError(message)
     return columns[chosen].astype(np.float64, copy=False)
 
 
 def guarded(kind: str, read: Callable[[], Value]) -> Value:
-    """Give what ``read`` gives, or an :class:`UnusableError` for whatever it raises."""
+    """Result of ``read``; every error becomes an :class:`UnusableError`."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return read()
     except UnusableError:
         raise
-    except Exception as error:  # damaged bytes make zlib, h5py and NumPy raise a dozen unrelated types
+    except Exception as error:  # zlib, h5py and NumPy raise a dozen unrelated types on damaged bytes
         reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-        message = f"is no readable {kind} file ({reason})"
+        message = f"is not a readable {kind} file ({reason})"
         raise UnusableError(message) from error
 
 

@@ -1,6 +1,6 @@
-"""One's own recordings, described by a mapping file: which files, what is in them, which bearing, what speed.
+"""Recordings of the user, described by a mapping file: paths, variables, units, bearing, speed and fault.
 
-Files are MATLAB, delimited text or NumPy; paths are relative to the mapping file and stay in its folder.
+Files are MATLAB, delimited text or NumPy. Paths are relative to the folder of the mapping file and cannot leave it.
 """
 
 import math
@@ -13,7 +13,8 @@ from gen.importers.assemble import Collection, Import, Progress, import_recordin
 from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text
 from gen.importers.mapping import Entry, bearing_of, read_mapping
 from gen.importers.matlab import read_matlab
-from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, name_of, some_files
+from gen.importers.recordings import Candidate, Recording, name_of, some_files
+from gen.units import STANDARD_GRAVITY, rpm_to_hertz, to_si
 
 _METRES_PER_SECOND_SQUARED = {"g": STANDARD_GRAVITY, "m/s2": 1.0}
 _TEXT = (".csv", ".txt", ".tsv", ".dat")
@@ -52,11 +53,11 @@ def import_generic(source: Path, output: Path, *, window: float = 0.5, progress:
         paths = _matches(source, position, entry.path, looked_at)
         looked_at += len(paths)
         if not paths:
-            skipped.append(f"{entry.path}: no such file beside {source.name}; skipped.")
+            skipped.append(f"{entry.path}: no file beside {source.name} matches; skipped.")
         for path in paths:
             name = _name(name_of(path, source.parent), entry)
             if name in candidates:
-                skipped.append(f"{name}: is listed once more by files[{position}]; skipped.")
+                skipped.append(f"{name}: is listed again by files[{position}]; skipped.")
                 continue
             places = len(candidates), rigs[entry.rig], specimens[entry.rig, entry.specimen]
             candidates[name] = Candidate(path, name, partial(_read, path, entry, *places))
@@ -72,14 +73,14 @@ def _common_sample_rate(source: Path, entries: tuple[Entry, ...]) -> float:
         if other.sample_rate_hz != first.sample_rate_hz:
             message = (
                 f"{source}: files[{position}] ({other.path}) is at {other.sample_rate_hz:g} Hz and files[0] "
-                f"({first.path}) at {first.sample_rate_hz:g} Hz; make a corpus of each, it has one rate."
+                f"({first.path}) at {first.sample_rate_hz:g} Hz; a corpus has one sample rate: make a corpus of each."
             )
             raise CorpusError(message)
     return first.sample_rate_hz
 
 
 def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
-    """Give each distinct key its number, in order of appearance."""
+    """Number of each distinct key, in order of appearance."""
     return {key: number for number, key in enumerate(dict.fromkeys(keys))}
 
 
@@ -88,28 +89,30 @@ def _matches(source: Path, position: int, pattern: str, looked_at: int) -> list[
     folder, where = source.parent, f"{source}: files[{position}].path: {pattern}"
     parts = Path(pattern).parts
     if Path(pattern).is_absolute() or ".." in parts:
-        message = f"{where} leads out of the folder of the mapping file; put the mapping above the data."
+        message = (
+            f"{where} leads out of the folder of the mapping file; put the mapping file in a folder above the data."
+        )
         raise CorpusError(message)
     if not parts or parts.count("**") > 1:  # each further ** looks at every folder once more
-        message = f"{where} is no pattern of file names; write it like data/*.mat, with ** at most once."
+        message = f"{where} is not a pattern of file names; write it like data/*.mat, with ** at most once."
         raise CorpusError(message)
     exact = folder / pattern
     try:
         found = [exact] if exact.is_file() else filter(Path.is_file, folder.glob(pattern))
-        paths = some_files(found, looked_at, f"{where} and those before name")
+        paths = some_files(found, looked_at, f"{where} and the patterns before match")
     except (ValueError, OSError) as error:
-        message = f"{where} is no pattern of file names ({error}); write it like data/*.mat."
+        message = f"{where} is not a pattern of file names ({error}); write it like data/*.mat."
         raise CorpusError(message) from None
     root = folder.resolve()
     for path in paths:
         if not path.resolve().is_relative_to(root):
-            message = f"{where} is or leads to a link out of the folder; copy the files into it."
+            message = f"{where} matches a link that leads out of the folder; copy the files into it."
             raise CorpusError(message)
     return paths
 
 
 def _name(path: str, entry: Entry) -> str:
-    """Name of a recording: its file and, as a file may hold several, what is taken of it."""
+    """Name of a recording: its file, and its variable and column where the mapping names them."""
     return ":".join([path, *(str(part) for part in (entry.variable, entry.column) if part is not None)])
 
 
@@ -121,30 +124,30 @@ def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Rec
         rig=rig,
         specimen=specimen,
         bearing=bearing_of(entry),
-        shaft_rate=entry.shaft_rpm / 60,
+        shaft_rate=rpm_to_hertz(entry.shaft_rpm),
         fault=entry.fault,
         signal=_column(path, entry) * _METRES_PER_SECOND_SQUARED[entry.unit],
         load=math.nan if entry.load_n is None else entry.load_n,
         n_spalls=entry.n_spalls or (2 if entry.fault == "compound" else int(spalled)),
-        width=unknown if entry.width_mm is None else entry.width_mm * 1e-3,
-        depth=unknown if entry.depth_mm is None else entry.depth_mm * 1e-3,
-        angle=math.nan if entry.angle_deg is None else math.radians(entry.angle_deg),
+        width=unknown if entry.width_mm is None else to_si(entry.width_mm, "mm"),
+        depth=unknown if entry.depth_um is None else to_si(entry.depth_um, "um"),
+        angle=math.nan if entry.angle_deg is None else to_si(entry.angle_deg, "deg"),
     )
 
 
 def _column(path: Path, entry: Entry) -> FloatArray:
-    """Values of the recording as they stand in the file."""
+    """Values of the recording in the unit of the file."""
     suffix = path.suffix.lower()
     if suffix in _TEXT:
         return one_column(read_text(path, entry.column, entry.delimiter))
     if isinstance(entry.column, str):
-        message = f"has columns without names, not {entry.column}; count them from 0"
+        message = f"has columns without names, so none is called {entry.column}; give the number of the column, from 0"
         raise UnusableError(message)
     if suffix == ".npy":
         return one_column(read_numpy(path), entry.column)
     if suffix != ".mat":
-        message = f"ends in none of .mat, .npy, {', '.join(_TEXT)}"
+        message = f"is of no known type; known are .mat, .npy, {', '.join(_TEXT)}"
         raise UnusableError(message)
     if entry.variable is None:
-        raise UnusableError("needs the key variable, the name of its variable to take")
+        raise UnusableError("is a MATLAB file; give the key variable, the name of the variable that holds the signal")
     return one_column(read_matlab(path, entry.variable), entry.column)

@@ -1,9 +1,8 @@
-"""One variable of a MATLAB file of level 5 [1]_, whatever state the file is in.
+"""One variable of a MATLAB file of level 5 [1]_; damaged files are refused with a reason.
 
-Such a file is a header and a row of elements, each a type, a length and its bytes; an array is an
-element of elements. They are read here and not by ``scipy.io.loadmat``, which trusts the types it finds: of
-1,000 bytes altered one at a time in the tags of a first array, 29 ended the process (scipy 1.17). Here
-every type and length is checked before it is used.
+Such a file is a header and a sequence of elements, each with a type, a length and its bytes; an array is an element of elements.
+``scipy.io.loadmat`` is not used, because it trusts the types in the file: of 1,000 single altered bytes in the tags of a first array, 29
+ended the process (scipy 1.17). Here every type and length is checked before it is used.
 
 .. [1] The MathWorks, *MAT-File Format*, chapter 1.
 """
@@ -37,7 +36,7 @@ _COMPLEX_FLAG = 0x0800
 
 
 class _Array(NamedTuple):
-    """An array as stored: its class, name and shape, and the elements that hold its values."""
+    """An array in the file: its class, name and shape, and the elements with its values."""
 
     kind: int
     is_complex: bool
@@ -47,9 +46,9 @@ class _Array(NamedTuple):
 
 
 def read_level_5(stream: BinaryIO, variable: str) -> NDArray[Any]:
-    """Numbers, or text as an array of one string, of an open file; ``"bearing.gs"`` is a field of a structure.
+    """Values of a variable: numbers, or text as an array of one string. ``"bearing.gs"`` is a field of a structure.
 
-    Of the other variables only the names are read.
+    Of all other variables only the names are read.
 
     Raises
     ------
@@ -60,7 +59,7 @@ def read_level_5(stream: BinaryIO, variable: str) -> NDArray[Any]:
     order = BYTE_ORDERS[stream.read(2)]
     wanted, *fields = variable.split(".")
     names: list[str] = []
-    # a list, so that a file which ends too early is found out before the variable is
+    # a list, so that a truncated file is detected before the variable is read
     for kind, start, length in list(_variables(stream, order)):
         stream.seek(start)
         head = stream.read(min(length, _HEAD))
@@ -73,7 +72,7 @@ def read_level_5(stream: BinaryIO, variable: str) -> NDArray[Any]:
 
 
 def _variables(stream: BinaryIO, order: str) -> Iterator[tuple[int, int, int]]:
-    """Type, place and length of each element of the file."""
+    """Type, position and length of each element of the file."""
     position, end = HEADER, stream.seek(0, os.SEEK_END)
     for _ in range(_MOST):
         if position >= end:
@@ -92,7 +91,7 @@ def _variables(stream: BinaryIO, order: str) -> Iterator[tuple[int, int, int]]:
 
 
 def _named(kind: int, head: bytes, order: str) -> str:
-    """Name of a variable, of which the first bytes suffice."""
+    """Name of a variable, from its first bytes."""
     if kind == _COMPRESSED:
         head = first_bytes(head, _HEAD)
         kind, start, _ = _tag(head[:8], order)
@@ -105,7 +104,7 @@ def _named(kind: int, head: bytes, order: str) -> str:
 
 
 def _whole(stream: BinaryIO, kind: int, start: int, length: int, order: str) -> _Array:
-    """Variable of a file, with its values."""
+    """A variable with its values."""
     stream.seek(start)
     if kind != _COMPRESSED:
         check_size(length, length)
@@ -118,13 +117,13 @@ def _whole(stream: BinaryIO, kind: int, start: int, length: int, order: str) -> 
 
 
 def _tag(tag: bytes | memoryview, order: str) -> tuple[int, int, int]:
-    """Type of an element, where its bytes begin after the start of its tag, and how many they are."""
+    """Type of an element, offset of its bytes from the start of its tag, and their number."""
     kind, length = np.frombuffer(tag, order + "u4", 2).tolist()
     return (kind & 0xFFFF, 4, kind >> 16) if kind >> 16 else (kind, 8, length)
 
 
 def _elements(data: memoryview, order: str) -> Iterator[tuple[int, memoryview]]:
-    """Type and bytes of each element; up to four bytes stand in the place of the length, not after it."""
+    """Type and bytes of each element; up to four bytes are stored in place of the length."""
     position = 0
     while position < len(data):
         kind, start, length = _tag(data[position : position + 8], order)
@@ -149,10 +148,10 @@ def _array(kind: int, data: memoryview, order: str) -> _Array:
 
 
 def _field(array: _Array, fields: list[str], order: str) -> _Array:
-    """Follow field names into structures of one element."""
+    """Field of nested structures, each of one element."""
     for field in fields:
         if array.kind != _STRUCTURE or math.prod(array.shape) != 1:
-            message = f"holds {array.name or 'a field'}, but not as one structure with a {field}"
+            message = f"holds {array.name or 'a field'}, but it is not one structure with the field {field}"
             raise UnusableError(message)
         (_, width), (_, text), *values = array.parts
         (size,) = np.frombuffer(width, order + "i4").tolist()
@@ -169,7 +168,7 @@ def _field(array: _Array, fields: list[str], order: str) -> _Array:
 
 def _values(array: _Array, variable: str, order: str) -> NDArray[Any]:
     if array.kind not in (_TEXT, *_NUMERIC) or array.is_complex:
-        message = f"holds {variable}, but neither as real numbers nor as text"
+        message = f"holds {variable}, but neither real numbers nor text in it"
         raise UnusableError(message)
     kind, data = array.parts[0]
     known = _TEXTS[order] if array.kind == _TEXT else _NUMBERS
@@ -178,13 +177,13 @@ def _values(array: _Array, variable: str, order: str) -> NDArray[Any]:
         raise UnusableError(message)
     if array.kind == _TEXT:
         if len(data) > _LONGEST_TEXT:
-            message = f"holds {variable}, but as a text of {len(data)} bytes"
+            message = f"holds {variable}, but it is a text of {len(data)} bytes"
             raise UnusableError(message)
         return np.array(bytes(data).decode(known[kind]))
     return np.frombuffer(data, order + known[kind]).reshape(array.shape, order="F")
 
 
 def listing(names: list[str]) -> str:
-    """First names of a list, and how many more there are."""
+    """First names of a list, and the number of the others."""
     shown = ", ".join(name[:63] for name in names[:6]) or "nothing"
     return f"{shown} and {len(names) - 6} more" if len(names) > 6 else shown

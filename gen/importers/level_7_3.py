@@ -1,7 +1,7 @@
-"""One variable of a MATLAB file of level 7.3, which is an HDF5 file, whatever state the file is in.
+"""One variable of a MATLAB file of level 7.3, which is an HDF5 file; damaged files are refused with a reason.
 
-The HDF5 library unfolds a chunk into as much memory as it asks for, reads values that were never written as if they were there, and
-follows links to other files. So sizes and storage are checked first, and compressed chunks are unfolded here.
+The HDF5 library decompresses a chunk into as much memory as the file asks for, returns fill values for values that were never written, and
+follows links to other files. So sizes and storage are checked first, and compressed chunks are decompressed here.
 """
 
 import math
@@ -29,19 +29,19 @@ def read_level_7_3(path: Path, variable: str) -> NDArray[Any]:
     Raises
     ------
     UnusableError
-        If the file does not hold such a dataset in itself, or not of a size that its storage can hold.
+        If the file does not hold the dataset itself, or its size does not match its storage.
     """
     with LIBRARY_LOCK, h5py.File(path, "r") as file:
         try:
             dataset = own_dataset(file, variable.replace(".", "/"))
         except ForeignStorageError as error:
-            message = f"is no recording of its own: {error}"
+            message = f"refers to values outside the file: {error}"
             raise UnusableError(message) from None
         except KeyError:
             message = f"holds {listing([*islice(file, 6)])}, not {variable}"
             raise UnusableError(message) from None
         if dataset.dtype.kind not in "biuf" or dataset.shape is None:
-            message = f"holds {variable}, but not as real numbers"
+            message = f"holds {variable}, but it is not real numbers"
             raise UnusableError(message)
         stored = min(dataset.id.get_storage_size(), path.stat().st_size)
         if stored == 0 and dataset.size:
@@ -54,12 +54,12 @@ def read_level_7_3(path: Path, variable: str) -> NDArray[Any]:
 
 
 def _from_chunks(dataset: h5py.Dataset, stored: int, file_size: int) -> NDArray[Any]:
-    """Values of a dataset stored in chunks, none of which may be missing or unfold to more than a chunk."""
+    """Values of a dataset stored in chunks; none may be missing or larger than a chunk when decompressed."""
     layout: Any = dataset.id.get_create_plist()
     filters = [layout.get_filter(number)[0] for number in range(layout.get_nfilters())]
     if filters not in ([], [_DEFLATE], [_SHUFFLE, _DEFLATE], [_SHUFFLE], [_FLETCHER_32], [_SHUFFLE, _FLETCHER_32],
                        [_DEFLATE, _FLETCHER_32], [_SHUFFLE, _DEFLATE, _FLETCHER_32]):  # fmt: skip
-        message = f"is packed with the HDF5 filters {filters}, not with deflate and shuffle alone"
+        message = f"uses the HDF5 filters {filters}; only deflate and shuffle are read"
         raise UnusableError(message)
     shape: tuple[int, ...] = dataset.shape or ()
     chunk: tuple[int, ...] = dataset.chunks or ()
@@ -85,7 +85,7 @@ def _from_chunks(dataset: h5py.Dataset, stored: int, file_size: int) -> NDArray[
 
 
 def _unpacked(packed: bytes, filters: list[int], shape: tuple[int, ...], dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Values of a chunk; the filters are undone from the last to the first, and checksums are not compared."""
+    """Values of a chunk; filters are reversed from the last to the first, and checksums are not compared."""
     content: Any = memoryview(packed)
     size = math.prod(shape) * dtype.itemsize
     for name in reversed(filters):

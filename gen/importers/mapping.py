@@ -1,6 +1,7 @@
-"""The mapping file of one's own recordings: YAML that says of each file what it holds, in human units.
+"""Mapping files: YAML that describes a user's recordings file by file.
 
-Every key that describes a file may be given once at the top for all of them, and again for one that differs.
+A key that describes a file can be given once at the top for all files, and again for a file that differs. A quantity that a recipe also
+has is spelt as in a recipe, with the unit at the end of the key.
 """
 
 import difflib
@@ -25,15 +26,18 @@ from pydantic import (
 from gen.errors import CorpusError
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
+from gen.units import to_si
 from gen.yaml_files import read_yaml
 
-Fault = Literal["healthy", "inner", "outer", "ball", "cage", "compound"]
+FaultClass = Literal["healthy", "inner", "outer", "ball", "cage", "compound"]
 _MOST_COLUMNS = 1_000_000
+_RENAMED = {"depth_mm": "depth_um, in micrometres"}
 Millimetres = Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
+Micrometres = Annotated[float, Field(gt=0, le=10_000_000, allow_inf_nan=False)]
 
 
 def _checked(text: str) -> str:
-    """Text that can be stored and shown; a control character in a name is damage or mischief."""
+    """Return text without control characters; ValueError if it has one."""
     odd = next(
         (letter for letter in text if unicodedata.category(letter) in ("Cc", "Cs") and letter not in "\t\n\r"), None
     )
@@ -45,7 +49,7 @@ def _checked(text: str) -> str:
 
 def _on_one_line(text: str) -> str:
     if set(text) & set("\t\n\r"):
-        message = f"{text[:60]!r} has a tab or goes over several lines; write it on one"
+        message = f"{text[:60]!r} has a tab or a line break; write it on one line"
         raise ValueError(message)
     return text
 
@@ -69,7 +73,7 @@ Pattern = Annotated[Line, Field(min_length=1, max_length=1000)]
 
 def _separates(mark: str) -> str:
     if mark in '\r\n#"' or mark.isalnum() or mark in "+-." or unicodedata.category(mark) == "Cs":
-        message = f"{mark!r} separates no columns"
+        message = f"{mark!r} cannot separate columns; give one character such as a comma, a semicolon or a tab"
         raise ValueError(message)
     return mark
 
@@ -78,7 +82,7 @@ Delimiter = Annotated[str, Field(min_length=1, max_length=1), AfterValidator(_se
 
 
 class Geometry(BaseModel):
-    """A bearing that is in no catalogue."""
+    """A bearing that is not in the catalogue."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -97,7 +101,7 @@ class Geometry(BaseModel):
 
 
 class Entry(BaseModel):
-    """What is known of a file, or of all files that match a pattern."""
+    """Description of a file, or of all files that match a pattern."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
@@ -109,7 +113,7 @@ class Entry(BaseModel):
     unit: Literal["g", "m/s2"]
     sample_rate_hz: Annotated[float, Field(ge=1, le=1e8, allow_inf_nan=False)]
     shaft_rpm: Annotated[float, Field(ge=0.001, le=1e7, allow_inf_nan=False)]
-    fault: Fault
+    fault: FaultClass
     specimen: Name
     rig: Name = "1"
     variable: Name | None = None
@@ -117,7 +121,7 @@ class Entry(BaseModel):
     delimiter: Delimiter | None = None
     load_n: Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)] | None = None
     width_mm: Millimetres | None = None
-    depth_mm: Millimetres | None = None
+    depth_um: Micrometres | None = None
     angle_deg: Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)] | None = None
     n_spalls: Annotated[int, Field(ge=1, le=1000)] | None = None
 
@@ -131,7 +135,7 @@ class Entry(BaseModel):
 
     @model_validator(mode="after")
     def _spall_keys_need_a_spall(self) -> Self:
-        spall = [key for key in ("width_mm", "depth_mm", "angle_deg", "n_spalls") if getattr(self, key) is not None]
+        spall = [key for key in ("width_mm", "depth_um", "angle_deg", "n_spalls") if getattr(self, key) is not None]
         if self.fault in ("healthy", "cage") and spall:
             message = f"{spall[0]} describes a spall, and fault is {self.fault}; remove one of the two"
             raise ValueError(message)
@@ -139,7 +143,7 @@ class Entry(BaseModel):
 
 
 class _Top(BaseModel):
-    """The mapping file itself; further keys hold for every file."""
+    """The file as a whole; further keys apply to every recording."""
 
     model_config = ConfigDict(extra="allow", frozen=True)
 
@@ -149,7 +153,7 @@ class _Top(BaseModel):
     files: Annotated[list[dict[str, Any]], Field(min_length=1)]
 
 
-class Mapping(NamedTuple):
+class MappingFile(NamedTuple):
     """A mapping file, read and checked."""
 
     title: str
@@ -158,19 +162,25 @@ class Mapping(NamedTuple):
     entries: tuple[Entry, ...]
 
 
-def read_mapping(path: Path) -> Mapping:
+def read_mapping(path: Path) -> MappingFile:
     """Read and check a mapping file.
 
     Raises
     ------
     CorpusError
-        If it is missing, no YAML, or says something that cannot be.
+        If it is missing, is not YAML, or has a wrong key or value; the first of them is named.
     """
+    if path.is_dir():
+        raise CorpusError(
+            f"{path}: is a folder; give the YAML file that describes the recordings, such as {path / 'mapping.yaml'}."
+        )
     if not path.is_file():
         raise CorpusError(f"{path}: no such file; give the YAML file that describes the recordings.")
     raw = read_yaml(path, CorpusError)
     if not isinstance(raw, dict):
-        raise CorpusError(f"{path}: holds no keys; it must have files, a list of path, fault, specimen and so on.")
+        raise CorpusError(
+            f"{path}: holds no keys; give files, a list of sections with path, fault, specimen and further keys."
+        )
     try:
         top = _Top.model_validate(raw)
     except ValidationError as error:
@@ -184,7 +194,7 @@ def read_mapping(path: Path) -> Mapping:
         except ValidationError as error:
             message = f"{path}: {_sentence(error, f'files[{number}].', common, own)}"
             raise CorpusError(message) from None
-    return Mapping(top.title, top.origin, top.channel, tuple(entries))
+    return MappingFile(top.title, top.origin, top.channel, tuple(entries))
 
 
 def bearing_of(entry: Entry) -> Bearing:
@@ -195,15 +205,15 @@ def bearing_of(entry: Entry) -> Bearing:
     return Bearing(
         geometry.designation,
         geometry.n_balls,
-        geometry.pitch_diameter_mm * 1e-3,
-        geometry.ball_diameter_mm * 1e-3,
-        math.radians(geometry.contact_angle_deg),
+        to_si(geometry.pitch_diameter_mm, "mm"),
+        to_si(geometry.ball_diameter_mm, "mm"),
+        to_si(geometry.contact_angle_deg, "deg"),
     )
 
 
 def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: dict[str, Any] | None) -> str:
-    """Say the most telling complaint, at the place where the user wrote the value."""
-    # a mistyped key comes before the missing one it causes, a part of the geometry before "not a string"
+    """Sentence about the first cause, at the place where the user wrote the value."""
+    # an unknown key comes before the missing key that it causes, a key of the geometry before "not a string"
     complaint = max(error.errors(), key=lambda one: (one["type"] == "extra_forbidden", len(one["loc"])))
     keys = [str(part) for part in complaint["loc"] if part not in ("name", "geometry", "int", "str")]
     key = ".".join(keys)
@@ -216,8 +226,10 @@ def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: d
                 "." if own is None else ", or at the top for all files."
             )
         case "extra_forbidden":
+            if keys[-1] in _RENAMED:
+                return f"{where}{key} is not a key here; give {_RENAMED[keys[-1]]}."
             near = difflib.get_close_matches(keys[-1], [*Entry.model_fields, *Geometry.model_fields], n=1)
-            return f"{where}{key} is no key here; " + (f"did you mean {near[0]}?" if near else "remove it.")
+            return f"{where}{key} is not a key here; " + (f"did you mean {near[0]}?" if near else "remove it.")
         case "value_error":
             return f"{where}{key}{': ' if key else ''}{message}."
         case _:

@@ -1,4 +1,4 @@
-"""One variable of a MATLAB file, level 5 or 7.3 (HDF5), whatever state the file is in."""
+"""One variable of a MATLAB file, level 5 or 7.3 (HDF5); damaged files are refused with a reason."""
 
 import os
 from pathlib import Path
@@ -13,24 +13,24 @@ from gen.importers.level_7_3 import read_level_7_3
 from gen.plain_files import open_plain
 
 _HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
-_HDF5_OFFSET = 512  # level 7.3 puts a header of its own before the HDF5 file
+_HDF5_OFFSET = 512  # a file of level 7.3 has a MATLAB header before the HDF5 content
 
 
 def read_matlab(path: Path, variable: str) -> NDArray[Any]:
     """Numbers, or text as an array of one string; ``"bearing.gs"`` is a field of a structure.
 
-    Values beyond the limit ``file_bytes``, or that unfold to far more than is stored of them, are refused before they are read.
+    Values above the limit ``file_bytes``, or far larger than their storage, are refused before they are read.
 
     Raises
     ------
     UnusableError
-        If the file is truncated or damaged, is no MATLAB file, or does not hold such a variable.
+        If the file is truncated or damaged, is not a MATLAB file, or does not hold the variable.
     """
     with open_plain(path) as stream:
         head = stream.read(_HDF5_OFFSET + len(_HDF5_MAGIC))
         if _HDF5_MAGIC not in (head[: len(_HDF5_MAGIC)], head[_HDF5_OFFSET:]):
             if head[HEADER - 2 : HEADER] not in BYTE_ORDERS:
-                raise UnusableError("is no MATLAB file of level 5 or 7.3")
+                raise UnusableError("is not a MATLAB file of level 5 or 7.3")
             return guarded("MATLAB", lambda: read_level_5(stream, variable))
         size = os.fstat(stream.fileno()).st_size
     return guarded("MATLAB 7.3", lambda: read_apart(lambda: read_level_7_3(path, variable), size))

@@ -1,7 +1,7 @@
 """The MFPT fault data set of Bechhoefer: healthy, inner-race and outer-race recordings of one bearing type.
 
 Each file holds a structure ``bearing`` with the acceleration ``gs`` [g], the sample rate ``sr`` [Hz], the
-shaft rate ``rate`` [Hz] and the load ``load`` [lbf] [1]_. The set does not say which recordings share a
+shaft rate ``rate`` [Hz] and the load ``load`` [lbf] [1]_. The set does not state which recordings share a
 bearing: each file counts as a specimen of its own, so that cross-validation within the set may leak.
 
 .. [1] E. Bechhoefer, *Condition Based Maintenance Fault Database for Testing of Diagnostic and Prognostics
@@ -12,17 +12,15 @@ import math
 from functools import partial
 from pathlib import Path
 
-import scipy.signal
-
 from gen.importers.assemble import Collection, Import, Progress, import_recordings
 from gen.importers.files import UnusableError, one_column
 from gen.importers.matlab import read_matlab
-from gen.importers.recordings import STANDARD_GRAVITY, Candidate, Recording, files_below, name_of
+from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.physics.catalogue import CATALOGUE
+from gen.units import POUND_FORCE, STANDARD_GRAVITY
 
 FS = 48_828.0
 
-_POUND_FORCE = 4.4482216152605  # N, by definition
 _NOMINAL_RATE = 25.0
 _FAULT_OF_PREFIX = {"baseline": "healthy", "innerracefault": "inner", "outerracefault": "outer"}
 _COLLECTION = Collection(
@@ -32,19 +30,18 @@ _COLLECTION = Collection(
     fs=FS,
     channel="accelerometer",
 )
-_NOTE = "all: the shaft rate in the files is nominal; where measured, the real one is 0.6 to 1.3 % lower."
+_NOTE = "all files: the shaft rate is nominal; where it was measured, it is 0.6 to 1.3 % lower."
 
 
 def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None) -> Import:
-    """Bring the recordings found below ``source`` into a corpus at 48,828 Hz.
+    """Convert the recordings below ``source`` into a corpus at 48,828 Hz.
 
-    The name of a file tells its class; a file recorded at a multiple of the rate is resampled, with a
-    warning.
+    The class is taken from the name of a file. A file at a multiple of this sample rate is resampled, with a warning.
 
     Parameters
     ----------
     source : Path
-        Folder of the published MATLAB files, in any arrangement.
+        Folder of the published MATLAB files; subfolders are searched.
     output : Path
         Folder of the new corpus.
     window : float
@@ -63,9 +60,9 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
         name, stem = name_of(path, source), path.stem.lower()
         fault = next((fault for prefix, fault in _FAULT_OF_PREFIX.items() if stem.startswith(prefix)), None)
         if fault is None:
-            skipped.append(f"{name}: begins with none of baseline, InnerRaceFault, OuterRaceFault; skipped.")
+            skipped.append(f"{name}: the name does not begin with baseline, InnerRaceFault or OuterRaceFault; skipped.")
         elif stem in candidates:
-            skipped.append(f"{name}: is {path.stem} once more, after {candidates[stem].source}; skipped.")
+            skipped.append(f"{name}: is {path.stem} again, which {candidates[stem].source} holds; skipped.")
         else:
             candidates[stem] = Candidate(path, name, partial(_read, path, fault, len(candidates)))
     return import_recordings(
@@ -84,19 +81,21 @@ def _read(path: Path, fault: str, number: int) -> Recording:
     fs = _number(path, "bearing.sr")
     factor = round(fs / FS) if math.isfinite(fs) else 0
     if factor < 1 or factor * FS != fs:
-        message = f"was sampled at {fs:g} Hz, which is no multiple of {FS:g} Hz"
+        message = f"was sampled at {fs:g} Hz, which is not a multiple of {FS:g} Hz"
         raise UnusableError(message)
     warnings: list[str] = []
     if factor > 1:
-        signal = scipy.signal.resample_poly(signal, 1, factor)
+        from scipy.signal import resample_poly  # loads scipy.stats
+
+        signal = resample_poly(signal, 1, factor)
         warnings.append(f"resampled from {fs:g} to {FS:g} Hz with scipy.signal.resample_poly(x, 1, {factor})")
-    rate, load = _number(path, "bearing.rate"), _number(path, "bearing.load") * _POUND_FORCE
+    rate, load = _number(path, "bearing.rate"), _number(path, "bearing.load") * POUND_FORCE
     if not rate > 0:
         rate = _NOMINAL_RATE
-        warnings.append(f"states no shaft rate: the nominal {_NOMINAL_RATE:g} Hz are used")
+        warnings.append(f"has no shaft rate: the nominal {_NOMINAL_RATE:g} Hz are used")
     if not load >= 0:
         load = math.nan
-        warnings.append("states no load: it stays unknown")
+        warnings.append("has no load: it stays unknown")
     recording = Recording(
         number=number,
         rig=0,
@@ -112,7 +111,7 @@ def _read(path: Path, fault: str, number: int) -> Recording:
 
 
 def _number(path: Path, variable: str) -> float:
-    """One number of a file, which some files hold as text; NaN if it is missing or no number."""
+    """Number in a file, which some files hold as text; NaN if it is missing or not a number."""
     try:
         return float(read_matlab(path, variable).item())
     except (UnusableError, ValueError):

@@ -1,7 +1,7 @@
-"""What a recording is, what it must be to be used, and how it is cut into records.
+"""Recordings: their facts, the checks of their signals, and their division into records.
 
-A recording is refused if it is shorter than a window, constant, not finite or beyond what accelerometers
-take; else it is cut into consecutive windows of one length, and the last incomplete one is dropped.
+A recording is refused if it is shorter than a window, constant, not finite or beyond the range of accelerometers. Otherwise it is cut
+into consecutive windows of equal length; the last incomplete one is dropped.
 """
 
 import unicodedata
@@ -19,18 +19,15 @@ from gen.importers.files import FloatArray, UnusableError
 from gen.limits import check_limit, limit
 from gen.physics.bearing import Bearing, orders
 
-STANDARD_GRAVITY = 9.80665  # m s-2, by definition
-
-_LARGEST_ACCELERATION = 1e7  # m s-2, ten times what shock accelerometers are made for
+_LARGEST_ACCELERATION = 1e7  # m s-2, ten times the range of shock accelerometers
 _AS_RECORDED = ("rig", "specimen", "shaft_rate", "load", "n_spalls", "width", "depth", "angle")
 
 
 class Recording(NamedTuple):
-    """One recording and what is known of it, in SI units; NaN is what is not known.
+    """A recording with its facts, in SI units; NaN stands for an unknown value.
 
-    ``signal`` is of shape (time,) [m s-2]; ``number`` tells the recording from the others of its set;
-    ``extra`` holds variables beyond the schema; ``warnings`` says what was done or assumed beyond reading
-    the file.
+    ``signal`` is of shape (time,) [m s-2]; ``number`` identifies the recording in its set; ``extra`` holds variables beyond the schema;
+    ``warnings`` has a sentence for each assumption and each change of the signal.
     """
 
     number: int
@@ -50,7 +47,7 @@ class Recording(NamedTuple):
 
 
 class Candidate(NamedTuple):
-    """A file that should hold a recording: where it is, its name as the user knows it, and how to read it."""
+    """A file that should hold a recording: its path, its name in messages, and a function that reads it."""
 
     path: Path
     source: str
@@ -58,7 +55,7 @@ class Candidate(NamedTuple):
 
 
 class Record(NamedTuple):
-    """A window of a recording, shape (elapsed_time,) [m s-2], and its value of every per-record variable."""
+    """A window of a recording, shape (elapsed_time,) [m s-2], and the values of its per-record variables."""
 
     signal: NDArray[np.float32]
     columns: dict[str, Any]
@@ -70,11 +67,11 @@ def read_recording(candidate: Candidate, length: int, fs: float) -> Recording:
     Raises
     ------
     UnusableError
-        If the file cannot be read or holds what no accelerometer records.
+        If the file cannot be read, or its signal fails a check.
     """
     try:
         if candidate.path.stat().st_size == 0:
-            raise UnusableError("is empty (0 bytes), copy it again")
+            raise UnusableError("is empty (0 bytes); copy it again")
         with np.errstate(over="ignore", invalid="ignore"):
             recording = candidate.read()
     except OSError as error:
@@ -87,7 +84,7 @@ def read_recording(candidate: Candidate, length: int, fs: float) -> Recording:
 
 
 def _flaw(signal: FloatArray, length: int, fs: float) -> str | None:
-    """Say what is wrong with a signal, if anything is."""
+    """Reason why a signal cannot be used; None if it can."""
     wrong = np.count_nonzero(~np.isfinite(signal))
     if wrong:
         return f"has {wrong} samples of {signal.size} that are not finite numbers"
@@ -95,14 +92,14 @@ def _flaw(signal: FloatArray, length: int, fs: float) -> str | None:
         return f"holds {signal.size / fs:.3g} s, less than one window of {length / fs:g} s"
     largest, limit = np.abs(signal).max(), _LARGEST_ACCELERATION
     if largest > limit:
-        return f"reaches {largest:.3g} m/s^2, more than the {limit:g} m/s^2 of any accelerometer; check its unit"
+        return f"reaches {largest:.3g} m/s^2, and accelerometers end at {limit:g} m/s^2; check its unit"
     if np.ptp(signal) == 0:
         return f"is constant, each sample is {signal[0]:g} m/s^2"
     return None
 
 
 def cut(recording: Recording, source: str, length: int, fs: float) -> list[Record]:
-    """Cut consecutive windows of ``length`` samples, whose sources end in ``#`` and their first sample."""
+    """Consecutive windows of ``length`` samples; the ``source`` of each ends in ``#`` and the number of its first sample."""
     known = {
         **{name: getattr(recording, name) for name in _AS_RECORDED},
         **orders(recording.bearing)._asdict(),
@@ -119,14 +116,14 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
 
 
 def some_files(found: Iterable[Path], already: int, what: str) -> list[Path]:
-    """Files found, sorted; CorpusError, which begins with ``what``, if they and those found ``already`` are too many."""
+    """Files found, sorted; CorpusError, which begins with ``what``, if they and the ``already`` found ones exceed the limit."""
     paths = list(islice(found, limit("recording_files") + 1))
     check_limit("recording_files", already + len(paths), what, CorpusError)
     return sorted(paths)
 
 
 def name_of(path: Path, folder: Path) -> str:
-    r"""Name of a file relative to a folder, as text that can be stored: bytes that are no UTF-8 are written out.
+    r"""Name of a file relative to a folder, as text that can be stored: bytes that are not UTF-8 are escaped.
 
     >>> name_of(Path("set/Pr\udcfcfstand/1.mat"), Path("set"))
     'Pr\\xfcfstand/1.mat'
@@ -137,7 +134,7 @@ def name_of(path: Path, folder: Path) -> str:
 
 
 def files_below(folder: Path, suffix: str) -> list[Path]:
-    """Files of one kind in a folder and below it, sorted by path.
+    """Files with a suffix in a folder and its subfolders, sorted by path.
 
     Raises
     ------
@@ -145,11 +142,11 @@ def files_below(folder: Path, suffix: str) -> list[Path]:
         If there is no such folder or no such file.
     """
     if not folder.is_dir():
-        message = f"{folder}: no such folder; give the folder that holds the {suffix} files."
+        message = f"{folder}: {'is not a folder' if folder.exists() else 'no such folder'}; give the folder that holds the {suffix} files."
         raise CorpusError(message)
     found = (path for path in folder.rglob("*") if path.suffix.lower() == suffix and path.is_file())
     paths = some_files(found, 0, f"{folder}: holds")
     if not paths:
-        message = f"{folder}: no {suffix} file in it or below; give the folder that holds the recordings."
+        message = f"{folder}: has no {suffix} file in it or below; give the folder that holds the recordings."
         raise CorpusError(message)
     return paths

@@ -1,4 +1,4 @@
-"""Compressed values unfolded within bounds: how large they become is checked before, and held to while they do."""
+"""Decompression within bounds: the size is checked before, and enforced during decompression."""
 
 import zlib
 from typing import Any
@@ -9,14 +9,14 @@ from numpy.typing import NDArray
 from gen.importers.files import UnusableError
 from gen.limits import check_limit
 
-LARGEST_RATIO = 100  # unfolded over stored bytes; a recording of noise reaches 2, one of few counts 10
-_ALWAYS = 64_000_000  # bytes that may be unfolded whatever is stored of them
-_SLICE, _PIECE = 65_536, 1_000_000  # bytes fed and unfolded at a time
+LARGEST_RATIO = 100  # decompressed over stored bytes; recordings of noise reach 2, those with few distinct counts 10
+_ALWAYS = 64_000_000  # bytes that can be decompressed whatever the ratio
+_SLICE, _PIECE = 65_536, 1_000_000  # compressed bytes taken, and bytes decompressed, at a time
 _PADDING = 64  # bytes after the values
 
 
 def check_size(size: int, stored: int) -> None:
-    """Refuse values of ``size`` bytes that are beyond the limit, or far more than the ``stored`` bytes can hold.
+    """Refuse values of ``size`` bytes that are above the limit, or far larger than their ``stored`` bytes.
 
     Raises
     ------
@@ -25,17 +25,17 @@ def check_size(size: int, stored: int) -> None:
     """
     check_limit("file_bytes", size, "holds", UnusableError)
     if size > _ALWAYS + LARGEST_RATIO * stored:
-        message = f"is damaged: {stored} bytes that unfold to {size} are no recording"
+        message = f"is damaged: {stored} bytes that decompress to {size} are not a recording"
         raise UnusableError(message)
 
 
 def unfold(compressed: Any, size: int) -> NDArray[np.uint8]:
-    """First ``size`` bytes of a zlib stream that holds as many and little more, shape (byte,).
+    """First ``size`` bytes of a zlib stream that holds these and at most some padding, shape (byte,).
 
     Raises
     ------
     UnusableError
-        If the stream holds fewer or more; zlib.error if it is none.
+        If the stream holds fewer or more bytes; zlib.error if it is not a zlib stream.
     """
     check_size(size, len(compressed))
     found = np.empty(size, np.uint8)
@@ -52,10 +52,10 @@ def unfold(compressed: Any, size: int) -> NDArray[np.uint8]:
             if len(piece) < room and not left:
                 break
     if done < size:
-        message = f"is truncated or damaged: {size} bytes announced, {done} unfolded"
+        message = f"is truncated or damaged: {size} bytes announced, {done} found"
         raise UnusableError(message)
     if not unpacker.eof:
-        message = f"is truncated or damaged: what {size} bytes unfold from does not end there"
+        message = f"is truncated or damaged: the compressed data goes on after {size} bytes"
         raise UnusableError(message)
     return found
 

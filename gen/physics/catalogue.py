@@ -155,8 +155,6 @@ def _rollers() -> Iterator[Bearing]:
 
 CATALOGUE = {bearing.designation: bearing for part in (_deep_groove, _test_rigs, _rollers) for bearing in part()}
 
-BALL_BEARINGS = tuple(name for name, bearing in CATALOGUE.items() if bearing.rolling_element == "ball")
-
 _PAGE = """# Catalogue of bearings
 
 Generated from `gen/physics/catalogue.py`. A recipe names a ball bearing by its designation, a mapping file of recordings any of these.

@@ -1,17 +1,19 @@
-"""The recipe: YAML in, a frozen model out.
+"""Recipes: YAML files, read into a frozen model.
 
 ============= ========================================================
 module        responsibility
 ============= ========================================================
-distributions what a recipe may draw from
-section       what every part shares: units, bounds, known keys
+distributions distributions of drawn values
+section       base of all sections: bounds, unknown keys, meanings
 machine       bearing, machine, lubricant, specimen
 faults        spalls, worn races, broken cages, several at once
 operation     speed and load with their profiles, slip, temperature
 sensing       sensors, path, background, level, converter
 loads         loads that no bearing of the recipe can carry
 model         the recipe as a whole
-reading       files, names, error sentences, hash and JSON schema
+keys          every key with unit, range, default and meaning
+sentences     error sentences for broken recipes
+reading       files, names, hash and JSON schema
 ============= ========================================================
 """
 
@@ -27,25 +29,24 @@ from gen.recipe.faults import (
 )
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.model import Recipe
-from gen.recipe.operation import Profile
+from gen.recipe.operation import ProfileSection
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
-from gen.recipe.section import Section, split_unit
-from gen.recipe.sensing import MAX_OVERSAMPLING, Channel, Modes, Modulation, Path
+from gen.recipe.section import Section
+from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
 
 __all__ = [
     "MAX_OVERSAMPLING",
     "BallFault",
     "CageFault",
     "CatalogueBearing",
-    "Channel",
     "CompoundFault",
     "DistributedFault",
     "Fault",
     "Healthy",
     "Modes",
     "Modulation",
-    "Path",
-    "Profile",
+    "PathSection",
+    "ProfileSection",
     "RaceFault",
     "Recipe",
     "Section",
@@ -56,5 +57,4 @@ __all__ = [
     "recipe_purpose",
     "recipe_schema",
     "shipped_recipes",
-    "split_unit",
 ]

@@ -1,7 +1,7 @@
-"""Distributions a recipe may name: each checks itself and turns a number between 0 and 1 into a value.
+"""Distributions that a recipe can name: each checks its keys and turns a number between 0 and 1 into a value.
 
-Drawing by inverse distribution functions serves random and low-discrepancy points alike, and keeps the number of draws the same
-whatever a recipe asks for, so that one value never moves another.
+Values are drawn with the inverse distribution function. So random and quasi-random points are treated alike, and every distribution takes
+one number: to change the distribution of one key does not move the values of the others.
 """
 
 import math
@@ -16,22 +16,24 @@ Number = Annotated[float, Field(strict=True)]
 
 
 class _Distribution(BaseModel):
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
 
     def draw(self, u: float) -> float:
         """Value at the quantile ``u`` in [0, 1)."""
         raise NotImplementedError
 
     def support(self) -> tuple[float, float]:
-        """Smallest and largest value it can give."""
+        """Smallest and largest value that can be drawn."""
         raise NotImplementedError
 
 
 class Constant(_Distribution):
-    """Always the same value; a bare number means this."""
+    """One value; a plain number is short for this."""
 
     kind: Literal["constant"] = "constant"
+    """Gives the same value to every item."""
     value: Number
+    """Number that every item gets."""
 
     def draw(self, u: float) -> float:  # noqa: ARG002 - the same for every quantile
         """Return the value."""
@@ -44,7 +46,9 @@ class Constant(_Distribution):
 
 class _Interval(_Distribution):
     low: Number
+    """Smallest value that can be drawn."""
     high: Number
+    """Largest value that can be drawn."""
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -58,9 +62,10 @@ class _Interval(_Distribution):
 
 
 class Uniform(_Interval):
-    """Anything from low to high, all alike."""
+    """Any value from low to high, all equally likely."""
 
     kind: Literal["uniform"]
+    """Makes all values of the interval equally likely."""
 
     def draw(self, u: float) -> float:
         """Value at the quantile ``u``.
@@ -72,9 +77,10 @@ class Uniform(_Interval):
 
 
 class LogUniform(_Interval):
-    """Anything from low to high, every decade alike."""
+    """Any value from low to high, with a logarithm that is uniformly distributed; low must be above 0."""
 
     kind: Literal["loguniform"]
+    """Makes all decades of the interval equally likely."""
 
     @model_validator(mode="after")
     def _positive(self) -> Self:
@@ -92,11 +98,14 @@ class LogUniform(_Interval):
 
 
 class Normal(_Interval):
-    """A normal distribution cut off at low and high."""
+    """A normal distribution truncated at low and high."""
 
     kind: Literal["normal"]
+    """Draws from a normal distribution without its tails."""
     mean: Number
+    """Mean before the distribution is truncated."""
     sd: Annotated[Number, Field(gt=0)]
+    """Standard deviation before the distribution is truncated."""
 
     def draw(self, u: float) -> float:
         """Value at the quantile ``u`` of the truncated distribution."""
@@ -106,11 +115,14 @@ class Normal(_Interval):
 
 
 class Choice(_Distribution):
-    """One of a few values, with weights if they are not all alike."""
+    """One of a few values, with weights if they are not equally likely."""
 
     kind: Literal["choice"]
+    """Draws one number of a list."""
     values: Annotated[tuple[Number, ...], Field(min_length=1)]
+    """Numbers of which one is taken."""
     weights: tuple[Annotated[Number, Field(ge=0)], ...] | None = None
+    """Relative probability of each value; equal if left out."""
 
     @model_validator(mode="after")
     def _weighted(self) -> Self:
@@ -132,18 +144,23 @@ class Choice(_Distribution):
 
 
 class Grid(_Distribution):
-    """Its values in turn: with other grids of the same level, every combination before the first comes again."""
+    """Values in turn, by item number; several grids of the same level enumerate all combinations."""
 
     kind: Literal["grid"]
+    """Cycles through a list by the number of the rig, specimen or record."""
     values: Annotated[tuple[Number, ...], Field(min_length=1)]
+    """Numbers of which one is taken."""
 
     def draw(self, u: float) -> float:
-        """Value at the quantile ``u``, for whoever knows no turn."""
+        """Value at the quantile ``u``; used when no item number is known."""
         return self.values[weighted_index((1.0,) * len(self.values), u)]
 
     def support(self) -> tuple[float, float]:
         """Return the smallest and the largest value."""
         return min(self.values), max(self.values)
+
+
+DISTRIBUTIONS = (Constant, Uniform, LogUniform, Normal, Choice, Grid)
 
 
 def weighted_index(weights: tuple[float, ...], u: float) -> int:
@@ -176,15 +193,22 @@ Distribution = Annotated[
 def within(low: float, high: float, *, open_low: bool = False, default: float | None = None) -> Any:
     """Field of a distribution whose values all lie between ``low`` and ``high``; required if it has no default."""
     bounds: dict[str, Any] = {"low": low, "high": high, "open_low": open_low}
-    text = f"in {'(' if open_low else '['}{low:g}, {high:g}]"
     given: dict[str, Any] = {} if default is None else {"default": default}
-    return Field(**given, description=text, json_schema_extra=bounds)
+    return Field(**given, json_schema_extra=bounds)
+
+
+def interval(bounds: dict[str, Any]) -> str:
+    """Bounds of a field in the notation of intervals.
+
+    >>> interval({"low": 0, "high": 60, "open_low": True})
+    '(0, 60]'
+    """
+    return f"{'(' if bounds['open_low'] else '['}{bounds['low']:g}, {bounds['high']:g}]"
 
 
 def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:
     """Return ``distribution`` if all its values lie within the ``bounds`` of its field, else raise ValueError."""
-    low, high, open_low = bounds["low"], bounds["high"], bounds["open_low"]
     for end in distribution.support():
-        if not low <= end <= high or (open_low and end == low):
-            raise ValueError(f"{end:g} is not in {'(' if open_low else '['}{low:g}, {high:g}].")
+        if not bounds["low"] <= end <= bounds["high"] or (bounds["open_low"] and end == bounds["low"]):
+            raise ValueError(f"{end:g} is not in {interval(bounds)}.")
     return distribution

@@ -1,4 +1,4 @@
-"""What is wrong with a bearing: spalls of one part or several, worn races, a broken cage."""
+"""Faults of a bearing: spalls of one component or of several, worn races, a broken cage."""
 
 from typing import Annotated, Literal, Self
 
@@ -12,24 +12,33 @@ MAX_SPALLS = 16
 Trace = Annotated[tuple[Annotated[Number, Field(ge=0, le=5000)], ...], Field(min_length=3, max_length=2000)]
 
 
-class Healthy(Section):
+class _Weighted(Section):
+    weight: Weight = 1.0
+    """Share of the specimens with this fault, relative to the other entries of `faults`."""
+
+
+class Healthy(_Weighted):
     """A bearing without a fault."""
 
     kind: Literal["healthy"]
-    weight: Weight = 1.0
+    """Leaves the bearing undamaged."""
 
 
-class _Spalls(Section):
-    weight: Weight = 1.0
-    spalls: Distribution = within(1, MAX_SPALLS, default=1)
+class _Spalled(_Weighted):
+    n_spalls: Distribution = within(1, MAX_SPALLS, default=1)
+    """Number of spalls, each with its own draws; rounded to a whole number."""
     width_mm: Distribution = within(0, 60, open_low=True)
+    """Width of a spall along the rolling direction; it sets how far the ball drops, and how hard it hits the trailing edge."""
     depth_um: Distribution = within(0, 5000, open_low=True, default=280.0)
+    """Depth of the floor of a spall. A ball that bridges a narrow spall does not reach the floor."""
     angle_deg: Distribution = within(-360, 360, default=0.0)
+    """Position of a spall: on the outer race from the direction of the load, on the inner race and on a ball from a mark that turns."""
     profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular", "trace"] = "geometric"
+    """Path of a ball through the spall: a rigid ball over two edges and a floor, a formula, or a measured trace."""
     trace_um: Trace | None = None
-    """Depth of the surface from edge to edge as a stylus measures it, evenly spaced, for ``profile: trace``."""
+    """Measured depths of the surface from edge to edge, evenly spaced; for `profile: trace`, which scales them to `width_mm`."""
     roughness_um: Distribution = within(0, 50, default=0.0)
-    """Rms of the floor of a geometric or traced spall."""
+    """Rms roughness of the floor of a geometric or traced spall."""
 
     @model_validator(mode="after")
     def _traced(self) -> Self:
@@ -40,49 +49,60 @@ class _Spalls(Section):
         return self
 
 
-class RaceFault(_Spalls):
-    """Spalls on a race; the angle of an outer race spall counts from the load direction."""
+class RaceFault(_Spalled):
+    """Spalls on one race: lines at BPFI (inner) or BPFO (outer)."""
 
     kind: Literal["inner", "outer"]
+    """Puts the spalls on the inner or on the outer race."""
 
 
-class BallFault(_Spalls):
-    """Spalls on a ball, whose spin axis wanders about an offset; beyond ``track_deg`` the spall misses the track."""
+class BallFault(_Spalled):
+    """Spalls on one ball, which hit both races: a line at twice BSF."""
 
     kind: Literal["ball"]
+    """Puts the spalls on one ball."""
     track_deg: Distribution = within(0, 90, default=8.6)
+    """Tilt of the spin axis at which a spall leaves the ball's track and is not hit; at 0 it is hit at every turn."""
     axis_offset_deg: Distribution = within(-90, 90, default=0.0)
+    """Mean tilt of the spin axis of the ball."""
     axis_wander_deg: Distribution = within(0, 180, default=0.0)
+    """Rms of the random variation of that tilt (0.05 to 0.6 shaft rates); it makes hits rarer and irregular."""
 
 
-class CageFault(Section):
-    """A broken cage: one ball out of its place, and a knock on the housing once per turn as that ball leaves the load zone."""
+class CageFault(_Weighted):
+    """A broken cage: one ball is out of place, and its pocket knocks on the housing once per cage turn."""
 
     kind: Literal["cage"]
-    weight: Weight = 1.0
+    """Breaks one pocket of the cage: lines at FTF and its multiples."""
     pitch_error_deg: Distribution = within(0, 10, default=3.0)
+    """Angle around the bearing by which the ball of the broken pocket is displaced."""
     knock_n: Distribution = within(0, 10_000, default=20.0)
+    """Typical peak force of the knock, 60 degrees after the pocket has passed the direction of the load; 0 for none."""
 
 
-class DistributedFault(Section):
-    """A race worn all round: waviness, of one ``order`` per turn or falling as 1/order; its class is that of its ``site``."""
+class DistributedFault(_Weighted):
+    """A race worn over its whole circumference; records are labelled with the race."""
 
     kind: Literal["distributed"]
-    weight: Weight = 1.0
+    """Adds waviness to a whole race: noise at low frequency, no line in the envelope spectrum."""
     site: Literal["inner", "outer"]
+    """Race that is worn, and the class label."""
     waviness_um: Distribution = within(0, 50, open_low=True, default=0.5)
+    """Rms waviness of the worn race, in addition to that of the specimen."""
     order: Annotated[StrictInt, Field(ge=LOWEST_ORDER, le=HIGHEST_ORDER)] | None = None
+    """Waves per turn, if all wear has one order; if left out, orders 2 to 60 with amplitudes that fall as 1/order."""
 
 
-Part = Annotated[RaceFault | BallFault | CageFault, Field(discriminator="kind")]
+DamagedPart = Annotated[RaceFault | BallFault | CageFault, Field(discriminator="kind")]
 
 
-class CompoundFault(Section):
-    """Faults of several parts at once, with one weight together."""
+class CompoundFault(_Weighted):
+    """Faults of several components at once, labelled `compound`."""
 
     kind: Literal["compound"]
-    weight: Weight = 1.0
-    parts: Annotated[tuple[Part, ...], Field(min_length=2, max_length=4)]
+    """Combines faults of different components in one bearing."""
+    parts: Annotated[tuple[DamagedPart, ...], Field(min_length=2, max_length=4)]
+    """Faults of the components, all of different kinds, with the keys of `faults` but no weights."""
 
     @model_validator(mode="after")
     def _of_several_parts(self) -> Self:
@@ -103,5 +123,5 @@ Fault = Annotated[
 
 
 def fault_class(fault: Fault) -> str:
-    """Class that records of a fault are labelled with."""
+    """Class label of records with a fault."""
     return fault.site if isinstance(fault, DistributedFault) else fault.kind

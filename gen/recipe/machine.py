@@ -1,16 +1,17 @@
-"""What is built: the bearing, the machine around it, its lubricant, and how one physical bearing differs from its drawing."""
+"""The rig: bearing, machine and lubricant; and the deviations of one physical bearing from its drawing."""
 
 import difflib
 import math
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, StrictInt, model_validator
 
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import MAX_BALLS
 from gen.recipe.distributions import Distribution, Number, within
-from gen.recipe.section import Count, Name, Section
+from gen.recipe.section import Name, Section
+from gen.units import to_si
 
 _KNOWN = tuple(
     name for name, bearing in CATALOGUE.items() if bearing.rolling_element == "ball" or bearing.roller_length
@@ -18,46 +19,53 @@ _KNOWN = tuple(
 
 
 class OwnBearing(Section):
-    """A bearing of one's own beside those of the catalogue; ``ball_mm`` is the roller diameter of a roller bearing."""
+    """A bearing that is not in the catalogue."""
 
-    n_balls: Annotated[Count, Field(ge=5, le=MAX_BALLS)]
-    pitch_mm: Annotated[Number, Field(ge=5, le=1000)]
-    ball_mm: Annotated[Number, Field(gt=0, le=500)]
+    n_balls: Annotated[StrictInt, Field(ge=5, le=MAX_BALLS)]
+    """Number of balls, or of rollers; BPFO and BPFI grow with it."""
+    pitch_diameter_mm: Annotated[Number, Field(ge=5, le=1000)]
+    """Diameter of the circle through the centres of the balls."""
+    ball_diameter_mm: Annotated[Number, Field(gt=0, le=500)]
+    """Diameter of a ball, or of a roller; all of them must fit on the pitch circle."""
     contact_angle_deg: Annotated[Number, Field(ge=-40, le=40)] = 0.0
+    """Contact angle on the drawing; it enters the fault frequencies."""
     roller_length_mm: Annotated[Number, Field(gt=0, le=1000)] | None = None
-    """Makes it a roller bearing: length that touches the raceways."""
+    """Length of a roller that touches the raceways; if given, the bearing has rollers instead of balls."""
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        largest = min(0.45 * self.pitch_mm, 0.95 * math.pi * self.pitch_mm / self.n_balls)
-        if self.ball_mm > largest:
+        largest = min(0.45 * self.pitch_diameter_mm, 0.95 * math.pi * self.pitch_diameter_mm / self.n_balls)
+        if self.ball_diameter_mm > largest:
             raise ValueError(
-                f"{self.n_balls} of {self.ball_mm:g} mm do not fit a pitch circle of {self.pitch_mm:g} mm; "
-                f"keep ball_mm below {largest:.4g}."
+                f"{self.n_balls} of {self.ball_diameter_mm:g} mm do not fit a pitch circle of {self.pitch_diameter_mm:g} mm; "
+                f"keep ball_diameter_mm below {largest:.4g}."
             )
         return self
 
     def bearing(self, designation: str) -> Bearing:
-        """The same in SI units."""
+        """Bearing in SI units."""
         rollers = self.roller_length_mm
         return Bearing(
             designation,
             self.n_balls,
-            self.pitch_mm * 1e-3,
-            self.ball_mm * 1e-3,
-            math.radians(self.contact_angle_deg),
+            to_si(self.pitch_diameter_mm, "mm"),
+            to_si(self.ball_diameter_mm, "mm"),
+            to_si(self.contact_angle_deg, "deg"),
             rolling_element="ball" if rollers is None else "roller",
-            roller_length=None if rollers is None else rollers * 1e-3,
+            roller_length=None if rollers is None else to_si(rollers, "mm"),
             source="recipe",
         )
 
 
 class CatalogueBearing(Section):
-    """Some bearings of the catalogue, and of one's own ``entries``, one of which is drawn per rig."""
+    """Bearings by designation, one of which is drawn per rig."""
 
     kind: Literal["catalogue"]
+    """Takes bearings by their designations."""
     designations: Annotated[tuple[Name, ...], Field(min_length=1)]
+    """Names of bearings in `docs/catalogue.md` or in `entries`; each rig gets one of them, all equally likely."""
     entries: dict[Name, OwnBearing] = Field(default={})
+    """Further bearings by name, for this recipe only."""
 
     @model_validator(mode="after")
     def _known(self) -> Self:
@@ -72,88 +80,119 @@ class CatalogueBearing(Section):
         return self
 
     def bearing(self, designation: str) -> Bearing:
-        """Bearing of a designation; one's own come first."""
+        """Bearing of a designation, from the entries or from the catalogue."""
         own = self.entries.get(designation)
         return CATALOGUE[designation] if own is None else own.bearing(designation)
 
 
 class GeometryBearing(Section):
-    """A bearing given by its geometry, each number drawn per rig; ``ball_share`` is ball, or roller, over pitch diameter."""
+    """A bearing given by its dimensions, drawn per rig."""
 
     kind: Literal["geometry"]
+    """Takes a bearing by its dimensions, each of which can vary from rig to rig."""
     designation: Name = "geometry"
+    """Name of the bearing in the corpus."""
     n_balls: Distribution = within(5, MAX_BALLS)
-    pitch_mm: Distribution = within(5, 1000, open_low=True)
+    """Number of balls, or of rollers, rounded to a whole number; BPFO and BPFI grow with it."""
+    pitch_diameter_mm: Distribution = within(5, 1000, open_low=True)
+    """Diameter of the circle through the centres of the balls."""
     ball_share: Distribution = within(0.05, 0.45)
+    """Diameter of a ball, or of a roller, over the pitch diameter; reduced where neighbouring balls would touch."""
     contact_angle_deg: Distribution = within(-40, 40, default=0.0)
+    """Contact angle on the drawing; it enters the fault frequencies."""
     roller_length_mm: Distribution = within(0, 1000, default=0.0)
-    """Length of the rollers that touches the raceways; 0 for balls."""
+    """Length of a roller that touches the raceways; 0 for balls."""
 
     @staticmethod
     def largest_ball(n_balls: int, pitch: float, share: float) -> float:
-        """Ball diameter at a share of the pitch diameter, made smaller where neighbours would leave the cage no bars [m]."""
+        """Ball diameter at a share of the pitch diameter, reduced where neighbours would leave no room for cage bars [m]."""
         return min(share * pitch, 0.85 * math.pi * pitch / n_balls)
 
 
 class Resonator(Section):
-    """Mass on a spring between housing and sensor."""
+    """Sensor resonance: a mass on a spring and a damper on the housing."""
 
     mass_kg: Distribution = within(0, 10, open_low=True, default=0.2)
+    """Mass that vibrates on the housing; a channel with `body: sensor` measures its acceleration."""
     frequency_hz: Distribution = within(100, 50_000, default=3000.0)
+    """Natural frequency of the mass on a fixed housing: impacts excite the signal around it."""
     damping_percent: Distribution = within(0.1, 50, default=3.0)
+    """Damping ratio of the resonance; the lower it is, the longer each impact decays."""
 
 
-class Machine(Section):
-    """Masses, springs and dampers, and what is wrong with the machine beside its bearing, drawn per rig."""
+class MachineSection(Section):
+    """Masses, springs and dampers of the machine, and its faults other than those of the bearing; drawn per rig."""
 
     shaft_mass_kg: Distribution = within(0, 1000, open_low=True, default=5.5)
+    """Mass that moves with the inner ring."""
     housing_mass_kg: Distribution = within(0, 1000, open_low=True, default=3.0)
+    """Mass that moves with the outer ring."""
     support_frequency_hz: Distribution = within(10, 5000, default=423.0)
+    """Natural frequency of shaft and housing together on the support, in the horizontal direction."""
     support_damping_percent: Distribution = within(0.1, 100, default=5.0)
+    """Damping ratio of shaft and housing together on the support."""
     support_ratio: Distribution = within(0.1, 10, default=1.0)
+    """Vertical over horizontal stiffness of the support."""
     ring_damping_n_s_m: Distribution = within(0, 1e5, default=1000.0)
+    """Damper between inner and outer ring; it damps the motion of the shaft in the bearing."""
     ring_stiffness_n_m: Distribution = within(0, 1e9, default=0.0)
+    """Spring between inner and outer ring beside the contacts; real bearings have none, the seed paper has one."""
     shaft_damping_n_s_m: Distribution = within(0, 1e5, default=200.0)
+    """Damper from shaft to ground."""
     shaft_stiffness_n_m: Distribution = within(0, 1e9, default=0.0)
+    """Spring from shaft to ground, such as the other bearing of the shaft."""
     contact_damping_n_s_m: Distribution = within(0, 1e4, default=0.0)
+    """Damper in each loaded contact, in addition to that of the oil film; it acts on the approach speed of the rings."""
     balance_mm_s: Distribution = within(0, 100, default=1.0)
+    """Balance grade G of the rotor (ISO 21940-11) at the highest `operation.shaft_rpm`; unbalance gives a line at 1x shaft rate."""
     load_angle_deg: Distribution = within(-360, 360, default=-90.0)
+    """Direction of the radial load, counter-clockwise from the horizontal; -90 is down. The load zone lies there."""
     bow_n: Distribution = within(0, 1e6, default=0.0)
-    """Force that turns with the shaft whatever its speed: a bent shaft in its bearings."""
+    """Force of a bent shaft, which turns with it at constant size; it gives a line at 1x shaft rate at any speed."""
     misalignment_n: Distribution = within(0, 1e6, default=0.0)
-    """Force at twice the shaft rate along ``misalignment_angle_deg``."""
+    """Force along `misalignment_angle_deg` that alternates twice per turn; it gives a line at 2x shaft rate."""
     misalignment_angle_deg: Distribution = within(-360, 360, default=0.0)
+    """Direction of the misalignment force, counter-clockwise from the horizontal."""
     looseness_um: Distribution = within(0, 1000, default=0.0)
-    """Half the play of the housing in its support."""
+    """Half the play of a loose housing: within it the support has no stiffness."""
     resonator: Resonator | None = Resonator()
+    """Resonance between housing and sensor; `null` leaves it out."""
 
 
-class Lubricant(Section):
-    """Oil in the contacts, drawn per rig: its film takes up clearance, and yields and damps, as far as its temperature lets it."""
+class LubricantSection(Section):
+    """Oil in the contacts, drawn per rig. Its film reduces the operating clearance, softens the contacts and damps them."""
 
     viscosity_40_mm2_s: Distribution = within(2, 2000, default=68.0)
+    """Kinematic viscosity at 40 degrees Celsius; a higher one gives a thicker film."""
     viscosity_100_mm2_s: Distribution = within(1, 200, default=8.7)
+    """Kinematic viscosity at 100 degrees Celsius; it must be below that at 40."""
     density_kg_m3: Distribution = within(700, 1200, default=880.0)
+    """Density of the oil; it turns kinematic into dynamic viscosity."""
     pressure_viscosity_per_gpa: Distribution = within(5, 50, default=20.0)
+    """Relative rise of the viscosity with pressure, the same at every temperature; it enters the film thickness."""
 
 
-class Contact(Section):
-    """What is between ball and race: how wide they touch, and what lubricates them.
-
-    With ``footprint: hertz`` a spall is felt over the width of the contact ellipse, with ``point`` at its middle alone.
-    """
+class ContactSection(Section):
+    """Contact of balls and races."""
 
     footprint: Literal["point", "hertz"] = "point"
-    lubricant: Lubricant | None = None
+    """Width over which a ball feels a spall: `hertz` averages over the contact ellipse, `point` takes its centre alone."""
+    lubricant: LubricantSection | None = None
+    """Oil in the contacts; dry if left out."""
 
 
-class Specimen(Section):
-    """How one physical bearing differs from its drawing."""
+class SpecimenSection(Section):
+    """Deviations of one physical bearing from its drawing, drawn per specimen."""
 
     diametral_clearance_um: Distribution = within(-60, 500, default=10.0)
+    """Internal clearance as built, negative for preload; a larger one narrows the load zone."""
     inner_conformity: Distribution = within(0.505, 0.6, default=0.52)
+    """Groove radius of the inner race over the ball diameter; a smaller one makes the contact stiffer."""
     outer_conformity: Distribution = within(0.505, 0.6, default=0.52)
+    """Groove radius of the outer race over the ball diameter; a smaller one makes the contact stiffer."""
     waviness_nm: Distribution = within(0, 10_000, default=0.0)
+    """Rms waviness of each race, over the orders 2 to 60 per turn, with amplitudes that fall as 1/order."""
     contact_angle_deg: Distribution = within(0, 30, default=0.0)
-    """Contact angle beyond that of the drawing, as axial load brings it about: nominal orders do not know it."""
+    """Contact angle beyond that of the drawing, as under axial load; the nominal fault orders do not include it."""
     ball_waviness_nm: Distribution = within(0, 1000, default=0.0)
+    """Rms waviness of each ball, over the even orders 2 to 20 per turn of the ball."""

@@ -22,11 +22,11 @@ from gen.physics.profile import Profile
 from gen.recipe import (
     CatalogueBearing,
     Modes,
+    PathSection,
+    ProfileSection,
     Recipe,
     fault_class,
 )
-from gen.recipe import Path as WantedPath
-from gen.recipe import Profile as WantedProfile
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.draws import Draws
 from gen.scenarios.faults import damaged, fault_of_each_specimen
@@ -44,6 +44,7 @@ from gen.scenarios.model import (
     Tone,
     stream,
 )
+from gen.units import decibel_to_ratio, percent_to_share
 
 STEEPEST_CONTACT = math.radians(45)
 _DIMENSIONS = 64  # quasi-random values of an item; what it draws beyond them is plain random
@@ -149,17 +150,17 @@ def _draw_bearing(recipe: Recipe, draws: Draws, rig: int) -> Bearing:
         return chosen.bearing(chosen.designations[int(draws.u() * len(chosen.designations))])
     drawn = draws.section(chosen)
     n_balls = round(drawn["n_balls"])
-    ball = chosen.largest_ball(n_balls, drawn["pitch"], drawn["ball_share"])
+    ball = chosen.largest_ball(n_balls, drawn["pitch_diameter"], drawn["ball_share"])
     if drawn["ball_share"] > 0.6 or ball <= 0:
         raise RecipeError(f"rig {rig}: ball_share {drawn['ball_share']:g} gives no bearing; keep it below 0.45.")
     rollers = drawn["roller_length"]
     return Bearing(
-        chosen.designation, n_balls, drawn["pitch"], ball, drawn["contact_angle"],
+        chosen.designation, n_balls, drawn["pitch_diameter"], ball, drawn["contact_angle"],
         rolling_element="roller" if rollers > 0 else "ball", roller_length=rollers or None,
     )  # fmt: skip
 
 
-def _draw_path(draws: Draws, path: WantedPath) -> Path:
+def _draw_path(draws: Draws, path: PathSection) -> Path:
     modulation = _draw_modulation(draws, path.modulation)
     direct = draws.value(path.direct)
     return Path(direct, _draw_modes(draws, path.modes), modulation)
@@ -170,8 +171,8 @@ def _draw_modes(draws: Draws, modes: Modes | None) -> tuple[Mode, ...]:
         return ()
     found = []
     for _ in range(round(draws.value(modes.count))):
-        frequency, damping = draws.value(modes.frequency_hz), draws.value(modes.damping_percent) / 100
-        gain, sign = 10 ** (draws.value(modes.gain_db) / 20), 1.0 if draws.u() < 0.5 else -1.0
+        frequency, damping = draws.value(modes.frequency_hz), percent_to_share(draws.value(modes.damping_percent))
+        gain, sign = decibel_to_ratio(draws.value(modes.gain_db)), 1.0 if draws.u() < 0.5 else -1.0
         found.append(Mode(frequency, damping, sign * gain))
     return tuple(found)
 
@@ -184,20 +185,20 @@ def _draw_modulation(draws: Draws, modulation: Any) -> ShaftModulation:
 
 def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     wanted = recipe.background
-    slope, floor = draws.value(wanted.slope), 10 ** (draws.value(wanted.floor_db) / 20)
+    slope, floor = draws.value(wanted.slope), decibel_to_ratio(draws.value(wanted.floor_db))
     harmonics, tones = [], []
     if wanted.harmonics is not None and draws.happens(wanted.harmonics):
         orders = range(1, round(draws.value(wanted.harmonics.count)) + 1)
-        harmonics = [Tone(order, 10 ** (draws.value(wanted.harmonics.level_db) / 20)) for order in orders]
+        harmonics = [Tone(order, decibel_to_ratio(draws.value(wanted.harmonics.level_db))) for order in orders]
     if wanted.tones is not None and draws.happens(wanted.tones):
         for _ in range(round(draws.value(wanted.tones.count))):
-            level = 10 ** (draws.value(wanted.tones.level_db) / 20)
+            level = decibel_to_ratio(draws.value(wanted.tones.level_db))
             tones.append(Tone(draws.value(wanted.tones.frequency_hz), level, draws.value(wanted.tones.modulation)))
     impulses = knocks = None
     if wanted.impulses is not None and draws.happens(wanted.impulses):
-        impulses = Tone(draws.value(wanted.impulses.rate_hz), 10 ** (draws.value(wanted.impulses.level_db) / 20))
+        impulses = Tone(draws.value(wanted.impulses.rate_hz), decibel_to_ratio(draws.value(wanted.impulses.level_db)))
     if wanted.knocks is not None and draws.happens(wanted.knocks):
-        knocks = Tone(draws.value(wanted.knocks.orders), 10 ** (draws.value(wanted.knocks.level_db) / 20))
+        knocks = Tone(draws.value(wanted.knocks.orders), decibel_to_ratio(draws.value(wanted.knocks.level_db)))
     modes, modulation = _draw_modes(draws, wanted.modes), _draw_modulation(draws, wanted.modulation)
     return Background(
         slope=slope,
@@ -275,11 +276,11 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
     return Operation(number, conditions, snr, rms, *profiles)
 
 
-def _draw_profile(draws: Draws, profile: WantedProfile, duration: float) -> Profile:
+def _draw_profile(draws: Draws, profile: ProfileSection, duration: float) -> Profile:
     if profile.kind == "table":
-        return Profile(profile.times_s, tuple(share / 100 for share in profile.percent))
+        return Profile(profile.times_s, tuple(map(percent_to_share, profile.percent)))
     if profile.kind == "steps":
-        levels = tuple(level / 100 for level in profile.levels_percent)
+        levels = tuple(map(percent_to_share, profile.levels_percent))
         changes = [duration * place / len(levels) for place in range(1, len(levels))]
         times = [time + side * profile.step_s / 2 for time in changes for side in (-1, 1)]
         shares = [level for pair in pairwise(levels) for level in pair]

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from pydantic import BaseModel
 
-from gen.recipe import Section, split_unit
+from gen.recipe import Section
 from gen.recipe.distributions import Grid
 from gen.scenarios.model import Drawn
+from gen.units import split_unit
 
 _unit_of = functools.cache(split_unit)
 

@@ -23,6 +23,7 @@ from gen.recipe import (
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.draws import Draws
 from gen.scenarios.model import Purpose, Spall, Specimen, Wear, stream
+from gen.units import to_si
 
 _WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # width of a spall over the radius it lies on
 
@@ -32,7 +33,7 @@ def damaged(draws: Draws, entry: Fault, specimen: Specimen) -> Specimen:
     if isinstance(entry, Healthy):
         return specimen
     if isinstance(entry, DistributedFault):
-        return replace(specimen, wear=Wear(entry.site, draws.value(entry.waviness_um) * 1e-6, entry.order))
+        return replace(specimen, wear=Wear(entry.site, to_si(draws.value(entry.waviness_um), "um"), entry.order))
     for part in entry.parts if isinstance(entry, CompoundFault) else (entry,):
         specimen = _with_part(draws, part, specimen)
     return specimen
@@ -52,11 +53,11 @@ def _with_part(draws: Draws, part: RaceFault | BallFault | CageFault, specimen: 
 def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int) -> tuple[Spall, ...]:
     carrier = int(draws.u() * bearing.n_balls)
     radius = bearing.radius(entry.kind)
-    trace = tuple(depth * 1e-6 for depth in entry.trace_um or ())
+    trace = tuple(to_si(depth, "um") for depth in entry.trace_um or ())
     spalls = []
-    for _ in range(round(draws.value(entry.spalls))):
-        width, depth = draws.value(entry.width_mm) * 1e-3, draws.value(entry.depth_um) * 1e-6
-        angle, roughness = math.radians(draws.value(entry.angle_deg)), draws.value(entry.roughness_um) * 1e-6
+    for _ in range(round(draws.value(entry.n_spalls))):
+        width, depth = to_si(draws.value(entry.width_mm), "mm"), to_si(draws.value(entry.depth_um), "um")
+        angle, roughness = to_si(draws.value(entry.angle_deg), "deg"), to_si(draws.value(entry.roughness_um), "um")
         spalls.append(
             Spall(
                 site=entry.kind,

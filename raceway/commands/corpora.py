@@ -33,15 +33,29 @@ WORTH_WORKERS = 1000  # records; starting a local cluster takes about as long as
 
 
 @click.command()
+@click.option(
+    "--keys",
+    "prefix",
+    is_flag=False,
+    flag_value="",
+    metavar="[PREFIX]",
+    help="List recipe keys that begin with PREFIX instead.",
+)
 @json_option
-def recipes(as_json: bool) -> None:
-    """List the recipes that ship with Raceway.
+def recipes(prefix: str | None, as_json: bool) -> None:
+    """List the shipped recipes, or the keys of recipes.
 
-    Give any of the names where a command wants a RECIPE. To write your own, copy the nearest one and change it.
+    Give any of the names where a command wants a RECIPE. To write your own, copy the nearest one and change it. For each key, --keys
+    prints its unit, allowed values, default and meaning; `distribution` has the keys of distributions.
 
       raceway recipes
-      raceway plan quickstart
+      raceway recipes --keys
+      raceway recipes --keys machine
+      raceway recipes --keys faults.width_mm --json
     """
+    if prefix is not None:
+        _show_keys(prefix, as_json)
+        return
     from gen.recipe import recipe_purpose, shipped_recipes
 
     found = shipped_recipes()
@@ -52,6 +66,19 @@ def recipes(as_json: bool) -> None:
         return
     show.definitions(purposes)
     show.text("", f"Their files are in {next(iter(found.values())).parent}.")
+
+
+def _show_keys(prefix: str, as_json: bool) -> None:
+    from gen.recipe.keys import Key, recipe_keys
+
+    keys = recipe_keys(prefix)
+    if as_json:
+        show.as_json({"keys": [key._asdict() for key in keys]})
+        return
+    rows = [Key._fields, *(key._replace(kinds="/".join(key.kinds)) for key in keys)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for row in rows:
+        show.text("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
 
 
 @click.command()

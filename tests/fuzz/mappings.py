@@ -37,7 +37,7 @@ files:
     fault: ball
     specimen: 3
     load_n: 50
-    depth_mm: 0.02
+    depth_um: 20
     bearing: {designation: L8, n_balls: 8, pitch_diameter_mm: 40, ball_diameter_mm: 8, contact_angle_deg: 15}
   - {<<: *first, path: b.mat, variable: *v, column: ax}
 """,

@@ -220,7 +220,7 @@ def test_what_is_in_the_way_of_a_corpus_is_named(recipe_file, tmp_path):
 
 
 def test_a_folder_whose_name_is_not_utf_8_is_refused_before_anything_is_made(recipe_file, tmp_path):
-    with pytest.raises(CorpusError, match="the name is not UTF-8, which netCDF needs; choose another"):
+    with pytest.raises(CorpusError, match="the name is not UTF-8, and netCDF needs UTF-8; choose another"):
         generate(recipe_file, tmp_path / "caf\udce9")
     assert list(tmp_path.iterdir()) == []
 

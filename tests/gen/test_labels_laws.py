@@ -121,7 +121,7 @@ def test_several_faults_are_labelled_by_the_widest_spall_and_by_all_parts(labels
 
 
 def test_spalls_of_one_part_are_one_part(labels_with):
-    found = labels_with({"faults": [OUTER | {"spalls": 3}]})
+    found = labels_with({"faults": [OUTER | {"n_spalls": 3}]})
     assert (first(found, "n_spalls"), first(found, "parts"), FAULTS[first(found, "fault")]) == (3, "outer", "outer")
 
 

@@ -82,7 +82,7 @@ def test_validation_finds_counts_that_are_not_those_of_the_signals(loud, tmp_pat
     manifest["parts"][1]["signals"]["clipped"] = 0
     (tmp_path / "c" / "manifest.json").write_text(json.dumps(manifest))
     assert validate_corpus(made.directory) == []
-    sentence = "part-00001.nc: 8 clipped of its records cannot be used, the manifest says none."
+    sentence = "part-00001.nc: 8 clipped of its records cannot be used, the manifest lists none."
     assert [problem.endswith(sentence) for problem in validate_corpus(tmp_path / "c")] == [True]
 
 

@@ -99,6 +99,17 @@ def test_recipes_are_listed_with_their_purpose(run, told):
         assert recipe["name"] in run("recipes").stdout
 
 
+def test_recipe_keys_are_listed_by_prefix_with_unit_range_default_and_meaning(run, told):
+    keys = told("recipes", "--keys", "machine.resonator.f")["keys"]
+    assert [keys[0][name] for name in ("key", "unit", "allowed", "default")] == [
+        "machine.resonator.frequency_hz", "Hz", "[100, 50000]", "3000",
+    ]  # fmt: skip
+    shown = run("recipes", "--keys", "machine").stdout.splitlines()
+    assert shown[0].split() == ["key", "kinds", "unit", "allowed", "default", "meaning"]
+    assert next(line for line in shown if line.startswith("machine.resonator.f")).endswith(keys[0]["meaning"])
+    assert len(told("recipes", "--keys")["keys"]) > 150
+
+
 def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
     planned, found = told("plan", tiny_recipe), told("info", tiny_corpus)
     same = (
@@ -274,10 +285,10 @@ def test_recordings_are_imported_and_counted(run, told, tmp_path):
     result = run("import", "generic", mapping, "-o", tmp_path / "pump", "--window", 0.25, "--json")
     made = json.loads(result.stdout)
     assert (made["recordings"], made["records"], len(made["skipped"])) == (2, 16, 1)
-    assert "lost.npy: no such file" in result.stderr
+    assert "lost.npy: no file beside" in result.stderr
     found = told("info", tmp_path / "pump")
     assert (found["importer"], found["classes"]) == ("generic", {"healthy": 8, "outer": 8})
-    assert "lost.npy: no such file" in run("info", tmp_path / "pump").stdout
+    assert "lost.npy: no file beside" in run("info", tmp_path / "pump").stdout
 
 
 def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):

@@ -107,32 +107,32 @@ def make_pipe(path):
 
 PARTS = [(f"parts/{part_name(number)}", size) for number, size in enumerate(SIZES)]
 REFUSED = {
-    "a part is missing": (lambda c: (c / "parts" / part_name(1)).unlink(), r"part-00001\.nc: missing; copy it again"),
-    "a part is altered": (lambda c: flip(c / "parts" / part_name(1)), r"part-00001\.nc: altered, it is not the file"),
-    "a part is cut short": (lambda c: os.truncate(c / "parts" / part_name(2), 500), r"part-00002\.nc: altered"),
-    "a part is empty": (lambda c: os.truncate(c / "parts" / part_name(2), 0), r"part-00002\.nc: altered"),
+    "a part is missing": (lambda c: (c / "parts" / part_name(1)).unlink(), r"part-00001\.nc: is missing; copy it again"),
+    "a part is altered": (lambda c: flip(c / "parts" / part_name(1)), r"part-00001\.nc: is altered: its size or hash differs"),
+    "a part is cut short": (lambda c: os.truncate(c / "parts" / part_name(2), 500), r"part-00002\.nc: is altered"),
+    "a part is empty": (lambda c: os.truncate(c / "parts" / part_name(2), 0), r"part-00002\.nc: is altered"),
     "a part stands for another": (
-        lambda c: shutil.copyfile(c / "parts" / part_name(0), c / "parts" / part_name(2)), r"part-00002\.nc: altered",
+        lambda c: shutil.copyfile(c / "parts" / part_name(0), c / "parts" / part_name(2)), r"part-00002\.nc: is altered",
     ),
-    "the manifest is gone": (lambda c: (c / "manifest.json").unlink(), r"holds no manifest\.json, so it is no corpus"),
+    "the manifest is gone": (lambda c: (c / "manifest.json").unlink(), r"has no manifest\.json, so it is not a corpus"),
     "the manifest is no JSON": (lambda c: (c / "manifest.json").write_text("{"), r"manifest\.json: not a corpus manifest"),
     "the manifest lists no parts": (lambda c: (c / "manifest.json").write_text("{}"), r"manifest\.json: not a corpus manifest"),
     "a part name leads out": (lambda c: rename_in_manifest(c, "../x"), r"'\.\./x' is not the name of a part"),
     "a part name is a path": (lambda c: rename_in_manifest(c, "/etc/passwd"), r"is not the name of a part"),
     "a part name is no text": (lambda c: rename_in_manifest(c, 7), r"manifest\.json: not a corpus manifest \(parts\.1\.name"),
-    "the index is gone": (lambda c: (c / "corpus.nc").unlink(), r"corpus\.nc: missing; copy it again"),
-    "the index is cut short": (lambda c: os.truncate(c / "corpus.nc", 900), r"corpus\.nc: altered, it is not the file"),
-    "the index is that of another corpus": (other_index, r"corpus\.nc: altered, it is not the file"),
-    "a byte of the index is flipped": (lambda c: flip(c / "corpus.nc"), r"corpus\.nc: altered, it is not the file"),
+    "the index is gone": (lambda c: (c / "corpus.nc").unlink(), r"corpus\.nc: is missing; copy it again"),
+    "the index is cut short": (lambda c: os.truncate(c / "corpus.nc", 900), r"corpus\.nc: is altered: its size or hash differs"),
+    "the index is that of another corpus": (other_index, r"corpus\.nc: is altered: its size or hash differs"),
+    "a byte of the index is flipped": (lambda c: flip(c / "corpus.nc"), r"corpus\.nc: is altered: its size or hash differs"),
     "a part is a link out of the corpus": (
-        lambda c: link_out(c / "parts" / part_name(1)), r"part-00001\.nc: is a link out of the corpus; copy the file itself",
+        lambda c: link_out(c / "parts" / part_name(1)), r"part-00001\.nc: is a link that leads out of the corpus; replace it",
     ),
-    "the index is a link out of the corpus": (lambda c: link_out(c / "corpus.nc"), r"corpus\.nc: is a link out of the corpus"),
+    "the index is a link out of the corpus": (lambda c: link_out(c / "corpus.nc"), r"corpus\.nc: is a link that leads out of the corpus"),
     "the folder of the parts is a link": (
-        lambda c: link_out(c / "parts"), r"part-00000\.nc: is a link out of the corpus; copy the file itself",
+        lambda c: link_out(c / "parts"), r"part-00000\.nc: is a link that leads out of the corpus; replace it",
     ),
-    "a part is a pipe": (lambda c: make_pipe(c / "parts" / part_name(0)), r"part-00000\.nc: is no plain file; copy it again"),
-    "the manifest is a pipe": (lambda c: make_pipe(c / "manifest.json"), r"manifest\.json: is no plain file"),
+    "a part is a pipe": (lambda c: make_pipe(c / "parts" / part_name(0)), r"part-00000\.nc: is not a plain file; copy it again"),
+    "the manifest is a pipe": (lambda c: make_pipe(c / "manifest.json"), r"manifest\.json: is not a plain file"),
     "the manifest counts other records": (lambda c: edit_manifest(c, records=8), r"it counts 8 records, its parts 9"),
     "the manifest counts a part wrongly": (
         lambda c: edit_manifest(c, records=10, parts={0: {"records": 4}}), r"9 records, the parts hold 10|disagree about parts",
@@ -140,7 +140,7 @@ REFUSED = {
     "the manifest lists a part twice": (
         lambda c: edit_manifest(c, parts={1: {"name": part_name(0)}}), r"it lists part-00000\.nc more than once",
     ),
-    "the manifest has no hash of the index": (lambda c: edit_manifest(c, index=None), r"without a hash of corpus\.nc"),
+    "the manifest has no hash of the index": (lambda c: edit_manifest(c, index=None), r"has no hash of corpus\.nc"),
     "the manifest holds lists for objects": (lambda c: (c / "manifest.json").write_text("[[]]"), r"not a corpus manifest"),
     "the manifest is nested without end": (
         lambda c: (c / "manifest.json").write_text("[" * 100_000), r"not a corpus manifest",
@@ -214,16 +214,16 @@ FOUND = {
         lambda i: swap_sources(i, [PARTS[0], (PARTS[1][0], 6)]), "index and manifest disagree about parts/part-00001.nc",
     ),
     "there is no signal": (lambda i: i.pop(SIGNAL), "not a corpus index"),
-    "the signal is a plain dataset": (plain_signal, "acceleration is no virtual dataset"),
-    "a label is an external link": (external_link, "load is a link to somewhere else"),
+    "the signal is a plain dataset": (plain_signal, "acceleration is not a virtual dataset"),
+    "a label is an external link": (external_link, "load is a soft or external link"),
     "a label is stored in another file": (external_storage, "the values of load are in another file"),
     "a label is a virtual dataset": (virtual_label, "load is a virtual dataset"),
     "a variable of no known dimension": (lambda i: i.create_dataset("x", data=np.zeros(4)), "x is of type"),
     "numbers with the encoding of text": (
-        lambda i: i["fault"].attrs.create("_Encoding", "utf-8"), "fault has the attribute _Encoding, which it may not have",
+        lambda i: i["fault"].attrs.create("_Encoding", "utf-8"), "fault has the attribute _Encoding, which it must not have",
     ),
     "a label that is packed": (
-        lambda i: i["load"].attrs.create("scale_factor", 2.0), "load has the attribute scale_factor, which it may not have",
+        lambda i: i["load"].attrs.create("scale_factor", 2.0), "load has the attribute scale_factor, which it must not have",
     ),
     "a group": (lambda i: i.create_group("x"), "x"),
 }  # fmt: skip
@@ -251,7 +251,7 @@ def test_a_signal_is_not_read_by_a_scale_that_is_not_that_of_its_part(copied):
     seal(copied)
     with (
         open_corpus(copied) as corpus,
-        pytest.raises(CorpusError, match=r"part-00000\.nc: its signal is not of the shape or type"),
+        pytest.raises(CorpusError, match=r"part-00000\.nc: its signal has another shape or type than the corpus"),
     ):
         corpus[SIGNAL][0].load()
 
@@ -326,7 +326,7 @@ def test_validation_finds_a_part_that_is_not_in_the_format(tmp_path, damage):
 
 def test_a_corpus_under_way_is_refused_until_it_is_complete(copied):
     write_manifest(copied, read_manifest(copied).parts[:2], complete=False)
-    with pytest.raises(CorpusError, match="unfinished; the raceway generate command that began it completes it"):
+    with pytest.raises(CorpusError, match="is unfinished; run the raceway generate command that began it again"):
         open_corpus(copied)
 
 
@@ -366,7 +366,9 @@ def test_a_full_disk_leaves_no_half_part(tmp_path):
 def test_a_pipe_or_a_folder_is_not_replaced_by_a_file(tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for place in (tmp_path / "pipe", tmp_path):
-        with pytest.raises(CorpusError, match="is no plain file, which would be replaced; choose another name"):
+        with pytest.raises(
+            CorpusError, match="exists and is not a plain file, so it cannot be replaced; choose another name"
+        ):
             write_durably(b"x", place)
     assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 

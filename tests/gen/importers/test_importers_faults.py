@@ -20,7 +20,7 @@ def test_a_mapping_may_name_every_fault_class(tmp_path):
     assert tuple(entry.fault for entry in found.entries) == FAULTS
 
 
-@pytest.mark.parametrize("key", ["width_mm: 1", "depth_mm: 0.1", "angle_deg: 0", "n_spalls: 1"])
+@pytest.mark.parametrize("key", ["width_mm: 1", "depth_um: 100", "angle_deg: 0", "n_spalls: 1"])
 @pytest.mark.parametrize("fault", FAULTS)
 def test_a_spall_is_described_only_where_there_is_one(tmp_path, fault, key):
     path = mapping(tmp_path, f"fault: {fault}, {key}")

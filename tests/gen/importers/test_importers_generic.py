@@ -11,7 +11,9 @@ import scipy.io
 from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.errors import CorpusError
 from gen.importers import import_generic
-from gen.importers.mapping import bearing_of, read_mapping
+from gen.importers.mapping import Entry, Geometry, bearing_of, read_mapping
+from gen.recipe.keys import recipe_keys
+from gen.units import unit_suffix
 from tests.paths import ROOT
 
 SIGNAL = np.random.default_rng(1).normal(size=2100)
@@ -92,7 +94,7 @@ def test_a_file_overrides_what_is_said_at_the_top_and_units_become_si(tmp_path):
         COMMON + "title: Pump 7\nchannel: drive side\nfiles:\n"
         "  - {path: a.npy, fault: healthy, specimen: 1}\n"
         "  - {path: b.npy, unit: g, shaft_rpm: 1.2e3, load_n: 50, width_mm: 1e-1,"
-        " depth_mm: 0.02, angle_deg: -90,"
+        " depth_um: 20, angle_deg: -90,"
         " bearing: {n_balls: 8, pitch_diameter_mm: 40, ball_diameter_mm: 8, contact_angle_deg: 60}}\n",
     )
     last = corpus.isel(record=-1)
@@ -119,7 +121,7 @@ def test_patterns_name_files_and_specimens_belong_to_their_rig(tmp_path):
     assert corpus.rig.values[::2].tolist() == [0, 0, 1]
     assert corpus.specimen.values[::2].tolist() == [0, 0, 1]
     assert corpus.recording.values[::2].tolist() == [0, 1, 2]
-    assert done.skipped == ("one/a.npy: is listed once more by files[1]; skipped.",)
+    assert done.skipped == ("one/a.npy: is listed again by files[1]; skipped.",)
 
 
 def test_one_file_may_hold_several_recordings(tmp_path):
@@ -132,25 +134,25 @@ def test_one_file_may_hold_several_recordings(tmp_path):
 
 
 UNUSABLE = {
-    "missing.npy": (None, "no such file beside mapping.yaml"),
+    "missing.npy": (None, "no file beside mapping.yaml matches"),
     "empty.csv": (lambda path: path.write_bytes(b""), "is empty"),
     "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no line of numbers among its first 2"),
-    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is no readable delimited text file"),
+    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is not a readable delimited text file"),
     "nan.csv": (
         lambda path: path.write_text("1\nnan\n" * 2000),
         "has 2000 samples of 4000 that are not finite",
     ),
-    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "holds 2 columns there and none is chosen"),
+    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "has 2 columns and none is chosen"),
     "objects.npy": (
         lambda path: np.save(path, np.array([{}]), allow_pickle=True),
-        "is no readable NumPy file",
+        "is not a readable NumPy file",
     ),
-    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is no readable NumPy file"),
-    "sound.wav": (lambda path: path.write_bytes(b"RIFF"), "ends in none of .mat, .npy"),
-    "a.mat": (lambda path: scipy.io.savemat(path, {"x": SIGNAL}), "needs the key variable"),
+    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is not a readable NumPy file"),
+    "sound.wav": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy"),
+    "a.mat": (lambda path: scipy.io.savemat(path, {"x": SIGNAL}), "is a MATLAB file; give the key variable"),
     "broken_7_3.mat": (
         lambda path: (write_matlab_7_3(path), path.write_bytes(path.read_bytes()[:900])),
-        "needs the key variable",
+        "is a MATLAB file; give the key variable",
     ),
 }
 
@@ -177,7 +179,7 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
         tmp_path,
         COMMON + "variable: x\nfiles: [{path: good.npy, variable: null}, {path: half.mat}, {path: whole.mat}]\n",
     )
-    assert "half.mat:x: is no readable MATLAB 7.3 file" in done.skipped[0]
+    assert "half.mat:x: is not a readable MATLAB 7.3 file" in done.skipped[0]
     assert done.skipped[1] == "whole.mat:x: holds vibration, not x; skipped."
 
 
@@ -185,7 +187,7 @@ REFUSED = {
     "no_files": (COMMON, "mapping.yaml: files is missing; give it there."),
     "files_empty": (COMMON + "files: []", "files: [] is not allowed; list should have at least 1 item"),
     "not_yaml": ("files: [", "mapping.yaml: line 1: is not valid YAML ("),
-    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit is there twice)"),
+    "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit occurs twice)"),
     "a_list": ("- 1\n- 2", "mapping.yaml: holds no keys"),
     "missing_key": (
         "bearing: '6205'\nunit: g\nfiles: [{path: a.npy, sample_rate_hz: 9, shaft_rpm: 9, specimen: A}]",
@@ -193,11 +195,15 @@ REFUSED = {
     ),
     "typo": (
         COMMON + "files: [{path: a.npy, shaft_rmp: 5}]",
-        "files[0].shaft_rmp is no key here; did you mean shaft_rpm?",
+        "files[0].shaft_rmp is not a key here; did you mean shaft_rpm?",
+    ),
+    "renamed": (
+        COMMON + "files: [{path: a.npy, fault: outer, depth_mm: 0.02}]",
+        "files[0].depth_mm is not a key here; give depth_um, in micrometres.",
     ),
     "typo_at_the_top": (
         COMMON + "lod_n: 5\nfiles: [{path: a.npy}]",
-        "mapping.yaml: lod_n is no key here; did you mean load_n?",
+        "mapping.yaml: lod_n is not a key here; did you mean load_n?",
     ),
     "column": (COMMON + "files: [{path: a.npy, column: [1]}]", "files[0].column: [1] is not allowed"),
     "bearing_list": (COMMON + "files: [{path: a.npy, bearing: [1]}]", "files[0].bearing: [1] is not allowed"),
@@ -228,17 +234,17 @@ REFUSED = {
     ),
     "rates": (
         COMMON + "files: [{path: a.npy}, {path: b.npy, sample_rate_hz: 4000}]",
-        "files[1] (b.npy) is at 4000 Hz and files[0] (a.npy) at 2000 Hz; make a corpus of each",
+        "files[1] (b.npy) is at 4000 Hz and files[0] (a.npy) at 2000 Hz; a corpus has one sample rate: make a corpus of each",
     ),
     "absolute": (
         COMMON + "files: [{path: /etc/passwd}]",
         "files[0].path: /etc/passwd leads out of the folder",
     ),
     "above": (COMMON + "files: [{path: data/../../a.npy}]", "leads out of the folder of the mapping file"),
-    "pattern": (COMMON + "files: [{path: 'a**b'}]", "files[0].path: a**b is no pattern of file names"),
+    "pattern": (COMMON + "files: [{path: 'a**b'}]", "files[0].path: a**b is not a pattern of file names"),
     "folder_itself": (
         COMMON + "files: [{path: '.'}]",
-        "files[0].path: . is no pattern of file names; write it like data/*.mat",
+        "files[0].path: . is not a pattern of file names; write it like data/*.mat",
     ),
     "every_folder_twice": (COMMON + "files: [{path: '**/**/a'}]", "write it like data/*.mat, with ** at most once."),
     "control_character": (
@@ -247,7 +253,7 @@ REFUSED = {
     ),
     "specimen_on_two_lines": (
         COMMON + 'files: [{path: a, specimen: "b\\nc"}]',
-        "goes over several lines; write it on one.",
+        "has a tab or a line break; write it on one line.",
     ),
     "control_character_in_a_title": (
         COMMON + 'title: "a\\e[2J"\nfiles: [{path: a}]',
@@ -255,7 +261,7 @@ REFUSED = {
     ),
     "half_a_character": (
         COMMON + 'origin: "\\ud800"\nfiles: [{path: a}]',
-        "is not valid YAML (half a character (a lone surrogate))",
+        "is not valid YAML (a lone surrogate, which is half a character)",
     ),
     "long_title": (
         COMMON + f"title: {'t' * 6000}\nfiles: [{{path: a}}]",
@@ -282,7 +288,7 @@ REFUSED = {
     "delimiter_of_two": (COMMON + "files: [{path: a, delimiter: ';;'}]", "files[0].delimiter: ';;' is not allowed;"),
     "delimiter_of_numbers": (
         COMMON + "files: [{path: a, delimiter: '5'}]",
-        "files[0].delimiter: '5' separates no columns.",
+        "files[0].delimiter: '5' cannot separate columns; give one character such as",
     ),
     "tiny_balls": (
         COMMON + "files: [{path: a, bearing: {n_balls: 9, pitch_diameter_mm: 40, ball_diameter_mm: 1e-308}}]",
@@ -304,8 +310,8 @@ def test_a_mapping_that_cannot_be_meant_is_refused_with_a_sentence(tmp_path, map
     ("window", "sentence"),
     [
         (1e300, "window: 1e+300 s are 1e18 or more samples, and the limit is 25000000;"),
-        (1e306, "window: 1e+306 s holds no signal"),
-        (math.nan, "window: nan s holds no signal"),
+        (1e306, "window: 1e+306 s is shorter than two samples"),
+        (math.nan, "window: nan s is shorter than two samples"),
         (1e5, "window: 100000 s are 200000000 samples, and the limit is 25000000;"),
     ],
 )
@@ -315,10 +321,9 @@ def test_a_window_that_cannot_be_meant_is_refused(tmp_path, window, sentence):
         import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", window=window)
 
 
-def test_a_missing_mapping_and_a_folder_in_its_place_are_refused(tmp_path):
-    for source in (tmp_path / "none.yaml", tmp_path):
-        with pytest.raises(CorpusError, match="no such file; give the YAML file that describes the recordings"):
-            import_generic(source, tmp_path / "corpus")
+def test_a_missing_mapping_is_refused(tmp_path):
+    with pytest.raises(CorpusError, match="no such file; give the YAML file that describes the recordings"):
+        import_generic(tmp_path / "none.yaml", tmp_path / "corpus")
 
 
 def test_a_link_out_of_the_folder_is_refused(tmp_path):
@@ -326,7 +331,7 @@ def test_a_link_out_of_the_folder_is_refused(tmp_path):
     inside.mkdir()
     np.save(tmp_path / "a.npy", SIGNAL)
     (inside / "a.npy").symlink_to(tmp_path / "a.npy")
-    assert "link out of the folder" in refusal(inside, COMMON + "files: [{path: '*.npy'}]")
+    assert "matches a link that leads out of the folder; copy" in refusal(inside, COMMON + "files: [{path: '*.npy'}]")
 
 
 def test_the_mapping_in_the_documentation_is_one(tmp_path):
@@ -336,3 +341,19 @@ def test_the_mapping_in_the_documentation_is_one(tmp_path):
     mapping = read_mapping(tmp_path / "mapping.yaml")
     assert [entry.fault for entry in mapping.entries] == ["healthy", "outer", "ball"]
     assert [bearing_of(entry).designation for entry in mapping.entries] == ["6205", "6205", "L8"]
+
+
+def test_a_folder_in_place_of_a_mapping_file_is_refused_with_what_to_give(tmp_path):
+    with pytest.raises(
+        CorpusError,
+        match=r": is a folder; give the YAML file that describes the recordings, such as .*mapping\.yaml\.$",
+    ):
+        import_generic(tmp_path, tmp_path / "corpus")
+
+
+def test_mapping_files_and_recipes_spell_a_quantity_alike():
+    in_recipes = {key.key.rpartition(".")[2] for key in recipe_keys()}
+    keys = {*Entry.model_fields, *Geometry.model_fields}
+    quantities = {key for key in keys if unit_suffix(key) or key.startswith("n_")}
+    assert quantities > {"shaft_rpm", "depth_um", "n_spalls", "ball_diameter_mm"}
+    assert quantities - in_recipes == set()

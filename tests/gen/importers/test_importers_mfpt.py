@@ -68,7 +68,7 @@ def test_a_missing_speed_or_load_is_told(tmp_path):
     done, corpus = imported(tmp_path / "set", tmp_path / "corpus")
     assert corpus.shaft_rate.values[0] == 25.0
     assert np.isnan(corpus["load"].values[0])
-    assert sum("baseline_1.mat: states no" in text for text in done.warnings) == 2
+    assert sum("baseline_1.mat: has no" in text for text in done.warnings) == 2
 
 
 def test_foreign_damaged_and_repeated_files_are_named(tmp_path):
@@ -83,9 +83,9 @@ def test_foreign_damaged_and_repeated_files_are_named(tmp_path):
     done, _ = imported(source, tmp_path / "corpus")
     told = dict(sentence.split(": ", 1) for sentence in done.skipped)
     assert done.recordings == 1
-    assert "begins with none of baseline" in told["OilPumpShaftBearing.mat"]
-    assert "once more, after InnerRaceFault_vload_1.mat" in told["more/InnerRaceFault_vload_1.mat"]
-    assert "was sampled at 44100 Hz, which is no multiple of 48828 Hz" in told["OuterRaceFault_1.mat"]
+    assert "the name does not begin with baseline" in told["OilPumpShaftBearing.mat"]
+    assert "again, which InnerRaceFault_vload_1.mat holds" in told["more/InnerRaceFault_vload_1.mat"]
+    assert "was sampled at 44100 Hz, which is not a multiple of 48828 Hz" in told["OuterRaceFault_1.mat"]
     assert "not one column of real numbers" in told["OuterRaceFault_2.mat"]
     assert "holds X097_DE_time, not bearing" in told["baseline_1.mat"]
     assert "holds a structure of sr, not gs" in told["baseline_2.mat"]

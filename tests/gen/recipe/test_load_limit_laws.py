@@ -13,12 +13,12 @@ from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
 
 LIMIT = CATALOGUE["6205"].static_rating / LEAST_SAFETY
-OWN = {"n_balls": 9, "pitch_mm": 39.04, "ball_mm": 7.94}
+OWN = {"n_balls": 9, "pitch_diameter_mm": 39.04, "ball_diameter_mm": 7.94}
 SEVERAL = {"kind": "catalogue", "designations": ["6205", "6309"]}
 GEOMETRY = {
     "kind": "geometry",
     "n_balls": {"kind": "choice", "values": [7, 9]},
-    "pitch_mm": {"kind": "uniform", "low": 30, "high": 39.04},
+    "pitch_diameter_mm": {"kind": "uniform", "low": 30, "high": 39.04},
     "ball_share": {"kind": "uniform", "low": 0.15, "high": 7.94 / 39.04},
 }
 STEPS = {"kind": "steps", "levels_percent": [200, 50], "step_s": 0.01}

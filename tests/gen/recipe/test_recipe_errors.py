@@ -43,7 +43,7 @@ TABLE = [
     ("0.5}", "0.0}", "faults[1].width_mm: 0 is not in (0, 60]; for a bearing without a fault use kind: healthy."),
     ("0.5}", "-1}", "faults[1].width_mm: -1 is not in (0, 60]"),
     ("0.5}", "wide}", "faults[1].width_mm: 'wide' is neither a number nor a distribution; write 1.5 or {kind: uniform"),
-    ("0.5}", "1,5}", "faults[1]: 5 is no key; keys are words, and decimals have a point, no comma."),
+    ("0.5}", "1,5}", "faults[1]: 5 is not a key; keys are words, and decimals have a point, not a comma."),
     ("0.5}", "true}", "faults[1].width_mm: True is neither a number nor a distribution; write 1.5 or {kind: uniform"),
     ("0.5}", "[1, 2]}", "faults[1].width_mm: [1, 2] is neither a number nor a distribution;"),
     ("0.5}", "{low: 1, high: 2}}", "faults[1].width_mm: this needs a kind, such as kind: uniform."),
@@ -78,7 +78,7 @@ TABLE = [
     ("test: 0.25", "test: 0.6, validation: 0.4", "corpus.split: validation and test leave nothing to train on"),
     ("shaft_mass_kg: 5", "resonator: null", "recording.channels: body sensor needs machine.resonator; give one, or use body: housing."),
     ("duration_s: 0.1", "duration_s: 0.001", "recording.duration_s: 12 samples are too few; use at least 16."),
-    ("angle_deg: 90}", "angle_deg: 90}, {name: sensor}", "recording.channels: two channels have one name; give each its own."),
+    ("angle_deg: 90}", "angle_deg: 90}, {name: sensor}", "recording.channels: two channels have the same name; give each its own."),
     # what turns out when it is drawn
     ("kind: outer, width_mm: 0.5", "kind: ball, width_mm: 12", "does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     ("shaft_mass_kg: 5", "shaft_mass_kg: 1.0e-4", "steps per sample at 12000 Hz; soften the machine or raise recording.sample_rate_hz."),
@@ -86,19 +86,25 @@ TABLE = [
     ("[{name: sensor, angle_deg: 90}]", "3", "recording.channels: 3 is not allowed here; it must be a list."),
     ("12000", "12000\n  oversampling: 1", "is too fast for a step of 83.3 us; raise recording.oversampling to "),
     # bearings of one's own, rollers
-    ('["6205"]}', "[mine], entries: {mine: {n_balls: 20, pitch_mm: 50, ball_mm: 9}}}",
-     "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_mm below 7.461."),
-    ('["6205"]}', "[mine], entries: {mine: {n_balls: 9, pitch_mm: 50}}}", "bearing.entries.mine.ball_mm: is missing; give it."),
-    ('["6205"]}', "[mine], entries: {mine: {n_balls: 9, pitch_mm: 50, ball_mm: 9, rollers: 3}}}",
-     "bearing.entries.mine.rollers: no such key; allowed are ball_mm, contact_angle_deg, n_balls, pitch_mm, roller_length_mm."),
-    ('["6205"]}', "[mine], entries: {other: {n_balls: 9, pitch_mm: 50, ball_mm: 9}}}",
+    ('["6205"]}', "[mine], entries: {mine: {n_balls: 20, pitch_diameter_mm: 50, ball_diameter_mm: 9}}}",
+     "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_diameter_mm below 7.461."),
+    ('["6205"]}', "[mine], entries: {mine: {n_balls: 9, pitch_diameter_mm: 50}}}",
+     "bearing.entries.mine.ball_diameter_mm: is missing; give it."),
+    ('["6205"]}', "[mine], entries: {mine: {n_balls: 9, pitch_diameter_mm: 50, ball_diameter_mm: 9, rollers: 3}}}",
+     "bearing.entries.mine.rollers: no such key; allowed are ball_diameter_mm, contact_angle_deg, n_balls, pitch_diameter_mm, "),
+    ('["6205"]}', "[mine], entries: {mine: {n_balls: 9, pitch_mm: 50, ball_diameter_mm: 9}}}",
+     "bearing.entries.mine.pitch_mm: no such key; it is called pitch_diameter_mm now."),
+    ('["6205"]}', "[mine], entries: {mine: {n_balls: 9, pitch_diameter_mm: 50, ball_mm: 9}}}",
+     "bearing.entries.mine.ball_mm: no such key; it is called ball_diameter_mm now."),
+    ("width_mm: 0.5", "width_mm: 0.5, spalls: 2", "faults[1].spalls: no such key; it is called n_spalls now."),
+    ('["6205"]}', "[mine], entries: {other: {n_balls: 9, pitch_diameter_mm: 50, ball_diameter_mm: 9}}}",
      "bearing.designations: 'mine' is neither in the catalogue nor in entries; "),
-    ('["6205"]}', '["6205"], entries: {"6205": {n_balls: 9, pitch_mm: 50, ball_mm: 9}}}',
+    ('["6205"]}', '["6205"], entries: {"6205": {n_balls: 9, pitch_diameter_mm: 50, ball_diameter_mm: 9}}}',
      "bearing.entries: 6205 is in the catalogue already; give your own bearing another name."),
-    ('["6205"]}', '["6205"], entries: {a b: {n_balls: 9, pitch_mm: 50, ball_mm: 9}}}',
+    ('["6205"]}', '["6205"], entries: {a b: {n_balls: 9, pitch_diameter_mm: 50, ball_diameter_mm: 9}}}',
      "bearing.entries.a b: 'a b' is not allowed here; it must be 1 to 64 letters"),
     ('["6205"]', "[NU205]", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
-    ('catalogue, designations: ["6205"]', "geometry, n_balls: 9, pitch_mm: 39, ball_share: 0.2, roller_length_mm: -1",
+    ('catalogue, designations: ["6205"]', "geometry, n_balls: 9, pitch_diameter_mm: 39, ball_share: 0.2, roller_length_mm: -1",
      "bearing.roller_length_mm: -1 is not in [0, 1000]."),
     # traces and roughness
     ("0.5}", "0.5, profile: trace}", "faults[1].profile: trace and trace_um belong together; give both or neither."),
@@ -142,7 +148,7 @@ TABLE = [
     (RPM, RPM + ", speed_profile: {kind: table, times_s: [0, 1], percent: [0, 9]}",
      "operation.speed_profile.percent[0]: 0 is not allowed here; it must be greater than 0."),
     (RPM, RPM + ", load_profile: {kind: steps, levels_percent: [50, 99], step_s: 0.06}",
-     "operation.load_profile.step_s: 0.06 s leaves the levels no time; keep it below 0.05."),
+     "operation.load_profile.step_s: 0.06 s is longer than a level; keep it below 0.05."),
     (RPM, RPM + ", load_profile: {kind: steps, levels_percent: [50]}",
      "operation.load_profile.levels_percent: 1 is too few; give at least 2."),
     (RPM, RPM + ", load_profile: {kind: ramp, from_percent: 50}", "operation.load_profile.to_percent: is missing; give it."),
@@ -157,7 +163,7 @@ TABLE = [
     (RPM, RPM + ", load_wander_percent: 60", "operation.load_wander_percent: 60 is not in [0, 50]."),
     (RPM, RPM + ", temperature_celsius: 300", "operation.temperature_celsius: 300 is not in [-40, 200]."),
     (RPM, RPM + ", temperature_celsius: 40",
-     "operation.temperature_celsius: does nothing without oil; give contact.lubricant, or leave it out."),
+     "operation.temperature_celsius: has no effect without oil; give contact.lubricant, or leave it out."),
     (RPM, RPM + ", inner_ring_hotter_k: 101", "operation.inner_ring_hotter_k: 101 is not in [-50, 100]."),
     (RPM, RPM + ", axial_load_n: -1", "operation.axial_load_n: -1 is not in [0, 1e+07]."),
     (RPM, RPM + ", axial_load_n: 100", "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg"),
@@ -177,14 +183,14 @@ TABLE = [
     ("angle_deg: 90", "body: {}", "recording.channels[0].body: no body has a weight above 0; give one, such as body: sensor."),
     ("angle_deg: 90", "body: {sensor: 0}", "recording.channels[0].body: no body has a weight above 0; give one, such as body: sensor."),
     ("angle_deg: 90", "path: 3", "recording.channels[0].path: 3 is not allowed here; it must be a section with keys of its own."),
-    ("angle_deg: 90", "path: {direct: 0}", "recording.channels[0].path.direct: 0 without modes lets nothing through;"),
+    ("angle_deg: 90", "path: {direct: 0}", "recording.channels[0].path.direct: 0 without modes transmits nothing;"),
     # more than a recipe may ask for
     ("rigs: 2", "rigs: 1000000000000", "corpus: rigs * specimens_per_rig * records_per_specimen are 8000000000000 records, and the "),
     ("specimens_per_rig: 4", "specimens_per_rig: 1000000000", "are 4000000000 records, and the limit is 10000000; if that is meant,"),
     ("rigs: 2", "rigs: 1" + 50 * "0", "are 1e18 or more records, and the limit is 10000000;"),
     ("specimens_per_rig: 4", "specimens_per_rig: 1000000", "corpus.specimens_per_rig: asks for 1000000 specimens, and the limit is"),
     ("12000\n  duration_s: 0.1", "200000\n  duration_s: 600",
-     "recording: a record of all channels, what settles included, has 120040000 samples, and the limit is 25000000;"),
+     "recording: a record of all channels, settle_s included, has 120040000 samples, and the limit is 25000000;"),
     ("12000\n  duration_s: 0.1\n", "20000\n  duration_s: 600\n",
      "corpus.records_per_part: 16 records need 192128000 samples, and the limit is 150000000;"),
     # what is no recipe
@@ -229,7 +235,9 @@ def test_every_thing_that_is_wrong_gets_a_sentence_of_its_own(tmp_path):
 def test_a_recipe_that_swells_is_refused(tmp_path):
     layers = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
     layers += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 9)]
-    assert "up to line 5, aliases written out, holds 23457 values" in sentence_of(tmp_path, "\n".join([*layers, WHOLE]))
+    assert "up to line 5, with aliases expanded, holds 23457 values" in sentence_of(
+        tmp_path, "\n".join([*layers, WHOLE])
+    )
 
 
 def test_a_recipe_of_a_megabyte_is_refused(tmp_path):
@@ -242,7 +250,7 @@ def test_a_recipe_of_a_megabyte_is_refused(tmp_path):
 def test_a_thousand_things_that_are_wrong_are_not_all_told(tmp_path):
     said = sentence_of(tmp_path, WHOLE + "path: {" + ", ".join(f"odd{n}: 1" for n in range(1000)) + "}\n").splitlines()
     assert len(said) == 21
-    assert said[-1] == "up to 980 more things are wrong; correct these first."
+    assert said[-1] == "there are up to 980 more errors; correct these first."
 
 
 def test_a_key_of_a_thousand_letters_is_shown_in_part(tmp_path):

@@ -82,7 +82,7 @@ def test_an_axial_load_takes_up_clearance_and_leaves_the_rest_of_the_machine(rec
 
 
 def test_a_bearing_of_ones_own_reaches_the_kernel(record_of):
-    mine = {"n_balls": 11, "pitch_mm": 50, "ball_mm": 9, "contact_angle_deg": 15}
+    mine = {"n_balls": 11, "pitch_diameter_mm": 50, "ball_diameter_mm": 9, "contact_angle_deg": 15}
     catalogue = {"kind": "catalogue", "designations": ["mine"], "entries": {"mine": mine}}
     found = record_of({"bearing": catalogue})
     assert found.bearing.n_balls == 11
@@ -98,9 +98,15 @@ ROLLERS = {
     "own": {
         "kind": "catalogue",
         "designations": ["mine"],
-        "entries": {"mine": {"n_balls": 13, "pitch_mm": 46.5, "ball_mm": 9, "roller_length_mm": 10}},
+        "entries": {"mine": {"n_balls": 13, "pitch_diameter_mm": 46.5, "ball_diameter_mm": 9, "roller_length_mm": 10}},
     },
-    "geometry": {"kind": "geometry", "n_balls": 13, "pitch_mm": 46.5, "ball_share": 9 / 46.5, "roller_length_mm": 10},
+    "geometry": {
+        "kind": "geometry",
+        "n_balls": 13,
+        "pitch_diameter_mm": 46.5,
+        "ball_share": 9 / 46.5,
+        "roller_length_mm": 10,
+    },
 }
 
 

@@ -215,6 +215,6 @@ def test_oil_too_thick_for_the_formulas_leaves_the_record_out(recipe_with):
 
 
 def test_a_contact_too_steep_for_a_radial_bearing_is_refused(recipe_with):
-    bearing = {"kind": "geometry", "n_balls": 9, "pitch_mm": 39, "ball_share": 0.2, "contact_angle_deg": 40}
+    bearing = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": 39, "ball_share": 0.2, "contact_angle_deg": 40}
     with pytest.raises(RecipeError, match=r"^specimen 0: a contact angle of 60 degrees"):
         draw_scenarios(recipe_with({"bearing": bearing, "specimen.contact_angle_deg": 20}), 0, 1)

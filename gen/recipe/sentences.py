@@ -1,0 +1,159 @@
+"""Error sentences for broken recipes: the place, the value found, and what is allowed or what to do."""
+
+import difflib
+import reprlib
+from typing import Any, get_args
+
+from pydantic import BaseModel, ValidationError
+
+from gen.recipe.model import Recipe
+
+_MOST_SENTENCES = 20
+_LONGEST_KEY = 60  # characters shown
+_RENAMED = {"pitch_mm": "pitch_diameter_mm", "ball_mm": "ball_diameter_mm", "spalls": "n_spalls"}
+
+
+def sentences(error: ValidationError) -> list[str]:
+    """One sentence for each wrong key or value; a key that is missing because it is misspelt counts once."""
+    items = error.errors()
+    meant = {(*item["loc"][:-1], _guess(item["loc"])) for item in items if item["type"] == "extra_forbidden"}
+    found: dict[str, None] = {}
+    for place, item in enumerate(items):
+        sentence = None if item["loc"] in meant else _sentence(item)
+        if sentence and len(found) == _MOST_SENTENCES:
+            return [*found, f"there are up to {len(items) - place} more errors; correct these first."]
+        if sentence:
+            found[sentence] = None
+    return list(found)
+
+
+def _sentence(item: Any) -> str | None:
+    """Sentence about one error; None if another error says more about it."""
+    place, value, kind, context = _place(item["loc"]), item["input"], item["type"], item.get("ctx", {})
+    shown = reprlib.repr(value) if isinstance(value, str | int | float) or value is None else "this"
+    match kind:
+        case "extra_forbidden":
+            guess, allowed = _guess(item["loc"]), ", ".join(_siblings(item["loc"]))
+            if guess and guess == _RENAMED.get(str(item["loc"][-1])):
+                return f"{place}: no such key; it is called {guess} now."
+            return f"{place}: no such key; " + (f"did you mean {guess}?" if guess else f"allowed are {allowed}.")
+        case "invalid_key":
+            section = _place(item["loc"][:-1])
+            return f"{section}: {reprlib.repr(value)} is not a key; keys are words, and decimals have a point, not a comma."
+        case "missing":
+            return f"{place}: is missing; give it."
+        case "union_tag_invalid":
+            expected = context["expected_tags"].replace("'", "")
+            return f"{place}.kind: {reprlib.repr(context['tag'])} is not one of {expected}."
+        case "union_tag_not_found":
+            return f"{place}: {shown} needs a kind, such as kind: {_first_kind(item)}."
+        case "value_error":
+            text = item["msg"].removeprefix("Value error, ")
+            if place.endswith("width_mm") and "is not in" in text:
+                text = text.removesuffix(".") + "; for a bearing without a fault use kind: healthy."
+            if not place:
+                return text
+            return f"{place}{'.' if text.partition(':')[0] in _siblings((*item['loc'], '')) else ': '}{text}"
+        case "too_short":
+            least = context["min_length"]
+            size = len(item["input"])
+            if size >= least:  # the wrong entries are not counted, and have sentences of their own
+                return None
+            found = f"{size} is too few" if size else "is empty"
+            return f"{place}: {found}; give at least {'one' if least == 1 else least}."
+        case "too_long":
+            return f"{place}: {len(item['input'])} is too many; give at most {context['max_length']}."
+        case _:
+            allowed = _ALLOWED.get(kind) or item["msg"].replace("Input should be ", "")
+            return f"{place}: {shown} is not allowed here; it must be {allowed}."
+
+
+_ALLOWED = {
+    "int_type": "a whole number",
+    "int_from_float": "a whole number",
+    "float_type": "a number",
+    "string_type": "text",
+    "string_pattern_mismatch": "1 to 64 letters, digits, dots, dashes or underscores",
+    "tuple_type": "a list",
+    "model_type": "a section with keys of its own",
+    "model_attributes_type": "a section with keys of its own",
+    "dict_type": "a section with keys of its own",
+}
+
+
+def _first_kind(item: Any) -> str:
+    known = {
+        "bearing": "catalogue", "faults": "inner", "parts": "inner", "speed_profile": "run_up", "load_profile": "ramp"
+    }  # fmt: skip
+    place = [step for step in item["loc"] if isinstance(step, str)]
+    whole = isinstance(item["loc"][-1], int) or item["loc"][-1] in known
+    return known.get(place[-1], "uniform") if whole else "uniform"
+
+
+def _place(location: tuple[int | str, ...]) -> str:
+    """Path of a value in the file; the names of union branches, which pydantic inserts, are left out."""
+    place, node = "", _Cursor(Recipe)
+    for step in location:
+        if isinstance(step, int):
+            place += f"[{step}]"
+        elif node.knows(step) or (step != "[key]" and not node.models) or step not in _BRANCHES:
+            shown = step if step.isprintable() and len(step) <= _LONGEST_KEY else reprlib.repr(step)
+            place += f".{shown}" if place else shown
+            node = node.into(step)
+    return place
+
+
+_BRANCHES = {
+    "constant", "uniform", "loguniform", "normal", "choice", "grid", "catalogue", "geometry", "adc", "float32", "physical", "snr",
+    "healthy", "inner", "outer", "ball", "cage", "distributed", "compound", "ramp", "run_up", "steps", "table", "[key]",
+}  # fmt: skip
+
+
+class _Cursor:
+    """Sections that a location can lead to so far."""
+
+    def __init__(self, *models: type[BaseModel]) -> None:
+        self.models = models
+
+    def knows(self, key: str) -> bool:
+        return any(key in model.model_fields for model in self.models)
+
+    def into(self, key: str) -> "_Cursor":
+        found = [model.model_fields[key].annotation for model in self.models if key in model.model_fields]
+        return _Cursor(*_sections(found))
+
+    def of_kind(self, kind: str) -> "_Cursor":
+        found = [
+            m for m in self.models if "kind" in m.model_fields and kind in get_args(m.model_fields["kind"].annotation)
+        ]
+        return _Cursor(*found) if found else self
+
+    def keys(self) -> list[str]:
+        return sorted({name for model in self.models for name in model.model_fields})
+
+
+def _sections(annotations: list[Any]) -> list[type[BaseModel]]:
+    sections: list[type[BaseModel]] = []
+    for annotation in annotations:
+        if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+            sections.append(annotation)
+        sections += _sections(list(getattr(annotation, "__args__", ())))
+    return sections
+
+
+def _siblings(location: tuple[int | str, ...]) -> list[str]:
+    """Keys that are allowed where ``location`` ends."""
+    node = _Cursor(Recipe)
+    for step in location[:-1]:
+        if isinstance(step, str):
+            node = node.into(step) if node.knows(step) else node.of_kind(step)
+    return node.keys()
+
+
+def _guess(location: tuple[int | str, ...]) -> str | None:
+    """New name of the last key of ``location`` if it was renamed, else the most similar allowed key, if any."""
+    key, allowed = str(location[-1]), _siblings(location)
+    if _RENAMED.get(key) in allowed:
+        return _RENAMED[key]
+    near = difflib.get_close_matches(key, allowed, 1)
+    return near[0] if near else None

@@ -1,0 +1,105 @@
+"""Units of recipes and mapping files, and the operations that turn them into SI.
+
+A key ends in its unit: ``width_mm`` is a width in millimetres. The last bit of a converted value reaches the stored signals, and
+``x / 100`` differs from ``x * 1e-2`` in the last bit. So each conversion is one operation, and it must not be replaced by an equal one:
+drawn values, lengths and angles are multiplied by the factor of their unit; percentages of profiles and modes are divided by 100;
+a labelled speed is divided by 60.
+"""
+
+import math
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class Unit(NamedTuple):
+    """A unit that a key can end in: its symbol, and the factor that turns it into SI."""
+
+    symbol: str
+    factor: float
+
+
+UNITS: Mapping[str, Unit] = {
+    "mm": Unit("mm", 1e-3),
+    "um": Unit("um", 1e-6),
+    "nm": Unit("nm", 1e-9),
+    "rpm": Unit("rpm", 1 / 60),
+    "deg": Unit("degree", math.pi / 180),
+    "percent": Unit("%", 1e-2),
+    "mm_s": Unit("mm/s", 1e-3),
+    "mm2_s": Unit("mm2/s", 1e-6),
+    "hz": Unit("Hz", 1.0),
+    "s": Unit("s", 1.0),
+    "kg": Unit("kg", 1.0),
+    "n": Unit("N", 1.0),
+    "m_s2": Unit("m/s2", 1.0),
+    "n_m": Unit("N/m", 1.0),
+    "n_s_m": Unit("N s/m", 1.0),
+    "db": Unit("dB", 1.0),
+    "celsius": Unit("degC", 1.0),
+    "k": Unit("K", 1.0),
+    "kg_m3": Unit("kg/m3", 1.0),
+    "per_gpa": Unit("1/GPa", 1e-9),
+}
+"""Units by the suffix of a key. Temperatures stay in degrees Celsius and levels in decibels: they have no SI factor."""
+
+STANDARD_GRAVITY = 9.80665  # m s-2, by definition
+POUND_FORCE = 4.4482216152605  # N, by definition
+HORSEPOWER = 745.69987  # W
+MIL = 25.4e-6  # m
+
+
+def unit_suffix(key: str) -> str:
+    """Suffix of a key that is a unit, empty if it has none.
+
+    >>> unit_suffix("width_mm"), unit_suffix("balance_mm_s"), unit_suffix("direct")
+    ('mm', 'mm_s', '')
+    """
+    words = key.split("_")
+    suffixes = ("_".join(words[-length:]) for length in (3, 2, 1) if len(words) > length)
+    return next((suffix for suffix in suffixes if suffix in UNITS), "")
+
+
+def split_unit(key: str) -> tuple[str, float]:
+    """Key without its unit, and the factor that turns that unit into SI.
+
+    >>> split_unit("width_mm"), split_unit("balance_mm_s"), split_unit("direct")
+    (('width', 0.001), ('balance', 0.001), ('direct', 1.0))
+    """
+    suffix = unit_suffix(key)
+    return (key.removesuffix(f"_{suffix}"), UNITS[suffix].factor) if suffix else (key, 1.0)
+
+
+def to_si(value: float, unit: str) -> float:
+    """Value of a quantity given in the unit with a suffix of ``UNITS``.
+
+    >>> to_si(2.0, "mm"), to_si(180.0, "deg") == math.pi
+    (0.002, True)
+    """
+    return value * UNITS[unit].factor
+
+
+def percent_to_share(percent: float) -> float:
+    """Share of one [1].
+
+    >>> percent_to_share(25)
+    0.25
+    """
+    return percent / 100
+
+
+def decibel_to_ratio(level: float) -> float:
+    """Ratio of two amplitudes [1].
+
+    >>> decibel_to_ratio(40)
+    100.0
+    """
+    return 10 ** (level / 20)
+
+
+def rpm_to_hertz(speed: float) -> float:
+    """Shaft rate of a labelled speed [Hz].
+
+    >>> rpm_to_hertz(1800)
+    30.0
+    """
+    return speed / 60
