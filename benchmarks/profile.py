@@ -1,7 +1,7 @@
-"""Where the time of a record goes in one worker: stages of its making, and the parts of the kernel.
+"""Time that a worker spends on one record, by stage and by part of the kernel.
 
-``python -m benchmarks.profile [RECIPE]``, by default the full model. The parts of the kernel are timed one at a time on a batch of the
-recipe's records, over and over from the same knot; what they leave of the whole is memory traffic and whatever they share.
+``python -m benchmarks.profile [RECIPE]``, by default the full model. Each part of the kernel is timed alone on a batch of records of the
+recipe, many times from the same knot; the difference to the whole is memory traffic and shared work.
 """
 
 import sys
@@ -43,7 +43,7 @@ PARTS = {
 
 @njit
 def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters: Any, knots: int) -> None:
-    """One part of the kernel for so many ``knots``."""
+    """Run one part of the kernel for ``knots`` knots."""
     lanes = set_out(shape, batch, n_steps)
     work = prepare(shape, lanes, n_steps)
     width = len(shape.channels) * LANES
@@ -83,7 +83,7 @@ def repeat(part: int, shape: Any, batch: Lanes, n_steps: int, dt: float, filters
 
 
 def kernel_parts(recipe: Recipe) -> tuple[dict[str, float], int]:
-    """Time of each part for each record and knot [s], on the commonest batch of a recipe, and its steps per knot."""
+    """Time of each part per record and knot [s], on the most common kind of batch of a recipe, and its steps per knot."""
     scenarios = draw_scenarios(recipe, 0, recipe.corpus.records_per_part)
     records = [kernel_record(scenario, recipe) for scenario in scenarios]
     needs = [
