@@ -1,4 +1,4 @@
-"""Laws of generation: whoever makes a corpus, in how many goes, it is the same corpus."""
+"""Laws of generation: a corpus is the same for any number of workers and interruptions."""
 
 import fcntl
 import importlib
@@ -21,7 +21,7 @@ from gen.recipe import read_recipe
 from gen.replay import replay
 from gen.scenarios import draw_scenarios
 
-GENERATE = importlib.import_module("gen.generate")  # the packages give the functions under these names
+GENERATE = importlib.import_module("gen.generate")  # the packages export the functions under these names
 SIMULATE = importlib.import_module("gen.simulation.simulate")
 
 

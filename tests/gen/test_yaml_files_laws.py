@@ -1,4 +1,4 @@
-"""YAML from a stranger: nothing in it makes reading slow or large, and what is not of the few plain types is refused with its line."""
+"""YAML from a stranger: reading is never slow and needs little memory; types beyond the few plain ones are refused with their line."""
 
 import io
 import os
@@ -173,7 +173,7 @@ def test_pipes_devices_and_folders_are_refused_and_never_waited_for(tmp_path):
 
 
 def test_the_recipes_that_ship_keep_their_hashes():
-    """Golden: a change of these hashes makes every corpus made before refuse to be completed."""
+    """Golden: if these hashes change, no corpus made before can be completed."""
     assert {name: recipe_hash(read_recipe(name))[:16] for name in shipped_recipes()} == {
         "domain_randomised": "5e5213303d2973bc",
         "every_fault": "7db0d3de18c08d28",
@@ -184,7 +184,7 @@ def test_the_recipes_that_ship_keep_their_hashes():
 
 
 def test_a_recursive_alias_takes_no_memory(tmp_path):
-    """In a process of its own, whose memory is bounded."""
+    """In a separate process with limited memory."""
     path = tmp_path / "recursive.yaml"
     path.write_text("a: &a [*a, *a]\n")
     code = (

@@ -1,4 +1,4 @@
-"""The compiled mixing against the same written out in NumPy."""
+"""The compiled mixing compared with the same equations in NumPy."""
 
 import numpy as np
 import pytest
@@ -11,7 +11,7 @@ law = settings(deadline=None, max_examples=25)
 
 
 def mixed(bearing, background, ringing, angles, lines, first, stop):
-    """Twin of :func:`gen.measurement.mixing.mix` that returns what it changes, from ``first`` to ``stop``."""
+    """Twin of :func:`gen.measurement.mixing.mix` that returns the arrays it changes, from ``first`` to ``stop``."""
     time, turn = np.arange(first, stop), angles[first:stop]
     swing = [1 + a * np.cos(turn + p) + b * np.cos(2 * turn + q) for a, b, p, q in lines.swings]
     line = np.zeros(len(time))

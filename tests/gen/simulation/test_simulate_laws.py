@@ -1,4 +1,4 @@
-"""Laws of the simulation of scenarios: what a record gives is its own, and fine enough, or it is refused."""
+"""Laws of the simulation of scenarios: a record depends on itself alone, and is accurate or refused."""
 
 import importlib
 import math
@@ -14,7 +14,7 @@ from gen.simulation.simulate import FINE_STEP, lead_samples, simulate, steps_per
 from tests.reference import decimation_taps, march_lanes, slow_motion, waviness
 
 FS = 12_000.0
-MODULE = importlib.import_module("gen.simulation.simulate")  # the package gives the function under this name
+MODULE = importlib.import_module("gen.simulation.simulate")  # the package exports the function under this name
 
 
 @pytest.fixture(scope="module")
