@@ -4,8 +4,12 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= out/quickstart
 export OMP_NUM_THREADS ?= 1
+FLOORS := .venv-floors
+# the fast half: everything that needs no kernel of the full model
+FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/test_yaml_files_laws.py \
+	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
-.PHONY: quickstart test lint generated bench fuzz clean
+.PHONY: quickstart test lint generated bench fuzz floors clean
 
 $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Raceway needs Python 3.11 or later; set PYTHON=..."; exit 2; }
@@ -40,5 +44,16 @@ bench: $(VENV)/installed
 fuzz: $(VENV)/installed
 	$(BIN)/python -m tests.fuzz --count 20000
 
+$(FLOORS)/installed: pyproject.toml
+	rm -rf $(FLOORS)
+	$(PYTHON) -m venv $(FLOORS)
+	$(FLOORS)/bin/python -m tests.floors > $(FLOORS)/floors.txt
+	$(FLOORS)/bin/python -m pip install --quiet --constraint $(FLOORS)/floors.txt --editable '.[test]'
+	@touch $@
+
+# warnings are no errors here: old packages warn of newer ones that they were never tried with
+floors: $(FLOORS)/installed
+	NUMBA_CACHE_DIR=$(FLOORS)/kernels $(FLOORS)/bin/python -m pytest -W ignore -p no:cacheprovider $(FLOOR_TESTS)
+
 clean:
-	rm -rf $(VENV) out build *.egg-info
+	rm -rf $(VENV) $(FLOORS) out build dist *.egg-info

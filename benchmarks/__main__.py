@@ -1,7 +1,7 @@
-"""Every benchmark, or those named: one table of ratios; a run of all writes ``benchmarks/results.json``.
+"""Run benchmarks and print a table of ratios; a run of all benchmarks writes ``benchmarks/results.json``.
 
-``python -m benchmarks [NAME...]``. Each row is a value and that of a named alternative, both medians over interleaved pairs, and the median
-of their ratios. Values in s, ms or MB are better when small, rates when large. All of it takes ten minutes.
+``python -m benchmarks [NAME...]``. Each row compares a value with that of a named alternative: medians over interleaved pairs, and the
+median of the ratios. Small values in s, ms or MB are good, large rates are good. All benchmarks take ten minutes.
 """
 
 import argparse
@@ -32,7 +32,7 @@ HEADS = ("", "what", "value", "alternative", "its value", "ratio", "pairs")
 
 
 def facts() -> dict[str, Any]:
-    """What the figures depend on."""
+    """Processor, versions and settings that the values depend on."""
     found = machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
     for name in ("xarray", "netCDF4", "h5py", "dask", "jax", "tsfel"):
         try:
@@ -43,7 +43,7 @@ def facts() -> dict[str, Any]:
 
 
 def table(lines: list[Line]) -> str:
-    """Rows in columns, and below them a sentence for each that is missing."""
+    """Text table of all rows, and below it a sentence for each skipped row."""
     cells = [HEADS, *(_cells(line) for line in lines if isinstance(line, Row))]
     widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
     rows = ["  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in cells]

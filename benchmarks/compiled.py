@@ -1,4 +1,4 @@
-"""``plain.c`` and ``intrinsics.c``: compiled into a temporary folder, called through ctypes on records in lanes."""
+"""Compile ``plain.c`` and ``intrinsics.c`` into a temporary folder, and call them through ctypes on records in lanes."""
 
 import ctypes
 import shutil
@@ -30,7 +30,7 @@ class Batch(NamedTuple):
     state: FloatArray
     """Shape (coordinate, lane): x1 y1 x2 y2 and their rates [m, m/s]."""
     turn: FloatArray
-    """Directions of cage and shaft, and where the spall is among the balls, in distances between them, shape (row, lane)."""
+    """Directions of cage and shaft, and position of the spall among the balls in units of their distance, shape (row, lane)."""
     params: FloatArray
     """Shape (parameter, lane)."""
 
@@ -41,7 +41,7 @@ def compiler() -> str | None:
 
 
 def has_avx512() -> bool:
-    """Whether this processor runs what ``intrinsics.c`` asks of it."""
+    """Whether this processor has the instructions of ``intrinsics.c``."""
     try:
         return "avx512dq" in Path("/proc/cpuinfo").read_text(encoding="utf-8")
     except OSError:
@@ -54,7 +54,7 @@ def compiled(name: str, lanes: int, spall: int, folder: Path) -> March:
     library = folder / f"{name}-{lanes}-{spall}.so"
     sizes = (f"-DLANES={lanes}", f"-DSPALL={spall}", *options)
     subprocess.run(["cc", *FLAGS, *sizes, "-c", "-o", library.with_suffix(".o"), HERE / source], check=True)
-    # linked with -ffast-math it would take subnormal numbers away from the whole process
+    # linking with -ffast-math would disable subnormal numbers in the whole process
     subprocess.run(["cc", "-shared", "-o", library, library.with_suffix(".o"), "-lm"], check=True)
     march = ctypes.CDLL(str(library)).march
     array = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")

@@ -1,7 +1,7 @@
-"""Features of a record against those of TSFEL, on signals of a second at 12.8 kHz, one core.
+"""Time to compute the features of a record, compared with TSFEL, on signals of one second at 12.8 kHz, one core.
 
-Ours are looked up at fault orders in six envelope spectra; TSFEL's spectral and statistical domains know nothing of bearings. The row
-says how many numbers each gives.
+Our features are levels at fault orders in six envelope spectra; the spectral and statistical domains of TSFEL are not specific to
+bearings. The row states the number of features of each.
 """
 
 import importlib
@@ -19,7 +19,7 @@ FS, SAMPLES, SHAFT_RATE = 12_800.0, 12_800, 29.95
 
 
 def rows(pairs: int = 5, *, records: int = 128, theirs: int = 16) -> Iterator[Line]:
-    """Lines of the table, ours for so many records a time and TSFEL's for so many."""
+    """Lines of the table; ``records`` per call for our features, ``theirs`` for TSFEL."""
     if not importlib.util.find_spec("tsfel"):
         yield Skipped("features tsfel", "tsfel is not installed; pip install 'raceway[bench]'.")
         return

@@ -1,8 +1,7 @@
-"""The kernel against kernels in C written for the seed model alone, and the full model against the seed.
+"""The kernel compared with C kernels for the seed model alone, and the full model compared with the seed model.
 
-The C kernels return the accelerations of every few steps unfiltered; ours, timed as :func:`raceway.studies.timing.bench` does, filters
-them first.
-All run on one core, at the recipe's own step, on the same records.
+The C kernels return every few accelerations without a filter; our kernel, timed as in :func:`raceway.studies.timing.bench`, filters
+them. All run on one core, with the step of the recipe, on the same records.
 """
 
 import tempfile
@@ -33,7 +32,7 @@ PLAIN_LANES, INTRINSIC_LANES, TRIES = (8, 16, 32, 64), (8,), 3
 def rows(
     pairs: int = 5, *, recipe: Path | str = SEED, full: Path | str = FULL, records: int = 64, samples: int = 12_000
 ) -> Iterator[Line]:
-    """Lines of the table; the C kernels make so many ``samples`` a time."""
+    """Lines of the table; the C kernels compute ``samples`` samples per call."""
     with tempfile.TemporaryDirectory() as folder:
         rivals = _c_kernels(recipe, records, samples, Path(folder))
         measures = {"ours": lambda: kernel_speed(recipe, records), "full": lambda: kernel_speed(full, min(records, 32))}
@@ -55,7 +54,7 @@ def kernel_speed(recipe: Path | str, records: int) -> float:
 
 
 def step_seconds(recipe: Path | str) -> tuple[float, int]:
-    """Step that our kernel takes for the first record of a recipe [s], and steps per sample."""
+    """Step of our kernel for the first record of a recipe [s], and steps per sample."""
     checked = read_recipe(recipe)
     (scenario,) = draw_scenarios(checked, 0, 1)
     factor = steps_per_sample(kernel_input(scenario, timeline(checked)), scenario.record.number, checked)
@@ -65,7 +64,7 @@ def step_seconds(recipe: Path | str) -> tuple[float, int]:
 def _c_kernels(
     recipe: Path | str, records: int, samples: int, folder: Path
 ) -> dict[str, tuple[int, Callable[[], float]]]:
-    """The number of lanes at which each C kernel is fastest here, and what measures its record-steps per second."""
+    """For each C kernel, the number of lanes at which it is fastest here, and a function that measures its record-steps per second."""
     if compiler() is None:
         return {}
     sources = {"plain": PLAIN_LANES, "fused": PLAIN_LANES} | ({"intrinsics": INTRINSIC_LANES} if has_avx512() else {})
@@ -83,7 +82,7 @@ def _c_kernels(
 def _c_speed(
     source: str, lanes: int, groups: dict[int, list[KernelInput]], dt: float, samples: int, steps: int, folder: Path
 ) -> Callable[[], float]:
-    """What measures a C kernel on the records our kernel is given."""
+    """Function that measures a C kernel on the records of our kernel."""
     work = [(compiled(source, lanes, spall, folder), in_lanes(records, lanes, dt)) for spall, records in groups.items()]
 
     def run() -> None:

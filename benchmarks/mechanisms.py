@@ -1,8 +1,8 @@
-"""What each mechanism does to the marks by which simulated and real faults differ.
+"""Effect of each mechanism on the marks in which simulated and real faults differ.
 
-``python -m benchmarks.mechanisms`` prints a table: the reference machine of :mod:`benchmarks.visibility` with one thing changed at a time,
-medians over the seeds. Marks: rms and kurtosis of the record; lines of the squared envelope one shaft turn beside BPFO, relative to BPFO;
-lines beside BPFI, relative to BPFI; share of the power of the envelope's swing that lies below 0.8 orders.
+``python -m benchmarks.mechanisms`` prints a table of medians over the seeds, for the reference machine of :mod:`benchmarks.visibility` with
+one change at a time. Marks: rms and kurtosis of the record; lines of the squared envelope one shaft rate beside BPFO, relative to BPFO;
+lines beside BPFI, relative to BPFI; share of the power of the envelope, without its mean, below 0.8 orders.
 """
 
 import argparse
@@ -68,7 +68,7 @@ def marks(fault: dict[str, Any], changes: Changes, n_seeds: int) -> dict[str, fl
 
 
 def _beside(spectrum: FloatArray, line: float, rate: float) -> float:
-    """Mean of the lines one turn to either side, relative to the line [dB]."""
+    """Mean of the two lines one shaft rate beside a line, relative to that line [dB]."""
     peaks = [_peak(spectrum, line + side * rate) for side in (-1, 0, 1)]
     return float(np.median(20 * np.log10((peaks[0] + peaks[2]) / (2 * peaks[1]))))
 

@@ -1,6 +1,6 @@
-"""Opening a corpus of many parts and reading one record, against ``xarray.open_mfdataset`` over the parts.
+"""Time to open a corpus of many parts and read one record, compared with ``xarray.open_mfdataset`` over the parts.
 
-The files are in the page cache. ``check="size"`` compares sizes with the manifest, the default the hash of every byte.
+The files are in the page cache. ``check="size"`` compares the sizes of files with the manifest, the default compares their hashes.
 """
 
 import tempfile
@@ -40,7 +40,7 @@ def read_record(corpus: Path, record: int, check: str = "sha256") -> np.ndarray:
 
 
 def read_from_parts(corpus: Path, record: int) -> np.ndarray:
-    """The same from the parts; what is the same in all of them is not compared, which is how it goes fastest."""
+    """The same signal from the parts, with the fastest options: variables that all parts share are not compared."""
     paths = sorted((corpus / "parts").glob("*.nc"))
     same = {"data_vars": "minimal", "coords": "minimal", "compat": "override", "join": "override"}
     with xr.open_mfdataset(

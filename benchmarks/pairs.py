@@ -1,6 +1,6 @@
-"""Rows of the benchmark table: a value, the same of a named alternative in the same run, and the median of their ratios pair by pair.
+"""Rows of the benchmark table: a value, that of a named alternative in the same run, and the median over the ratios of their pairs.
 
-Whatever slows a machine down for a while slows both members of a pair down; figures of different runs are not compared.
+A temporary load of the machine slows both members of a pair down; values of different runs are never compared.
 """
 
 import statistics
@@ -24,7 +24,7 @@ class Row(NamedTuple):
 
 
 class Skipped(NamedTuple):
-    """A line that this machine cannot fill, and the sentence that says why."""
+    """A row that this machine cannot measure, and a sentence with the reason."""
 
     name: str
     why: str
@@ -35,7 +35,7 @@ Series = list[float]
 
 
 def interleaved(pairs: int, **measures: Callable[[], float]) -> dict[str, Series]:
-    """Measure one after the other, and all of it ``pairs`` times: A B A B.
+    """Call the measures in turn, ``pairs`` times: A B A B.
 
     >>> numbers = iter(range(4))
     >>> interleaved(2, a=lambda: next(numbers), b=lambda: next(numbers))

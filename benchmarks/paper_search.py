@@ -1,12 +1,12 @@
-"""Search for constants of the seed paper's system that let more of its statements hold.
+"""Search for constants of the system of the seed paper with which more of its statements hold.
 
-``python -m benchmarks.paper_search --seed 1`` runs differential evolution over what the paper leaves open, within bounds a machine could
-have, on the distance of every statement's value from its accepted range. With ``--hertz`` the contact stiffness is that of the geometry
-and the load the weight of the rotor, and no spring bridges the bearing. In sample: the statements it is judged by are those it
-was fitted to, so it shows that they can hold together and no more.
+``python -m benchmarks.paper_search --seed 1`` varies the constants that the paper does not give, within physical bounds, by differential
+evolution. It minimises the distance of the value of every statement from its accepted range. With ``--hertz`` the contact stiffness follows
+from the geometry, the load is the weight of the rotor, and there is no spring across the bearing. The result is a fit to the same
+statements that judge it: it shows that they can hold together, and nothing else.
 
-``python -m benchmarks.paper_search --perturb`` searches nothing: it changes every constant of each known preset by up to 5 percent,
-200 times over, and prints how many statements still hold.
+``python -m benchmarks.paper_search --perturb`` does not search: it changes every constant of each known preset by up to 5 percent, 200
+times, and prints how many statements still hold.
 """
 
 import argparse
@@ -37,7 +37,7 @@ CHANGE, DRAWS = 0.05, 200
 
 
 def preset(x: np.ndarray, fixed: dict[str, float]) -> Preset:
-    """Preset at a point of the unit cube, but for what is ``fixed``."""
+    """Preset at a point of the unit cube; constants in ``fixed`` keep their values."""
     value: dict[str, float] = {
         name: math.exp(math.log(low) + u * math.log(high / low))
         for u, (name, (low, high)) in zip(x, LOGARITHMIC.items(), strict=False)
@@ -52,7 +52,7 @@ def preset(x: np.ndarray, fixed: dict[str, float]) -> Preset:
 
 
 def missed(found: list[Finding]) -> float:
-    """Sum over the statements of how far each is from holding, at most 1 each."""
+    """Sum over the statements of their distances from the accepted range, at most 1 each."""
     return sum(_miss(f.value, *f.accept) for f in found)
 
 
@@ -67,14 +67,14 @@ def _miss(value: float, low: float, high: float) -> float:
 
 
 def holding(known: Preset, seed: int, draws: int = DRAWS) -> np.ndarray:
-    """Number of statements that hold of neighbours of a preset, every constant drawn evenly within ``CHANGE`` of its own, shape (draw,)."""
+    """Number of statements that hold with every constant of a preset changed by up to ``CHANGE``, shape (draw,)."""
     factors = np.random.default_rng(seed).uniform(1 - CHANGE, 1 + CHANGE, (draws, len(known)))
     made = run_many([Preset(*(np.array(known) * factor).tolist()) for factor in factors])
     return np.array([sum(f.holds for f in findings("perturbed", each)) for each in made])
 
 
 def main() -> None:
-    """Search and print the best preset, or perturb the known ones and print how they fare."""
+    """Search and print the best preset, or perturb the known presets and print the numbers of statements that hold."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--generations", type=int, default=150)

@@ -1,4 +1,4 @@
-"""From a recipe to validated parts on disk: against the kernel alone, with two workers, as a corpus grows, and from a cold start.
+"""Time from a recipe to validated parts: compared with the kernel alone, with two workers, for large corpora, and from a cold start.
 
 Everything goes through :func:`gen.generate` into a temporary folder, in this process unless the row says otherwise.
 """
@@ -25,7 +25,7 @@ SHORT = Path(__file__).with_name("short.yaml")
 CODECS = ("zlib", "zstd")
 SCALES = (1000, 20_000)
 
-# VmHWM, and not ru_maxrss of getrusage, which a process takes over from the one that started it
+# VmHWM instead of ru_maxrss of getrusage, which a process inherits from its parent
 _PEAK = """
 import json, sys, time
 from pathlib import Path
@@ -49,7 +49,7 @@ def rows(pairs: int = 3) -> Iterator[Line]:
 
 
 def throughput_rows(pairs: int, recipe: Path = FULL, kernel_records: int = 32) -> Iterator[Line]:
-    """End to end against the kernel alone, record by record; the first part, whose steps are run again to check them, is left out."""
+    """Whole pipeline compared with the kernel alone, per record, without the first part, whose steps are checked by a second run."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         recipes = {codec: variant(recipe, folder / f"{codec}.yaml", corpus={"codec": codec}) for codec in CODECS}
@@ -71,7 +71,7 @@ def throughput_rows(pairs: int, recipe: Path = FULL, kernel_records: int = 32) -
 
 
 def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_per_part: int = 32) -> Iterator[Line]:
-    """Two workers against one, on clusters that are running already and with the start of the cluster."""
+    """Two workers compared with one, on running clusters and with the start of the cluster."""
     with tempfile.TemporaryDirectory() as temporary, _cluster(1) as one, _cluster(2) as two:
         folder = Path(temporary)
         small = variant(
@@ -82,7 +82,7 @@ def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_pe
             return speed(small, folder, records=records, scheduler=cluster.scheduler_address)
 
         for cluster in (one, two):
-            running(cluster)  # every worker fetches its kernels
+            running(cluster)  # every worker loads its kernels
         found = interleaved(
             pairs,
             two=lambda: running(two),
@@ -98,7 +98,7 @@ def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_pe
 
 
 def growth_rows(pairs: int, recipe: Path = SHORT, scales: tuple[int, int] = SCALES) -> Iterator[Line]:
-    """Cost of a record and peak memory in a large corpus against a small one, each in a process of its own."""
+    """Time per record and peak memory of a large corpus compared with a small one, each in its own process."""
     small, large = (f"{scale:,} records" for scale in scales)
     with tempfile.TemporaryDirectory() as temporary:
         runs: dict[str, list[dict[str, float]]] = {"small": [], "large": []}
@@ -112,7 +112,7 @@ def growth_rows(pairs: int, recipe: Path = SHORT, scales: tuple[int, int] = SCAL
 
 
 def start_rows(pairs: int, recipe: Path = FULL) -> Iterator[Line]:
-    """`raceway generate` of one record with no kernel compiled against all of them in the cache."""
+    """`raceway generate` of one record without compiled kernels, compared with all kernels in the cache."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
 
@@ -144,7 +144,7 @@ def speed(recipe: Path, folder: Path, **options: Any) -> float:
 
 
 def steady(recipe: Path, folder: Path) -> float:
-    """Records per second of a corpus from its second part on, the files over all parts included."""
+    """Records per second of a corpus from its second part on, including the files over all parts."""
     done: list[tuple[int, float]] = []
     with tempfile.TemporaryDirectory(dir=folder) as corpus:
         made = generate(recipe, Path(corpus) / "corpus", progress=lambda n, _: done.append((n, time.perf_counter())))
@@ -163,6 +163,6 @@ def _first_record(recipe: Path, folder: Path, cache: Path) -> None:
 
 
 def _python(script: str, *arguments: object, **environment: str) -> str:
-    """What a script prints in a process of its own."""
+    """Standard output of a script that runs in its own process."""
     command = [sys.executable, "-c", script, *map(str, arguments)]
     return subprocess.run(command, env=os.environ | environment, check=True, capture_output=True, text=True).stdout

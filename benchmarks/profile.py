@@ -1,7 +1,7 @@
-"""Where the time of a record goes in one worker: stages of its making, and the parts of the kernel.
+"""Time that a worker spends on one record, by stage and by part of the kernel.
 
-``python -m benchmarks.profile [RECIPE]``, by default the full model. The parts of the kernel are timed one at a time on a batch of the
-recipe's records, over and over from the same knot; what they leave of the whole is memory traffic and whatever they share.
+``python -m benchmarks.profile [RECIPE]``, by default the full model. Each part of the kernel is timed alone on a batch of records of the
+recipe, many times from the same knot; the difference to the whole is memory traffic and shared work.
 """
 
 import sys
@@ -45,7 +45,7 @@ PARTS = {
 
 @njit
 def repeat(part: int, shape: Any, batch: Batch, n_steps: int, dt: float, filters: Any, knots: int) -> None:
-    """One part of the kernel for so many ``knots``."""
+    """Run one part of the kernel for ``knots`` knots."""
     own = set_out(shape, batch, n_steps)
     work = prepare(shape, own, n_steps)
     width = len(shape.channels) * LANES

@@ -1,6 +1,6 @@
-"""Records of a corpus read once, against xarray on ``corpus.nc``, whose virtual dataset opens every part; and the share of the hashes.
+"""Time to read and to hash a corpus, compared with xarray on ``corpus.nc``, whose virtual dataset opens every part.
 
-The files are in the page cache. Processes are forked, as those of a data loader are.
+The files are in the page cache. Processes are forked, like those of a data loader.
 """
 
 import multiprocessing
@@ -61,7 +61,7 @@ def plain(corpus: Path) -> xr.Dataset:
 
 
 def hashed(corpus: Path) -> None:
-    """Hash every file of a corpus, as the first opening in a process does."""
+    """Hash every file of a corpus, as a process does when it first opens it."""
     files.forget_hashes()
     part_paths(corpus, "sha256")
 
@@ -74,14 +74,14 @@ def in_order(opened: Opened, records: int) -> None:
 
 
 def at_random(opened: Opened, records: int) -> None:
-    """As many records as there are, one at a time, drawn at random."""
+    """As many records as the corpus has, one at a time, drawn at random."""
     with opened() as corpus:
         for record in np.random.default_rng(0).integers(0, records, records):
             corpus[SIGNAL].variable[int(record)].load()
 
 
 def through_dask(opened: Opened, records: int) -> None:
-    """Every record, as chunks of a dask array in two threads."""
+    """Every record, as chunks of a dask array, in two threads."""
     with opened() as corpus:
         corpus[[SIGNAL]].chunk({"record": BLOCK})[SIGNAL].mean().compute(scheduler="threads", num_workers=2)
         assert corpus.sizes["record"] == records

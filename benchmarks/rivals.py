@@ -1,6 +1,6 @@
-"""The kernel against what one would reach for first: NumPy over a batch, ``solve_ivp``, JAX ``vmap`` and ``scan``.
+"""The kernel compared with general tools: NumPy over a batch, ``solve_ivp`` of SciPy, ``vmap`` and ``scan`` of JAX.
 
-All three integrate the records of the seed's recipe with one right-hand side, written for the seed model alone.
+All three integrate the records of the seed recipe with one right-hand side, which covers the seed model only.
 """
 
 import importlib
@@ -51,7 +51,7 @@ def rows(
 
 
 def slope(xp: Any, t: float, q: Any, seed: Seed) -> Any:
-    """Rates and accelerations of records, shape of ``q``: (8,) or (8, record); ``xp`` is numpy or jax.numpy."""
+    """Rates and accelerations of records, of the shape of ``q``: (8,) or (8, record); ``xp`` is numpy or jax.numpy."""
     x1, y1, x2, y2, u1, v1, u2, v2 = q
     cage, shaft = seed.cage_angle + seed.cage_rate * t, seed.shaft_angle + seed.omega * t
     c, s = xp.cos(cage), xp.sin(cage)
@@ -102,7 +102,7 @@ def adaptive(seed: Seed, state: FloatArray, duration: float, sample: float) -> F
 
 
 def jax_march(steps: int) -> Callable[[Seed, FloatArray, float], Any]:
-    """A compiled function of records, their states and the step that gives what `numpy_march` does."""
+    """Compiled function with the arguments and the result of `numpy_march`."""
     jax = importlib.import_module("jax")
     jax.config.update("jax_enable_x64", True)
 

@@ -1,6 +1,6 @@
-"""How far the step is from what the processor can do: its multiplications and additions, counted in the assembly, at the measured rate.
+"""Speed of the step compared with a bound of the processor: the arithmetic instructions in the assembly at their measured rate.
 
-The bound counts every arithmetic vector instruction of a step as one multiplication and addition, and nothing else: no loads, no waiting.
+The bound counts every arithmetic vector instruction of a step as one multiplication and addition; loads and latency are not counted.
 """
 
 import ctypes
@@ -41,7 +41,7 @@ SHAPES = {
 
 @njit
 def take_steps(shape: Shape, state: Any, params: Any, times: int) -> None:
-    """Nothing but steps, ``STEPS * times`` of them."""
+    """Take ``STEPS * times`` steps and do nothing else."""
     state, params, history = copied(state), copied(params), zeros(STEPS * LANES)
     for _ in range(times):
         advance(shape, state, params, 1e-9, STEPS, 0.0, history, 0)
@@ -57,7 +57,7 @@ def take_roots(values: Any, times: int) -> None:
 
 
 def rows(pairs: int = 15, *, times: int = TIMES, shapes: tuple[str, ...] = tuple(SHAPES)) -> Iterator[Line]:
-    """Lines of the table: steps against their bound, and our square root against the processor's."""
+    """Lines of the table: steps compared with their bound, and our square root compared with that of the processor."""
     if compiler() is None:
         yield Skipped("roofline", "there is no C compiler (cc) on this machine.")
         return

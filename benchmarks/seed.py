@@ -1,6 +1,6 @@
-"""The records of the seed's recipe, as a program written for them alone takes them.
+"""Records of the seed recipe ``ophel2025`` as input of programs that cover its model only.
 
-Shaft and housing in x and y, nine balls, unbalance, at most one spall of the inner race, constant speed: what ``ophel2025`` makes.
+That model has shaft and housing in x and y, nine balls, unbalance, at most one spall on the inner race, and constant speed.
 """
 
 from typing import NamedTuple
@@ -39,13 +39,13 @@ class Seed(NamedTuple):
     load_x: FloatArray
     load_y: FloatArray
     unbalance: FloatArray
-    """Force that turns with the shaft."""
+    """Force of the unbalance, which turns with the shaft."""
     shaft_angle: FloatArray
     cage_angle: FloatArray
     omega: FloatArray
     cage_rate: FloatArray
     half_span: FloatArray
-    """Half the angle the spall spans, 0 without one."""
+    """Half the angle that the spall spans, 0 without a spall."""
     spall_angle: FloatArray
     depth: FloatArray
     ball_radius: FloatArray

@@ -1,7 +1,7 @@
-"""From simulation to real machines: train on ``domain_randomised`` alone, test on recordings it has never seen.
+"""Train on ``domain_randomised`` alone and test on recordings of real machines.
 
-``python benchmarks/transfer.py REAL`` with REAL a folder that holds ``cwru`` and ``mfpt`` as their providers publish them. Each seed is
-another corpus, drawn anew. Scores are balanced accuracies over the classes present, by half-second window and by recording.
+``python benchmarks/transfer.py REAL`` with REAL a folder that holds ``cwru`` and ``mfpt`` as their providers publish them. Each seed gives
+another corpus. Scores are balanced accuracies over the classes present, by half-second window and by recording.
 """
 
 import argparse

@@ -1,7 +1,7 @@
-"""What an analyst would see: fault lines in the squared envelope spectra of a reference machine, over many seeds of every fault.
+"""Height of fault lines in the squared envelope spectra of a reference machine, over many seeds of every fault.
 
 ``python -m benchmarks.visibility`` prints a table: the median over the seeds of the height of each line over its surroundings [dB], and
-the lowest, or where nothing should be seen the highest. The machine is a 6205 at 1797 rpm and 300 N with a sensor resonance of 3 kHz.
+the lowest, or the highest where no line is expected. The machine is a 6205 at 1797 rpm and 300 N with a sensor resonance of 3 kHz.
 """
 
 import argparse

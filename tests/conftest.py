@@ -1,4 +1,4 @@
-"""A recipe so small that a corpus of it takes a second or two, and that corpus."""
+"""A recipe whose corpus takes one or two seconds, and that corpus."""
 
 from pathlib import Path
 
@@ -27,7 +27,7 @@ faults:
 
 @pytest.fixture(scope="session")
 def tiny_recipe(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """File of a recipe of 48 records of 0.1 s in four parts."""
+    """File of a recipe with 48 records of 0.1 s in four parts."""
     path = tmp_path_factory.mktemp("recipe") / "tiny.yaml"
     path.write_text(TINY, encoding="utf-8")
     return path

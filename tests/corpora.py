@@ -21,7 +21,7 @@ SIZES = (3, 4, 2)  # records of the parts
 
 
 def columns(first, n):
-    """Values of all per-record variables for records ``first`` to ``first + n``, no two alike where that can be."""
+    """Values of all per-record variables for records ``first`` to ``first + n``, all different where the type allows it."""
     numbers = np.arange(first, first + n)
     found = {variable.name: numbers * 1.5 + 0.25 for variable in SCHEMA if variable.dtype == "f8"}
     found |= dict.fromkeys(("rig", "specimen", "recording", "n_spalls"), numbers)
@@ -46,7 +46,7 @@ def dataset(first, n, *, samples=50, kind="counts", channels=("a", "b")):
 
 
 def write_corpus(folder, sizes=SIZES, *, kind="counts", codec="zlib"):
-    """Parts of random records, index and manifest; the parts as they went in."""
+    """Write parts of random records, index and manifest; return the parts as they were before writing."""
     (folder / "parts").mkdir(parents=True)
     starts = np.concatenate([[0], np.cumsum(sizes)])
     parts = [dataset(int(first), n, kind=kind) for first, n in zip(starts, sizes, strict=False)]

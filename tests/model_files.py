@@ -1,4 +1,4 @@
-"""Small feature tables to train models on, and model files taken apart."""
+"""Small feature tables to train models on, and the members of model files."""
 
 import io
 import json
@@ -18,7 +18,7 @@ NAMES = (*COMBS.values(), *CAGE_LINES, "raw_kurtosis")
 
 
 def make_table(classes: int = 3, records: int = 24, seed: int = 0, names: Sequence[str] = NAMES) -> xr.Dataset:
-    """Feature table of records that tell their class a little, each of a specimen of its own."""
+    """Feature table whose features depend weakly on the class; each record has its own specimen."""
     rng = np.random.default_rng(seed)
     fault = (np.arange(records) % classes).astype(np.int8)
     features = rng.standard_normal((records, len(names))) + fault[:, None]
@@ -43,7 +43,7 @@ def write_models(folder: Path, classes: int, seed: int = 0) -> dict[str, Path]:
 
 
 class Archive:
-    """A model file taken apart, to be changed and put together again with the right checksums."""
+    """Members of a model file, to be changed and zipped again with the right checksums."""
 
     def __init__(self, path: Path) -> None:
         with zipfile.ZipFile(path) as archive:
@@ -51,7 +51,7 @@ class Archive:
         self.schema = json.loads(self.members.pop("schema.json"))
 
     def places(self, key: str) -> list[dict]:
-        """Every JSON object that stands under a key, the outermost first."""
+        """Every JSON object under a key, outermost first."""
         return [value[key] for value in self._values() if isinstance(value, dict) and isinstance(value.get(key), dict)]
 
     def objects(self, name: str) -> list[dict]:
@@ -60,14 +60,14 @@ class Archive:
         return [value["content"]["content"] for value in found if "content" in value]
 
     def array(self, place: str | dict) -> np.ndarray:
-        """Copy of the array at a place, or of the first that stands under a key."""
+        """Copy of the array at a place, or of the first array under a key."""
         return np.load(io.BytesIO(self.members[self._found(place)["file"]]))
 
     def put(self, place: str | dict, array: np.ndarray) -> None:
-        """Exchange the array at a place, or the first that stands under a key."""
+        """Replace the array at a place, or the first array under a key."""
         file, found = io.BytesIO(), self._found(place)
         np.save(file, array)
-        found["file"] = f"{1000 + len(self.members)}.npy"  # others may share the old one
+        found["file"] = f"{1000 + len(self.members)}.npy"  # other objects may share the old file
         self.members[found["file"]] = file.getvalue()
 
     def _values(self) -> list[Any]:

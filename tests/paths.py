@@ -1,4 +1,4 @@
-"""Where tests find the project, its golden numbers and, if they are there, real recordings."""
+"""Folders of the project, of its golden numbers and of real recordings, if there are any."""
 
 import os
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Changes to the small recipe of ``tests/gen/conftest.py`` that bring in everything a recipe can ask for, in one kernel."""
+"""Changes to the small recipe of ``tests/gen/conftest.py`` that use every feature of the model, in one kernel."""
 
 EVERY_FAULT = [
     {"kind": "healthy"},
@@ -18,7 +18,7 @@ EVERY_FAULT = [
     },
 ]
 
-# every record, healthy ones too, has waves, jitter, a schedule, oil, play and a resonance: one shape of the kernel
+# every record, healthy or faulty, has waviness, jitter, a schedule, oil, play and a resonance: all share one kernel
 EVERYTHING = {
     "corpus": {"rigs": 1, "specimens_per_rig": 14, "records_per_specimen": 2, "records_per_part": 14},
     "recording.channels": [{"name": "fan_end", "body": "sensor", "path": {"direct": 0.1}}],

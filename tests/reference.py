@@ -210,7 +210,7 @@ def wrapped(angle: float) -> float:
 def rigid_path(offset: float, half: float, arc: float, ball: float, race: float, depth: float) -> float:
     """Drop of the centre of a rigid ball over two sharp edges, from the triangle of ball, edge and ring [m].
 
-    ``race`` is positive if convex (inner race), negative if concave (outer race); see MODEL.md section 5.1.
+    ``race`` is positive if convex (inner race), negative if concave (outer race); see docs/model.md, Spalls.
     """
     u = half - abs(offset)
     if u <= 0:
@@ -224,7 +224,7 @@ def rigid_path(offset: float, half: float, arc: float, ball: float, race: float,
 
 
 def fall(fault: SpallInput, offset: float, arc: float, ball: float, race: float) -> float:
-    """Drop of a ball whose contact is ``offset`` [rad] from the centre of a spall, MODEL.md section 5.1 [m]."""
+    """Drop of a ball whose contact is ``offset`` [rad] from the centre of a spall, see docs/model.md, Spalls [m]."""
     half = fault.width / 2 / arc
     inside = half - abs(offset)
     if inside <= 0:
@@ -299,7 +299,7 @@ def contact_stiffness(machine: Machine, squeeze: FloatArray) -> float:
 def right_hand_side(record: KernelInput, slow: Slow, knot: float, at: int, tau: float, y: FloatArray) -> FloatArray:
     """Derivative of the state, shape (coordinate,), a share ``tau`` of the way from knot ``at`` to the next.
 
-    MODEL.md section 4.2, term by term.
+    The equations of docs/model.md, Bodies and forces, term by term.
     """
     machine = record.machine
     force = contact_force(machine, contacts(record, slow, at, tau, y))

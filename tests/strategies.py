@@ -1,6 +1,6 @@
-"""Hypothesis strategies for bearings, machines, motions and spalls that a recipe could ask for.
+"""Hypothesis strategies for bearings, machines, motions and spalls within the ranges of a recipe.
 
-Records have nine balls and, site by site, shapes that other tests use too: each new shape of a kernel takes seconds to compile.
+Records have nine balls and kernel variants that other tests use too: each new variant takes seconds to compile.
 """
 
 from dataclasses import replace
@@ -54,7 +54,7 @@ def bearings(draw):
 
 @st.composite
 def machines(draw, *, half_clearance=None, contact_damping=None):
-    """A machine of some kilograms around a 6205, its load anywhere."""
+    """A machine of a few kilograms with a 6205 and a load in any direction."""
     shaft, housing, sensor = draw(st.floats(1, 10)), draw(st.floats(1, 15)), draw(st.floats(0.05, 0.5))
     spring, damper = sensor_springs(sensor, draw(st.floats(1200, 4500)), draw(st.floats(0.01, 0.06)))
     stiffness, load, direction = draw(st.floats(1.5e7, 3e8)), draw(st.floats(50, 3000)), draw(angles)
@@ -93,7 +93,7 @@ def spalls(draw, sites=("inner", "outer", "ball")):
 
 @st.composite
 def steady_turnings(draw):
-    """Motion at a constant rate, from anywhere."""
+    """Motion at a constant rate, from any angles."""
     return Turning(
         draw(st.floats(10, 60)),
         unbalance=draw(st.floats(0, 1e-4)),
@@ -105,7 +105,7 @@ def steady_turnings(draw):
 
 @st.composite
 def wandering_turnings(draw):
-    """Motion with all its random processes at work."""
+    """Motion with all random processes."""
     return draw(steady_turnings())._replace(
         speed_rms=draw(st.floats(0, 0.01)),
         mean_slip=draw(st.floats(-0.01, 0.02)),
@@ -148,7 +148,7 @@ def steady_records(draw):
 
 @st.composite
 def wandering_records(draw):
-    """A record with everything at once: two to four spalls, damped contacts, wander, jitter, waviness."""
+    """A record with many mechanisms: two to four spalls, damped contacts, wander, jitter, waviness."""
     some = draw(st.lists(spalls(), min_size=2, max_size=4))
     seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
     return record(draw(machines()), draw(wandering_turnings()), some, seed=seed, waviness=rms)
@@ -156,7 +156,7 @@ def wandering_records(draw):
 
 @st.composite
 def extended_records(draw):
-    """A record with one spall on the inner race that two balls can be in at once, and perhaps another one."""
+    """A record with one spall on the inner race wide enough for two balls, and perhaps a second spall."""
     wide = SpallInput("inner", draw(st.floats(11.5e-3, 18e-3)), draw(st.floats(3e-6, 50e-6)), draw(angles))
     other = draw(st.lists(spalls(), max_size=1))
     return draw(wandering_records())._replace(spalls=(wide, *other))
@@ -164,7 +164,7 @@ def extended_records(draw):
 
 @st.composite
 def profiled_spalls(draw):
-    """A spall of any profile; tables have 9 points, every one of which the kernel's finer table has too."""
+    """A spall of any profile; tables have 9 points, all of which are also points of the finer table of the kernel."""
     some, profile = draw(spalls()), draw(st.sampled_from(EVERY_PROFILE))
     races = (2 if some.site == "ball" else 1) if profile == "table" else 0
     tables = st.lists(st.tuples(*[depths] * 9), min_size=races, max_size=races)
@@ -173,7 +173,7 @@ def profiled_spalls(draw):
 
 @st.composite
 def troubled_turnings(draw):
-    """Motion with a broken cage, a bent and misaligned shaft on top of its processes; the cage knocks soon after the start."""
+    """Motion with all processes, a broken cage, and a bent and misaligned shaft; the cage knocks soon after the start."""
     turning = draw(wandering_turnings())
     return turning._replace(
         bow=draw(st.floats(0, 200)),
@@ -194,7 +194,7 @@ def ball_waves(seed, rms):
 
 @st.composite
 def troubled_records(draw, *, rollers=False):
-    """A record with everything a recipe can ask for, in a support with play, at a shaft rate and load on schedule."""
+    """A record with every mechanism of a recipe: also a support with play, and schedules of shaft rate and load."""
     seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
     some = draw(st.lists(profiled_spalls(), min_size=2, max_size=4))
     machine = draw(machines())._replace(looseness=draw(st.floats(1e-8, 5e-6)))

@@ -1,4 +1,4 @@
-"""The loop over lanes is vector code: scalar code would be several times slower and give the same numbers, so nothing else would tell."""
+"""The loop over lanes is vector code. Scalar code would give the same numbers several times slower, and no other test would notice."""
 
 import re
 
@@ -11,8 +11,8 @@ from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import STATE_ROWS, make_shape, param_rows
 from gen.physics.kernel.step import advance
 
-STAGES = 2  # bodies of the Runge-Kutta step, each with the force of every ball
-# a square root is the processor's or begins with half the exponent: every number of a vector shifted by one bit
+STAGES = 2  # stages that the assembly holds as separate code, each with the force of every ball
+# a square root is an instruction of the processor, or starts from half the exponent, a vector shift by one bit
 PACKED_ROOT = re.compile(
     r"\bv?sqrtpd\b|\bfsqrt\s+v\d+\.2d\b|"
     r"\bv?psra[qd]\s+\$1, %[yz]mm|\bv?psr[al]q\s+\$1, %[xyz]mm|\bsshr\s+v\d+\.2d, v\d+\.2d, #1\b"

@@ -20,7 +20,7 @@ def brief_seed(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def brief_full(tmp_path_factory: pytest.TempPathFactory) -> Path:
     corpus = {"rigs": 1, "specimens_per_rig": 6, "records_per_part": 2}
     path = tmp_path_factory.mktemp("full") / "full.yaml"
-    machine = {"looseness_um": 2}  # with it the kernel is that of tests.recipes.EVERYTHING, compiled once for both
+    machine = {"looseness_um": 2}  # it makes the kernel that of tests.recipes.EVERYTHING, which is compiled anyway
     return variant(FULL, path, corpus=corpus, recording={"duration_s": 0.1, "settle_s": 0.05}, machine=machine)
 
 

@@ -1,4 +1,4 @@
-"""Every benchmark runs, once and small."""
+"""Every benchmark runs once, on small input."""
 
 import importlib.util
 import math
@@ -11,7 +11,7 @@ from gen.generation import generate
 from gen.recipe import read_recipe
 
 
-def sound(lines) -> dict[str, Row]:
+def finite_rows(lines) -> dict[str, Row]:
     rows = {line.name: line for line in lines if isinstance(line, Row)}
     assert all(math.isfinite(found.ratio) and found.ratio > 0 for found in rows.values())
     return rows
@@ -20,11 +20,11 @@ def sound(lines) -> dict[str, Row]:
 def test_the_kernel_is_compared_with_c_and_the_full_model_with_the_seed(brief_seed, brief_full):
     lines = list(kernel.rows(1, recipe=brief_seed, full=brief_full, records=4, samples=20))
     assert {line.name for line in lines} == {"kernel plain", "kernel fused", "kernel intrinsics", "kernel full"}
-    assert "kernel full" in sound(lines)
+    assert "kernel full" in finite_rows(lines)
 
 
 def test_the_step_is_compared_with_its_roofline():
-    found = sound(roofline.rows(1, times=1000, shapes=("seed model",)))
+    found = finite_rows(roofline.rows(1, times=1000, shapes=("seed model",)))
     assert not found or {"roofline seed model", "roofline roots"} == set(found)
 
 
@@ -37,25 +37,25 @@ def test_the_time_of_the_kernel_is_told_part_by_part(brief_full):
 
 def test_the_kernel_is_compared_with_its_rivals(brief_seed):
     lines = list(rivals.rows(1, recipe=brief_seed, records=4, steps=4, sampled_s=0.002))
-    assert {"kernel solve_ivp", "kernel numpy"} <= set(sound(lines))
+    assert {"kernel solve_ivp", "kernel numpy"} <= set(finite_rows(lines))
     assert isinstance(lines[-1], Row if importlib.util.find_spec("jax") else Skipped)
 
 
 def test_a_corpus_is_compared_with_the_kernel_alone(brief_full):
-    assert set(sound(pipeline.throughput_rows(1, brief_full, 2))) == {"pipeline zlib", "pipeline zstd"}
+    assert set(finite_rows(pipeline.throughput_rows(1, brief_full, 2))) == {"pipeline zlib", "pipeline zstd"}
 
 
 def test_two_workers_are_compared_with_one(few_short):
-    assert set(sound(pipeline.worker_rows(1, few_short, 12, 4))) == {"pipeline workers", "pipeline started"}
+    assert set(finite_rows(pipeline.worker_rows(1, few_short, 12, 4))) == {"pipeline workers", "pipeline started"}
 
 
 def test_a_large_corpus_is_compared_with_a_small_one(few_short):
-    rows = sound(pipeline.growth_rows(1, few_short, (4, 16)))
+    rows = finite_rows(pipeline.growth_rows(1, few_short, (4, 16)))
     assert 20 < rows["growth memory"].value < 4000
 
 
 def test_a_cold_start_is_compared_with_a_warm_one(few_short):
-    (found,) = sound(pipeline.start_rows(1, few_short)).values()
+    (found,) = finite_rows(pipeline.start_rows(1, few_short)).values()
     assert found.ratio > 1
 
 
@@ -65,11 +65,11 @@ def test_features_are_compared_where_tsfel_is_installed():
 
 
 def test_opening_a_corpus_is_compared_with_opening_its_parts():
-    assert set(sound(opening.rows(1, parts=3, records_per_part=2))) == {"opening size", "opening sha256"}
+    assert set(finite_rows(opening.rows(1, parts=3, records_per_part=2))) == {"opening size", "opening sha256"}
 
 
 def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
-    found = sound(reading.rows(1, parts=3, records_per_part=2, seconds_each=0.02))
+    found = finite_rows(reading.rows(1, parts=3, records_per_part=2, seconds_each=0.02))
     assert set(found) == {
         f"reading {way}" for way in ("in order", "at random", "through dask", "in processes", "hashes")
     }

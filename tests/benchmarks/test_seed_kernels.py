@@ -1,4 +1,4 @@
-"""The kernels our own is timed against compute the same motion."""
+"""The kernels that benchmarks compare with ours compute the same motion."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -22,7 +22,7 @@ PROFILES = {"healthy": NO_SPALL, "rectangular": RECTANGULAR, "geometric": GEOMET
 
 
 class Case(NamedTuple):
-    """Records with one profile of spall, and their first 5 ms by our kernel, in double precision as they come."""
+    """Records with one spall profile, and their first 5 ms by our kernel in double precision."""
 
     profile: int
     records: list[KernelInput]
@@ -55,7 +55,9 @@ def test_a_kernel_in_c_computes_the_motion_of_ours(source: str, case: Case, tmp_
     assert distance(accelerations(march, batch, 1 / FS, SAMPLES, 1), case.ours) < 1e-9
 
 
-@pytest.mark.parametrize("case", ["healthy", "rectangular"], indirect=True)  # the rivals know no other spall
+@pytest.mark.parametrize(
+    "case", ["healthy", "rectangular"], indirect=True
+)  # the other implementations have no other spall
 def test_numpy_computes_the_motion_of_ours(case: Case):
     assert distance(rivals.numpy_march(*seed_of(case.records), 1 / FS, SAMPLES), case.ours) < 1e-9
 
@@ -77,7 +79,7 @@ def test_a_record_on_its_own_moves_as_in_a_batch(case: Case):
 
 @pytest.mark.parametrize("case", ["rectangular"], indirect=True)
 def test_solve_ivp_follows_the_motion_of_ours(case: Case):
-    """A fixed step meets the edges of a spall up to a step late, an adaptive one where they are."""
+    """A fixed step detects the edge of a spall up to one step late; an adaptive step resolves it."""
     seed, state = seed_of(case.records)
     found = rivals.adaptive(seed, state, SAMPLES / FS, 1 / FS)
     ours = case.ours[:, :, 0].T

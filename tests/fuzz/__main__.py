@@ -1,8 +1,8 @@
 """Mutated files through every reader: ``python -m tests.fuzz [TARGET ...] --count 20000``.
 
 Each target is a module of this folder with three functions: ``seeds(folder)`` writes small valid files, ``mutate(content, rng)`` changes
-one, and ``check(path)`` reads the result through the product, which must refuse it with a sentence or finish. Checks run in a child process
-with limits on time and memory, so that a crash, a hang or a bomb is a finding like any other; the file that caused it is kept.
+one, and ``check(path)`` reads the result, which must be refused with a sentence or be read. Checks run in a child process with limits on
+time and memory, so that a crash, a hang or excessive memory is a finding too; the file that caused it is kept.
 """
 
 import argparse
@@ -26,7 +26,7 @@ MEMORY = 8_000_000_000  # bytes of address space
 
 
 def fuzz(target, count, seed, keep):
-    """Run ``count`` mutations; the findings, each with the file kept in ``keep``."""
+    """Run ``count`` mutations and return the findings; the file of each is kept in ``keep``."""
     module = importlib.import_module(f"tests.fuzz.{target}")
     findings = []
     with tempfile.TemporaryDirectory() as folder:
@@ -46,7 +46,7 @@ def fuzz(target, count, seed, keep):
 
 
 def _batch(module, contents, numbers, seed, place):
-    """Check mutations in a child until one fails; its number and what went wrong, or the number after the last and None."""
+    """Check mutations in a child until one fails; return its number and the failure, or the number after the last and None."""
     context = multiprocessing.get_context("fork")
     at, told = context.Value("q", numbers.start), context.SimpleQueue()
     child = context.Process(target=_work, args=(module, contents, numbers, seed, place, at, told))
@@ -89,7 +89,7 @@ def main():
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--keep", type=Path, default=Path("out/fuzz"), help="folder for the files of findings")
     given = parser.parse_args()
-    os.environ["OMP_NUM_THREADS"] = "1"  # threads of OpenMP do not survive a fork
+    os.environ["OMP_NUM_THREADS"] = "1"  # OpenMP threads do not survive a fork
     findings = []
     for target in given.targets:
         found = fuzz(target, given.count, given.seed, given.keep)

@@ -101,7 +101,7 @@ def _edited(data, rng):
             edits = (_attribute, _attribute, _replaced, _replaced, _link, _values)
             edits[rng.integers(len(edits))](file, name, other, rng)
     except (OSError, ValueError, TypeError, KeyError, RuntimeError, OverflowError):
-        return data  # changed beyond editing, or an edit the library refuses
+        return data  # too damaged to edit, or the library refuses the edit
     return stream.getvalue()
 
 
@@ -175,7 +175,7 @@ def _other_manifest(data, rng):
         assert manifest.keys() >= {"parts", "index"}
         assert all(isinstance(row, dict) and row for row in manifest["parts"])
     except (ValueError, RecursionError, AssertionError, AttributeError, TypeError):
-        return data  # changed before
+        return data  # changed already
     node = (
         manifest["parts"][rng.integers(len(manifest["parts"]))]
         if manifest["parts"] and rng.random() < 0.4

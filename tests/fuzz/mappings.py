@@ -57,7 +57,7 @@ def seeds(folder: Path) -> list[Path]:
 
 
 def mutate(content: bytes, rng: np.random.Generator) -> bytes:
-    """Changes as of a recipe, or a value that only a mapping file has."""
+    """A change as for a recipe, or a value that only a mapping file has."""
     if rng.random() < 0.4:
         found = list(recipes.VALUE.finditer(content))
         if found:
@@ -69,7 +69,7 @@ def mutate(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 def check(path: Path) -> None:
-    """Read a mapping file, and the bearing of each of its entries; whatever is raised but a RacewayError is a finding."""
+    """Read a mapping file, and the bearing of each of its entries; any exception except a RacewayError is a finding."""
     try:
         mapping = read_mapping(path)
     except RacewayError:

@@ -1,6 +1,6 @@
 """MATLAB files altered as damage or a stranger may alter them: a variable is read, or the file refused in a sentence.
 
-Level 5 is altered element by element, a compressed element after it was unfolded; level 7.3 in its attributes, links and layout.
+Level 5 is altered element by element, a compressed element after decompression; level 7.3 in its attributes, links and layout.
 """
 
 import io
@@ -63,9 +63,9 @@ def mutate(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 def check(path: Path) -> None:
-    """Read some variables of a file; whatever is raised but an UnusableError is a finding."""
+    """Read some variables of a file; any exception except an UnusableError is a finding."""
     with path.open("rb") as stream:
-        of_level_7_3 = b"\x89HDF" in stream.read(520)  # each variable is read in a process apart, which takes 10 ms
+        of_level_7_3 = b"\x89HDF" in stream.read(520)  # each variable is read in a separate process, which takes 10 ms
     for variable in VARIABLES[:1] if of_level_7_3 else VARIABLES:
         with suppress(UnusableError):
             one_column(read_matlab(path, variable), 0)
@@ -113,7 +113,7 @@ def _elements(data: bytes) -> list[bytes]:
 
 
 def _element(element: bytes, rng: np.random.Generator) -> bytes:
-    """A change within an element: of its parts if it is an array, of what unfolds from it if it is compressed."""
+    """A change within an element: of its parts if it is an array, of its decompressed content if it is compressed."""
     kind, length = struct.unpack("<II", element[:8])
     if kind == COMPRESSED:
         with suppress(zlib.error):

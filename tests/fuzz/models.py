@@ -1,6 +1,6 @@
-"""Model files with random damage: what is read from one is a model that judges records, or a sentence.
+"""Model files with random damage: reading one gives a usable model or an error of one sentence.
 
-``seeds`` writes small valid files, ``mutate`` damages one, and ``check`` reads it as the product does. The checksums of a damaged zip are
+``seeds`` writes small valid files, ``mutate`` damages one, and ``check`` reads it with `load_model`. The checksums of a damaged zip are
 computed again, so that its reader has to find the damage itself.
 """
 
@@ -54,7 +54,7 @@ def seeds(folder: Path) -> list[Path]:
 
 
 def check(path: Path) -> None:
-    """Read a model file and let the model judge some records; only a `CorpusError` of one sentence may come of it."""
+    """Read a model file and let the model classify some records; only a `CorpusError` of one sentence may come of it."""
     try:
         model = load_model(path)
         table = make_table(3, 9, 2, model.features)

@@ -1,6 +1,6 @@
 """Recipes altered as a stranger may alter them: each is read and drawn from, or refused in a sentence.
 
-``seeds`` gives valid files, ``mutate`` alters one, ``check`` reads one through the product.
+``seeds`` gives valid files, ``mutate`` alters one, ``check`` reads one.
 """
 
 import re
@@ -78,7 +78,7 @@ def mutate(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 def check(path: Path) -> None:
-    """Read a recipe and draw its first records; whatever is raised but a RacewayError is a finding."""
+    """Read a recipe and draw its first records; any exception except a RacewayError is a finding."""
     try:
         draw_scenarios(read_recipe(path), 0, RECORDS)
     except RacewayError:

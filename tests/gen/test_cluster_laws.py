@@ -1,4 +1,4 @@
-"""Laws of clusters: workers with threads give the same bytes, and a lost cluster ends in a sentence."""
+"""Laws of clusters: workers with threads write the same bytes, and a lost cluster ends in one sentence."""
 
 import threading
 import time

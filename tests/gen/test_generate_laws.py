@@ -1,4 +1,4 @@
-"""Laws of generation: whoever makes a corpus, in how many goes, it is the same corpus."""
+"""Laws of generation: a corpus is the same for any number of workers and interruptions."""
 
 import fcntl
 import importlib

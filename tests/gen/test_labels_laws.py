@@ -1,4 +1,4 @@
-"""Laws of labels: what is written beside a record is what the recipe asked for, each number worked out by hand."""
+"""Laws of labels: the labels of a record equal the values of the recipe, each computed by hand."""
 
 import math
 
@@ -24,7 +24,7 @@ CAGE = {"kind": "cage", "pitch_error_deg": 4, "knock_n": 30}
 
 
 def labels(recipe, **given):
-    """Labels of all records of a recipe whose bodies do not move: they do not depend on it."""
+    """Labels of all records of a recipe whose bodies are at rest; labels do not depend on the motion."""
     scenarios = draw_scenarios(recipe)
     response = response_of(scenarios, recipe)
     return part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response, **given)
@@ -49,7 +49,7 @@ def test_a_tachometer_that_reads_too_high_labels_too_high_a_rate(labels_with, pe
 
 
 def test_a_run_up_is_labelled_with_its_mean_and_its_ends(labels_with):
-    """The error of the label is one of the mean, and not of the truth."""
+    """The label error changes the labelled mean, and not the truth."""
     speed, load = ({"kind": "ramp", "from_percent": 50, "to_percent": percent} for percent in (100, 150))
     found = labels_with(
         {"operation.label_error_percent": 2, "operation.speed_profile": speed, "operation.load_profile": load}
@@ -72,7 +72,7 @@ def test_the_orders_are_nominal_and_the_true_ones_have_the_slip(labels_with):
 
 
 def test_the_contact_angle_of_a_specimen_is_in_the_true_orders_alone(labels_with):
-    """An analyst has the drawing."""
+    """The nominal geometry is that of the drawing."""
     straight, slanted = labels_with({}), labels_with({"specimen.contact_angle_deg": 20})
     gamma = BALL * math.cos(math.radians(20)) / PITCH
     assert slanted["bpfo"].values == pytest.approx(first(straight, "bpfo"))
@@ -149,7 +149,7 @@ def test_the_temperature_is_labelled_where_there_is_oil(labels_with):
 
 
 def test_both_clearances_are_diametral(labels_with):
-    """A hotter inner ring takes up clearance of the bearing as it runs, and not as it was built."""
+    """A hotter inner ring reduces the operating clearance, and not the clearance as built."""
     cold, warm = labels_with({}), labels_with({"operation.inner_ring_hotter_k": 10})
     for found in (cold, warm):
         assert found["diametral_clearance"].values == pytest.approx(10e-6)

@@ -1,4 +1,4 @@
-"""Laws of a plan: it counts a small corpus exactly, and a large one from parts spread over it."""
+"""Laws of a plan: it counts a small corpus exactly, and estimates a large one from parts spread over it."""
 
 from itertools import pairwise
 

@@ -1,4 +1,4 @@
-"""Laws of corpora with signals that cannot be used: they are counted, part by part, whoever makes the corpus in how many goes."""
+"""Laws of corpora with unusable signals: the counts per part are the same for any number of workers and interruptions."""
 
 import json
 import shutil
@@ -20,7 +20,7 @@ SILENT = {
     "recording.converter": {"kind": "adc", "full_scale_m_s2": 1e6},
     "level": {"kind": "physical", "gain": 1e-3, "background_m_s2": 0},
 }
-# full scales follow the rig: of three, the second machine is far too loud for the converter
+# of three machines the second exceeds the range of the converter by far
 ONE_LOUD_RIG = {"level": {"kind": "physical", "gain": {"kind": "grid", "values": [1, 1000, 1]}}}
 
 

@@ -1,4 +1,4 @@
-"""YAML from a stranger: nothing in it makes reading slow or large, and what is not of the few plain types is refused with its line."""
+"""YAML from a stranger: reading is never slow and needs little memory; types beyond the few plain ones are refused with their line."""
 
 import io
 import os
@@ -7,9 +7,10 @@ import sys
 import time
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, reject, settings
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
+from ruamel.yaml.error import YAMLError
 
 from gen.errors import CorpusError, RecipeError
 from gen.importers.mapping import read_mapping
@@ -153,12 +154,16 @@ VALUES = st.recursive(
 
 @settings(deadline=None, max_examples=200)
 @given(VALUES)
+@example({":0": None})
 def test_what_is_written_is_read_again(tmp_path_factory, data):
     stream = io.StringIO()
     YAML(typ="safe", pure=True).dump(data, stream)
     path = tmp_path_factory.mktemp("yaml") / "value.yaml"
     path.write_text(stream.getvalue(), encoding="utf-8")
-    expected = YAML(typ="safe", pure=True).load(stream.getvalue())
+    try:
+        expected = YAML(typ="safe", pure=True).load(stream.getvalue())
+    except YAMLError:  # ruamel.yaml writes the key ":0" in a way that it cannot read
+        reject()
     assert repr(read_yaml(path, RecipeError)) == repr(expected)
 
 
@@ -179,7 +184,7 @@ def test_pipes_devices_and_folders_are_refused_and_never_waited_for(tmp_path):
 
 
 def test_the_recipes_that_ship_keep_their_hashes():
-    """Golden: a change of these hashes makes every corpus made before refuse to be completed."""
+    """Golden: if these hashes change, no corpus made before can be completed."""
     assert {name: recipe_hash(read_recipe(name))[:16] for name in shipped_recipes()} == {
         "domain_randomised": "069a02a1179aa7ff",
         "every_fault": "aeb6661599f1ba40",
@@ -190,7 +195,7 @@ def test_the_recipes_that_ship_keep_their_hashes():
 
 
 def test_a_recursive_alias_takes_no_memory(tmp_path):
-    """In a process of its own, whose memory is bounded."""
+    """In a separate process with limited memory."""
     path = tmp_path / "recursive.yaml"
     path.write_text("a: &a [*a, *a]\n")
     code = (

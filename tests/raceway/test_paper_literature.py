@@ -10,7 +10,7 @@ from gen.physics.hertz import load_deflection_factor
 from raceway.studies.paper import FS, PRESETS, run
 from raceway.studies.statements import findings
 
-# values of MODEL.md 7.2, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
+# values of the model study, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
 PAPER = {
     "H1": 5.61, "H2": 9.74, "H4": 8.30, "H5": 4.53, "H6": 1.83, "H7": 1.44, "H10": 0.87, "H11": 0.87, "H12": 0.891, "H14": 226, "H15": 226,
     "C3": 11.5, "C5": 4.22, "C6": -5.95, "C7": 4.53, "C9": 0.40, "C10": 3, "C12.y1": 771.6, "C12.y2": 771.6,

@@ -1,4 +1,4 @@
-"""Laws of damage: what happens to a corpus on its way does not go unnoticed, and a failed write leaves nothing behind."""
+"""Laws of damage: every change of a stored corpus is detected, and a failed write leaves no file."""
 
 import hashlib
 import json
@@ -58,7 +58,7 @@ def edit_index(folder, edit):
 
 
 def swap_sources(index, parts):
-    """Let the virtual signal look at other parts, or at parts in another order."""
+    """Let the virtual signal refer to other parts, or to parts in another order."""
     shape, dtype, fill = index[SIGNAL].shape, index[SIGNAL].dtype, index[SIGNAL].fillvalue
     attributes = {key: index[SIGNAL].attrs[key] for key in ("scale_factor", "add_offset", "units", "long_name", "role")}
     del index[SIGNAL]
@@ -75,7 +75,7 @@ def swap_sources(index, parts):
 
 
 def seal(folder):
-    """Let the manifest name the index as it is now: damage done by someone who knows the format."""
+    """Write the hash of the changed index into the manifest: damage by someone who knows the format."""
     index = folder / "corpus.nc"
     edit_manifest(
         folder, index={"bytes": index.stat().st_size, "sha256": hashlib.sha256(index.read_bytes()).hexdigest()}
@@ -278,7 +278,7 @@ def test_a_damaged_chunk_is_refused_when_it_is_read(copied, chunk):
 
 
 def damaged_part(change):
-    """A corpus whose last part was written with a damage of its own, everything else following from it."""
+    """A corpus whose last part was damaged before its index and manifest were written."""
 
     def make(folder):
         (folder / "parts").mkdir(parents=True)

@@ -1,4 +1,4 @@
-"""Laws of the format: what is written comes back, whoever reads it, and wherever it lies."""
+"""Laws of the format: every reader returns the written values, wherever the corpus is stored."""
 
 import shutil
 import subprocess

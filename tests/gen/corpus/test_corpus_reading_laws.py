@@ -1,4 +1,4 @@
-"""Laws of reading: the same records however many files may be open, whatever the environment says, in threads and in other processes."""
+"""Laws of reading: the same records for any number of open files and any environment, in threads and in other processes."""
 
 import multiprocessing
 import os
@@ -209,7 +209,7 @@ def test_threads_write_and_read_at_once(tmp_path):
 
 def test_the_same_parts_give_the_same_index(tmp_path):
     write_corpus(tmp_path / "one")
-    time.sleep(1.1)  # HDF5 keeps times in whole seconds
+    time.sleep(1.1)  # HDF5 stores times in whole seconds
     write_corpus(tmp_path / "two")
     one, two = (tmp_path / name / "corpus.nc" for name in ("one", "two"))
     assert one.read_bytes() == two.read_bytes()

@@ -1,4 +1,4 @@
-"""Laws of the verdict on stored signals: what cannot be used is found, whatever the record beside it, and nothing else is."""
+"""Laws of the verdict on stored signals: exactly the unusable signals are found, whatever the other records of the part are."""
 
 import numpy as np
 import pytest
@@ -56,7 +56,7 @@ def test_both_ends_count_together(kind):
 
 
 def test_counts_that_repeat_inside_the_converter_are_not_clipped():
-    """A signal of a few counts takes its largest one often: it is small, not cut off."""
+    """A signal of a few counts reaches its largest value often: it is small, and not clipped."""
     assert verdict(np.tile(np.array([-2, -1, 0, 1, 2], np.int16), N // 5)) == "sound"
     assert verdict(np.clip(noise(N), -1000, 1000).astype(np.int16)) == "sound"
 

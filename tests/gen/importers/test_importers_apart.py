@@ -1,4 +1,4 @@
-"""Reading in a process apart: whatever happens there, the reader of the file lives and says why."""
+"""Reading in a separate process: the caller survives every failure there, and reports it."""
 
 import os
 import signal
@@ -40,7 +40,7 @@ def turn_in_circles():
 
 @pytest.mark.parametrize("read", [crash, turn_in_circles])
 def test_a_crash_and_an_endless_loop_are_told_as_damage(monkeypatch, read):
-    """A damaged HDF5 file sent the library in circles: a byte of its layout altered, and H5Dopen never returned."""
+    """Golden: for an HDF5 file with one changed byte in its layout, H5Dopen never returned."""
     monkeypatch.setattr(apart, "CPU_SECONDS", 1)
     start = time.monotonic()
     with pytest.raises(UnusableError, match="is damaged: the HDF5 library crashes on it or does not finish"):

@@ -1,4 +1,4 @@
-"""The CWRU importer on small files of its own making, one oddity each."""
+"""The CWRU importer on small made-up files, each with one irregularity."""
 
 import json
 import math

@@ -1,4 +1,4 @@
-"""A mapping file may name every fault class, and describes a spall only where there is one."""
+"""A mapping file can name every fault class, and describes a spall only for classes with a spall."""
 
 import pytest
 

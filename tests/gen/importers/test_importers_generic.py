@@ -1,4 +1,4 @@
-"""The generic importer: what a mapping file may say, and the sentence for what it may not."""
+"""The generic importer: valid mapping files, and the error sentence for each invalid one."""
 
 import math
 import re

@@ -1,4 +1,4 @@
-"""Files from a stranger: they read no other file, keep nobody waiting, and take no more memory than their values need."""
+"""Files from a stranger cannot read other files, block the reader, or use more memory than their values need."""
 
 import os
 import struct
@@ -44,7 +44,7 @@ def refused(path, variable="x"):
 
 
 def peak_of(code, *arguments):
-    """Megabytes that a process takes for some code, beyond what its imports take."""
+    """Megabytes that a process uses for some code, beyond the memory of its imports."""
     script = (
         "import resource, sys; from pathlib import Path; from gen.importers.matlab import *; from gen.importers.files import *\n"
         "peak = lambda: resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3\n"
@@ -58,7 +58,7 @@ def peak_of(code, *arguments):
 
 
 def test_a_small_file_that_unfolds_to_gigabytes_is_refused_before_it_does(tmp_path):
-    """1 MB took 2 GB; the sizes that a file announces are compared with what it holds."""
+    """A file of 1 MB took 2 GB; the sizes that a file states are compared with its content."""
     (tmp_path / "bomb.mat").write_bytes(compressed_zeros(1_000_000_000))
     assert refused(tmp_path / "bomb.mat").startswith("is damaged: 97")
     assert "bytes that decompress to 1000000" in refused(tmp_path / "bomb.mat")

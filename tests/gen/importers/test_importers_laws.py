@@ -1,4 +1,4 @@
-"""Laws of the importers: nothing is lost in cutting, and no damage escapes as another error."""
+"""Laws of the importers: no sample is lost in cutting, and every damaged file ends as an `UnusableError`."""
 
 import io
 import tempfile

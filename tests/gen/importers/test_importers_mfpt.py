@@ -1,4 +1,4 @@
-"""The MFPT importer on small files of its own making."""
+"""The MFPT importer on small made-up files."""
 
 import numpy as np
 import pytest

@@ -1,6 +1,6 @@
-"""The importers on real recordings: what the sets hold, and that damaged copies of them are named.
+"""The importers on real recordings: content of the sets, and error sentences for damaged copies.
 
-The recordings are looked for in the folder that ``RACEWAY_REAL`` names, or beside the repository.
+The recordings are expected in the folder that ``RACEWAY_REAL`` names, or beside the repository.
 """
 
 import shutil

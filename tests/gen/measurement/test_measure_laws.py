@@ -44,7 +44,7 @@ def with_rig(scenarios, **changes):
 
 @pytest.fixture(scope="module")
 def levelled(recipe_with):
-    """A recipe whose levels are set by the ratio of bearing and background, and its scenarios."""
+    """A recipe whose levels follow a signal-to-noise ratio, and its scenarios."""
     level = {
         "kind": "snr",
         "faulty_db": {"kind": "uniform", "low": -10, "high": 25},
@@ -68,7 +68,7 @@ def test_the_bearing_stands_over_the_background_by_the_drawn_ratio(levelled):
 def test_a_record_has_the_drawn_rms_so_that_its_level_tells_nothing(levelled):
     recipe, scenarios = levelled
     found = rms(measure(hiss(recipe, len(scenarios)), scenarios, recipe).signal)
-    np.testing.assert_allclose(found, 1.0, atol=0.05)  # bearing and background are uncorrelated but for chance
+    np.testing.assert_allclose(found, 1.0, atol=0.05)  # bearing and background are correlated by chance only
 
 
 def test_the_background_does_not_know_the_class(recipe_with):
@@ -147,7 +147,7 @@ def plain(recipe, **changes):
 
 
 def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_converter(recipe_with):
-    """Rounding to counts leaves an error of 1/sqrt(12) count: that is what such a record has beside its bearing."""
+    """Rounding to counts has an error of 1/sqrt(12) count, which is the only background of such a record."""
     recipe = recipe_with(PLAIN)
     found = measure(pure_tone(recipe, 100.0), plain(recipe), recipe)
     exact = measure(pure_tone(recipe, 100.0), plain(recipe), recipe_with(FLOAT | PLAIN)).signal[0, 0].astype(float)
@@ -171,7 +171,7 @@ def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_rat
     ids=["below half a count", "no bearing", "silence", "no background", "no bearing in floats", "silence in floats"],
 )
 def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with, amplitude, background, converter):
-    """A bearing below half a count over no background is stored as zeros; it was labelled with 515 dB."""
+    """A bearing below half a count without background is stored as zeros; it was once labelled with 515 dB."""
     recipe = recipe_with(PLAIN | converter)
     found = measure(pure_tone(recipe, amplitude), plain(recipe, background_rms=background), recipe)
     assert np.isnan(found.snr[0])
@@ -179,7 +179,7 @@ def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with
 
 
 def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
-    """A tenth of a count is still in the record: the background carries it over the steps of the converter."""
+    """A signal of a tenth of a count is still in the record, because the background acts as dither."""
     recipe = recipe_with(PLAIN)
     found = measure(pure_tone(recipe, 0.1 * COUNT), plain(recipe, background_rms=1.0), recipe)
     assert found.snr[0] == pytest.approx(20 * np.log10(0.1 * COUNT / np.sqrt(2)), abs=0.3)
@@ -250,7 +250,9 @@ def test_the_noise_falls_with_the_drawn_slope_and_has_the_drawn_rms(recipe_with,
     band = (frequency > 100) & (frequency < 5500)
     fitted = np.polyfit(np.log(frequency[band]), np.log(density[band]), 1)[0]
     assert -fitted == pytest.approx(slope, abs=0.05)
-    assert np.std(noise) == pytest.approx(0.3, rel=0.2 if slope == 2 else 0.03)  # its power is in few slow cycles
+    assert np.std(noise) == pytest.approx(
+        0.3, rel=0.2 if slope == 2 else 0.03
+    )  # most of its power is in a few slow cycles
 
 
 def line(signal, frequency):

@@ -1,4 +1,4 @@
-"""The compiled mixing against the same written out in NumPy."""
+"""The compiled mixing compared with the same equations in NumPy."""
 
 import numpy as np
 import pytest

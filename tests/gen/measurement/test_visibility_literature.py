@@ -1,6 +1,6 @@
-"""What an analyst would see: fault lines of the reference machine over 32 seeds of every fault, and none where there is no fault.
+"""Fault lines of the reference machine over 32 seeds of every fault, and no line of a fault that is not there.
 
-The levels are those of the model study: a line over 15 dB is clear, one below 12 dB absent. Each row is one run, shared by its tests.
+Thresholds of the model study: a line over 15 dB is clear, one below 12 dB absent. Each row is one run, shared by its tests.
 """
 
 import functools

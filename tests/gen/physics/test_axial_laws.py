@@ -1,4 +1,4 @@
-"""Laws of an axial load: it balances with the radial one on the same balls, and squeezes them more the larger it is."""
+"""Laws of an axial load: it is in balance with the radial load on the same balls, and compresses them more if it is larger."""
 
 import math
 
@@ -44,7 +44,7 @@ def ball_forces(machine, approach, displacement, angles):
 def test_balls_squeezed_by_the_approach_carry_radial_and_axial_load_at_once(
     angle, clearance, rolling, places, load, direction, times
 ):
-    """The radial balance is found again, by a root finder that knows no energy; what then points along the axis is the axial load."""
+    """A root finder that uses no energy solves the radial balance again; the axial sum of the forces is then the axial load."""
     machine = slanted(angle, clearance, rolling, load, direction)
     axial = times * HALF_LOADED * load * math.tan(angle)
     approach = axial_approach(machine, axial, places)

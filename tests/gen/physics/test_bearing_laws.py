@@ -1,4 +1,4 @@
-"""Laws of the geometry: fault frequencies are what counting passages gives."""
+"""Laws of the geometry: fault frequencies equal counted passages."""
 
 import math
 from dataclasses import replace
@@ -41,7 +41,7 @@ def test_the_cage_turns_at_less_than_half_the_shaft_rate(bearing):
 @law
 @given(bearings())
 def test_balls_roll_without_sliding_on_both_races(bearing):
-    """Surface speeds in the frame of the cage, in which ball centres stand still [pitch diameters times shaft rate]."""
+    """Surface speeds in the frame of the cage, in which ball centres are at rest [pitch diameters times shaft rate]."""
     found = orders(bearing)
     ball = found.bsf * bearing.ball_diameter
     assert ball == pytest.approx((1 - found.ftf) * 2 * bearing.inner_radius, rel=1e-12)

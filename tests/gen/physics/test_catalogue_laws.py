@@ -1,4 +1,4 @@
-"""Laws of the catalogue: what any bearing that can be assembled obeys."""
+"""Laws of the catalogue: geometry of every bearing that can be assembled."""
 
 import math
 
@@ -9,7 +9,7 @@ from gen.physics.catalogue import CATALOGUE, catalogue_page
 from gen.physics.hertz import load_deflection_factor
 
 BEARINGS = pytest.mark.parametrize("bearing", CATALOGUE.values(), ids=lambda bearing: bearing.designation)
-FOR_THE_CAGE = 0.5e-3  # [m], thinner bars are not made
+FOR_THE_CAGE = 0.5e-3  # [m], smallest width of a cage bar
 NOT_IN_THE_MIDDLE = 0.06  # the pitch circle of a real bearing lies this close to the middle of its section
 
 

@@ -1,4 +1,4 @@
-"""The catalogue against published fault frequencies and load ratings.
+"""The catalogue compared with published fault frequencies and load ratings.
 
 .. [1] The Timken Company, *Ball Bearing Housed Unit Catalog*, p. A-13, table A-9.
 .. [2] Case Western Reserve University Bearing Data Center, bearing information.

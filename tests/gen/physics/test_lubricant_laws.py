@@ -123,7 +123,7 @@ def test_the_film_of_a_ball_damps_less_as_its_oil_warms(bearing, oil, celsius, w
 @law
 @given(oils(), temperatures, rates, loads, ratios)
 def test_the_film_of_a_roller_damps_nearly_alike_in_any_oil(oil, celsius, rate, load, ratio):
-    """A film as thick as the 0.7th power of viscosity, under a gap that damps by its -1.5th: the power left is -0.05."""
+    """Film thickness grows with the 0.7th power of viscosity, and damping falls with its -1.5th power: the total power is -0.05."""
     thick = oil._replace(density_15=ratio * oil.density_15)
     change = dynamic_viscosity(thick, celsius) / dynamic_viscosity(oil, celsius)
     dampings = [film(ROLLERS, some, celsius, rate, load).damping for some in (oil, thick)]

@@ -1,4 +1,4 @@
-"""Oil and film against tables, other authors' formulas and a rule of practice; what docs/model.md says of them.
+"""Oil and film compared with tables, formulas of other authors and a rule of practice; the values of docs/model.md.
 
 .. [1] G. W. Stachowiak, A. W. Batchelor, *Engineering Tribology*, Elsevier, table 2.3: dynamic viscosity at 30, 60 and 100 C.
 .. [2] ASTM D341, a worked example of its equation: a gear oil SAE 140 of 404 and 28 mm2/s has 132.126 mm2/s at 60 C.
@@ -155,7 +155,7 @@ def test_the_oil_table_of_the_model_page_is_what_the_formulas_give():
 
 
 def test_the_damping_of_a_fall_that_the_model_page_leaves_out_is_what_it_says():
-    """Where a ball swaps edges, half the width of the spall from either, it falls as steeply as its sagitta on the race."""
+    """In the middle of the spall, where the ball changes edges, its path is as steep as its sagitta on the race."""
     bearing = CATALOGUE["6205"]
     rolling = 2 * math.pi * 30 * (1 - orders(bearing).ftf) * bearing.inner_radius
     falling = rolling * 0.53e-3 / 2 * (2 / bearing.ball_diameter + 1 / bearing.inner_radius)

@@ -1,4 +1,4 @@
-"""Laws of a profile: through its points, constant beyond them, and without a jerk where it is smooth."""
+"""Laws of a profile: it passes through its points, is constant beyond them, and has a continuous acceleration if it is smooth."""
 
 from itertools import pairwise
 

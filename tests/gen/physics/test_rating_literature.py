@@ -1,4 +1,4 @@
-"""The static rating from the contact pressure, against the catalogues of makers and the formulas of ISO 76.
+"""The static rating from the contact pressure, compared with catalogues of makers and formulas of ISO 76.
 
 .. [1] The Timken Company, *Deep Groove Ball Bearing Catalog*, order no. 10857, 2017, tables 10 and 11; SKF for 6309 and 6310.
 .. [2] ISO 76:2006, table 1 (factor f0 of deep groove ball bearings), 5.2 (radial roller bearings), 5.1 and 5.3 (equivalent load).

@@ -1,4 +1,4 @@
-"""Laws of the machine: where it rests and how fast it can swing."""
+"""Laws of the machine: its static rest and its highest eigenfrequency."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Laws of the path over a measured surface, and of what a contact of finite width feels of it."""
+"""Laws of the path over a measured surface, and of its mean over a contact of finite width."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Laws of the distributions a recipe may name."""
+"""Laws of the distributions of recipes."""
 
 import numpy as np
 import pytest

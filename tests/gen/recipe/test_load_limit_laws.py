@@ -1,4 +1,4 @@
-"""Laws of the load limit: a bearing that would be crushed is refused, in the recipe if every draw is, else record by record."""
+"""Laws of the load limit: an overloaded record is left out, and a recipe that only draws such records is refused."""
 
 import pytest
 
@@ -72,7 +72,7 @@ def test_a_record_is_borne_up_to_twice_the_static_rating(recipe_with, load, born
 
 
 def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tmp_path):
-    """Grids follow the number of the record: of four, one is 100 N too heavy."""
+    """Grids follow the number of the record: one record of four is 100 N too heavy."""
     path = write_recipe(
         tmp_path / "r.yaml",
         {"operation.load_n": {"kind": "grid", "values": [500, LIMIT + 100, 500, 500]}, "records": 4},
@@ -88,7 +88,7 @@ def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tm
 
 
 def test_a_recipe_of_which_no_record_can_be_borne_has_no_plan(write_recipe, tmp_path):
-    """The smallest load could be borne, but the records that the corpus ends with do not draw it."""
+    """The bearing could carry the smallest load, but the records of the corpus do not draw it."""
     grid = {"operation.load_n": {"kind": "grid", "values": [LIMIT + 100, LIMIT + 200, 500]}, "records": 2}
     with pytest.raises(SimulationError, match="record 0: an equivalent static load"):
         plan(write_recipe(tmp_path / "r.yaml", grid))

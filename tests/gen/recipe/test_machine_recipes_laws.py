@@ -1,4 +1,4 @@
-"""Laws of what a machine does that a recipe bends, misaligns, loosens, runs up or hears from afar."""
+"""Laws of machines with a bent shaft, misalignment, looseness, run-ups and distant sensors, set by recipe keys."""
 
 import numpy as np
 import pytest
@@ -64,7 +64,7 @@ def shaken(force, order):
 
 @pytest.mark.parametrize(("key", "order"), [("machine.bow_n", 1), ("machine.misalignment_n", 2)])
 def test_a_bent_or_misaligned_shaft_shakes_the_housing_at_its_own_order(signal_of, key, order):
-    """At 100 N, by what the support lets it; ring and bearing between shaft and housing add a few percent."""
+    """At 100 N, by the compliance of the support; ring and bearing between shaft and housing add a few percent."""
     straight, crooked = signal_of({}), signal_of({key: 100})
     assert line(crooked, order) == pytest.approx(shaken(100, order), rel=0.05)
     for other in (1, 2):
@@ -95,7 +95,7 @@ def test_a_run_up_sweeps_the_line_of_a_bent_shaft(signal_of):
 
 
 def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):
-    """The bodies of all four channels move alike; without a background the paths alone tell them apart."""
+    """The bodies of all four channels move equally; without a background only their paths differ."""
     modes = {"count": 1, "frequency_hz": 1000, "damping_percent": 3}
     paths = [None, {"direct": 0.25}, {"direct": 0.25, "modes": modes}, {"direct": 2.0}]
     recipe = recipe_with(

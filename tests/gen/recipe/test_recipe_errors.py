@@ -1,4 +1,4 @@
-"""Broken recipes, each with the sentence it gets: where, what was found, what is allowed or what to do."""
+"""Broken recipes, each with its error sentence: where, what was found, what is allowed or what to do."""
 
 import io
 
@@ -72,20 +72,20 @@ TABLE = [
     ('["6205"]', '["6299"]', "bearing.designations: '6299' is neither in the catalogue nor in entries; did you mean "),
     ('["6205"]', "[]", "bearing.designations: is empty; give at least one."),
     ("{name: sensor,", "{name: sensor, body: table,", "recording.channels[0].body.table: "),
-    # what does not go together
+    # keys that contradict each other
     ("weight: 1}\n  - {kind: outer,", "weight: 0}\n  - {kind: outer, weight: 0,", "faults all have weight 0; give at least one"),
     ("specimens_per_rig: 4", "specimens_per_rig: 1", "corpus.specimens_per_rig: 1 is not enough for healthy and faulty bearings"),
     ("test: 0.25", "test: 0.6, validation: 0.4", "corpus.split: validation and test leave nothing to train on"),
     ("shaft_mass_kg: 5", "resonator: null", "recording.channels: body sensor needs machine.resonator; give one, or use body: housing."),
     ("duration_s: 0.1", "duration_s: 0.001", "recording.duration_s: 12 samples are too few; use at least 16."),
     ("angle_deg: 90}", "angle_deg: 90}, {name: sensor}", "recording.channels: two channels have the same name; give each its own."),
-    # what turns out when it is drawn
+    # errors found while drawing
     ("kind: outer, width_mm: 0.5", "kind: ball, width_mm: 12", "does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     ("shaft_mass_kg: 5", "shaft_mass_kg: 1.0e-4", "steps per sample at 12000 Hz; soften the machine or raise recording.sample_rate_hz."),
     ("machine: {shaft_mass_kg: 5}", "machine: 5", "machine: 5 is not allowed here; it must be a section with keys of its own."),
     ("[{name: sensor, angle_deg: 90}]", "3", "recording.channels: 3 is not allowed here; it must be a list."),
     ("12000", "12000\n  oversampling: 1", "is too fast for a step of 83.3 us; raise recording.oversampling to "),
-    # bearings of one's own, rollers
+    # user-defined bearings, rollers
     ('["6205"]}', "[mine], entries: {mine: {n_balls: 20, pitch_diameter_mm: 50, ball_diameter_mm: 9}}}",
      "bearing.entries.mine: 20 of 9 mm do not fit a pitch circle of 50 mm; keep ball_diameter_mm below 7.461."),
     ('["6205"]}', "[mine], entries: {mine: {n_balls: 9, pitch_diameter_mm: 50}}}",
@@ -159,7 +159,7 @@ TABLE = [
     (RPM, RPM + ", speed_profile: {from_percent: 9, to_percent: 99}", "operation.speed_profile: this needs a kind, such as kind: run_up."),
     (RPM, RPM + ", speed_profile: {kind: spline}", "operation.speed_profile.kind: 'spline' is not one of ramp, run_up, steps, table."),
     (RPM, RPM + ", speed_profile: 50", "operation.speed_profile: 50 is not allowed here; it must be a section with keys of its own."),
-    # heat, oil, axial load, what is wrong with the machine
+    # heat, oil, axial load, machine faults
     (RPM, RPM + ", load_wander_percent: 60", "operation.load_wander_percent: 60 is not in [0, 50]."),
     (RPM, RPM + ", temperature_celsius: 300", "operation.temperature_celsius: 300 is not in [-40, 200]."),
     (RPM, RPM + ", temperature_celsius: 40",
@@ -193,7 +193,7 @@ TABLE = [
      "recording: a record of all channels, settle_s included, has 120040000 samples, and the limit is 25000000;"),
     ("12000\n  duration_s: 0.1\n", "20000\n  duration_s: 600\n",
      "corpus.records_per_part: 16 records need 192128000 samples, and the limit is 150000000;"),
-    # what is no recipe
+    # files that are no recipes
     ("name: whole", "name: [whole", "is not valid YAML ("),
     ("name: whole", "name: whole\nname: twice", "is not valid YAML ("),
     ("title: A recipe", "title: !!python/name:os.system A recipe", "is not valid YAML ("),

@@ -1,4 +1,4 @@
-"""Laws of the draws: nothing but the fault knows the fault, any range is a piece of the whole, splits do not leak."""
+"""Laws of the draws: only fault values depend on the fault, any range of records equals that part of the whole, splits do not leak."""
 
 import json
 from collections import Counter

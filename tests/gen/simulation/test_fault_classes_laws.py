@@ -1,4 +1,4 @@
-"""Laws of the classes of fault: their labels, their healthy twins and their shares; and of a corpus with everything in it."""
+"""Laws of the fault classes: their labels, their healthy twins and their shares; and of a corpus with every mechanism."""
 
 import json
 import math
@@ -32,7 +32,7 @@ def recipe_file(write_recipe, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(recipe_file, tmp_path_factory):
-    """A corpus of 28 records in two parts, with everything in it."""
+    """A corpus of 28 records in two parts, with every mechanism."""
     return generate(recipe_file, tmp_path_factory.mktemp("everything") / "corpus")
 
 
@@ -43,7 +43,7 @@ def drawn(recipe_file):
 
 
 def kind_of(specimen):
-    """Class of a specimen, or where it is worn."""
+    """Class of a specimen, or the site of its wear."""
     return specimen.fault if specimen.wear is None else f"worn {specimen.wear.site}"
 
 

@@ -1,8 +1,8 @@
-"""Every fault puts its own lines into the envelope spectrum, where the kinematics say, and a sound bearing puts none.
+"""Every fault has its own lines in the envelope spectrum, at the orders of the kinematics, and a healthy bearing has none.
 
 A line is clear 15 dB above the median of its surroundings and absent below 12 dB: thresholds of the model study, fixed before its first
-run. Rates are steady here, so that a line is as narrow as the record is long; jitter of a billionth of a degree asks for no kernel but
-that of the small recipe.
+run. Rates are constant here, so that the width of a line is one over the duration; jitter of a billionth of a degree selects the kernel
+of the small recipe.
 """
 
 import numpy as np

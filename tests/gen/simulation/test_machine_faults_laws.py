@@ -1,6 +1,6 @@
-"""Laws of what a machine around the bearing can have: play, misalignment, a bow, a knocking cage, a load and a speed that change.
+"""Laws of machine faults: play, misalignment, a bent shaft, a knocking cage, varying load and speed.
 
-All share one kernel with forces that change and a support with play; where there should be none it is 1e-30 m.
+All tests share one kernel with varying forces and a support with play; tests without play use 1e-30 m.
 """
 
 import math
@@ -84,7 +84,7 @@ def test_misalignment_shakes_the_shaft_along_its_direction_at_twice_the_shaft_ra
 @law
 @given(st.floats(1000, 50_000), st.floats(1, 100), angles, st.floats(0.3, 3.0))
 def test_a_cage_knocks_once_a_turn_with_the_momentum_of_a_half_sine(knots_per_second, strength, place, ahead):
-    """On a housing that nothing holds; each knock scatters by itself."""
+    """On a housing without support; each knock scatters independently."""
     free = TIGHT._replace(
         half_clearance=1e-2, ring_damping=0.0, support_stiffness_x=1e-9, support_stiffness_y=1e-9,
         support_damping_x=0.0, support_damping_y=0.0, load_x=0.0, load_y=0.0,
@@ -122,7 +122,7 @@ def test_a_load_that_changes_ends_where_the_static_balance_of_its_end_says(load_
 @law
 @given(st.floats(0, 2), st.floats(0, 2), st.floats(10, 60))
 def test_a_run_up_turns_the_shaft_by_the_integral_of_its_rate(begin, end, shaft_rate):
-    """Evenly from one share of the rate to another, then on; the cage knocks, even at a standstill."""
+    """Linear from one share of the rate to another, then constant; the cage knocks, even at a standstill."""
     n_knots, half = 400, 200
     shares = begin + (end - begin) * (np.arange(half) + 0.5) / half
     schedule = np.stack([np.append(shares, end), np.ones(half + 1)], axis=1)
@@ -153,9 +153,9 @@ def test_knocks_scatter_log_normally_and_differ_from_cage_to_cage():
 
 @pytest.mark.parametrize("late_by", [0.0, 0.1, 0.3, 0.6])
 def test_a_ball_meets_a_spall_wherever_it_is_in_its_pocket(late_by):
-    """One ball far out of place, at a stand: it lies in the spall that is put under it.
+    """One ball far out of its place, at standstill, lies in the spall at that place.
 
-    Jitter and damping that are all but none, and a spall of no depth, leave one kernel for both, which other tests use too.
+    Jitter and damping close to zero, and a spall of depth zero, let both records share a kernel that other tests use too.
     """
     motion = Turning(1e-6, jitter_rms=1e-12, late_ball=0, late_by=late_by)
     across = {"load_x": 300 * math.cos(late_by), "load_y": 300 * math.sin(late_by)}

@@ -1,4 +1,4 @@
-"""Laws of what the kernel is given: heat, oil, bearings and profiles of a recipe reach it, and the labels follow."""
+"""Laws of the kernel input: heat, oil, bearings and profiles of a recipe act on it, and labels agree with it."""
 
 import math
 
@@ -33,7 +33,7 @@ means = pytest.mark.parametrize(("profile", "mean"), MEANS, ids=[profile["kind"]
 
 @pytest.fixture
 def record_of(recipe_with):
-    """First record of the small recipe with some values replaced, as the kernel gets it."""
+    """Kernel input of the first record of the small recipe with some values replaced."""
 
     def made(changes):
         recipe = recipe_with(changes)
@@ -43,7 +43,7 @@ def record_of(recipe_with):
 
 
 def labels(recipe):
-    """Labels of a corpus whose bodies do not move, for they do not depend on it."""
+    """Labels of a corpus whose bodies are at rest; labels do not depend on the motion."""
     scenarios = draw_scenarios(recipe)
     response = response_of(scenarios, recipe)
     return part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response)
@@ -171,7 +171,7 @@ def test_the_rates_at_both_ends_of_a_run_up_are_labelled(recipe_with):
 
 @means
 def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profile, mean):
-    """A speed that wanders while it runs up: the mean of a product is not the product of the means."""
+    """Wander during a run-up: the mean of a product is not the product of the means."""
     changes = {"operation.speed_wander_percent": 1, "operation.slip_percent": 2, "operation.shaft_rpm": 1800}
     recipe = recipe_with(changes | {"operation.speed_profile": profile})
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples

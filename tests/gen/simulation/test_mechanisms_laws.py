@@ -1,4 +1,4 @@
-"""Mechanisms that bring simulated faults nearer to real ones do what docs/model.md says they do."""
+"""Mechanisms that make simulated faults more like real ones have the effects that docs/model.md states."""
 
 import functools
 

@@ -1,4 +1,4 @@
-"""Laws of outlines: what a record asks of the computer is known without building it, and is what the whole record says."""
+"""Laws of outlines: kernel and steps of a record, found without its kernel input, equal those of the full record."""
 
 import importlib
 
@@ -74,7 +74,7 @@ def test_the_highest_speed_and_load_are_those_of_the_whole_schedule(recipe_with,
 def test_the_peak_of_a_wandering_load_is_found_however_sparsely_it_is_looked_at(
     recipe_with, monkeypatch, samples_per_turn
 ):
-    """Between two samples the load rises no further than its curvature lets it."""
+    """Between two samples the load rises at most by the bound of its curvature."""
     monkeypatch.setattr("gen.simulation.outline.SAMPLES_PER_TURN", samples_per_turn)
     recipe = recipe_with({"operation.load_wander_percent": 50, "operation.shaft_rpm": 6000, "operation.load_n": 100})
     for scenario in draw_scenarios(recipe):
@@ -118,7 +118,7 @@ def test_a_record_that_cannot_be_has_no_outline_for_the_same_reason(recipe_with,
 
 
 def test_a_plan_builds_no_whole_record_outside_its_timed_sample(write_recipe, tmp_path, monkeypatch):
-    """Tables of spalls and schedules made the plan of 4,000 records of 20 s take 40 s; their outlines take a second."""
+    """With tables of spalls and schedules the plan of 4,000 records of 20 s took 40 s; with outlines it takes a second."""
 
     def refused(*_args):
         raise AssertionError

@@ -1,4 +1,4 @@
-"""Things that once went wrong and no other test would have told."""
+"""Past defects that no other test detects."""
 
 import json
 

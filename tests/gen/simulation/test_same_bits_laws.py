@@ -1,4 +1,4 @@
-"""The same bits from the process that compiled a kernel and from those that find it in the cache, on another processor, at any width."""
+"""The same bits from a compiled kernel and from one in the cache, on other processors, and for any number of lanes."""
 
 import os
 import shutil
@@ -22,7 +22,7 @@ assert len(response.failures) < len(scenarios) / 4
 for array in (response.acceleration, measure(response.acceleration, scenarios, recipe).signal):
     print(hashlib.sha256(array.tobytes()).hexdigest())
 """
-# what a processor of 2013 can do, to numba, to NumPy and to its linear algebra
+# instructions of a processor of 2013, for numba, NumPy and its linear algebra
 AVX2 = {
     "NUMBA_CPU_NAME": "haswell",
     "NUMBA_CPU_FEATURES": "+avx,+avx2,+bmi,+bmi2,+cmov,+cx16,+f16c,+fma,+fxsr,+lzcnt,+mmx,+movbe,+popcnt,+sse,+sse2,+sse3,+sse4.1,"
@@ -43,7 +43,7 @@ def cache(tmp_path_factory):
 
 
 def hashes(recipe, environment, folder=None):
-    """Hashes of motion and signal of every record, from a process of its own."""
+    """Hashes of motion and signal of every record, from a new process."""
     command = [sys.executable, "-W", "ignore", "-c", SCRIPT, str(recipe)]
     run = subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=True, cwd=folder)
     return run.stdout.split()

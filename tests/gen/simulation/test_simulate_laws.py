@@ -1,4 +1,4 @@
-"""Laws of the simulation of scenarios: what a record gives is its own, and fine enough, or it is refused."""
+"""Laws of the simulation of scenarios: a record depends on itself alone, and is accurate or refused."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Laws of the check of the step: some records are made again at half of it, all are held against their stiffest contacts."""
+"""Laws of the step check: some records are integrated again with half the step, and all are checked against their stiffest contacts."""
 
 from collections import Counter
 
@@ -18,7 +18,7 @@ from gen.simulation.timeline import timeline
 from tests.reference import contact_stiffness, contacts, march_lanes, slow_motion
 
 FS = 12_000.0
-# the races of the second rig are so rough that they squeeze the balls far harder than the load that the step is chosen by
+# the races of the second rig are so rough that ball forces far exceed the load from which the step is chosen
 ROUGH = {
     "recording.oversampling": 1,
     "recording.sample_rate_hz": 24000,
@@ -86,7 +86,7 @@ def test_every_class_and_a_hundredth_of_the_records_are_tried_whatever_the_layou
 
 def test_batches_are_filled_with_their_like_and_count(recipe_with):
     recipe = recipe_with({"corpus.rigs": 500, "corpus.records_per_part": 100})
-    scenarios = draw_scenarios(recipe, 3200, 3300)  # no class begins here: all do on the first rig
+    scenarios = draw_scenarios(recipe, 3200, 3300)  # no class has its first record here: all have it on the first rig
     assert checked_places(scenarios, recipe, dict.fromkeys(range(100))) == [*range(LANES)]  # of 8
     by_turns = {place: place % 20 for place in range(100)}
     assert checked_places(scenarios, recipe, by_turns) == [0, 20, 40, 60, 80, 1, 21, 41, 61, 81]
@@ -151,7 +151,7 @@ def test_chosen_steps_follow_the_stiffest_contacts_and_no_finer_than_they_need(c
 
 
 def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
-    """At every knot of the march the contacts are looked at again; between two knots they get little stiffer."""
+    """Contact stiffness is evaluated at every knot; it changes little between two knots."""
     recipe, scenarios, response, _ = checked
     some = [0, 3]
     records = [kernel_input(scenarios[place], timeline(recipe)) for place in some]

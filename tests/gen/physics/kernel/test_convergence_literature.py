@@ -1,9 +1,9 @@
-"""How fast the error of the Runge-Kutta steps falls: fourth order if nothing happens inside a step, less where something does.
+"""Order of the Runge-Kutta steps: four if the force is smooth within a step, less if it is not.
 
-Where the force has but ``p`` continuous derivatives, the step over that place errs by its size to the power ``p + 2`` in the rate [1]_;
-where it leaves zero as the power 3/2 of time, by the power 5/2. Where in its step such an event falls is chance, and so is the error
-from one step size to the next: orders are slopes of medians over as many random starts as there are lanes. From 96 kHz on the events
-outweigh what is smooth.
+If the force has only ``p`` continuous derivatives at an event, the step over it has an error of the step size to the power ``p + 2`` in the
+rate [1]_; if the force rises from zero as the power 3/2 of time, the power is 5/2. The place of an event within its step is random, and
+so is its error at one step size: orders are slopes of medians over as many random starts as there are lanes. From 96 kHz on the errors of
+events are larger than those of the smooth motion.
 
 .. [1] E. Hairer, S. P. Norsett, G. Wanner, *Solving Ordinary Differential Equations I*, 2nd ed., Springer, 1993, section II.6.
 """
@@ -20,8 +20,8 @@ KNOT = 1 / 12_000
 N_KNOTS = 240  # 20 ms
 STEPS = [2, 4, 8, 16, 32]  # per knot: 24 to 384 kHz
 EXACT = 256
-# Half the clearance [m], the profile of the spalls, and the order in theory. Preload keeps balls and races together, so that nothing but
-# the spalls happens.
+# Half the clearance [m], the profile of the spalls, and the order in theory. With preload the contacts are never lost, so that
+# spalls are the only events.
 CASES = {
     "smooth": (-12e-6, None, 4.0),
     "make and break": (5e-6, None, 2.5),

@@ -1,6 +1,6 @@
-"""The seed paper's equations as printed: why docs/errata.md does not follow them.
+"""Defects of the printed equations of the seed paper, listed in docs/errata.md.
 
-One direction of its system, with the contact as a spring between the rings, is all that stability needs.
+Stability is examined in one direction of the system, with the contact as a spring between the rings.
 
 .. [1] Ophel, Tchomeni, Alugongo, Sozinando, "An Analysis of Hertzian Contact and Inner Race Crack-Induced Vibrations in a Coupled
    Shaft-Bearing System", equations (5)-(11).
@@ -44,7 +44,7 @@ def state_matrix(p, repairs):
     support = p.support_stiffness if "E1" in repairs else -p.support_stiffness
     reaction = (
         first if "E3" in repairs else p.contact_stiffness
-    )  # the contact has its reaction even as printed, k1 has not
+    )  # the printed contact force has its reaction, that of k1 has none
     shaft_row = (p.ring_damping, -p.ring_damping if "E4" in repairs else 0 * p.ring_damping)
     both = p.ring_damping + p.support_damping
     housing_row = (-p.ring_damping, both) if "E2" in repairs else (both + p.ring_damping, 0 * both)
@@ -101,7 +101,7 @@ def test_the_repaired_equations_settle_where_the_springs_balance_the_weight():
 
 
 def test_without_contact_the_housing_falls_off_its_own_support():
-    """A negative spring grows at sqrt(k2 / m2) whatever else there is."""
+    """With a negative spring the motion grows at sqrt(k2 / m2), whatever the other constants are."""
     free = PLAUSIBLE._replace(contact_stiffness=0.0, ring_damping=0.0, support_damping=0.0)
     growth = np.linalg.eigvals(state_matrix(free, PRINTED)).real.max()
     assert growth == pytest.approx(np.sqrt(free.support_stiffness / free.housing_mass), rel=1e-6)
@@ -119,12 +119,12 @@ def test_without_contact_the_housing_falls_off_its_own_support():
     ids=lambda value: "+".join(sorted(value)) or "printed" if isinstance(value, set | frozenset) else None,
 )
 def test_each_repair_takes_its_share_of_the_instability(repairs, at_least, at_most):
-    """The shares in between depend on the box that is drawn from; that it is all, most, few and none does not."""
+    """The shares in the middle depend on the ranges; that all, most, few and none are unstable does not."""
     assert at_least <= share_unstable(repairs) <= at_most
 
 
 def test_the_missing_reaction_of_k1_takes_its_force_from_the_support():
-    """Static: with k1 a good part of the joint, the support carries less than the weight."""
+    """Static: if k1 is a large part of the joint stiffness, the support carries less than the weight."""
     weight = 54.0
     joined = PLAUSIBLE._replace(ring_stiffness=5e7)
     for repairs, carried in (({"E1", "E2"}, joined.contact_stiffness / 1.5e8), (REPAIRED, 1.0)):
@@ -167,7 +167,7 @@ def test_the_printed_defect_window_is_half_as_wide_and_beside_the_defect():
 
 
 def test_balls_that_turn_with_the_shaft_never_meet_a_defect_of_the_inner_race():
-    """Only with the cage's speed do they pass over it at BPFI."""
+    """Balls pass the spall at BPFI only if they turn with the cage."""
     rate, duration = 50.0, 10.0
     turns = rate * duration
     places = (np.arange(PAPER.n_balls) + 0.5) / PAPER.n_balls

@@ -1,4 +1,4 @@
-"""The contact ellipse of a ball, against the model study and the pressures that follow from its axes.
+"""The contact ellipse of a ball compared with a model study and with the pressures that follow from its axes.
 
 Closed forms are those of K. L. Johnson, *Contact Mechanics*, Cambridge University Press, 1985, ch. 4.
 """

@@ -1,4 +1,4 @@
-"""Laws of what leaves the integrator: it follows the step no further than truncation, and its lines follow the shaft."""
+"""Laws of the output of the integrator: it depends on the step by truncation only, and its lines follow the shaft."""
 
 import numpy as np
 import pytest
@@ -22,7 +22,7 @@ EVEN = 1e-12  # jitter, and waviness [m]: one kernel for every test here, with d
 
 
 def responses(records, n_steps, n_settle, n_out):
-    """What the two channels of every record give, shape (record, channel, time) [m s-2]."""
+    """Signals of the two channels of every record, shape (record, channel, time) [m s-2]."""
     records = [drawn._replace(pickups=Y_OF_SENSOR) for drawn in records]
     shape = input_shape(records[0])
     batch = lay_out(records, shape, 1 / FS)
@@ -32,7 +32,7 @@ def responses(records, n_steps, n_settle, n_out):
 
 
 def wandering_rig(rng):
-    """The rig with a spall that is heard; contacts are all but undamped, since damping jumps where a ball touches."""
+    """The rig with a spall in the load zone; contacts have almost no damping, since damping jumps at first contact."""
     site = rng.choice(list(LINES))
     start = rng.uniform(-np.pi, np.pi, 3)
     motion = Turning(
@@ -47,7 +47,7 @@ def wandering_rig(rng):
 @settings(deadline=None, max_examples=3)
 @given(seeds)
 def test_a_record_with_random_processes_does_not_depend_on_the_step(seed):
-    """96 kHz against 384 kHz as in MODEL.md section 10; nine in ten of all agree at 192 kHz."""
+    """96 kHz compared with 384 kHz, see docs/model.md, Integration; nine of ten records agree at 192 kHz."""
     rng = np.random.default_rng(seed)
     drawn = [wandering_rig(rng) for _ in range(LANES)]
     at_96, at_192, at_384 = (responses(drawn, n_steps, 0, 1200) for n_steps in (8, 16, 32))
@@ -57,7 +57,7 @@ def test_a_record_with_random_processes_does_not_depend_on_the_step(seed):
 
 
 def turning(site, shaft_rate, rng, *, mean_slip=0.0, load=100.0):
-    """A spall of 0.5 mm in a preloaded bearing: every passage is heard, and all are alike without a load."""
+    """A spall of 0.5 mm in a preloaded bearing: every passage gives an impact, and without a load all impacts are equal."""
     start = rng.uniform(-np.pi, np.pi, 3)
     motion = Turning(
         shaft_rate, mean_slip=mean_slip, jitter_rms=EVEN, shaft_angle=start[0], cage_angle=start[1], spin_angle=start[2]
@@ -86,14 +86,14 @@ def test_the_line_of_a_fault_stands_at_its_order_times_the_shaft_rate(site, seed
 
 
 def passages(channels, period):
-    """Samples at which bursts some ``period`` samples apart are strongest, for x and y of the sensor; those at the ends left out."""
+    """Samples of the peaks of bursts about ``period`` samples apart, for x and y of the sensor, without the first and the last."""
     heard = np.hypot(*map(envelope, channels))
     return find_peaks(heard, distance=int(0.6 * period), height=0.3 * heard.max())[0][1:-1]
 
 
 @pytest.mark.parametrize(("site", "factor"), [("outer", 0.990), ("inner", 1.0065)])
 def test_one_percent_of_slip_changes_how_often_balls_pass_a_spall(site, factor):
-    """Passages counted one by one; the factors are those of MODEL.md section 10."""
+    """Counts every passage. Slip of 1 % lowers BPFO by 1 % and raises BPFI by 0.65 %."""
     rng = np.random.default_rng(0)
     expected = LINES[site] * 20.0 * factor
     for channels in responses([turning(site, 20.0, rng, mean_slip=0.01, load=0.0) for _ in range(4)], 8, 600, 2 * FS):
@@ -112,7 +112,7 @@ def test_a_late_ball_comes_late_once_a_turn_of_the_cage():
         off = np.abs(np.diff(passages(channels, period)) / period - 1)
         shifted = lag / (
             2 * np.pi / 9
-        )  # of the space between two balls: longer before or after the late one, shorter on the other side
+        )  # of the space between two balls: longer on one side of the displaced ball, shorter on the other
         late = np.flatnonzero(off > shifted / 2)
         assert set(np.diff(late)) == {1, 8}
         np.testing.assert_allclose(off[late], shifted, rtol=0, atol=0.02)

@@ -1,4 +1,4 @@
-"""The kernel against right-hand sides and trajectories of other implementations, in tests/golden/model.json."""
+"""The kernel compared with right-hand sides and trajectories of other implementations, stored in tests/golden/model.json."""
 
 import json
 
@@ -34,7 +34,7 @@ def golden_record(half_clearance, *, with_spalls):
 
 
 def later(record, time):
-    """The record as it stands after ``time``: the rates hold, so one knot is enough to know the angles."""
+    """The record advanced by ``time``: rates are constant, so one knot gives the angles."""
     shaft, cage, spin = slow_motion(record, time, 1).angles[1] if time else slow_motion(record, 1.0, 0).angles[0]
     return record._replace(turning=record.turning._replace(shaft_angle=shaft, cage_angle=cage, spin_angle=spin))
 
@@ -57,7 +57,7 @@ def test_a_trajectory_of_twenty_milliseconds_ends_where_the_golden_one_does(case
 
 @pytest.mark.parametrize("case", GOLDEN["trajectories"], ids=lambda case: case["name"])
 def test_another_integrator_of_another_right_hand_side_goes_where_both_kernel_and_golden_one_go(case):
-    """The twin over one single knot, so that its angles are continuous, by Dormand's and Prince's method of order eight."""
+    """The twin within a single knot, so that its angles are continuous, integrated by DOP853."""
     record, time = golden_record(case["half_clearance"], with_spalls=case["spalls"]), case["time"]
     slow = slow_motion(record, time, 1)
     end = solve_ivp(
@@ -67,7 +67,7 @@ def test_another_integrator_of_another_right_hand_side_goes_where_both_kernel_an
         method="DOP853",
         rtol=1e-12,
         atol=np.repeat([1e-18, 1e-15], 6),
-        max_step=1e-4,  # a third of what the narrowest spall takes to pass
+        max_step=1e-4,  # a third of the time that a ball needs to pass the narrowest spall
     ).y[:, -1]
     trip = march_lanes([record], round(time / KNOT), STEPS_AT_192_KHZ, KNOT, START)[0]
     np.testing.assert_allclose(end[:6], case["state"][:6], rtol=0, atol=1e-13)

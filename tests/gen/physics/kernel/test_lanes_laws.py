@@ -1,4 +1,4 @@
-"""Laws of the functions the kernel has instead of the processor's or the C library's."""
+"""Laws of the functions that replace those of the processor and of the C library in the kernel."""
 
 import numpy as np
 from numba import njit

@@ -1,4 +1,4 @@
-"""Laws of how shaft, cage, balls and spalls move between the knots."""
+"""Laws of the motion of shaft, cage, balls and spalls between the knots."""
 
 import math
 
@@ -58,7 +58,7 @@ def test_the_processes_have_the_rms_they_were_drawn_with(drawn):
 @law
 @given(machines(), wandering_turnings(), angles, seeds)
 def test_a_ball_whose_axis_has_left_the_track_does_not_feel_its_spalls(machine, motion, angle, seed):
-    """The ball bears the load as the record begins; one that goes unloaded feels none on the track either."""
+    """The ball carries load at the start of the record; an unloaded ball feels no spall on its track."""
     under_load = math.atan2(machine.load_y, machine.load_x) - 2 * 2 * math.pi / 9
     off_track = motion._replace(cage_angle=under_load, axis_offset=0.2, axis_rms=0.0, axis_limit=0.1)
     spalls = [SpallInput("ball", 1e-3, 1e-4, angle, 2), SpallInput("ball", 1e-3, 1e-4, angle + 1, 2)]

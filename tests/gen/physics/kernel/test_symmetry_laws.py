@@ -1,4 +1,4 @@
-"""A machine seen from elsewhere, in a mirror or with other faults that nothing touches gives the record seen from there."""
+"""Symmetries: a rotated or mirrored machine gives the rotated or mirrored record, and a spall that no ball meets changes nothing."""
 
 import math
 
@@ -79,10 +79,10 @@ def ways(there, start):
 
 
 def nearby(there, start):
-    """The ways of a neighbour: displaced by 1e-11 of the largest displacement, some 1e5 roundings, its angles as far off as theirs go.
+    """Trajectory displaced at the start by 1e-11 of the largest displacement, about 1e5 roundings, with angles changed accordingly.
 
-    Angles add up knot by knot, and at a constant rate all roundings may go one way, in the mirror the other: after 600 knots angles of
-    up to 60 rad may be so far apart, and a ball meets a spall that much earlier or later.
+    Angles are summed knot by knot. At a constant rate all roundings may have one sign, and in the mirror the other: after 600 knots angles
+    of up to 60 rad differ by their sum, and a ball meets a spall earlier or later by that angle.
     """
     motion, off = there.turning, N_KNOTS * np.spacing(60.0)
     motion = motion._replace(
@@ -93,7 +93,7 @@ def nearby(there, start):
 
 
 def assert_alike(one, other, near):
-    """The same but for rounding, which play in the support makes grow: never further off than ``near`` has been until then."""
+    """Equal except for rounding, which play in the support amplifies: the difference never exceeds that of ``near`` so far."""
     for part in (slice(0, 3), slice(3, 6)):
         apart, nearby, size = (np.abs(way[:, part]).max(axis=(1, 2)) for way in (other - one, near - one, one))
         np.testing.assert_array_less(apart, np.maximum.accumulate(nearby) + 1e-11 * size.max())
@@ -132,7 +132,7 @@ def mirrored_turning(motion):
 def test_a_mirrored_machine_gives_the_mirrored_record(drawn):
     """x -> -x: angles become pi minus themselves, the shaft turns the other way, ball i becomes ball -i.
 
-    At half the shaft rate the cage knocks once only: how hard it does later depends on the number of its turns. Jitter is as good as none.
+    At half the shaft rate the cage knocks only once: the force of later knocks depends on the number of turns. Jitter is almost zero.
     """
     there = drawn._replace(turning=drawn.turning._replace(jitter_rms=1e-30, shaft_rate=drawn.turning.shaft_rate / 2))
     mirrored = there._replace(
@@ -149,7 +149,7 @@ def test_a_mirrored_machine_gives_the_mirrored_record(drawn):
 @law
 @given(steady_turnings(), st.floats(-0.5, 0.5), st.floats(1e-5, 1e-3))
 def test_what_lies_deeper_than_a_ball_can_fall_makes_no_difference(motion, ahead, depth):
-    """A rotor of 54 N over a floor at 5 um or anywhere below, in the load zone at first: the ball hangs free."""
+    """A rotor of 54 N and a spall of 5 um or deeper, in the load zone at the start: the ball does not touch the floor."""
     angle = ahead - math.pi / 2 - motion.shaft_angle
     spall = SpallInput("inner", math.radians(20) * CATALOGUE["6205"].inner_radius, 5e-6, angle, profile="rectangular")
     light = RIG._replace(half_clearance=0.0, load_x=0.0, load_y=-54.0, support_stiffness_y=1.5e7)

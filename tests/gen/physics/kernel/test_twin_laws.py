@@ -1,4 +1,4 @@
-"""The lane kernel goes where its slow twin goes, feature by feature; see :mod:`tests.reference`."""
+"""The kernel computes the same motion as its NumPy twin, mechanism by mechanism; see :mod:`tests.reference`."""
 
 import math
 
@@ -29,7 +29,7 @@ def assert_the_twin_agrees(drawn, n_knots=8):
     lanes = march_lanes([drawn], n_knots, 4, KNOT)[0]
     twin = march_twin(drawn, lanes.states[0], n_knots, 4, KNOT)
     static = math.hypot(drawn.machine.load_x, drawn.machine.load_y) / drawn.machine.shaft_mass
-    largest = max(np.abs(twin.accelerations).max(), 1e-3 * static)  # at rest only rounding is left to compare
+    largest = max(np.abs(twin.accelerations).max(), 1e-3 * static)  # at rest the difference is rounding only
     np.testing.assert_allclose(lanes.angles, twin.angles, rtol=0, atol=1e-12)
     np.testing.assert_allclose(lanes.directions, twin.directions, rtol=0, atol=1e-12)
     np.testing.assert_allclose(lanes.states[:, :6], twin.states[:, :6], rtol=0, atol=1e-16)
@@ -67,9 +67,9 @@ def test_the_kernel_goes_where_its_twin_goes_with_rollers(drawn):
 
 
 def assert_what_comes_out_is_the_twins(drawn, seed, slack):
-    """Integrate 32 knots of a single step, as many as the integrator takes at once, and look at every one.
+    """Integrate 32 knots of a single step, as many as the integrator takes at once, and compare every one.
 
-    What comes out is in single precision. The slope of a contact that just touches is steep: squeezes may differ by ``slack`` [m].
+    The output is in single precision. The force rises steeply at first contact: squeezes may differ by ``slack`` [m].
     """
     pickups = np.random.default_rng(seed).normal(size=(2, 6))
     drawn = drawn._replace(pickups=pickups)
