@@ -16,10 +16,10 @@ import xarray as xr
 
 from features.baselines import DEFAULT_ESTIMATOR, Results
 from features.baselines.benchmark import write_results
-from features.baselines.estimators import CAGE_LINES, COMBS, UNTRAINED
+from features.baselines.estimators import UNTRAINED
+from features.faults import CLASSES, COMBS, HEALTHY
 from features.indicators import Orders, feature_names, indicators
 from features.report.pictures import (
-    COLOURS,
     PictureFormat,
     Quantity,
     Shown,
@@ -157,7 +157,7 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
         counts.append(
             ClassCount(
                 FAULTS[c],
-                COLOURS[FAULTS[c]],
+                CLASSES[FAULTS[c]].colour,
                 int(of_class.sum()),
                 pairs.shape[1],
                 len(np.unique(pairs[0])),
@@ -186,7 +186,7 @@ def _of_faults(name: str, corpus: xr.Dataset) -> np.ndarray:
     """Values of a variable, those of records without a spall left out where they describe one."""
     values = corpus[name].values.astype(float)
     describes_spall = corpus[name].attrs.get("role") == "label"
-    spalled = (corpus["fault"].values != FAULTS.index("healthy")) & (corpus["width"].values != 0)
+    spalled = (corpus["fault"].values != FAULTS.index(HEALTHY)) & (corpus["width"].values != 0)
     return np.where(spalled | (not describes_spall), values, np.nan)
 
 
@@ -206,7 +206,7 @@ def _example(corpus: xr.Dataset, fault: str) -> Example:
     ]
     if np.isfinite(record["load"]):
         told.append(f"{float(record['load']):.0f} N")
-    if fault != "healthy" and float(record["width"]) > 0:
+    if fault != HEALTHY and float(record["width"]) > 0:
         told.append(f"fault {1e3 * float(record['width']):.2g} mm wide")
     caption = f"{', '.join(told)}; the median of {len(levels)} records by the level of the fault line."
     return Example(fault, caption[0].upper() + caption[1:], picture(draw_record(shown[number]), "svg"))
@@ -237,8 +237,7 @@ def _level(shown: Shown) -> float:
     names = feature_names(("lines",))
     orders = Orders(*(order.reshape(1) for order in shown.orders))
     values, _ = indicators(shown.signal[None], shown.fs, np.array([shown.shaft_rate]), orders, ("lines",))
-    told = {fault: (comb,) for fault, comb in COMBS.items()} | {"cage": CAGE_LINES}
-    columns = [names.index(name) for name in told.get(shown.fault, COMBS.values())]
+    columns = [names.index(name) for name in CLASSES[shown.fault].evidence or COMBS.values()]
     return float(np.nan_to_num(values[0, columns], nan=-np.inf).max())
 
 

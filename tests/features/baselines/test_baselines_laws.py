@@ -23,18 +23,16 @@ from features.baselines import (
     train,
 )
 from features.baselines.benchmark import permuted_labels, write_results
-from features.baselines.estimators import CAGE_LINES, COMBS, class_probabilities
+from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
 from features.baselines.splits import check_disjoint, check_taught, grouped_splits, score_splits
+from features.faults import CLASSES, COMBS, EVIDENCE
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
-NAMES = (*COMBS.values(), *CAGE_LINES, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")
+NAMES = (*EVIDENCE, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")
 GROUPS = ("lines",) * 8 + ("shape",) * 2
-TELLING = {fault: (comb,) for fault, comb in COMBS.items()} | {
-    "cage": CAGE_LINES,
-    "compound": (COMBS["inner"], COMBS["outer"]),
-}
+TELLING = {name: row.evidence for name, row in CLASSES.items()} | {"compound": (COMBS["inner"], COMBS["outer"])}
 FOUR = FAULTS[:4]  # the classes of corpora made before there were six
 
 

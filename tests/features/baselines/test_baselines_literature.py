@@ -8,7 +8,8 @@ import pandas as pd
 import pytest
 
 from features.baselines import cross_validate, evaluate, train
-from features.baselines.estimators import COMBS, EnvelopeRule
+from features.baselines.estimators import EnvelopeRule
+from features.faults import COMBS
 from features.indicators import Orders, feature_names, indicators
 from features.table import feature_table
 from gen.corpus import FAULTS

@@ -9,13 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import softmax
 
-from features.baselines.estimators import CAGE_LINES, COMBS, EnvelopeRule
+from features.baselines.estimators import EnvelopeRule
+from features.faults import COMBS, EVIDENCE
 from features.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 
 FS, TURNS, RECORDS = 12_000.0, 30, 40
 FTF, BPFO, BPFI, BSF = 0.3983, 3.5848, 5.4152, 2.3567
-COLUMNS = (*COMBS.values(), *CAGE_LINES)
+COLUMNS = EVIDENCE
 FOUR, SIX = np.arange(4), np.arange(6)
 TRAINS = {
     "healthy": (),
