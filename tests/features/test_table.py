@@ -243,7 +243,7 @@ def test_a_table_with_other_attributes_is_refused(tmp_path, table, change):
     write_table(table, tmp_path / "table.nc")
     with netCDF4.Dataset(tmp_path / "table.nc", "r+") as file:
         file.setncatts(change)
-    with pytest.raises(CorpusError, match=r"table\.nc: altered, its content is not what its digest says"):
+    with pytest.raises(CorpusError, match=r"table\.nc: altered, its content does not match its digest"):
         read_table(tmp_path / "table.nc")
 
 
@@ -262,7 +262,7 @@ def test_a_table_survives_parquet_as_columns(tmp_path, table):
 
 def test_parquet_without_pyarrow_says_what_to_install(tmp_path, table, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(CorpusError, match=r"install raceway\[parquet\], or write \.nc"):
+    with pytest.raises(CorpusError, match=r"table\.parquet: Parquet needs pyarrow; pip install 'raceway\[parquet\]'"):
         write_table(table, tmp_path / "table.parquet")
     assert not list(tmp_path.iterdir())
 
@@ -285,7 +285,7 @@ def test_what_is_no_feature_table_is_refused_by_name(tmp_path, corpus):
         read_table(tmp_path / "text.nc")
     with pytest.raises(CorpusError, match=r"missing\.nc: not a readable netCDF file"):
         read_table(tmp_path / "missing.nc")
-    with pytest.raises(CorpusError, match=r"corpus\.nc: holds no features"):
+    with pytest.raises(CorpusError, match=r"corpus\.nc: contains no features"):
         read_table(corpus / "corpus.nc")
 
 

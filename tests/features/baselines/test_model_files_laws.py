@@ -126,7 +126,7 @@ def test_a_support_vector_machine_that_miscounts_its_vectors_is_refused(files, t
 
 WRONG_FIELDS = [
     ("name", ["svm"], "name: "),
-    ("name", "forest", "'forest' is no baseline; there are majority"),
+    ("name", "forest", "'forest' is no baseline; the baselines are majority"),
     ("name", "svm", "estimator"),
     ("classes", [0, 1, 2], "classes"),
     ("classes", (0, 1, 2), "classes"),
@@ -149,11 +149,16 @@ WRONG_FIELDS = [
     ("seed", -1, "seed"),
     ("seed", 2.5, "seed"),
     ("seed", 1, "random_state is 0 and must be 1"),
+    ("widths", {"cracked": ((1e-3, 1e-3),)}, "widths"),
+    ("widths", {"inner": ((-1e-3, 1e-3),)}, "widths"),
+    ("widths", {"inner": ((1e-3, float("nan")),)}, "widths"),
+    ("widths", {"inner": ()}, "widths"),
+    ("widths", {"inner": ((1e-3,),)}, "widths"),
     ("digests", "none", "digests"),
     ("digests", np.zeros(24), "digests"),
     ("digests", np.zeros(3, dtype=np.uint64), "digests"),
     ("versions", {"numpy": 2}, "versions"),
-    ("versions", {"scikit-learn": "0.1"}, "made with scikit-learn 0.1, and "),
+    ("versions", {"scikit-learn": "0.1"}, "was trained with scikit-learn 0.1, and "),
     ("raceway_model", [1], "not a model of this version"),
     ("estimator", 5, "estimator"),
 ]
@@ -335,7 +340,7 @@ def test_a_model_that_fails_only_on_some_records_is_refused_then(files, tmp_path
     archive.put("scale_", np.full(len(NAMES), 1e-300))
     path = archive.write(tmp_path / "m")
     table = make_table()
-    with pytest.raises(CorpusError, match="logistic_regression cannot judge its records"):
+    with pytest.raises(CorpusError, match="logistic_regression cannot classify these records"):
         evaluate(table.assign(features=table.features * 1e30), load_model(path))
 
 

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from features.baselines import ESTIMATORS, benchmark
 from features.indicators import Orders
-from features.report.page import _findings, _of_faults, plot_record, write_report
-from features.report.pictures import Shown, draw_record, fault_lines, picture, squared_envelope, thinned
+from features.report.examples import plot_record
+from features.report.page import _findings, _of_faults, write_report
+from features.report.pictures import Shown, draw_record, draw_scores, fault_lines, picture, squared_envelope, thinned
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, open_corpus, part_name, write_index, write_manifest, write_part
 from gen.errors import CorpusError
@@ -168,10 +169,28 @@ def test_permuted_labels_above_chance_are_called_out(results):
     found = results.baselines["ensemble"]
     leaking = replace(found, null=replace(found.null, interval=(0.8, 0.9)))
     suspicious = replace(results, baselines=results.baselines | {"ensemble": leaking})
-    assert "above chance: look for a leak" in _findings(suspicious, 0.25)[2]
+    assert "above chance; look for a leak" in _findings(suspicious, 0.25)[2]
     honest = replace(found, null=replace(found.null, interval=(0.2, 0.9)))
     fine = replace(results, baselines=results.baselines | {"ensemble": honest})
-    assert "at chance, as it must be" in _findings(fine, 0.25)[2]
+    assert "at chance, as expected" in _findings(fine, 0.25)[2]
+
+
+def test_an_interval_that_is_not_known_is_said_so_and_not_drawn(results):
+    found = results.baselines["ensemble"]
+    alone = replace(
+        found, grouped=replace(found.grouped, interval=None), null=replace(found.null, interval=None), test=None
+    )
+    sentences = _findings(replace(results, baselines=results.baselines | {"ensemble": alone}), 0.25)
+    assert "(95 % interval not known); chance is" in sentences[0]
+    assert sentences[2].endswith("(95 % interval not known).")
+    known, unknown = (draw_scores({"one": one}, 0.25, "specimen").axes[0] for one in (found, alone))
+    assert len(known.collections) == len(unknown.collections) + 1
+
+
+def test_severities_that_were_tested_and_not_trained_are_among_the_findings(results):
+    assert len(_findings(replace(results, uncovered_widths={}), 0.25)) == 3
+    sentences = _findings(replace(results, uncovered_widths={"inner": (0.0014,)}), 0.25)
+    assert sentences[3].startswith("Cross-validation: tested but not trained: inner 1.4 mm wide")
 
 
 def test_a_class_that_cannot_be_drawn_is_said_so(results, tmp_path):
