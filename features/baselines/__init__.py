@@ -11,7 +11,8 @@ scores        figures of merit by record and by recording, with confidence inter
 severities    fault widths that a test contains and its training does not
 splits        grouped cross-validation, and the checks of its splits
 model_members the zip archive of a model file and its arrays, checked before they are read
-model_file    content of a model file as plain values; the only module that reads and writes skops
+model_states  content of a model file as plain values
+model_file    the only module that reads and writes skops archives
 model_rules   allowed values of the attributes that training sets
 model_check   comparison of the estimator in a model file with one trained in this process
 models        training, saving, loading, evaluation

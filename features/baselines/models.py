@@ -25,8 +25,9 @@ from features.baselines.estimators import (
     make_estimator,
 )
 from features.baselines.model_check import check_estimator
-from features.baselines.model_file import Known, State, pack, plain, read_state, unpack
+from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
+from features.baselines.model_states import Known, State, plain
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
