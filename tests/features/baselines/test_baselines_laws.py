@@ -20,6 +20,7 @@ from features.baselines import (
     evaluate,
     load_model,
     save_model,
+    splits,
     train,
 )
 from features.baselines.benchmark import permuted_labels, write_results
@@ -88,9 +89,9 @@ def records_of(table: xr.Dataset):
 @settings(deadline=None)
 def test_every_record_is_tested_once_and_never_beside_its_own_specimen(specimens, records, folds, seed):
     found = records_of(make_table(4 * max(specimens, folds), records))
-    splits = grouped_splits(found.fault, found.specimen, folds, seed)
-    assert sorted(np.concatenate([test for _, test in splits])) == list(range(len(found.fault)))
-    for known, test in splits:
+    found_splits = grouped_splits(found.fault, found.specimen, folds, seed)
+    assert sorted(np.concatenate([test for _, test in found_splits])) == list(range(len(found.fault)))
+    for known, test in found_splits:
         assert not set(found.specimen[known]) & set(found.specimen[test])
         assert set(found.fault[known]) == set(found.fault)
 
@@ -170,13 +171,21 @@ def test_permuted_labels_of_a_rare_class_are_scored_although_a_fold_trains_none_
     untrained = 0
     for seed in range(40):
         labels = permuted_labels(records, seed)
-        splits = grouped_splits(labels, records.rig, 5, seed)
-        if any(FAULTS.index("compound") not in labels[known] for known, _ in splits):
+        folds = grouped_splits(labels, records.rig, 5, seed)
+        if any(FAULTS.index("compound") not in labels[known] for known, _ in folds):
             untrained += 1
             with pytest.raises(CorpusError, match="a fold has no compound record to train on"):
-                check_taught(labels, splits)
-            assert score_splits(records, labels, "envelope_rule", splits, seed).classes == FAULTS
+                check_taught(labels, folds)
+            assert score_splits(records, labels, "envelope_rule", folds, seed).classes == FAULTS
     assert untrained > 0
+
+
+def test_cross_validation_refuses_a_fold_that_trains_no_record_of_a_class(monkeypatch):
+    table = make_table()
+    outer = table.fault.values == FAULTS.index("outer")
+    monkeypatch.setattr(splits, "grouped_splits", lambda *_: [(np.flatnonzero(~outer), np.flatnonzero(outer))])
+    with pytest.raises(CorpusError, match="a fold has no outer record to train on"):
+        cross_validate(table, "majority")
 
 
 def test_a_benchmark_gives_the_same_numbers_again(results):
