@@ -23,7 +23,7 @@ from features.baselines import (
     splits,
     train,
 )
-from features.baselines.benchmark import permuted_labels, write_results
+from features.baselines.benchmark import _cases, permuted_labels, write_results
 from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
 from features.baselines.splits import check_disjoint, check_taught, grouped_splits, score_splits
@@ -127,6 +127,17 @@ def test_random_labels_score_high_in_a_leaky_split_and_at_chance_in_a_grouped_on
 @pytest.fixture(scope="module")
 def results(few_trees):  # noqa: ARG001
     return benchmark(make_table(24, 3), make_table(8, 4, windows=2, seed=1), folds=3, seed=5)
+
+
+def test_each_control_is_stratified_by_the_labels_that_it_scores():
+    records = records_of(make_table(24, 3))
+    cases = _cases(records, "specimen", 3, 7)
+    assert list(cases) == ["grouped", "leaky", "null"]
+    for name, (labels, found) in cases.items():
+        group = np.arange(len(labels)) if name == "leaky" else records.specimen
+        for one, expected in zip(found, grouped_splits(labels, group, 3, 7), strict=True):
+            np.testing.assert_array_equal(one[1], expected[1])
+    np.testing.assert_array_equal(cases["null"][0], permuted_labels(records, 7))
 
 
 def test_a_benchmark_contains_every_baseline_with_its_controls(results):
