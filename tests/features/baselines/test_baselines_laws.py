@@ -265,6 +265,13 @@ def test_records_seen_in_training_are_counted():
     assert evaluate(xr.concat([other, table.isel(record=[4, 5])], "record"), model).seen == 2
 
 
+def test_records_without_any_feature_do_not_count_as_seen_in_training():
+    table, other = make_table(), make_table(seed=1)
+    for made in (table, other):
+        made["features"][:3] = np.nan
+    assert evaluate(other, train(table, "logistic_regression")).seen == 0
+
+
 def test_records_of_a_class_that_was_not_trained_count_as_errors():
     found = evaluate(make_table(classes=4), train(make_table(classes=2), "logistic_regression"))
     assert found.classes == FOUR

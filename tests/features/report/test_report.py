@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 
 from features.baselines import ESTIMATORS, benchmark, evaluate, train
 from features.indicators import Orders
+from features.report import examples
 from features.report.examples import plot_record
-from features.report.page import _findings, _of_faults, write_report
+from features.report.page import QUANTITIES, _findings, _of_faults, write_report
 from features.report.pictures import Shown, draw_record, draw_scores, fault_lines, picture, squared_envelope, thinned
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, open_corpus, part_name, write_index, write_manifest, write_part
@@ -153,6 +154,35 @@ def test_a_histogram_of_widths_omits_the_records_without_a_spall(tmp_path):
         widths = _of_faults("width", corpus)
         np.testing.assert_array_equal(np.isnan(widths), np.isin(corpus["fault"].values, [0, 4]))
         np.testing.assert_array_equal(_of_faults("load", corpus), corpus["load"].values)
+
+
+def test_quantities_are_drawn_in_the_unit_of_their_label():
+    factors = {name: (label, factor) for name, label, factor in QUANTITIES}
+    for name, unit, si, shown in (
+        ("shaft_rate", "[Hz]", 30.0, 30.0),
+        ("load", "[N]", 700.0, 700.0),
+        ("width", "[mm]", 2e-3, 2.0),
+        ("depth", "[µm]", 5e-6, 5.0),
+        ("angle", "[°]", np.pi / 2, 90.0),
+        ("snr", "[dB]", 6.0, 6.0),
+    ):
+        label, factor = factors.pop(name)
+        assert label.endswith(unit)
+        assert si * factor == pytest.approx(shown)
+    assert not factors
+
+
+def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatch):
+    """The healthy records are 0 to 2 of specimen 0 and 12 to 14 of specimen 4; their levels are their numbers here."""
+    monkeypatch.setattr(examples, "_line_level", lambda shown: float(shown.title.split(":")[0].split()[1]))
+    drawn = []
+    monkeypatch.setattr(examples, "draw_record", lambda shown: drawn.append(shown.title) or draw_record(shown))
+    with open_corpus(corpus) as opened:
+        healthy = examples.draw_examples(opened)[0]
+    assert drawn[0].startswith("Record 12: ")
+    assert healthy.fault == "healthy"
+    assert healthy.caption.startswith("Specimen 4 of rig 1, ")
+    assert healthy.caption.endswith("; the median of 6 records by the level of the fault lines.")
 
 
 def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, page, tmp_path):
