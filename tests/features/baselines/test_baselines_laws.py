@@ -108,6 +108,13 @@ def test_equal_numbers_on_different_rigs_are_different_specimens():
     assert len(np.unique(records_of(again).recording)) == 8
 
 
+def test_a_recording_of_a_specimen_that_became_faulty_is_another_recording():
+    table = make_table(8, 2).assign(specimen=("record", np.repeat(np.arange(4), 4)))
+    records = records_of(table.assign(recording=table.recording * 0, rig=table.rig * 0))
+    assert len(np.unique(records.specimen)) == 4
+    assert len(np.unique(records.recording)) == 8
+
+
 @given(seed=st.integers(0, 999))
 @settings(deadline=None)
 def test_labels_are_permuted_among_whole_specimens(seed):
