@@ -7,6 +7,7 @@ It uses the format of a corpus and not the simulator, so that recordings of real
 =========== =================================================================================
 module      responsibility
 =========== =================================================================================
+faults      the fault classes: colour, lines and telling features of each, in one table
 signal      spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
 indicators  the feature vector of records, in four groups [pure]
 transformer the feature vector as a scikit-learn transformer

@@ -2,16 +2,18 @@
 
 ``records -> six whitened analytic signals -> level of their envelope spectra -> lines; moduli -> shape``
 
-The six signals are 0.3-5 kHz cepstrally pre-whitened, 0.3-5 kHz divided by its power spectral density, and
-four narrower bands of the latter. Nothing above 5 kHz is used, so that what a machine was recorded with shows
-as little as can be, and ``lines`` and ``shape`` are free of gain and colour; ``bands`` and ``time`` are not
-and say much about the machine itself. The lines are those of [1]_.
+The six signals are the band of 0.3-5 kHz with cepstral pre-whitening, the same band divided by its power spectral
+density, and four narrower bands of the latter. Frequencies above 5 kHz are not used, so that features depend as little
+as possible on the recording equipment. ``lines`` and ``shape`` are independent of gain and spectral colour; ``bands``
+and ``time`` are not, and depend strongly on the machine. The lines are those of [1]_.
+
+A new group needs a function in ``GROUP_FEATURES`` and its names in ``NAMES``, both in this module.
 
 .. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
        Process.* 25 (2011) 485-520.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import combinations, pairwise
 
 import numpy as np
@@ -25,20 +27,20 @@ from features.signal.spectra import band_energies, cepstrally_whitened, fourier_
 
 __all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
 
-TOP = 5000.0  # Hz
-BROAD = (300.0, TOP)
-NARROW = ((500.0, 1500.0), (1500.0, 2500.0), (2500.0, 3500.0), (3500.0, TOP))
+TOP = 5000.0  # Hz, highest frequency used
+BROAD = (300.0, TOP)  # Hz
+NARROW = ((500.0, 1500.0), (1500.0, 2500.0), (2500.0, 3500.0), (3500.0, TOP))  # Hz
 WHITENING_WIDTH = 50.0  # Hz
-FLOOR_WIDTH = (3.0, 30.0)  # orders of the shaft, but at least so many Hz
+FLOOR_WIDTH = (3.0, 30.0)  # window of the floor: orders of the shaft, and its least width [Hz]
 
-SHORTEST = (2.0, 0.05)  # turns of the shaft, and seconds: less shows no line
-LOWEST_RATE = 2 * NARROW[0][1]  # Hz
+SHORTEST = (2.0, 0.05)  # shaft revolutions and seconds below which a record shows no line
+LOWEST_RATE = 2 * NARROW[0][1]  # Hz, lowest sample rate for lines
 
 ENERGY_HZ = (20.0, 100.0, 200.0, 400.0, 800.0, 1500.0, 2500.0, 3500.0, TOP)
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
-FAINTEST_ENERGY = 1e-12  # of the whole: 120 dB down
+FAINTEST_ENERGY = 1e-12  # of the total energy, 120 dB below it
 
-BATCH = 8  # records worked on at once: what they need stays in a core's cache
+BATCH = 8  # records computed together, so that their arrays fit into the cache of a core
 
 VIEWS = ("cepstral", "whitened", "bands_max", "bands_mean")
 RIVALS = tuple(combinations(range(len(FAMILIES)), 2))
@@ -89,9 +91,9 @@ def indicators(
 ) -> tuple[FloatArray, tuple[str, ...]]:
     """Features of records, and their names.
 
-    A record gets NaN throughout if its signal is constant or not finite, or if its shaft rate or one of its
-    orders is not a positive number. Lines and shape are NaN too if it lasts less than two turns or 0.05 s, or
-    if fs is below 3 kHz.
+    All features of a record are NaN if its signal is constant or not finite, or if its shaft rate or one of its orders is
+    not a positive number. Its lines and shape are NaN if it is shorter than two shaft revolutions or 0.05 s, or if fs is
+    below 3 kHz.
 
     Parameters
     ----------
@@ -104,7 +106,7 @@ def indicators(
     orders
         Nominal fault orders, each of shape (record,).
     groups
-        Any of `GROUPS`, in the order wanted. ``lines`` and ``shape`` are cheaper together than apart.
+        Some of `GROUPS`; the columns have their order. ``lines`` and ``shape`` share most of their computation.
 
     Returns
     -------
@@ -134,22 +136,20 @@ def _usable(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.ndarray
 
 def _features(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str]) -> FloatArray:
     found: dict[str, FloatArray] = {}
-    if "lines" in groups or "shape" in groups:
-        found["lines"], found["shape"] = _lines_and_shape(x, fs, shaft_rate, orders)
-    if "bands" in groups:
-        found["bands"] = _log_energies(x, fs, shaft_rate)
-    if "time" in groups:
-        found["time"] = time_statistics(x)
+    for group in groups:
+        if group not in found:  # one function may compute several groups
+            found |= GROUP_FEATURES[group](x, fs, shaft_rate, orders)
     return np.concatenate([found[group] for group in groups], axis=-1)
 
 
-def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders) -> tuple[FloatArray, FloatArray]:
+def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders) -> dict[str, FloatArray]:
     duration = x.shape[-1] / fs
     lines = np.full((len(x), len(NAMES["lines"])), np.nan)
     shape = np.full((len(x), len(NAMES["shape"])), np.nan)
     long_enough = np.flatnonzero(duration * shaft_rate >= SHORTEST[0])
+    found = {"lines": lines, "shape": shape}
     if fs < LOWEST_RATE or duration < SHORTEST[1] or not long_enough.size:
-        return lines, shape
+        return found
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
     coefficients = fourier_coefficients(x[long_enough], fs, TOP)
     read = _read(_bands(coefficients, duration, fs), duration, shaft_rate, orders)
@@ -157,11 +157,11 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
     lines[long_enough] = np.concatenate([_flat(line_views), _flat(over)], axis=-1)
     shape[long_enough] = np.concatenate([_flat(shape_views), _raw_shape(coefficients)], axis=-1)
-    return lines, shape
+    return found
 
 
 def _bands(coefficients: ComplexArray, duration: float, fs: float) -> list[ComplexArray]:
-    """Two broad bands of whitened coefficients, then the narrow ones of which more than half is below the Nyquist rate."""
+    """Both broad bands of whitened coefficients, and the narrow bands with more than half below the Nyquist frequency."""
     cepstral = cepstrally_whitened(coefficients)
     whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
     narrow = [(whitened, band) for band in NARROW if sum(band) < fs]
@@ -176,7 +176,7 @@ def _read(
     resolution = 1 / (ZERO_PADDING * duration)
     bins = int(np.max(highest_order(orders) * shaft_rate) / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
-    level = np.zeros((len(shaft_rate), len(bands), bins), np.float32)  # a line beyond the end of a spectrum reads 0
+    level = np.zeros((len(shaft_rate), len(bands), bins), np.float32)  # 0 beyond the end of a spectrum
     shape = np.empty((len(shaft_rate), len(bands), len(SHAPE_NAMES)))
     for number, band in enumerate(bands):
         z = analytic_band(band, 0, band.shape[-1])
@@ -192,10 +192,10 @@ def _read(
 
 
 def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
-    """Logarithm of the first bins of envelope spectra over their running median, shape (record, bins).
+    """Logarithm of the ratio of envelope spectra to their running median, shape (record, bins).
 
-    ``width`` is that of the window of the median in bins, shape (record,). The spectra reach as far again
-    beyond the bins, unless they end before.
+    ``width`` is the width of the median window in bins, shape (record,). The spectra must extend at least this width
+    beyond the first ``bins`` bins, or to their end.
     """
     floor = running_median(spectrum, width, bins)
     least = np.finfo(spectrum.dtype).tiny
@@ -203,7 +203,7 @@ def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
 
 
 def _views(values: FloatArray) -> FloatArray:
-    """Both broad signals, then maximum and mean of the narrow ones, shape (record, view, value)."""
+    """Values of both broad bands, and maximum and mean over the narrow bands, shape (record, view, value)."""
     narrow = values[:, 2:]
     return np.stack([values[:, 0], values[:, 1], narrow.max(axis=1), narrow.mean(axis=1)], axis=1)
 
@@ -213,18 +213,33 @@ def _flat(values: FloatArray) -> FloatArray:
 
 
 def _raw_shape(coefficients: ComplexArray) -> FloatArray:
-    """Kurtosis and crest factor of what lies below 5 kHz, shape (record, 2)."""
+    """Kurtosis and crest factor of the signal below 5 kHz, shape (record, 2)."""
     n = next_fast_len(2 * coefficients.shape[-1])
     raw = np.asarray(irfft(coefficients, n=n, axis=-1, norm="forward")) + coefficients[:, :1].real
     _, _, square, _, fourth = moments(raw).T
     return np.stack([fourth / square**2, peaks(raw) / np.sqrt(square)], axis=-1)
 
 
-def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray) -> FloatArray:
-    """Natural logarithm of band energies [unit of x squared], in bands of Hz, then of orders."""
+def _time(x: FloatArray, *_: object) -> dict[str, FloatArray]:
+    return {"time": time_statistics(x)}
+
+
+def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray, _: Orders) -> dict[str, FloatArray]:
+    """Natural logarithm of energies [unit of x squared] in bands of frequency, then in bands of order."""
     frequencies, density = psd(x, fs)
     density[:, frequencies > TOP] = 0.0
     in_hz = band_energies(density, frequencies, ENERGY_HZ)
     in_orders = band_energies(density, frequencies, np.multiply.outer(shaft_rate, ENERGY_ORDERS))
     least = FAINTEST_ENERGY * (frequencies[1] - frequencies[0]) * density.sum(axis=-1, keepdims=True)
-    return np.log(np.maximum(np.concatenate([in_hz, in_orders], axis=-1), least + np.finfo(float).tiny))
+    energies = np.concatenate([in_hz, in_orders], axis=-1)
+    return {"bands": np.log(np.maximum(energies, least + np.finfo(float).tiny))}
+
+
+GroupFunction = Callable[[FloatArray, float, FloatArray, Orders], dict[str, FloatArray]]
+GROUP_FEATURES: Mapping[str, GroupFunction] = {
+    "lines": _lines_and_shape,
+    "shape": _lines_and_shape,
+    "bands": _log_energies,
+    "time": _time,
+}
+"""Function that computes a group, and perhaps others, from signals, sample rate, shaft rates and orders."""

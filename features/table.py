@@ -1,10 +1,10 @@
-"""Feature table: a corpus in, one row of features per record out, beside everything known about the record.
+"""Feature table: a corpus in, one row per record out, with features and all variables of the record.
 
-``parts -> a task each: read the signal and what an analyst knows -> indicators -> rows, in corpus order``
+``parts -> one task per part: read signal and operating variables -> indicators -> rows, in corpus order``
 
-Only the signal and ``operating`` variables reach the features; labels, simulator truth and provenance are
-carried along untouched. A task returns numbers only, so that memory does not grow with the signals of a
-corpus, and since a task is a part, the numbers are the same for every number of workers.
+Features are computed from the signal and the ``operating`` variables only; labels, simulator truth and provenance are
+copied unchanged. A task returns features and no signals, so that memory does not grow with the signals of a corpus. A
+task is one part, so the features do not depend on the number of workers.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -24,7 +24,7 @@ from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
 
-INLINE_RECORDS = 2000  # a local cluster takes about as long to start as these take to compute
+INLINE_RECORDS = 2000  # their features take about as long as a local cluster takes to start
 
 
 def feature_table(
@@ -42,23 +42,21 @@ def feature_table(
     corpus
         The folder of the corpus.
     groups
-        Any of ``lines``, ``shape``, ``bands``, ``time``; the first two are the ones that carry over to other
-        machines.
+        Some of ``features.indicators.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
     channel
-        Number of the channel to look at.
+        Number of the channel, from 0.
     scheduler
-        A dask client, the address of a dask scheduler, or ``"local"`` for a cluster of one process per core
-        unless the corpus is small; by default this process.
+        A dask client, the address of a dask scheduler, or ``"local"`` for a cluster with one process per core, which
+        is not started for a small corpus; by default this process.
     progress
         Called after each part with the number of parts done and of all parts.
 
     Returns
     -------
     Dataset
-        ``features (record, feature)``, coordinates ``feature`` (names) and ``group``, all per-record
-        variables but ``draws``, which would be most of the table, the attributes of the corpus, and
-        ``records_with_missing_features``, the number of rows
-        that hold a NaN.
+        ``features (record, feature)``, coordinates ``feature`` (names) and ``group``, all variables of the records
+        except ``draws``, which is larger than the rest of the table, and the attributes of the corpus with
+        ``records_with_missing_features``, the number of rows with a NaN.
 
     Raises
     ------
@@ -104,7 +102,7 @@ def part_features(path: Path, groups: Sequence[str] = GROUPS, channel: int = 0) 
 def _run(
     compute: Callable[[Path], FloatArray], paths: list[Path], scheduler: Client | str | None
 ) -> Iterator[tuple[int, FloatArray]]:
-    """Yield number and features of each part as they come."""
+    """Yield number and features of each part as they are completed."""
     numbered = partial(_numbered, compute)
     if scheduler is None:
         yield from map(numbered, enumerate(paths))

@@ -1,7 +1,9 @@
-"""Feature tables on disk: netCDF with a digest of everything in it, or Parquet."""
+"""Feature tables on disk: netCDF with a digest of its whole content, or Parquet."""
 
 import hashlib
 import json
+from collections.abc import Callable, Mapping
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -17,21 +19,35 @@ DIGEST = "sha256"
 def write_table(table: xr.Dataset, path: Path | str) -> None:
     """Write a feature table as netCDF (``.nc``) or Parquet (``.parquet``), whole or not at all.
 
-    The netCDF file says the digest of its content. Parquet gets a column per feature and per variable, with the attributes as metadata of
-    the column.
+    The netCDF file contains the digest of its content. A Parquet file has one column per feature and per variable, and
+    the attributes of a variable as metadata of its column.
 
     Raises
     ------
     CorpusError
-        For another suffix, for Parquet without pyarrow, or if the disk refuses the file.
+        As `check_destination`, or if the disk refuses the file.
     """
     path = Path(path)
-    writers = {".nc": _write_netcdf, ".parquet": _write_parquet}
-    if path.suffix not in writers:
+    check_destination(path)
+    with whole_or_not_at_all(path) as temporary:
+        WRITERS[path.suffix](table, temporary)
+
+
+def check_destination(path: Path | str) -> None:
+    """Refuse a path that no feature table can be written to; call it before the features are computed.
+
+    Raises
+    ------
+    CorpusError
+        If the suffix is neither ``.nc`` nor ``.parquet``, or is ``.parquet`` without pyarrow.
+    """
+    path = Path(path)
+    if path.suffix not in WRITERS:
         message = f"{path}: {path.suffix or 'no suffix'} is no format of feature tables; use .nc or .parquet."
         raise CorpusError(message)
-    with whole_or_not_at_all(path) as temporary:
-        writers[path.suffix](table, temporary)
+    if path.suffix == ".parquet" and find_spec("pyarrow") is None:
+        message = f"{path}: Parquet needs pyarrow; pip install 'raceway[parquet]', or write .nc instead."
+        raise CorpusError(message)
 
 
 def read_table(path: Path | str) -> xr.Dataset:
@@ -40,7 +56,7 @@ def read_table(path: Path | str) -> xr.Dataset:
     Raises
     ------
     CorpusError
-        If the file is missing, unreadable, altered or no feature table.
+        If the file is missing, unreadable, altered or not a feature table.
     """
     path = Path(path)
     try:
@@ -49,27 +65,27 @@ def read_table(path: Path | str) -> xr.Dataset:
             table = xr.load_dataset(path, engine="netcdf4", decode_times=False).drop_encoding()
     except CorpusError:
         raise
-    except Exception as error:  # damaged bytes make netCDF4 and xarray raise a dozen unrelated types
+    except Exception as error:  # netCDF4 and xarray raise a dozen unrelated types for damaged bytes
         reason = (str(error) or type(error).__name__).splitlines()[0]
         message = f"{path}: not a readable netCDF file ({reason}); write it with raceway features."
         raise CorpusError(message) from error
     if not {"features", "feature", "group"} <= set(table.variables):
-        message = f"{path}: holds no features (record, feature); write a feature table with raceway features."
+        message = f"{path}: contains no features (record, feature); write a feature table with raceway features."
         raise CorpusError(message)
     if table.attrs.pop(DIGEST, None) != _digest(table):
-        message = f"{path}: altered, its content is not what its digest says; write it again with raceway features."
+        message = f"{path}: altered, its content does not match its digest; write it again with raceway features."
         raise CorpusError(message)
     return table
 
 
 def _digest(table: xr.Dataset) -> str:
     """SHA-256 of names, dimensions, types, values and attributes of a table."""
-    whole = hashlib.sha256(_told(table.attrs))
+    whole = hashlib.sha256(_attributes_text(table.attrs))
     for name in sorted(map(str, table.variables)):
         variable = table[name].variable
         texts = variable.dtype.kind in "OUT"
         whole.update(repr((name, variable.dims, variable.shape, "text" if texts else variable.dtype.str)).encode())
-        whole.update(_told(variable.attrs))
+        whole.update(_attributes_text(variable.attrs))
         if texts:
             whole.update("\0".join(map(str, variable.values.flat)).encode())
         else:
@@ -77,8 +93,8 @@ def _digest(table: xr.Dataset) -> str:
     return whole.hexdigest()
 
 
-def _told(attributes: dict) -> bytes:
-    """Attributes as text that a file gives back unchanged."""
+def _attributes_text(attributes: dict) -> bytes:
+    """Attributes as text that does not change when a file is written and read."""
     plain = {str(key): np.atleast_1d(np.asarray(value)).tolist() for key, value in attributes.items()}
     return json.dumps(plain, sort_keys=True, default=str).encode()
 
@@ -96,12 +112,9 @@ def _write_netcdf(table: xr.Dataset, path: Path) -> None:
 
 
 def _write_parquet(table: xr.Dataset, path: Path) -> None:
-    try:
-        import pyarrow as pa
-        from pyarrow import parquet
-    except ImportError as error:
-        message = f"{path}: Parquet needs pyarrow; install raceway[parquet], or write .nc instead."
-        raise CorpusError(message) from error
+    import pyarrow as pa
+    from pyarrow import parquet
+
     columns = {str(name): table[name] for name, known in table.variables.items() if known.dims == ("record",)}
     columns |= {str(name): table["features"].sel(feature=name) for name in table["feature"].values}
     arrays = {name: pa.array(column.values) for name, column in columns.items()}
@@ -111,3 +124,6 @@ def _write_parquet(table: xr.Dataset, path: Path) -> None:
     ]
     metadata = {key: str(value) for key, value in table.attrs.items()}
     parquet.write_table(pa.table(list(arrays.values()), schema=pa.schema(fields, metadata)), path)
+
+
+WRITERS: Mapping[str, Callable[[xr.Dataset, Path], None]] = {".nc": _write_netcdf, ".parquet": _write_parquet}

@@ -1,7 +1,7 @@
-"""The features of this package as a scikit-learn transformer, for signals that are no corpus.
+"""The features of this package as a scikit-learn transformer, for signals outside a corpus.
 
-Stateless: ``transform`` needs no ``fit``, which only takes note of the number of samples. All signals share
-one sample rate, one shaft rate and one bearing.
+The transformer is stateless: ``fit`` only stores the number of samples, and ``transform`` does not need it. All signals
+have the same sample rate, shaft rate and bearing.
 """
 
 from collections.abc import Sequence
@@ -20,9 +20,8 @@ from features.signal.rows import FloatArray
 class IndicatorTransformer(TransformerMixin, BaseEstimator):
     """Signals, shape (record, time), to features, shape (record, feature).
 
-    The rules of `features.indicators.indicators` for what cannot be read hold here too: NaN throughout for a
-    signal that is constant or not finite, NaN lines and shape for one that is too short. Put an imputer
-    behind it if that can happen.
+    Features are NaN as in `features.indicators.indicators`: all of them for a signal that is constant or not finite,
+    lines and shape for a signal that is too short. If your signals can be so, add an imputer after this transformer.
 
     Parameters
     ----------
@@ -31,9 +30,9 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
     shaft_rate
         Shaft rate [Hz].
     ftf, bpfo, bpfi, bsf
-        Nominal fault orders, those of a 6205 by default; ``bsf`` is the spin of a ball.
+        Nominal fault orders, by default those of a 6205; ``bsf`` is the ball spin frequency.
     groups
-        Any of ``lines``, ``shape``, ``bands``, ``time``.
+        Some of ``features.indicators.GROUPS``.
     """
 
     def __init__(
@@ -55,7 +54,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         self.groups = groups
 
     def fit(self, X: ArrayLike, y: object = None) -> Self:  # noqa: ARG002
-        """Take note of the number of samples of X, shape (record, time)."""
+        """Store the number of samples of X, shape (record, time)."""
         self._signals(X, reset=True)
         return self
 

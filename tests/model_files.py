@@ -12,9 +12,9 @@ import numpy as np
 import xarray as xr
 
 from features.baselines import ESTIMATORS, estimators, save_model, train
-from features.baselines.estimators import CAGE_LINES, COMBS
+from features.faults import EVIDENCE
 
-NAMES = (*COMBS.values(), *CAGE_LINES, "raw_kurtosis")
+NAMES = (*EVIDENCE, "raw_kurtosis")
 
 
 def make_table(classes: int = 3, records: int = 24, seed: int = 0, names: Sequence[str] = NAMES) -> xr.Dataset:

@@ -1,20 +1,22 @@
-"""What a feature table teaches: baseline classifiers, scored without leakage and beside their controls.
+"""Baseline classifiers on a feature table, scored without leakage and together with controls.
 
 ``feature table -> labelled_records -> splits by specimen or rig -> probabilities -> Scores``
 
 ============= ==================================================================================
 module        responsibility
 ============= ==================================================================================
-records       the rows of a feature table as a classifier sees them, and their groups
+records       labelled rows of a feature table, and the groups that they belong to
 estimators    the registry of baselines, from majority class to ensemble
-scores        figures over the classes present, by record and by recording, with intervals
-splits        grouped cross-validation and its guards
-model_members the zip of a model file and its arrays, checked before they are read
-model_file    what a model file holds as plain values; the one place that reads and writes skops
-model_rules   what training may put into the attributes of an estimator
-model_check   the estimator of a model file against one trained here
+scores        figures of merit by record and by recording, with confidence intervals
+severities    fault widths that a test contains and its training does not
+splits        grouped cross-validation, and the checks of its splits
+model_members the zip archive of a model file and its arrays, checked before they are read
+model_states  content of a model file as plain values
+model_file    the only module that reads and writes skops archives
+model_rules   allowed values of the attributes that training sets
+model_check   comparison of the estimator in a model file with one trained in this process
 models        training, saving, loading, evaluation
-benchmark     every baseline, its controls, and another corpus
+benchmark     scores of every baseline with controls, and on another corpus
 ============= ==================================================================================
 """
 
@@ -22,7 +24,8 @@ from features.baselines.benchmark import Baseline, Results, benchmark
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
 from features.baselines.records import DEFAULT_GROUPS
-from features.baselines.scores import Scores
+from features.baselines.scores import Scores, interval_text
+from features.baselines.severities import severity_warning
 from features.baselines.splits import cross_validate
 
 __all__ = [
@@ -36,7 +39,9 @@ __all__ = [
     "benchmark",
     "cross_validate",
     "evaluate",
+    "interval_text",
     "load_model",
     "save_model",
+    "severity_warning",
     "train",
 ]

@@ -1,7 +1,8 @@
-"""Every baseline on one corpus, each number beside the controls that say what it is worth.
+"""Scores of every baseline on one corpus, with the controls that a reader needs to judge them.
 
-Beside the score on unseen specimens (or rigs) stand a split of random records, which leaks, the grouped score
-after the labels were permuted among specimens, which must be at chance, and the score on another corpus.
+The score on specimens (or rigs) outside the training is reported with three others: the score of a random split of
+records, which leaks; the grouped score with labels permuted among specimens, which must be at chance; and the score on
+another corpus.
 """
 
 import json
@@ -23,7 +24,8 @@ from features.baselines.records import (
     labelled_records,
 )
 from features.baselines.scores import Scores
-from features.baselines.splits import Grouping, check_groups, check_taught, grouped_splits, score_splits
+from features.baselines.severities import Widths, uncovered_in_splits
+from features.baselines.splits import Grouping, Split, check_groups, check_taught, grouped_splits, score_splits
 from gen.corpus import FAULTS, write_text_durably
 from gen.errors import CorpusError
 
@@ -32,7 +34,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Content:
-    """What a benchmarked corpus holds."""
+    """Title and counts of a benchmarked corpus; ``classes`` counts records."""
 
     title: str
     records: int
@@ -44,7 +46,7 @@ class Content:
 
 @dataclass(frozen=True)
 class Baseline:
-    """Scores of one estimator: by group, its controls, and on the other corpus if there is one."""
+    """Scores of one estimator: cross-validated by group, of both controls, and on the other corpus if there is one."""
 
     grouped: Scores
     leaky: Scores
@@ -56,8 +58,23 @@ class Baseline:
 class Results:
     """Results of a benchmark, all of plain types.
 
-    ``by`` and ``folds`` are those of the grouped cross-validation, ``groups`` and ``features`` what the estimators
-    were given, ``test`` describes the other corpus.
+    Attributes
+    ----------
+    corpus, test
+        The corpus, and the other corpus if there is one.
+    by, folds
+        Of the grouped cross-validation.
+    seed
+        Of splits, estimators, permutation and bootstrap.
+    groups, features
+        Groups and number of the features.
+    versions
+        Of the libraries.
+    baselines
+        Scores by name of the estimator.
+    uncovered_widths
+        Fault widths [m] by class that a fold of the grouped cross-validation tests and does not train. Those of the
+        other corpus are in its scores.
     """
 
     corpus: Content
@@ -69,6 +86,7 @@ class Results:
     features: int
     versions: dict[str, str]
     baselines: dict[str, Baseline]
+    uncovered_widths: Widths
 
 
 def benchmark(
@@ -88,10 +106,9 @@ def benchmark(
     table
         Feature table of the corpus.
     test
-        Feature table of another corpus, such as recordings of a real machine; none of its records may be in
-        ``table``.
+        Feature table of another corpus, such as recordings of a real machine, without records of ``table``.
     by
-        What stays on one side of every split.
+        Groups that a split must not divide.
     folds
         Number of splits.
     groups
@@ -99,7 +116,7 @@ def benchmark(
     seed
         Of splits, estimators, permutation and bootstrap.
     progress
-        Called after each baseline with the number done and of all.
+        Called after each baseline with the number of baselines done and of all.
 
     Raises
     ------
@@ -109,29 +126,20 @@ def benchmark(
     names = features_of(table, groups)
     records = labelled_records(table, names)
     check_groups(records, by, folds)
-    strange = None if test is None else labelled_records(test, names)
-    if strange is not None:
-        _check_apart(records, strange)
-    group = getattr(records, by)
-    splits = grouped_splits(records.fault, group, folds, seed)
-    leaking = grouped_splits(records.fault, np.arange(len(group)), folds, seed)
-    for found in (splits, leaking):
-        check_taught(records.fault, found)
-    permuted = permuted_labels(records, seed)
-    null = grouped_splits(permuted, group, folds, seed)
+    other = None if test is None else labelled_records(test, names)
+    if other is not None:
+        _check_apart(records, other)
+    cases = _cases(records, by, folds, seed)
     baselines: dict[str, Baseline] = {}
     for done, name in enumerate(ESTIMATORS, start=1):
-        baselines[name] = Baseline(
-            grouped=score_splits(records, records.fault, name, splits, seed),
-            leaky=score_splits(records, records.fault, name, leaking, seed),
-            null=score_splits(records, permuted, name, null, seed),
-            test=None if test is None else evaluate(test, train(table, name, groups=groups, seed=seed), seed=seed),
-        )
+        scores = {case: score_splits(records, labels, name, splits, seed) for case, (labels, splits) in cases.items()}
+        tested = None if test is None else evaluate(test, train(table, name, groups=groups, seed=seed), seed=seed)
+        baselines[name] = Baseline(**scores, test=tested)
         if progress is not None:
             progress(done, len(ESTIMATORS))
     return Results(
         corpus=_content(records),
-        test=None if strange is None else _content(strange),
+        test=None if other is None else _content(other),
         by=by,
         folds=folds,
         seed=seed,
@@ -139,13 +147,25 @@ def benchmark(
         features=len(names),
         versions={library: version(library) for library in ("raceway", "scikit-learn", "numpy", "scipy")},
         baselines=baselines,
+        uncovered_widths=uncovered_in_splits(records, cases["grouped"][1]),
     )
 
 
-def permuted_labels(records: Records, seed: int) -> IntArray:
-    """Labels dealt anew among specimens, each still with one label for all its records, shape (record,).
+def _cases(records: Records, by: Grouping, folds: int, seed: int) -> dict[str, tuple[IntArray, list[Split]]]:
+    """Labels and splits of the cross-validation by group, of the leaky one, and of the one with permuted labels."""
+    fault, group, permuted = records.fault, getattr(records, by), permuted_labels(records, seed)
+    grouped = grouped_splits(fault, group, folds, seed)
+    leaky = grouped_splits(fault, np.arange(len(group)), folds, seed)
+    for splits in (grouped, leaky):
+        check_taught(fault, splits)
+    null = grouped_splits(permuted, group, folds, seed)
+    return {"grouped": (fault, grouped), "leaky": (fault, leaky), "null": (permuted, null)}
 
-    A specimen recorded healthy and faulty counts as two.
+
+def permuted_labels(records: Records, seed: int) -> IntArray:
+    """Labels permuted among specimens, so that all records of a specimen still share one label, shape (record,).
+
+    A specimen that was recorded healthy and faulty counts as two.
     """
     rng = np.random.default_rng(seed)
     units, number = np.unique(np.stack([records.specimen, records.fault]), axis=1, return_inverse=True)
@@ -157,7 +177,7 @@ def _check_apart(records: Records, test: Records) -> None:
     if shared:
         message = (
             f"{test.title}: {shared} of its records are in the training corpus too; "
-            f"test on records the models have not seen."
+            f"give a test corpus without training records."
         )
         raise CorpusError(message)
 

@@ -1,10 +1,10 @@
-"""The baselines, from no learning at all to an ensemble, as one registry of scikit-learn estimators.
+"""The baselines, from the majority class to an ensemble, as one registry of scikit-learn estimators.
 
-Missing features are filled with the median of the training records. Classes weigh alike, however many records
-they have. Sizes are chosen for a few hundred to a few thousand records of about a hundred features.
+Missing features are replaced by the median of the training records. All classes have the same total weight.
+Sizes are chosen for a few hundred to a few thousand records of about a hundred features.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -25,59 +25,58 @@ from sklearn.svm import SVC
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from features.baselines.records import FloatArray, IntArray
+from features.faults import CLASSES, COMBS, EVIDENCE, HEALTHY
 from gen.corpus import FAULTS
 
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-Estimator = Any  # a scikit-learn classifier of indices into FAULTS; its stubs agree on no common type
+Estimator = Any  # a scikit-learn classifier of indices into FAULTS; the stubs define no common type
 
 TREES = 200  # of each forest
 ROUNDS = 40  # of boosting
-COMBS = {"inner": "whitened_bpfi_comb", "outer": "whitened_bpfo_comb", "ball": "whitened_2bsf_comb"}
-CAGE_LINES = ("whitened_ftf", "whitened_2ftf")
-RIVAL_SHARE = 0.5  # of the highest series: below that a second one may be its sidebands or some of its harmonics
+RIVAL_SHARE = 0.5  # of the highest series: a second one below that may be sidebands or some harmonics of the first
 
 
 class EnvelopeRule(ClassifierMixin, BaseEstimator):
-    """The rule of an analyst, untrained: the fault whose comb stands highest, or healthy if none stands out.
+    """Untrained diagnosis rule: predict the fault with the highest comb, or healthy if no comb exceeds a threshold.
 
     A comb is the mean logarithm of three harmonics of a fault line over the floor of the whitened envelope
-    spectrum. Of white noise, fewer than one record in a hundred has one above 1.0: three harmonics that are,
-    on average, e times the floor.
+    spectrum. In white noise, fewer than one record in a hundred has a comb above 1.0, which means three harmonics
+    that are e times the floor in the geometric mean.
 
-    It names healthy, inner, outer and ball always, cage and compound only if the records it is fitted to hold
-    them: see `rule_levels`.
+    The rule always distinguishes healthy and the classes with a comb. It predicts cage and compound only if the
+    records that it is fitted to contain them: see `rule_levels`.
 
     Parameters
     ----------
     threshold
-        The level a comb must exceed to be a fault.
+        Level that a comb must exceed to be a fault.
     """
 
     def __init__(self, threshold: float = 1.0) -> None:
         self.threshold = threshold
 
     def fit(self, X: "DataFrame", y: IntArray) -> Self:
-        """Take note of the columns of a data frame and of the classes there are; there is nothing to learn.
+        """Store the column names of a data frame and the classes; the rule has no parameters to learn.
 
         Raises
         ------
         ValueError
-            If a line is not among the columns.
+            If a feature of ``features.faults.EVIDENCE`` is not among the columns.
         """
-        missing = {*COMBS.values(), *CAGE_LINES} - set(getattr(X, "columns", ()))
+        missing = set(EVIDENCE) - set(getattr(X, "columns", ()))
         if missing:
             message = f"envelope rule: no column {min(missing)!r}; give a data frame with the lines features."
             raise ValueError(message)
-        self._columns(X, reset=True)
-        self.classes_ = np.union1d([FAULTS.index(fault) for fault in ("healthy", *COMBS)], y)
+        self._check_columns(X, reset=True)
+        self.classes_ = np.union1d([FAULTS.index(fault) for fault in (HEALTHY, *COMBS)], y)
         return self
 
     def predict_proba(self, X: "DataFrame") -> FloatArray:
         """Softmax of the levels of `rule_levels`, shape (record, class)."""
         check_is_fitted(self)
-        self._columns(X, reset=False)
+        self._check_columns(X, reset=False)
         levels = rule_levels(X, self.threshold)
         return softmax(np.stack([levels[FAULTS[c]] for c in self.classes_], axis=1), axis=1)
 
@@ -85,42 +84,38 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
         """Index into ``gen.corpus.FAULTS``, shape (record,)."""
         return self.classes_[self.predict_proba(X).argmax(axis=1)]
 
-    def _columns(self, X: Any, *, reset: bool) -> None:
-        """Take note of the names of the columns, or compare them with those."""
+    def _check_columns(self, X: Any, *, reset: bool) -> None:
+        """Store the column names if ``reset``, else require the stored ones."""
         validate_data(self, X, skip_check_array=True, reset=reset)
 
 
 def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray]:
-    """What speaks for each class, shape (record,); the highest is the answer, and a missing feature speaks for none.
+    """Level of each class, shape (record,); the rule predicts the class with the highest level.
 
-    - A spall: its comb.
+    The level of a class is the mean of the features of its row in `features.faults`; a missing feature counts as -inf.
+    Three classes differ:
+
     - Healthy: the threshold.
-    - Cage: the mean of the first two lines of FTF, unless they are those of a spalled ball, which passes through the
-      load once a turn of the cage. They are not where 2 BSF has less than half of them, or where BPFO, a multiple of
-      FTF, stands between the two: a knock once a turn of the cage has lines at all its multiples.
-    - Compound: the sum of the two highest combs less a bar, so that it exceeds the first where the second exceeds the
-      bar: the threshold, half of the first, or the lines of the cage, whichever is highest. The comb of 2 BSF counts
-      here only as far as the lines of FTF: shaft sidebands of BPFI can fall on it.
+    - Cage: the mean of the first two lines of FTF, or -inf if these lines come from a spalled ball, which passes the
+      load zone once per cage revolution. They come from the cage if 2 BSF is less than half as high, or if BPFO, a
+      multiple of FTF, lies between the two levels: an impact once per cage revolution has lines at all multiples of FTF.
+    - Compound: the sum of the two highest combs less a bar, so that it exceeds the highest comb if the second comb
+      exceeds the bar. The bar is the highest of the threshold, half the highest comb, and the cage level. The comb of
+      2 BSF counts only up to the level of the FTF lines, because shaft sidebands of BPFI can coincide with it.
     """
-    inner, outer, ball = (_known(features, column) for column in COMBS.values())
-    series = np.mean([_known(features, column) for column in CAGE_LINES], axis=0)
-    knocked = (ball < RIVAL_SHARE * series) | ((ball < outer) & (outer < series))
-    cage = np.where(knocked, series, -np.inf)
-    _, second, first = np.sort([inner, outer, np.minimum(ball, series)], axis=0)
+    levels = {row.name: _mean(features, row.evidence) for row in CLASSES.values() if row.evidence}
+    outer, ball, series = (levels[name] for name in ("outer", "ball", "cage"))
+    from_cage = (ball < RIVAL_SHARE * series) | ((ball < outer) & (outer < series))
+    cage = np.where(from_cage, series, -np.inf)
+    combs = {name: levels[name] for name in COMBS} | {"ball": np.minimum(ball, series)}
+    second, first = np.sort(list(combs.values()), axis=0)[-2:]
     bar = np.maximum.reduce([np.full_like(cage, threshold), cage, RIVAL_SHARE * first])
-    return {
-        "healthy": np.full_like(cage, threshold),
-        "inner": inner,
-        "outer": outer,
-        "ball": ball,
-        "cage": cage,
-        "compound": first + second - bar,
-    }
+    return levels | {HEALTHY: np.full_like(cage, threshold), "cage": cage, "compound": first + second - bar}
 
 
-def _known(features: "DataFrame", column: str) -> FloatArray:
-    """Values of a feature, the missing ones lowest, shape (record,)."""
-    return np.nan_to_num(features[column].to_numpy(), nan=-np.inf)
+def _mean(features: "DataFrame", columns: Sequence[str]) -> FloatArray:
+    """Mean of some features, missing values as -inf, shape (record,)."""
+    return np.mean([np.nan_to_num(features[column].to_numpy(), nan=-np.inf) for column in columns], axis=0)
 
 
 def _majority(seed: int) -> DummyClassifier:
@@ -208,7 +203,7 @@ def make_estimator(name: str, seed: int) -> Estimator:
 def class_probabilities(estimator: Estimator, features: "DataFrame") -> FloatArray:
     """Probability of each of ``estimator.classes_``, shape (record, class); the largest is the prediction.
 
-    For a support vector machine, which has none, the softmax of its decision values.
+    A support vector machine gives no probabilities; the softmax of its decision values is returned instead.
     """
     if hasattr(estimator, "predict_proba"):
         return np.asarray(estimator.predict_proba(features))

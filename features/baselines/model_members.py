@@ -1,7 +1,7 @@
-"""Members of a model file: a zip of arrays (``.npy``) and one member of JSON, none of them compressed.
+"""Members of a model file: a zip archive of arrays (``.npy``) and one member of JSON, none of them compressed.
 
-Names and sizes are checked before a member is read, and the header of an array against the size of its member before it is an array. So a
-file never takes more memory than a few times its own size.
+Names and sizes are checked before a member is read, and the header of an array is compared with the size of its member before the array is
+created. So reading a file takes at most a few times its size in memory.
 """
 
 import io
@@ -20,18 +20,18 @@ from gen.limits import check_limit
 
 SCHEMA = "schema.json"
 _ARRAY = re.compile(r"[0-9a-f-]{1,40}\.npy")
-_MOMENT = (1980, 1, 1, 0, 0, 0)  # the first that a zip can hold, given to all members
+_MOMENT = (1980, 1, 1, 0, 0, 0)  # earliest date of the zip format, used for all members
 
 
 def read_members(source: Path | IO[bytes], name: str) -> dict[str, bytes]:
-    """Read all members, after their names and sizes have been checked; ``name`` begins the sentence of an error.
+    """Read all members after a check of their names and sizes; an error sentence begins with ``name``.
 
     Raises
     ------
     CorpusError
-        If a member is not one of a model file, or larger than the limits.
+        If a member does not belong in a model file, or is larger than the limits.
     zipfile.BadZipFile
-        If the zip is damaged; a zip can also trip Python's reader in other ways.
+        If the zip is damaged; Python's reader raises other types too.
     """
     with zipfile.ZipFile(source) as archive:
         _check_members(archive.infolist(), name)
@@ -39,12 +39,12 @@ def read_members(source: Path | IO[bytes], name: str) -> dict[str, bytes]:
 
 
 def write_members(members: Mapping[str, bytes]) -> bytes:
-    """Zip of some members in their order; equal members give equal bytes."""
+    """Zip archive of some members in their order; equal members give equal bytes."""
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         for name, content in members.items():
             entry = zipfile.ZipInfo(name, _MOMENT)
-            entry.create_system = 3  # else it says on which system it was written
+            entry.create_system = 3  # Unix on every system, so that equal members give equal bytes
             archive.writestr(entry, content)
     return file.getvalue()
 
@@ -82,7 +82,7 @@ def read_array(content: bytes) -> tuple[NDArray[Any], bytes]:
 
 
 def without_padding(array: NDArray[Any], content: bytes) -> tuple[NDArray[Any], bytes]:
-    """The same array with zeros between the fields of a record, where NumPy leaves what was in memory."""
+    """The same array with zeros between the fields of a record, which NumPy leaves uninitialised."""
     if array.dtype.names is None:
         return array, content
     clean = np.zeros(array.shape, array.dtype)
@@ -94,5 +94,5 @@ def without_padding(array: NDArray[Any], content: bytes) -> tuple[NDArray[Any], 
 
 
 def refuse_member(name: str, reason: str) -> NoReturn:
-    """Raise the error of a file that is no model, or a damaged one."""
+    """Raise the error of a file that is damaged or not a model."""
     raise CorpusError(f"{name}: not a readable model ({reason}); train it again.")

@@ -1,8 +1,8 @@
-"""Rules for what training may put into the attributes of an estimator of a model file.
+"""Allowed values of the attributes that training sets in the estimator of a model file.
 
 scikit-learn follows the nodes of a tree, and libsvm the counts of support vectors, without checking that an index lies within its array. So
-every index that compiled code follows has a rule here. In a tree, each child comes after its parent, as scikit-learn writes them; so every
-path from the root ends at a leaf.
+every index that compiled code follows has a rule here. In a tree, each child must come after its parent, as scikit-learn writes them; then
+every path from the root ends at a leaf.
 """
 
 import math
@@ -12,11 +12,11 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from features.baselines.model_file import State, plain
+from features.baselines.model_states import State, plain
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
-Rule = Callable[[str, State, State], None]  # where it is, the state trained here, and that of the file
+Rule = Callable[[str, State, State], None]  # location, state of the small estimator, state of the file
 Array = NDArray[Any]
 LARGEST_INTEGER = 2**31 - 1
 
@@ -27,12 +27,12 @@ def attributes(state: State) -> Mapping[str, State]:
 
 
 def refuse(where: str, reason: str) -> NoReturn:
-    """Raise the error of a model file that this version could not have written."""
-    raise CorpusError(f"{where} {reason}; make the model again with raceway train.")
+    """Raise the error of a model file that is not as this version writes it."""
+    raise CorpusError(f"{where} {reason}; train the model again with raceway train.")
 
 
 def brief(value: Any) -> str:
-    """Value for a sentence, cut if it is long."""
+    """Text of a value for an error sentence, shortened if it is long."""
     text = str(value)
     return text if len(text) <= 40 else f"{text[:40]}..."
 
@@ -56,17 +56,17 @@ def positive(where: str, expected: State, found: State) -> None:
 
 
 def numbers(where: str, expected: State, found: State) -> None:
-    """Accept finite numbers of the same type and number of axes; a later rule may compare the lengths of the axes."""
+    """Accept finite numbers of the same type and number of axes; a rule of `TOGETHER` may compare the lengths of axes."""
     mine, theirs = _array(where, expected), _array(where, found)
     if found.kind != expected.kind or theirs.dtype != mine.dtype or theirs.ndim != mine.ndim:
         refuse(
-            where, f"holds {brief(theirs.dtype)} of {theirs.ndim} axes and must hold {brief(mine.dtype)} of {mine.ndim}"
+            where, f"has {brief(theirs.dtype)} of {theirs.ndim} axes and must have {brief(mine.dtype)} of {mine.ndim}"
         )
     if not (theirs.flags.c_contiguous if mine.flags.c_contiguous else theirs.flags.f_contiguous):
         refuse(where, "has its axes in the wrong order")
     for values in (theirs,) if theirs.dtype.names is None else (theirs[name] for name in theirs.dtype.names):
         if not np.isfinite(values).all():
-            refuse(where, "holds a number that is not finite")
+            refuse(where, "has a number that is not finite")
 
 
 def same_shape(where: str, expected: State, found: State) -> None:
@@ -79,11 +79,11 @@ def above_zero(where: str, expected: State, found: State) -> None:
     """Accept numbers above zero of the same type and shape."""
     same_shape(where, expected, found)
     if not (_array(where, found) > 0).all():
-        refuse(where, "holds a number that is not above 0")
+        refuse(where, "has a number that is not above 0")
 
 
 def thresholds(where: str, expected: State, found: State) -> None:
-    """Accept a list of as many arrays, each of any length."""
+    """Accept a list of the same number of arrays, each of any length."""
     mine = expected.parts["content"]
     if found.kind != expected.kind or len(found.parts["content"]) != len(mine):
         refuse(where, f"must be a list of {len(mine)} arrays")
@@ -92,7 +92,7 @@ def thresholds(where: str, expected: State, found: State) -> None:
 
 
 def fitted_shape(where: str, expected: State, found: State) -> None:
-    """Accept a pair of the number of records and the number of features."""
+    """Accept the number of records and the number of features, as a pair."""
     mine = expected.parts["content"]
     if found.kind != expected.kind or len(found.parts["content"]) != 2 or found.parts["content"][1] is not mine[1]:
         refuse(where, "must be the numbers of records and features")
@@ -100,7 +100,7 @@ def fitted_shape(where: str, expected: State, found: State) -> None:
 
 
 def forest(where: str, expected: State, found: State) -> None:  # noqa: ARG001
-    """Require as many trees as the forest says it has; one that is not fitted has none."""
+    """Require ``n_estimators`` trees in a forest; a forest that is not fitted has none."""
     its = attributes(found)
     if "estimators_" in its:
         members = its["estimators_"].parts["content"]
@@ -110,21 +110,21 @@ def forest(where: str, expected: State, found: State) -> None:  # noqa: ARG001
 
 
 def tree(where: str, expected: State, found: State) -> None:
-    """Require that every path from the root of a tree of a forest ends at a leaf, over features that there are."""
+    """Require that every path from the root of a tree ends at a leaf, and that each node splits an existing feature."""
     its = attributes(found)
     nodes, values = _array(where, its["nodes"]), _array(where, its["values"])
     _require_count(f"{where}.node_count", its["node_count"], len(nodes))
     _require_shape(f"{where}.values", values, (len(nodes), *_array(where, attributes(expected)["values"]).shape[1:]))
     inner = nodes["left_child"] != -1
     if not (nodes["right_child"][~inner] == -1).all():
-        refuse(f"{where}.nodes", "holds a leaf with a child")
+        refuse(f"{where}.nodes", "has a leaf with a child")
     _require_descent(f"{where}.nodes", inner, nodes["left_child"], nodes["right_child"])
     features = expected.parts["__reduce__"]["args"].parts["content"][0]
     _require_below(f"{where}.nodes", nodes["feature"][inner], _number(where, features))
 
 
 def boosting(where: str, expected: State, found: State) -> None:
-    """Require the same of the trees of gradient boosting, and as many rounds as it says it has."""
+    """Require the same of the trees of gradient boosting, and ``max_iter`` rounds."""
     its, features = attributes(found), attributes(expected)["n_features_in_"]
     rounds = its["_predictors"].parts["content"]
     _require_count(f"{where}.max_iter", its["max_iter"], len(rounds))
@@ -137,16 +137,16 @@ def boosting(where: str, expected: State, found: State) -> None:
             _require_descent(place, nodes["is_leaf"] == 0, nodes["left"], nodes["right"])
             _require_below(place, nodes["feature_idx"], _number(where, features))
             if nodes["is_categorical"].any():
-                refuse(place, "holds a category, and features have none")
+                refuse(place, "has a categorical split, and all features are numbers")
 
 
 def support_vectors(where: str, expected: State, found: State) -> None:
-    """Require that the arrays of a support vector machine have the sizes that libsvm reads."""
+    """Require the array sizes that libsvm derives from the number of support vectors."""
     its = attributes(found)
     counts = _array(where, its["_n_support"])
     total = sum(counts.tolist())
     if total < 1 or counts.min() < 0:
-        refuse(f"{where}._n_support", "must hold the number of support vectors of each class")
+        refuse(f"{where}._n_support", "must be the number of support vectors of each class")
     width = _array(where, attributes(expected)["support_vectors_"]).shape[1]
     shapes = {"dual_coef_": (len(counts) - 1, total), "_dual_coef_": (len(counts) - 1, total)}
     for name, shape in {**shapes, "support_vectors_": (total, width), "support_": (total,)}.items():
@@ -156,26 +156,26 @@ def support_vectors(where: str, expected: State, found: State) -> None:
 
 
 def _check_nodes(where: str, trees: Iterable[Array]) -> None:
-    """Refuse more nodes than the limit: a file may refer to one tree many times, and each is followed for each record."""
+    """Refuse more nodes than the limit: a file may refer to one tree many times, and prediction evaluates each of them."""
     check_limit("model_nodes", sum(len(nodes) for nodes in trees), f"{where} has", CorpusError)
 
 
 def _require_descent(where: str, inner: Array, left: Array, right: Array) -> None:
-    """Refuse nodes unless there is a root, and each child comes after its only parent."""
+    """Refuse nodes without a root, and a child that does not come after its only parent."""
     count = len(inner)
     if count < 1:
-        refuse(where, "holds no node")
+        refuse(where, "has no node")
     number = np.flatnonzero(inner)
     children = np.stack([left[inner], right[inner]]).astype(np.int64)
     if (children <= number).any() or (children >= count).any():
-        refuse(where, f"holds a node of which a child is not between itself and the last of {count} nodes")
+        refuse(where, f"has a node with a child that is not between the node and the last of {count} nodes")
     if (np.bincount(children.reshape(-1), minlength=1) > 1).any():
-        refuse(where, "holds a node with two parents")
+        refuse(where, "has a node with two parents")
 
 
 def _require_below(where: str, values: Array, end: int) -> None:
     if not ((values >= 0) & (values < end)).all():
-        refuse(where, f"holds an index outside 0..{end - 1}")
+        refuse(where, f"has an index outside 0..{end - 1}")
 
 
 def _require_shape(where: str, array: Array, shape: tuple[int, ...]) -> None:
@@ -186,7 +186,7 @@ def _require_shape(where: str, array: Array, shape: tuple[int, ...]) -> None:
 def _require_count(where: str, state: State, count: int) -> None:
     value = _number(where, state)
     if value != count:
-        refuse(where, f"is {brief(value)}, but {count} are there")
+        refuse(where, f"is {brief(value)}, but the file has {count}")
 
 
 def _array(where: str, state: State) -> Array:
@@ -242,14 +242,14 @@ LEARNED: Mapping[str, Rule] = {
     "_BinMapper.n_bins_non_missing_": same_shape,
     "TreePredictor.nodes": numbers,
 }
-"""Attributes that training sets, by class, and the rule for each; all others are equal in all models of the same kind."""
+"""Rule for each attribute that training sets, by class; the other attributes are equal in all models of the same kind."""
 
 LISTS = (
     "RandomForestClassifier.estimators_",
     "ExtraTreesClassifier.estimators_",
     "HistGradientBoostingClassifier._predictors",
 )
-"""Lists of which training sets the length, while each item is of the same kind."""
+"""Lists of items of one kind, whose length training sets."""
 
 TOGETHER: Mapping[str, Rule] = {
     "RandomForestClassifier": forest,
@@ -258,4 +258,4 @@ TOGETHER: Mapping[str, Rule] = {
     "HistGradientBoostingClassifier": boosting,
     "SVC": support_vectors,
 }
-"""What must hold among the attributes of an object, once each follows its own rule."""
+"""Rule for the attributes of an object together, applied after the rule for each."""

@@ -1,6 +1,6 @@
-"""A trained baseline with all it needs to be used again: its features by name, its classes, and its training.
+"""A trained baseline with the names of its features, its classes and a description of its training.
 
-Model files hold no pickle, and loading one runs no code from it. `load_model` checks all that a file says before it makes anything of it:
+Model files contain no pickle, and loading one runs no code from it. `load_model` checks the whole content before it creates any object:
 see `features.baselines.model_file` and `features.baselines.model_check`.
 """
 
@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 import xarray as xr
@@ -25,17 +25,19 @@ from features.baselines.estimators import (
     make_estimator,
 )
 from features.baselines.model_check import check_estimator
-from features.baselines.model_file import Known, State, pack, plain, read_state, unpack
+from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
+from features.baselines.model_states import Known, State, plain
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
 from features.baselines.scores import Scores, score
+from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
 from features.table import feature_table
 from gen.corpus import FAULTS, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
-FORMAT = 1
+FORMAT = 2
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 
 
@@ -50,15 +52,17 @@ class Model:
     name
         Its name in ``ESTIMATORS``.
     classes
-        The classes it can name.
+        The classes it can predict.
     features, groups
-        The features it wants, and the groups they are of.
+        The features it takes, and their groups.
     corpus, records, seed
         Title and number of records of the training corpus, and the seed.
+    widths
+        Intervals of fault width [m] that the training covered, by class, as in `features.baselines.severities`.
     digests
-        One 64-bit digest per training record, shape (record,), to notice a test on training records.
+        One 64-bit digest per training record, shape (record,), to detect a test on training records.
     versions
-        Of the libraries it was made with.
+        Of the libraries it was trained with.
     """
 
     estimator: Estimator
@@ -69,6 +73,7 @@ class Model:
     corpus: str
     records: int
     seed: int
+    widths: Covered
     digests: NDArray[np.uint64]
     versions: Mapping[str, str]
 
@@ -85,7 +90,7 @@ def train(
     Raises
     ------
     CorpusError
-        If the table has a single class, or lacks a group of features.
+        If the table has only one class, or lacks a group of features.
     ValueError
         For an unknown estimator.
     """
@@ -102,18 +107,19 @@ def train(
         corpus=records.title,
         records=len(records.fault),
         seed=seed,
+        widths=covered_widths(records),
         digests=record_digests(records.features.to_numpy()),
         versions={library: version(library) for library in _LIBRARIES},
     )
 
 
 def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: int = 0) -> Scores:
-    """Scores of a model on all records of a feature table or corpus, whatever classes it holds.
+    """Scores of a model on all records of a feature table or corpus, over the classes present there.
 
     Parameters
     ----------
     data
-        A feature table, or the folder of a corpus, whose features are then computed.
+        A feature table, or the folder of a corpus to compute features of.
     model
         A model, or the path of a model file.
     seed
@@ -129,14 +135,16 @@ def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: 
     records = labelled_records(table, model.features)
     probabilities = _probabilities(model, records.features, records.title)
     scores = score(records, probabilities, model.estimator.classes_, seed)
-    return replace(scores, seen=seen_records(records.features.to_numpy(), model.digests))
+    seen = seen_records(records.features.to_numpy(), model.digests)
+    return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))
 
 
 def _features_for(model: Model, corpus: Path | str) -> xr.Dataset:
     unknown = [group for group in model.groups if group not in GROUPS]
     if unknown:
         message = (
-            f"{corpus}: the model wants features of the group {brief(unknown[0])!r}; there are {', '.join(GROUPS)}."
+            f"{corpus}: the model takes features of the group {brief(unknown[0])!r}, and the groups are "
+            f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
     return feature_table(corpus, model.groups)
@@ -148,7 +156,7 @@ def _probabilities(model: Model, features: DataFrame, where: str) -> FloatArray:
     Raises
     ------
     CorpusError
-        If features or model hold numbers too large to compute with.
+        If features or model contain numbers too large to compute with.
     """
     try:
         with np.errstate(all="ignore"):
@@ -156,7 +164,7 @@ def _probabilities(model: Model, features: DataFrame, where: str) -> FloatArray:
     except ValueError as error:  # scikit-learn refuses numbers that are infinite, or too large for single precision
         reason = str(error).splitlines()[0]
         raise CorpusError(
-            f"{where}: {model.name} cannot judge its records ({reason}); train the model again."
+            f"{where}: {model.name} cannot classify these records ({reason}); train the model again."
         ) from error
     if not np.isfinite(found).all():
         raise CorpusError(f"{where}: {model.name} gives probabilities that are not finite; train the model again.")
@@ -171,13 +179,13 @@ def record_digests(features: FloatArray) -> NDArray[np.uint64]:
 
 
 def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
-    """Count the records of which the digest is known; those without any feature are no evidence."""
+    """Number of records whose digest is known; records without any feature are not counted."""
     known = np.isfinite(features).any(axis=1)
     return int(np.isin(record_digests(features[known]), digests).sum())
 
 
 def save_model(model: Model, path: Path | str) -> None:
-    """Write a model file, whole or not at all; the same model gives the same bytes.
+    """Write a model file, whole or not at all; equal models give equal bytes.
 
     Raises
     ------
@@ -189,59 +197,68 @@ def save_model(model: Model, path: Path | str) -> None:
 
 
 def load_model(path: Path | str) -> Model:
-    """Read a model file; no object is made of it before all of it has been checked.
+    """Read a model file; its whole content is checked before any object is created from it.
 
     Raises
     ------
     CorpusError
-        If the file is missing, damaged, larger than the limits, or could not have been written by this version.
+        If the file is missing, damaged, larger than the limits, or not as this version writes it.
     """
     path, known = Path(path), Known()
     held = _contents(path, read_state(path, known))
     about = _about(path, {name: plain(held[name]) for name in _About.model_fields})
     theirs, mine = about.versions.get("scikit-learn", "of another version"), version("scikit-learn")
     if theirs != mine:
-        refuse(f"{path}:", f"made with scikit-learn {brief(theirs)}, and {mine} is installed")
+        refuse(f"{path}:", f"was trained with scikit-learn {brief(theirs)}, and {mine} is installed")
     check_limit("model_features", len(about.features), f"{path}: has", CorpusError)
     digests = held["digests"].array
     if digests is None or digests.dtype != np.uint64 or digests.shape != (about.records,):
-        refuse(f"{path}: digests", f"must be {about.records} of 64 bits, one for each record")
+        refuse(f"{path}: digests", f"must be {about.records} of 64 bits, one per record")
     expected = {"name": about.name, "seed": about.seed, "classes": about.classes, "features": about.features}
     check_estimator(str(path), held["estimator"], known, **expected)
     model = Model(estimator=unpack(held["estimator"]), digests=digests, **dict(about))
     if tuple(FAULTS[c] for c in model.estimator.classes_) != model.classes:
-        refuse(f"{path}: classes", "are not those that the estimator can name")
-    _probabilities(model, _made_up_records(len(model.features)).set_axis(Index(model.features), axis=1), str(path))
+        refuse(f"{path}: classes", "are not those of the estimator")
+    _probabilities(model, _trial_records(len(model.features)).set_axis(Index(model.features), axis=1), str(path))
     return model
 
 
 def _encodable(text: str) -> str:
-    text.encode()  # raises ValueError for half of a surrogate pair, which JSON can hold and a terminal cannot
+    text.encode()  # raises ValueError for half of a surrogate pair, which JSON can contain and a terminal cannot show
     return text
 
 
+def _fault_class(name: str) -> str:
+    if name not in FAULTS:
+        raise ValueError(f"{brief(name)!r} is no fault class; the classes are {', '.join(FAULTS)}")
+    return name
+
+
 Text = Annotated[str, AfterValidator(_encodable)]
+FaultName = Annotated[str, AfterValidator(_fault_class)]
+Width = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 
 
 class _About(BaseModel):
-    """What a model file says beside the estimator: the fields of `Model` that are plain values."""
+    """Fields of `Model` that are plain values, as a model file must contain them."""
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
     name: Text
-    classes: tuple[Literal[FAULTS], ...] = Field(min_length=2)  # pyright: ignore[reportInvalidTypeForm]
+    classes: tuple[FaultName, ...] = Field(min_length=2)
     features: tuple[Text, ...] = Field(min_length=1)
     groups: tuple[Text, ...]
     corpus: Text
     records: Annotated[int, Field(ge=1)]
     seed: Annotated[int, Field(ge=0, lt=2**32)]
+    widths: dict[FaultName, Annotated[tuple[tuple[Width, Width], ...], Field(min_length=1)]]
     versions: dict[Text, Text]
 
     @field_validator("name")
     @classmethod
     def _is_a_baseline(cls, name: str) -> str:
         if name not in ESTIMATORS:
-            raise ValueError(f"{brief(name)!r} is no baseline; there are {', '.join(ESTIMATORS)}")
+            raise ValueError(f"{brief(name)!r} is no baseline; the baselines are {', '.join(ESTIMATORS)}")
         return name
 
     @field_validator("classes", "features", "groups")
@@ -265,12 +282,12 @@ def _contents(path: Path, root: State) -> Mapping[str, State]:
     """Fields of a model file by name."""
     held = root.parts["content"] if root.kind[2] == "DictNode" else {}
     if "raceway_model" not in held or plain(held["raceway_model"]) != FORMAT:
-        raise CorpusError(f"{path}: not a model of this version of raceway; make one with raceway train.")
+        raise CorpusError(f"{path}: not a model of this version of raceway; train it again with raceway train.")
     if set(held) != {"raceway_model", *(field.name for field in fields(Model))}:
-        raise CorpusError(f"{path}: not a complete model; make it again with raceway train.")
+        raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
     return held
 
 
-def _made_up_records(features: int) -> DataFrame:
-    """Records to try a model on: zeros, ones, and one without any feature."""
+def _trial_records(features: int) -> DataFrame:
+    """Records that a loaded model must be able to classify: constants, and one without any feature."""
     return DataFrame(np.repeat([[0.0], [1.0], [-1.0], [np.nan]], features, axis=1))

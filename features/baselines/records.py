@@ -1,7 +1,7 @@
-"""The rows of a feature table as a classifier sees them: features, fault, and the groups they belong to.
+"""Labelled rows of a feature table: features, fault class, and the groups that a record belongs to.
 
-A specimen is known by its rig and its number, a recording by its specimen and its number, so that corpora may
-count them within each rig or throughout.
+A specimen is identified by its rig and its number, a recording by its specimen, its fault and its number. So a corpus
+may restart either number on each rig, or number all of them consecutively.
 """
 
 from collections.abc import Hashable, Iterable, Sequence
@@ -15,19 +15,20 @@ from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
 if TYPE_CHECKING:
-    from pandas import DataFrame  # what xarray makes of a table
+    from pandas import DataFrame
 
 IntArray = NDArray[np.integer[Any]]
 FloatArray = NDArray[np.floating[Any]]
 
-DEFAULT_GROUPS = ("lines", "shape")  # free of gain and colour
+DEFAULT_GROUPS = ("lines", "shape")  # independent of gain and spectral colour
 
 
 class Records(NamedTuple):
-    """Labelled rows; ``features`` is a data frame, so that estimators know their columns by name.
+    """Labelled rows; ``features`` is a data frame, because estimators identify its columns by name.
 
-    ``fault`` indexes ``gen.corpus.FAULTS``; ``rig``, ``specimen`` and ``recording`` are numbers from 0, unique
-    over the table. All are of shape (record,), ``features`` of shape (record, feature).
+    ``fault`` is an index into ``gen.corpus.FAULTS``; ``rig``, ``specimen`` and ``recording`` are numbers from 0, unique
+    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown. All are of shape
+    (record,), ``features`` of shape (record, feature).
     """
 
     title: str
@@ -36,15 +37,16 @@ class Records(NamedTuple):
     rig: IntArray
     specimen: IntArray
     recording: IntArray
+    width: FloatArray
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
-    """Rows of a feature table with the chosen features in the order given.
+    """Rows of a feature table with some of its features, in the order given; the width is NaN if the table lacks it.
 
     Raises
     ------
     CorpusError
-        If the table has no records, or lacks a feature, the label or a group.
+        If the table has no records, or lacks a feature, the fault, or the number of rig, specimen or recording.
     """
     title = title_of(table)
     _require(title, ("features", "fault", "rig", "specimen", "recording"), table.variables)
@@ -64,6 +66,7 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         rig=_numbered(rig),
         specimen=_numbered(rig, specimen),
         recording=_numbered(rig, specimen, fault, recording),
+        width=np.asarray(table["width"].values, dtype=float) if "width" in table else np.full(len(fault), np.nan),
     )
 
 
@@ -73,7 +76,7 @@ def check_classes(records: Records) -> IntArray:
     Raises
     ------
     CorpusError
-        If there is a single one.
+        If there is only one.
     """
     present = np.unique(records.fault)
     if len(present) < 2:
@@ -84,7 +87,7 @@ def check_classes(records: Records) -> IntArray:
 
 
 def features_of(table: xr.Dataset, groups: Sequence[str]) -> tuple[str, ...]:
-    """Names of the features of some groups in a table.
+    """Names of the features that a table has of some groups.
 
     Raises
     ------
@@ -98,7 +101,7 @@ def features_of(table: xr.Dataset, groups: Sequence[str]) -> tuple[str, ...]:
 
 
 def title_of(table: xr.Dataset) -> str:
-    """Title of the corpus a table was made from."""
+    """Title of the corpus that a table was computed from."""
     return str(table.attrs.get("title", "untitled corpus"))
 
 
@@ -110,5 +113,5 @@ def _require(title: str, names: Iterable[str], held: Iterable[Hashable]) -> None
 
 
 def _numbered(*keys: IntArray) -> IntArray:
-    """Numbers from 0, one for each distinct combination of keys."""
+    """Number from 0 of each distinct combination of keys, shape (record,)."""
     return np.unique(np.stack(keys), axis=1, return_inverse=True)[1].reshape(-1)

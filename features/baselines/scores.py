@@ -1,13 +1,14 @@
-"""Figures of merit of a classifier over the classes that the tested records hold.
+"""Figures of merit of a classifier over the classes of the tested records.
 
-Balanced accuracy is the mean recall, macro-F1 the mean F1, both over the classes *present*: a prediction of a
-class that is absent counts as an error and not as a class with nothing to find. Intervals resample specimens,
-because records of one specimen say nearly the same thing [1]_.
+Balanced accuracy is the mean recall and macro-F1 the mean F1, both over the classes *present* in the test. The
+prediction of an absent class counts as an error; the absent class itself is not averaged. Confidence intervals come
+from a bootstrap [1]_ over specimens, because the records of one specimen are strongly correlated.
 
 .. [1] B. Efron, R. J. Tibshirani, *An Introduction to the Bootstrap*, Chapman & Hall, 1993, chapter 8.
 """
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +16,9 @@ import numpy as np
 from features.baselines.records import FloatArray, IntArray, Records
 from gen.corpus import FAULTS
 
-DRAWS = 1000
-INTERVAL = (0.025, 0.975)
+RESAMPLES = 1000
+INTERVAL = (0.025, 0.975)  # quantiles of a 95 % interval
+Interval = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -26,24 +28,26 @@ class Scores:
     Attributes
     ----------
     balanced_accuracy, macro_f1, accuracy
-        Over the classes present.
+        Over the classes present in the test.
     classes
         The classes present, the rows of ``confusion``.
     model_classes
-        The classes the model can name, the columns of ``confusion``.
+        The classes that the model can predict, the columns of ``confusion``.
     confusion
-        Number of records of each class that were given each name.
+        Number of records by true and predicted class.
     records
-        Number of things scored: records, or recordings within ``by_recording``.
+        Number of records scored, or of recordings in ``by_recording``.
     interval
-        95 % bootstrap interval of the balanced accuracy over specimens, drawn class by class. A class of a
-        single specimen adds nothing to its width, which is then too small.
+        95 % bootstrap interval of the balanced accuracy over specimens, resampled class by class. None if a class has
+        only one specimen: the spread over its specimens is not known.
     folds
-        Balanced accuracy of each fold of a cross-validation, empty outside one.
+        Balanced accuracy of each fold of a cross-validation, else empty.
     by_recording
-        The same after the probabilities of all records of a recording are averaged.
+        Scores after averaging the probabilities of all records of a recording.
     seen
-        How many of the records the model was trained on, 0 for a fair test.
+        Number of tested records that the model was trained on, 0 in a fair test.
+    uncovered_widths
+        Fault widths [m] by class that were tested and not trained, as in `features.baselines.severities`.
     """
 
     balanced_accuracy: float
@@ -53,10 +57,11 @@ class Scores:
     model_classes: tuple[str, ...]
     confusion: tuple[tuple[int, ...], ...]
     records: int
-    interval: tuple[float, float]
+    interval: Interval | None
     folds: tuple[float, ...] = ()
     by_recording: "Scores | None" = None
     seen: int = 0
+    uncovered_widths: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
 
 class Figures(NamedTuple):
@@ -73,7 +78,7 @@ def score(records: Records, probabilities: FloatArray, model_classes: IntArray, 
     Parameters
     ----------
     records
-        What was tested.
+        The tested records.
     probabilities
         Shape (record, class), a column for each of ``model_classes``.
     model_classes
@@ -106,38 +111,49 @@ def _score(
 
 
 def confusion_matrix(fault: IntArray, predicted: IntArray, rows: IntArray, columns: IntArray) -> IntArray:
-    """Count the records of each class of ``rows`` that were given each name of ``columns``.
-
-    ``rows`` and ``columns`` are ascending; shape (row, column).
-    """
+    """Number of records by true class, of ``rows``, and predicted class, of ``columns``, both ascending."""
     matrix = np.zeros((len(rows), len(columns)), dtype=np.intp)
     np.add.at(matrix, (np.searchsorted(rows, fault), np.searchsorted(columns, predicted)), 1)
     return matrix
 
 
 def figures(matrix: IntArray, rows: IntArray, columns: IntArray) -> Figures:
-    """Mean recall, mean F1 and accuracy over the classes of ``rows``; the F1 of a class never named is 0."""
+    """Mean recall, mean F1 and accuracy over the classes of ``rows``; a class that is never predicted has F1 = 0."""
     same = rows[:, None] == columns
     hits = (matrix * same).sum(axis=1)
-    named = same @ matrix.sum(axis=0)
-    there = matrix.sum(axis=1)
+    predicted = same @ matrix.sum(axis=0)
+    tested = matrix.sum(axis=1)
     return Figures(
-        balanced_accuracy=float(np.mean(hits / there)),
-        macro_f1=float(np.mean(2 * hits / (there + named))),
-        accuracy=float(hits.sum() / there.sum()),
+        balanced_accuracy=float(np.mean(hits / tested)),
+        macro_f1=float(np.mean(2 * hits / (tested + predicted))),
+        accuracy=float(hits.sum() / tested.sum()),
     )
 
 
-def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> tuple[float, float]:
-    """95 % percentile interval of the balanced accuracy, resampling the specimens of each class."""
+def bootstrap_interval(fault: IntArray, correct: np.ndarray, specimen: IntArray, seed: int) -> Interval | None:
+    """95 % percentile interval of the balanced accuracy, resampling the specimens of each class.
+
+    None if a class has only one specimen: every resample would repeat it, and the interval would be too narrow.
+    """
     rng = np.random.default_rng(seed)
     classes = np.unique(fault)
-    recall = np.zeros(DRAWS)
+    recall = np.zeros(RESAMPLES)
     for c in classes:
         of_class = fault == c
         _, number = np.unique(specimen[of_class], return_inverse=True)
         records, hits = np.bincount(number), np.bincount(number, weights=correct[of_class])
-        drawn = rng.integers(len(records), size=(DRAWS, len(records)))
+        if len(records) < 2:
+            return None
+        drawn = rng.integers(len(records), size=(RESAMPLES, len(records)))
         recall += hits[drawn].sum(axis=1) / records[drawn].sum(axis=1)
     low, high = np.quantile(recall / len(classes), INTERVAL)
     return float(low), float(high)
+
+
+def interval_text(interval: Interval | None, decimals: int = 3) -> str:
+    """Text of an interval, for people.
+
+    >>> interval_text((0.8391, 0.9), 2), interval_text(None)
+    ('0.84 to 0.90', 'not known')
+    """
+    return "not known" if interval is None else " to ".join(f"{end:.{decimals}f}" for end in interval)

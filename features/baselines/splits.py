@@ -1,7 +1,7 @@
 """Cross-validation that keeps all records of a specimen, or of a rig, on one side of every split.
 
-Records of one specimen share its geometry, path and background. A random split of records therefore scores how
-well a classifier recognises specimens, and can score 1.00 even when the labels mean nothing.
+Records of one specimen share its geometry, transfer path and background. So a random split of records measures how
+well a classifier recognises specimens, and its score can be 1.00 even if the labels are random.
 """
 
 from collections.abc import Sequence
@@ -23,6 +23,7 @@ from features.baselines.records import (
     labelled_records,
 )
 from features.baselines.scores import Scores, confusion_matrix, figures, score
+from features.baselines.severities import uncovered_in_splits
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
@@ -48,9 +49,9 @@ def cross_validate(
     estimator
         A name of ``ESTIMATORS``.
     by
-        What stays on one side of every split.
+        Groups that a split must not divide.
     folds
-        Number of splits; the predictions of all are pooled, and the balanced accuracy of each is kept.
+        Number of splits. Their predictions are pooled; the balanced accuracy of each split is returned too.
     groups
         Groups of features.
     seed
@@ -59,7 +60,7 @@ def cross_validate(
     Raises
     ------
     CorpusError
-        If the table has a single class, or too few specimens or rigs for the folds.
+        If the table has only one class, or too few specimens or rigs for the folds.
     ValueError
         For an unknown estimator.
     """
@@ -67,16 +68,17 @@ def cross_validate(
     check_groups(records, by, folds)
     splits = grouped_splits(records.fault, getattr(records, by), folds, seed)
     check_taught(records.fault, splits)
-    return score_splits(records, records.fault, estimator, splits, seed)
+    scores = score_splits(records, records.fault, estimator, splits, seed)
+    return replace(scores, uncovered_widths=uncovered_in_splits(records, splits))
 
 
 def check_groups(records: Records, by: Grouping, folds: int) -> None:
-    """Refuse what cannot be cross-validated by group.
+    """Refuse records that cannot be cross-validated by group.
 
     Raises
     ------
     CorpusError
-        If there is a single class, a class with too few groups or records, or too few groups.
+        If there are too few folds, groups or classes, or too few groups or records of a class.
     """
     group = getattr(records, by)
     present = check_classes(records)
@@ -93,7 +95,7 @@ def check_groups(records: Records, by: Grouping, folds: int) -> None:
         fault, of_class = FAULTS[c], group[records.fault == c]
         if len(np.unique(of_class)) < 2:
             message = (
-                f"{where}: all {fault} records are of one {by}, and none would be left to train on; "
+                f"{where}: all {fault} records are of one {by}, so that the fold that tests it has none to train on; "
                 f"give a corpus with two or more, or test on another corpus instead."
             )
             raise CorpusError(message)
@@ -103,7 +105,7 @@ def check_groups(records: Records, by: Grouping, folds: int) -> None:
 
 
 def grouped_splits(fault: IntArray, group: IntArray, folds: int, seed: int) -> list[Split]:
-    """Training and test records of each fold, classes spread as evenly as the groups allow."""
+    """Training and test records of each fold, with classes balanced as evenly as the groups allow."""
     splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
     splits: list[Any] = list(splitter.split(np.zeros((len(fault), 1)), fault, group))
     for train, test in splits:
@@ -112,18 +114,18 @@ def grouped_splits(fault: IntArray, group: IntArray, folds: int, seed: int) -> l
 
 
 def check_taught(fault: IntArray, splits: Sequence[Split]) -> None:
-    """Refuse splits of which one leaves a class without a training record.
+    """Refuse splits if one of them has a class without a training record.
 
     Raises
     ------
     CorpusError
-        Naming the first such class.
+        With the name of the first such class.
     """
     for train, _ in splits:
         untaught = np.setdiff1d(fault, fault[train])
         if len(untaught):
             name = FAULTS[untaught[0]]
-            message = f"cross-validation: a fold leaves no {name} record to train on; use fewer folds."
+            message = f"cross-validation: a fold has no {name} record to train on; use fewer folds."
             raise CorpusError(message)
 
 
@@ -133,16 +135,16 @@ def check_disjoint(group: IntArray, train: IntArray, test: IntArray) -> None:
     Raises
     ------
     CorpusError
-        Naming the first such group.
+        With the number of the first such group.
     """
     shared = np.intersect1d(group[train], group[test])
     if len(shared):
-        message = f"split: group {shared[0]} is in training and test alike; keep all its records on one side."
+        message = f"split: group {shared[0]} is in training and in test; keep all its records on one side."
         raise CorpusError(message)
 
 
 def score_splits(records: Records, labels: IntArray, estimator: str, splits: Sequence[Split], seed: int) -> Scores:
-    """Scores against ``labels`` of the predictions pooled over splits, which test each record once."""
+    """Scores against ``labels`` of the predictions of all splits, which together test each record once."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []

@@ -1,6 +1,6 @@
-"""Envelope spectra in pictures of many: faults side by side, and a run-up as a waterfall with the orders drawn in.
+"""Pictures of several envelope spectra: records side by side, and the pieces of a run-up as a waterfall with fault orders.
 
-In a waterfall, lines that follow the shaft run along the drawn orders; what the machine rings at stands upright.
+In a waterfall, lines that follow the shaft speed run along the drawn orders; lines at constant frequencies are vertical.
 """
 
 from collections.abc import Mapping, Sequence
@@ -9,20 +9,31 @@ import numpy as np
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 
-from features.report.pictures import COLOURS, FAINT, INK, STYLE, TOLERANCE, WIDTH, Shown, fault_lines, squared_envelope
+from features.faults import CLASSES
+from features.report.pictures import (
+    FAINT,
+    INK,
+    STYLE,
+    TOLERANCE,
+    VERMILION,
+    WIDTH,
+    Shown,
+    fault_lines,
+    squared_envelope,
+)
 from features.signal.demodulation import analytic_band, envelope_spectrum
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients
 
-PIECE = 0.5  # s
-OVERLAP = 0.75
-FAINTEST_DB = 30.0  # below the brightest line
-HIGHEST_ORDER = 17.0
+PIECE = 0.5  # s, length of a piece
+OVERLAP = 0.75  # of a piece
+BRIGHTEST_DB = 30.0  # level drawn black, above the median
+HIGHEST_ORDER = 17.0  # end of the axis
 
 
 @rc_context(STYLE)
 def draw_envelopes(records: Sequence[Shown]) -> Figure:
-    """Squared envelope spectra of several records, two abreast: lines of their own fault shaded, first lines of the others dotted."""
+    """Squared envelope spectra of several records in two columns: lines of the fault shaded, the other fundamentals dashed."""
     rows = -(-len(records) // 2)
     figure = Figure(figsize=(2 * WIDTH, 1.75 * rows), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False, sharex=True).ravel()
@@ -32,12 +43,12 @@ def draw_envelopes(records: Sequence[Shown]) -> Figure:
         own, others = fault_lines(shown.orders, shown.fault)
         for line in own.values():
             span = line * (1 - TOLERANCE), line * (1 + TOLERANCE)
-            axes.axvspan(*span, color=COLOURS[shown.fault], alpha=0.25, linewidth=0)
+            axes.axvspan(*span, color=CLASSES[shown.fault].colour, alpha=0.25, linewidth=0)
         for line in others.values():
             axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
         axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
         axes.set(xlim=(0, HIGHEST_ORDER), ylim=(0, None))
-        axes.set_title(shown.title, color=COLOURS[shown.fault], fontweight="bold")
+        axes.set_title(shown.title, color=CLASSES[shown.fault].colour, fontweight="bold")
     for axes in panels[len(records) :]:
         axes.remove()
     figure.supxlabel("order of the shaft", fontsize=9)
@@ -86,9 +97,9 @@ def draw_waterfall(
     shaft_rate: FloatArray,
     lines: Mapping[str, float],
 ) -> Figure:
-    """Waterfall of a record over time.
+    """Envelope spectra of a record over time as shades of grey.
 
-    ``shaft_rate`` gives the rate at each sample, shape (time,) [Hz]; ``lines`` names the orders to draw in.
+    ``shaft_rate`` is the rate at each sample, shape (time,) [Hz]; ``lines`` gives the orders to draw, by label.
     """
     times, frequencies, spectra = envelope_pieces(signal, fs, band)
     level = 20 * np.log10(spectra / np.median(spectra, axis=1, keepdims=True) + 1e-12)
@@ -98,16 +109,16 @@ def draw_waterfall(
     figure = Figure(figsize=(WIDTH, 4.2), layout="constrained")
     axes = figure.subplots()
     picture = axes.pcolormesh(
-        frequencies[visible], times, level[:, visible], cmap="Greys", vmin=0, vmax=FAINTEST_DB, shading="nearest",
+        frequencies[visible], times, level[:, visible], cmap="Greys", vmin=0, vmax=BRIGHTEST_DB, shading="nearest",
         rasterized=True,
     )  # fmt: skip
     for name, order in lines.items():
-        axes.plot(order * rate, times, color="#D55E00", linewidth=0.8, linestyle=(0, (4, 6)))
+        axes.plot(order * rate, times, color=VERMILION, linewidth=0.8, linestyle=(0, (4, 6)))
         axes.annotate(
             name, (order * rate[-1], times[-1]), (0, 3), textcoords="offset points", fontsize=8, ha="center",
-            color="#D55E00", annotation_clip=False,
+            color=VERMILION, annotation_clip=False,
         )  # fmt: skip
     axes.set(xlabel="frequency of the envelope [Hz]", ylabel="time [s]", xlim=(0, top))
     axes.set_title(title, pad=16, fontweight="bold")
-    figure.colorbar(picture, ax=axes, label="dB over the median", pad=0.01)
+    figure.colorbar(picture, ax=axes, label="dB above the median", pad=0.01)
     return figure

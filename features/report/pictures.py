@@ -1,14 +1,14 @@
 """Pictures of records, corpora and scores, drawn from plain arrays.
 
-Colours are those of Okabe and Ito [1]_, which readers with colour-blindness can tell apart. No text of a corpus gets into
-a picture: only numbers and the names of the classes.
+All colours, those of `features.faults` included, are from the palette of Okabe and Ito [1]_, which colour-blind readers
+can distinguish. Pictures contain numbers and class names, and no text of a corpus.
 
 .. [1] M. Okabe, K. Ito, "Color Universal Design: how to make figures and presentations that are friendly to colorblind
        people", 2008.
 """
 
 import io
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -19,6 +19,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.baselines import Baseline, Scores
 from features.baselines.records import IntArray
+from features.faults import CLASSES, FUNDAMENTALS, SHAFT
 from features.indicators import BROAD, WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray
@@ -27,10 +28,8 @@ from gen.corpus import FAULTS
 
 PictureFormat = Literal["png", "svg", "pdf"]
 
-COLOURS: dict[str, str] = dict(
-    zip(FAULTS, ("#009E73", "#D55E00", "#0072B2", "#CC79A7", "#E69F00", "#56B4E9"), strict=True)
-)
 INK, FAINT = "#222222", "#8a8a8a"
+BLUE, VERMILION = "#0072B2", "#D55E00"
 STYLE: Any = {
     "figure.facecolor": "white",
     "figure.dpi": 150,
@@ -49,27 +48,17 @@ STYLE: Any = {
     "legend.frameon": False,
     "svg.hashsalt": "raceway",
 }
-WIDTH = 6.2  # inches: letters stay readable on a phone
+WIDTH = 6.2  # inches: text stays readable on a phone
 
-TURNS = 8  # of the shaft, in the waveform
-COLUMNS = 1500  # in which a long waveform is drawn
-SEGMENT = 0.05  # s, of the power spectral density
-FAINTEST_DB = 120.0  # below the highest density
-HARMONICS = {
-    "outer": ("BPFO", "2 BPFO", "3 BPFO"),
-    "inner": ("BPFI", "2 BPFI", "3 BPFI"),
-    "ball": ("2 BSF", "4 BSF", "6 BSF"),
-    "cage": ("FTF", "2 FTF", "3 FTF"),
-}
-FIRST = tuple(names[0] for names in HARMONICS.values())
-TOLERANCE = 0.02  # of an order, shaded around the lines of the fault itself
+TURNS = 8  # shaft revolutions in the waveform
+COLUMNS = 1500  # columns that a long waveform is reduced to
+SEGMENT = 0.05  # s, window of the power spectral density
+FAINTEST_DB = 120.0  # lowest density drawn, below the highest
+TOLERANCE = 0.02  # of an order, half the width of the shaded band around a line of the fault
 
 
 class Shown(NamedTuple):
-    """A record as it is drawn: signal [m s-2], shape (time,), sample and shaft rate [Hz], fault orders and class.
-
-    ``title`` is written above it.
-    """
+    """A record to draw: title, signal [m s-2], shape (time,), sample and shaft rate [Hz], fault orders and class."""
 
     title: str
     signal: FloatArray
@@ -88,7 +77,7 @@ class Quantity(NamedTuple):
 
 @rc_context(STYLE)
 def picture(figure: Figure, suffix: PictureFormat) -> bytes:
-    """Encode a figure; the same figure gives the same bytes."""
+    """Encode a figure; equal figures give equal bytes."""
     stream = io.BytesIO()
     undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
     figure.savefig(stream, format=suffix, metadata=undated)
@@ -99,7 +88,7 @@ def picture(figure: Figure, suffix: PictureFormat) -> bytes:
 def draw_record(shown: Shown) -> Figure:
     """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
     figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=COLOURS[shown.fault])
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=CLASSES[shown.fault].colour)
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     _draw_waveform(waveform, shown)
     _draw_density(density, shown)
@@ -115,11 +104,11 @@ def _draw_waveform(axes: Axes, shown: Shown) -> None:
     time, values = thinned(np.arange(x.size) / shown.fs, x)
     axes.plot(time, values, color=INK, linewidth=0.6)
     axes.set(xlabel="time [s]", ylabel="acceleration [m/s²]", xlim=(0, visible))
-    axes.set_title(f"First {visible:.2g} s of {duration:.3g} s, {visible * shown.shaft_rate:.2g} turns of the shaft")
+    axes.set_title(f"First {visible:.2g} s of {duration:.3g} s, {visible * shown.shaft_rate:.2g} shaft revolutions")
 
 
 def thinned(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest value in each of at most `COLUMNS` columns, which look like the whole when drawn."""
+    """Lowest and highest value in each of at most `COLUMNS` columns; the drawn line looks like that of all samples."""
     step = -(-values.size // COLUMNS)
     if step < 4:
         return time, values
@@ -141,10 +130,9 @@ def _draw_density(axes: Axes, shown: Shown) -> None:
 def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
     order, spectrum = squared_envelope(shown)
     own, others = fault_lines(shown.orders, shown.fault)
-    # the lines of a cage are close together, and the first lines of the other faults are enough beside them
-    top = (1.1 if shown.fault == "cage" else 3.15) * max(line for name, line in (own | others).items() if name in FIRST)
+    top = _highest_drawn_order(own, others)
     visible = order <= top
-    colour = COLOURS[shown.fault]
+    colour = CLASSES[shown.fault].colour
     for line in own.values():
         axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=colour, alpha=0.2, linewidth=0)
     for line in others.values():
@@ -153,6 +141,17 @@ def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
     axes.set(xlabel="order of the shaft", ylabel="squared envelope [1]", xlim=(0, top), ylim=(0, None))
     _name_lines(axes, own, others, colour, top)
     axes.set_title("Squared envelope spectrum of the whitened band", pad=30)
+
+
+def _highest_drawn_order(own: Mapping[str, float], others: Mapping[str, float]) -> float:
+    """Order at which the axis ends: beyond the third harmonics of all classes.
+
+    If all lines of the fault lie below the highest fundamental line, as those of a cage do, the axis ends just above
+    that fundamental, because harmonics of other classes would compress the lines of the fault.
+    """
+    lines = {**own, **others}
+    highest = max(lines[line.label] for line in FUNDAMENTALS)
+    return (1.1 if own and max(own.values()) < highest else 3.15) * highest
 
 
 def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
@@ -167,20 +166,15 @@ def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
 
 
 def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str, float]]:
-    """Orders at which a fault shows, three harmonics of its line, and the other lines to compare with, by name.
-
-    A compound fault may show at the first line of any: its label does not say which parts it is on.
-    """
-    ftf, bpfo, bpfi, bsf = (float(order) for order in orders)
-    order = {"outer": bpfo, "inner": bpfi, "ball": 2 * bsf, "cage": ftf}
-    first = dict(zip(FIRST, order.values(), strict=True))
-    own = {name: n * order[fault] for n, name in enumerate(HARMONICS.get(fault, ()), start=1)}
-    own = first if fault == "compound" else own
-    return own, {name: line for name, line in ({"shaft": 1.0} | first).items() if name not in own}
+    """Orders of the lines of a fault class, and of the fundamental lines of the others and the shaft, by label."""
+    nominal = {"shaft": 1.0} | {base: float(order) for base, order in orders._asdict().items()}
+    own = {line.label: line.multiple * nominal[line.base] for line in CLASSES[fault].lines}
+    compared = {line.label: line.multiple * nominal[line.base] for line in (SHAFT, *FUNDAMENTALS)}
+    return own, {label: order for label, order in compared.items() if label not in own}
 
 
 def _name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
-    """Write the name of each line above the axes, in the lower of two rows if it has room for it."""
+    """Write the label of each line above the axes, in the lower of two rows if there is room."""
     ends = [-np.inf, -np.inf]
     per_letter = top / 78
     named = [(line, name, colour) for name, line in own.items()] + [(line, name, INK) for name, line in others.items()]
@@ -197,14 +191,14 @@ def _name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float
 
 @rc_context(STYLE)
 def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity]) -> Figure:
-    """Records per rig and distributions of quantities that vary, stacked by class.
+    """Records per rig, and histograms of the quantities that vary, stacked by class.
 
     Parameters
     ----------
     fault, rig
-        Class and number of the rig of each record, shape (record,).
+        Class and rig number of each record, shape (record,).
     quantities
-        What to show the distribution of; values that are not finite are left out.
+        Each gets a histogram if it varies; values that are not finite are omitted.
     """
     quantities = [quantity for quantity in quantities if _varies(quantity.values)]
     rows = -(-(1 + len(quantities)) // 2)
@@ -226,7 +220,7 @@ def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) ->
     bottom = np.zeros(len(rigs))
     for c in present:
         count = np.bincount(number[fault == c], minlength=len(rigs))
-        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=COLOURS[FAULTS[c]], label=FAULTS[c])
+        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=CLASSES[FAULTS[c]].colour, label=FAULTS[c])
         bottom += count
     step = max(1, len(rigs) // 10)
     axes.set_xticks(np.arange(0, len(rigs), step), [str(name) for name in rigs[::step]])
@@ -248,7 +242,7 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
         [values[fault[finite] == c] for c in present],
         bins=edges.tolist(),
         stacked=True,
-        color=[COLOURS[FAULTS[c]] for c in present],
+        color=[CLASSES[FAULTS[c]].colour for c in present],
     )
     axes.set(xlabel=quantity.label, ylabel="records")
     axes.locator_params(axis="x", nbins=5)
@@ -270,9 +264,9 @@ def draw_scores(baselines: Mapping[str, Baseline], chance: float, by: str) -> Fi
     axes.hlines(rows, 0, 1, color=FAINT, linewidth=0.4, alpha=0.5)
     axes.vlines(chance, -0.6, len(rows) - 0.45, color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
     axes.text(chance, len(rows) - 0.4, "chance", color=INK, fontsize=8, va="bottom", ha="center")
-    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, COLOURS["outer"], "o", f"unseen {by}s")
+    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {by}s")
     if test:
-        _draw_intervals(axes, test, rows - 0.18, COLOURS["inner"], "s", "other corpus")
+        _draw_intervals(axes, test, rows - 0.18, VERMILION, "s", "other corpus")
     null, leaky = ([getattr(b, kind).balanced_accuracy for b in scored] for kind in ("null", "leaky"))
     axes.plot(
         leaky, rows + 0.13, "D", color=FAINT, markerfacecolor="none", markersize=9, label="random records (leaks)"
@@ -287,9 +281,10 @@ def draw_scores(baselines: Mapping[str, Baseline], chance: float, by: str) -> Fi
 
 
 def _draw_intervals(
-    axes: Axes, scores: Iterable[Scores], rows: FloatArray, colour: str, marker: str, label: str
+    axes: Axes, scores: Sequence[Scores], rows: FloatArray, colour: str, marker: str, label: str
 ) -> None:
-    scores = list(scores)
-    low, high = np.transpose([found.interval for found in scores])
-    axes.hlines(rows, low, high, color=colour, linewidth=1.6)
+    """Draw balanced accuracies, and the intervals that are known."""
+    for found, row in zip(scores, rows, strict=True):
+        if found.interval is not None:
+            axes.hlines(row, *found.interval, color=colour, linewidth=1.6)
     axes.plot([found.balanced_accuracy for found in scores], rows, marker, color=colour, markersize=5.5, label=label)

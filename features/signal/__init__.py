@@ -3,10 +3,10 @@
 ============ =================================================================
 module       responsibility
 ============ =================================================================
-rows         what loops over records share: compilation, sums, windows
+rows         compilation of loops over records, sums in a fixed order, windows
 spectra      power spectra, Fourier coefficients, whitening
-demodulation bands as analytic signals, envelope spectra and their floor
+demodulation analytic signals of bands, envelope spectra and their floor
 lines        levels of fault lines and combs at orders of the shaft
-shape        impulsiveness, slow fluctuation, time statistics
+shape        impulsiveness, slow fluctuation, statistics of the waveform
 ============ =================================================================
 """

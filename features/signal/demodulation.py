@@ -1,11 +1,11 @@
-"""Demodulation: bands of a record as analytic signals, the spectra of their envelopes, and the floor of those.
+"""Demodulation: analytic signals of frequency bands, the spectra of their envelopes, and the floor of these spectra.
 
 ``Fourier coefficients -> analytic_band -> envelope_spectrum -> running_median``
 
-A band is cut out of the Fourier coefficients of the whole record and transformed back alone, as a complex
-baseband signal at twice the band's width [1]_. Its modulus is the envelope, and nothing in it depends on the
-sample rate of the record. Records are rows, and no row knows of the others. The squared envelope spectrum is
-[2]_, the interpolation between the coefficients of a Fourier transform [3]_.
+The inverse transform of the Fourier coefficients of one band is a complex baseband signal, sampled at twice the width
+of the band [1]_. Its modulus is the envelope, which does not depend on the sample rate of the record. Records are rows,
+and no row depends on the others. The squared envelope spectrum is that of [2]_, the interpolation between Fourier
+coefficients that of [3]_.
 
 .. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, section 3.3.
 .. [2] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
@@ -25,24 +25,24 @@ from scipy.fft import ifft, next_fast_len, rfft
 from features.signal.rows import ComplexArray, FloatArray, hann_window, row_kernel, squared_modulus, total
 
 ZERO_PADDING = 4
-INTERPOLATED = 1.125  # times the length of a signal: what a transform is padded to before it is interpolated
-NEIGHBOURS = 8  # coefficients that a point between them is interpolated from
-MEDIAN_POINTS = 64  # equally spaced over the window of the running median
-MEDIAN_STEP = 0.25  # of that window
+INTERPOLATED = 1.125  # length of the transform that is interpolated, in lengths of the signal
+NEIGHBOURS = 8  # coefficients in each interpolation
+MEDIAN_POINTS = 64  # points of the running median, equally spaced over its window
+MEDIAN_STEP = 0.25  # distance between two medians, in windows
 
 
 def analytic_band(coefficients: ComplexArray, low: int, high: int) -> ComplexArray:
-    """Analytic signal of the bins ``low`` to ``high`` (not included), shifted down to zero frequency.
+    """Analytic signal of the bins ``low`` to ``high`` (exclusive), shifted to zero frequency.
 
-    It has as many samples a second as its length over the duration of the record, at least twice the width of
-    the band: its squared modulus is free of aliasing.
+    Its sample rate is its length divided by the duration of the record, at least twice the width of the band, so that
+    its squared modulus has no aliasing.
 
     Parameters
     ----------
     coefficients
         Shape (record, frequency), as from `fourier_coefficients`, whitened or not.
     low, high
-        Bins.
+        First bin of the band, and the bin after its last.
 
     Returns
     -------
@@ -55,8 +55,8 @@ def analytic_band(coefficients: ComplexArray, low: int, high: int) -> ComplexArr
 def envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and amplitude spectrum of the envelope of analytic signals.
 
-    Less its mean, Hann window, on a grid four times as fine as the resolution of a transform; a modulation of
-    amplitude a in the envelope reads a.
+    The mean is subtracted and a Hann window applied; the grid is four times finer than the resolution of the signal. A
+    modulation of amplitude a in the envelope gives a line of height a.
 
     Parameters
     ----------
@@ -67,13 +67,13 @@ def envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatAr
 
     Returns
     -------
-    Shapes (frequency,) and (record, frequency). Divide the frequencies by a shaft rate to have orders.
+    Shapes (frequency,) and (record, frequency).
     """
     return _amplitude_spectrum(np.sqrt(squared_modulus(z)), rate)
 
 
 def squared_envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and amplitude spectrum of the squared envelope, otherwise as `envelope_spectrum`."""
+    """Frequencies [Hz] and amplitude spectrum of the squared envelope, else as `envelope_spectrum`."""
     return _amplitude_spectrum(squared_modulus(z), rate)
 
 
@@ -93,22 +93,22 @@ def _less_mean(y: FloatArray, window: FloatArray) -> FloatArray:
 
 
 def hann_weighted(y: FloatArray) -> FloatArray:
-    """Real signals less their mean under a Hann window, in which they sum to zero, shape (record, time)."""
+    """Real signals without their Hann-weighted mean, times the Hann window, shape (record, time)."""
     return _less_mean(y, hann_window(y.shape[-1], y.dtype))
 
 
 def fine_amplitudes(weighted: FloatArray, bins: int) -> FloatArray:
-    """First bins of the amplitude spectrum that zero-padding to four times the length would give.
+    """First bins of the amplitude spectrum of signals that are zero-padded to four times their length.
 
-    Interpolated by a Kaiser-Bessel kernel between the coefficients of the signals padded to `INTERPOLATED` of
-    their length, within 1e-5 of the rms of the spectrum and in a quarter of the time.
+    A Kaiser-Bessel kernel interpolates between the coefficients of signals padded to `INTERPOLATED` times their length.
+    The error is below 1e-5 of the rms of the spectrum; the computation takes a quarter of the time of the padded one.
 
     Parameters
     ----------
     weighted
-        Signals under a Hann window, as from `hann_weighted`, shape (record, time).
+        Signals times a Hann window, as from `hann_weighted`, shape (record, time).
     bins
-        How many bins, at most as many as padding would give.
+        Number of bins, at most as many as the padded spectrum has.
 
     Returns
     -------
@@ -124,25 +124,27 @@ def fine_amplitudes(weighted: FloatArray, bins: int) -> FloatArray:
 
 @lru_cache(16)
 def _interpolation(n: int, dtype: DTypeLike) -> tuple[FloatArray, np.ndarray, FloatArray]:
-    """What to interpolate the spectrum of signals of length n with.
+    """Window, first neighbours and weights of the interpolation of spectra of signals of length n.
 
-    The reciprocal of the transform of the kernel, shape (time,), scaled to read amplitudes under a Hann window;
-    the first neighbour of each bin, shape (bin,), and the weights of all its neighbours, shape (bin, neighbour).
+    The window, shape (time,), is the reciprocal of the transform of the kernel, scaled so that the result is the amplitude
+    under a Hann window. Each bin has its first neighbour, shape (bin,), and a weight per neighbour, shape (bin, neighbour).
     """
     padded = next_fast_len(math.ceil(INTERPOLATED * n), real=True)
     bend = np.pi * NEIGHBOURS * (1 - 0.5 * n / padded)
     t = np.arange(padded) / padded - 0.5
-    root = np.sqrt(np.maximum(bend**2 - (np.pi * NEIGHBOURS * t) ** 2, 1.0))  # at least 1 over the signal
+    root = np.sqrt(np.maximum(bend**2 - (np.pi * NEIGHBOURS * t) ** 2, 1.0))  # above 1 within the signal
     window = 4 / n * root / (NEIGHBOURS * np.sinh(root))
     place = np.arange(ZERO_PADDING * n // 2 + 1) * (padded / (ZERO_PADDING * n))
     first = np.floor(place).astype(np.intp) + 1 - NEIGHBOURS // 2
     neighbour = np.arange(NEIGHBOURS)
     offset = (place - first)[:, None] - neighbour
-    weights = np.i0(bend * np.sqrt(1 - (2 * offset / NEIGHBOURS) ** 2)) * (-1.0) ** neighbour  # time zero is the middle
+    weights = (
+        np.i0(bend * np.sqrt(1 - (2 * offset / NEIGHBOURS) ** 2)) * (-1.0) ** neighbour
+    )  # time zero is the middle of the signal
     return window.astype(dtype), first, weights.astype(dtype)
 
 
-@njit(cache=True)  # in the order written: each lane of a vector is a record
+@njit(cache=True)  # without fastmath: vectorised over records, each sum in the order written
 def _interpolated(transform: ComplexArray, n: int, first: np.ndarray, weights: FloatArray) -> FloatArray:
     """Moduli between the coefficients of real signals of length n, shape (record, bin)."""
     records, reach = len(transform), first[-1] - first[0] + NEIGHBOURS
@@ -166,10 +168,11 @@ def _interpolated(transform: ComplexArray, n: int, first: np.ndarray, weights: F
 
 
 def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
-    """Median of the surroundings of each of the first ``bins`` bins, over a window of ``width`` bins.
+    """Running median of spectra over ``width`` bins, at their first ``bins`` bins.
 
-    Taken over 64 equally spaced points at every quarter of the window and interpolated linearly between,
-    which costs the same for every length of record. At the ends the window stops and does not shrink.
+    Medians of 64 equally spaced points are taken at every quarter of the window and interpolated linearly, so that the
+    cost does not depend on the width of the window in bins. At both ends of the spectrum the window stops and keeps its
+    width.
 
     Parameters
     ----------
@@ -178,7 +181,7 @@ def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatA
     width
         Width of the window in bins, one per record, shape (record,).
     bins
-        How many bins to return.
+        Number of bins to return.
 
     Returns
     -------
@@ -189,7 +192,7 @@ def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatA
     step = np.maximum(MEDIAN_STEP * width, 1.0)
     knots = int(np.max(np.ceil((bins - 1) / step))) + 2
     window = _surroundings(spectrum, width, step, knots)
-    window.sort(axis=-1)  # np.median costs eight times as much
+    window.sort(axis=-1)  # np.median takes eight times as long
     half = MEDIAN_POINTS // 2
     return _joined(0.5 * (window[..., half - 1] + window[..., half]), step, bins)
 

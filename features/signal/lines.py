@@ -1,9 +1,8 @@
-"""Fault lines in the level of an envelope spectrum over its floor, looked up at orders of the shaft.
+"""Levels of fault lines over the floor of an envelope spectrum, at orders of the shaft.
 
-A spall makes the envelope repeat at its fault order and leaves a line there, harmonics above it, and
-sidebands at the rate at which the spall passes through the load [1]_. Speed labels and orders of real
-machines are off by a per cent or two, so a single line is the highest level within a tolerance, and a comb
-may shift as a whole.
+A spall modulates the envelope periodically at its fault order. The spectrum then has a line there, its harmonics, and
+sidebands at the rate at which the spall passes the load zone [1]_. Speed labels and nominal orders of real machines are
+wrong by one or two per cent, so a single line is the highest level within a tolerance, and a comb may shift as a whole.
 
 .. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
        Process.* 25 (2011) 485-520.
@@ -15,14 +14,14 @@ import numpy as np
 
 from features.signal.rows import FloatArray, row_kernel
 
-LINE_TOLERANCE = 0.015
-COMB_TOLERANCE = 0.02
+LINE_TOLERANCE = 0.015  # relative, of a single line
+COMB_TOLERANCE = 0.02  # relative, shared by the harmonics of a comb
 COMB_HARMONICS = 3
-HIGHEST_LINE_ORDERS = (0.25, 12.0)
+HIGHEST_LINE_ORDERS = (0.25, 12.0)  # orders between which the highest line is searched
 
 FAMILIES = ("bpfo", "bpfi", "2bsf")
 LINE_NAMES = (
-    *(f"{family}_{what}" for what in ("comb", "h1", "h2", "sidebands") for family in FAMILIES),
+    *(f"{family}_{kind}" for kind in ("comb", "h1", "h2", "sidebands") for family in FAMILIES),
     *("bsf", "fr", "2fr", "ftf", "2ftf", "fr-ftf"),
     "highest_line",
 )
@@ -31,7 +30,7 @@ LINE_NAMES = (
 class Orders(NamedTuple):
     """Nominal fault orders of records, each of shape (record,), in multiples of the shaft rate.
 
-    ``bsf`` is the spin of a ball. A spall on it strikes both raceways in each spin: its line is ``2 * bsf``.
+    ``bsf`` is the spin frequency of a ball. Its spall strikes both races in each spin, so its line is ``2 * bsf``.
     """
 
     ftf: FloatArray
@@ -46,7 +45,7 @@ def families(orders: Orders) -> FloatArray:
 
 
 def highest_order(orders: Orders) -> FloatArray:
-    """Highest order at which `read_lines` looks, shape (record,)."""
+    """Highest order that `read_lines` reads, shape (record,)."""
     comb = COMB_HARMONICS * (1 + COMB_TOLERANCE) * families(orders).max(axis=-1)
     return np.maximum(comb, HIGHEST_LINE_ORDERS[1])
 
@@ -57,12 +56,12 @@ def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) ->
     Parameters
     ----------
     level
-        Natural logarithm of an envelope spectrum over its floor, shape (record, frequency). Lines beyond its
-        end read 0, as high as the floor.
+        Natural logarithm of the ratio of an envelope spectrum to its floor, shape (record, frequency). A line beyond
+        the end of the spectrum has the level 0 of the floor.
     bins_per_order
-        Shape (record,).
+        Bins per order of the shaft, shape (record,).
     orders
-        Where the lines are.
+        Nominal orders of the lines.
     """
     base, one = families(orders), np.ones_like(orders.ftf)
     ftf = orders.ftf
@@ -86,7 +85,7 @@ def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) ->
 
 @row_kernel
 def single_lines(level: FloatArray, bins: FloatArray) -> FloatArray:
-    """Highest level within the tolerance of each place, shapes (record, frequency) at (record, line)."""
+    """Highest level within the tolerance of each line; ``bins`` and the result have the shape (record, line)."""
     out = np.empty(bins.shape)
     for row in range(bins.shape[0]):
         for line in range(bins.shape[1]):
@@ -101,9 +100,9 @@ def single_lines(level: FloatArray, bins: FloatArray) -> FloatArray:
 
 @row_kernel
 def combs(level: FloatArray, bins: FloatArray) -> FloatArray:
-    """Largest mean level of harmonics 1 to 3 over a speed error shared by the three, shape (record, family).
+    """Largest mean level of harmonics 1 to 3 over all speed errors that the three may share, shape (record, family).
 
-    The error runs over +-2 % in steps that move the third harmonic by one bin.
+    The speed error varies from -2 % to +2 % in steps that move the third harmonic by one bin.
     """
     out = np.empty(bins.shape)
     for row in range(bins.shape[0]):

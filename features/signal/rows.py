@@ -1,6 +1,6 @@
-"""What the loops over records share: how they are compiled, sums in a fixed order, squares, windows.
+"""Helpers of all loops over records: compilation, sums in a fixed order, squares, windows.
 
-Records are rows: every function works on all of them at once, in the precision it is given, and no row knows of the others.
+Records are rows. Every function takes all rows at once and keeps their precision; no row depends on the others.
 """
 
 from functools import lru_cache
@@ -15,14 +15,14 @@ FloatArray = NDArray[np.floating[Any]]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
 
 row_kernel = njit(cache=True, error_model="numpy", fastmath={"nnan", "nsz"})
-"""Compiles a loop over records. Not with "reassoc": code from the cache then differed in a last bit from code just compiled."""
+"""Compile a loop over records. Without "reassoc", with which cached and freshly compiled code differed in the last bit."""
 
 PARTIAL_SUMS = 16
 
 
 @row_kernel
 def total(values: FloatArray) -> float:
-    """Sum in double precision, in parts that a processor adds at once and in an order that is always the same."""
+    """Sum in double precision in a fixed order, as 16 partial sums that fit vector registers."""
     parts = np.zeros(PARTIAL_SUMS)
     whole = len(values) // PARTIAL_SUMS * PARTIAL_SUMS
     for start in range(0, whole, PARTIAL_SUMS):
@@ -38,7 +38,7 @@ def total(values: FloatArray) -> float:
 
 @row_kernel
 def centred(x: FloatArray) -> FloatArray:
-    """Records less their mean, in single precision, shape (record, time)."""
+    """Records without their mean, in single precision, shape (record, time)."""
     out = np.empty(x.shape, np.float32)
     for row in range(len(x)):
         mean = total(x[row]) / x.shape[1]
@@ -49,7 +49,7 @@ def centred(x: FloatArray) -> FloatArray:
 
 @row_kernel
 def squared_modulus(z: ComplexArray) -> FloatArray:
-    """Square of the modulus, in the shape (record, time) or (record, frequency) of its argument."""
+    """Squared modulus, shape (record, time) or (record, frequency) as the argument."""
     out = np.empty(z.shape, z.real.dtype)
     for row in range(z.shape[0]):
         for i in range(z.shape[1]):

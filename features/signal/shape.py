@@ -1,7 +1,7 @@
-"""Shape of a signal whatever repeats in it: impulsiveness, slow fluctuation, statistics in time.
+"""Shape of a signal independent of its periods: impulsiveness, slow fluctuation, statistics of the waveform.
 
-Impacts make the tails of a signal heavy (kurtosis, crest factor); a load zone, a cage or a machine at work
-makes its power wander slowly against the turn of the shaft [1]_.
+Impacts make the distribution of a signal heavy-tailed (kurtosis, crest factor). A load zone, a cage or the process of a
+machine modulates its power more slowly than the shaft turns [1]_.
 
 .. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, sections 3.3 and 5.5.
 """
@@ -12,8 +12,8 @@ from features.signal.demodulation import ZERO_PADDING
 from features.signal.rows import FloatArray, row_kernel, total
 
 SHAPE_NAMES = ("impulsiveness", "slow_fluctuation", "slow_share")
-SMOOTHING_TURNS = 0.5
-SLOW_ORDERS = 0.8
+SMOOTHING_TURNS = 0.5  # shaft revolutions over which the power is averaged
+SLOW_ORDERS = 0.8  # order of the shaft below which a modulation is slow
 
 TIME_NAMES = (
     "rms",
@@ -30,20 +30,20 @@ TIME_NAMES = (
 def envelope_shape(
     power: FloatArray, weighted: FloatArray, spectrum: FloatArray, rate: float, shaft_rate: FloatArray
 ) -> FloatArray:
-    """Shape of the envelope of analytic signals: the three of `SHAPE_NAMES`, shape (record, 3).
+    """Shape of the envelope of analytic signals, in the order of `SHAPE_NAMES`, shape (record, 3).
 
-    Impulsiveness is ``ln(E|z|^4 / (E|z|^2)^2)``, ln 2 for Gaussian noise; slow fluctuation is the relative
-    standard deviation of ``|z|^2`` averaged over half a turn; slow share is the part of the power of the
-    envelope, without its mean, below 0.8 order.
+    Impulsiveness is ``ln(E|z|^4 / (E|z|^2)^2)``, ln 2 for Gaussian noise. Slow fluctuation is the relative standard
+    deviation of ``|z|^2`` averaged over half a revolution. Slow share is the fraction of the power of the envelope,
+    without its mean, below 0.8 orders.
 
     Parameters
     ----------
     power
         Squared envelopes ``|z|^2``, shape (record, time).
     weighted
-        Envelopes under their window, as from `features.signal.demodulation.hann_weighted`, shape (record, time).
+        Envelopes times their window, as from `features.signal.demodulation.hann_weighted`, shape (record, time).
     spectrum
-        Their `features.signal.demodulation.fine_amplitudes` from 0 to 0.8 order or further, shape (record, frequency).
+        Their `features.signal.demodulation.fine_amplitudes` from 0 to at least 0.8 orders, shape (record, frequency).
     rate
         Sample rate of z [Hz].
     shaft_rate
@@ -66,14 +66,14 @@ def _envelope_shape(
         mean = max(total(power[row]) / n, tiny)
         out[row, 0] = np.log(max(total(power[row] ** 2) / n / mean**2, 1.0))
         out[row, 1] = _fluctuation(power[row], span[row]) / mean
-        whole = total(weighted[row] ** 2) * (8 * ZERO_PADDING / n)  # Parseval: that of the spectrum to its end
+        whole = total(weighted[row] ** 2) * (8 * ZERO_PADDING / n)  # by Parseval, the sum over the whole spectrum
         out[row, 2] = total(spectrum[row, : int(np.ceil(slow_bins[row]))] ** 2) / max(whole, tiny)
     return out
 
 
 @row_kernel
 def _fluctuation(power: FloatArray, span: int) -> float:
-    """Deviation of means over ``span`` samples from one another, taken at every quarter of a span."""
+    """Standard deviation of the means over ``span`` samples, taken at every quarter of a span."""
     step = max(1, span // 4)
     means = np.empty(max(1, (len(power) - span) // step + 1))
     for number in range(len(means)):
@@ -83,11 +83,11 @@ def _fluctuation(power: FloatArray, span: int) -> float:
 
 
 def time_statistics(x: FloatArray) -> FloatArray:
-    """Statistics of records less their mean, in the order of `TIME_NAMES`, shape (record, 8).
+    """Statistics of records without their mean, in the order of `TIME_NAMES`, shape (record, 8).
 
-    Root mean square and peak are in the unit of x, the others free of gain; shape, impulse and clearance
-    factor are the rms over the mean modulus, the peak over the mean modulus and the peak over the squared
-    mean root of the modulus.
+    Root mean square and peak are in the unit of x; the others do not depend on gain. The shape factor is the rms over the
+    mean modulus, the impulse factor the peak over the mean modulus, and the clearance factor the peak over the squared
+    mean of the root of the modulus.
     """
     centred = x - x.mean(axis=-1, keepdims=True)
     modulus, root, square, cube, fourth = moments(centred).T

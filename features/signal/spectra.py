@@ -1,6 +1,6 @@
-"""Power spectra of vibration records, and their Fourier coefficients, whitened.
+"""Power spectra of vibration records, their Fourier coefficients, and two ways to whiten these.
 
-Records are rows, and no row knows of the others. Cepstral pre-whitening is [1]_.
+Records are rows, and no row depends on the others. Cepstral pre-whitening is that of [1]_.
 
 .. [1] P. Borghesani, P. Pennacchi, R. B. Randall, N. Sawalhi, R. Ricci, "Application of cepstrum
        pre-whitening for the diagnosis of bearing faults under variable speed conditions", *Mech. Syst. Signal
@@ -16,14 +16,14 @@ from scipy.signal.windows import tukey
 
 from features.signal.rows import ComplexArray, FloatArray, hann_window, row_kernel, squared_modulus, total
 
-TAPERED = 0.02  # of a record, half of it at each end
-FAINTEST = 1e-6  # of the rms coefficient: below, a coefficient is rounding error and is not whitened
+TAPERED = 0.02  # fraction of a record that is tapered, half of it at each end
+FAINTEST = 1e-6  # of the rms coefficient: a smaller coefficient is rounding error and must not be raised to one
 
 
 def psd(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and one-sided power spectral density [unit of x squared per Hz] by Welch's method.
 
-    Hann windows of ``segment`` seconds, overlapping by half, each less its mean.
+    Segments of ``segment`` seconds overlap by half; each has its mean subtracted and a Hann window applied.
 
     Parameters
     ----------
@@ -32,7 +32,7 @@ def psd(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, Fl
     fs
         Sample rate [Hz].
     segment
-        Length of a window [s]; a shorter record is one window.
+        Length of a segment [s]; a record that is shorter is one segment.
 
     Returns
     -------
@@ -51,7 +51,7 @@ def psd(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, Fl
 
 @row_kernel
 def _segments(x: FloatArray, window: FloatArray) -> FloatArray:
-    """Segments overlapping by half, less their mean, under a window, shape (record, segment, time)."""
+    """Segments that overlap by half, without their mean, times a window, shape (record, segment, time)."""
     length = len(window)
     step = length - length // 2
     out = np.empty((x.shape[0], (x.shape[1] - length) // step + 1, length), x.dtype)
@@ -66,7 +66,7 @@ def _segments(x: FloatArray, window: FloatArray) -> FloatArray:
 
 @row_kernel
 def _mean_power(coefficients: ComplexArray) -> FloatArray:
-    """Mean square over the middle axis, shape (record, frequency)."""
+    """Mean squared modulus over the segments, shape (record, frequency)."""
     out = np.zeros((coefficients.shape[0], coefficients.shape[2]), coefficients.real.dtype)
     for row in range(coefficients.shape[0]):
         for number in range(coefficients.shape[1]):
@@ -80,8 +80,9 @@ def _mean_power(coefficients: ComplexArray) -> FloatArray:
 def band_energies(density: FloatArray, frequencies: FloatArray, edges: ArrayLike) -> FloatArray:
     """Energy [unit of x squared] between neighbouring edges of a power spectral density.
 
-    Each density stands for the bin of one resolution around its frequency, and an edge inside a bin divides
-    it, so that adjoining bands add up to the energy of their union. Nothing lies outside the frequencies.
+    Each density value applies to a bin of one resolution around its frequency. An edge inside a bin divides the energy
+    of the bin, so that the energies of adjacent bands add up to that of their union. There is no energy beyond the
+    frequencies.
 
     Parameters
     ----------
@@ -90,7 +91,7 @@ def band_energies(density: FloatArray, frequencies: FloatArray, edges: ArrayLike
     frequencies
         Shape (frequency,) [Hz].
     edges
-        Ascending [Hz], shape (edge,), or (record, edge) as from orders times ``shaft_rate[:, None]``.
+        Ascending [Hz], shape (edge,) for all records, or (record, edge).
 
     Returns
     -------
@@ -103,7 +104,7 @@ def band_energies(density: FloatArray, frequencies: FloatArray, edges: ArrayLike
 
 @row_kernel
 def _sums_between(values: FloatArray, bins: FloatArray) -> FloatArray:
-    """Sums of values from one place between bins to the next, shape (record, place - 1)."""
+    """Sums of values between fractional bins, shape (record, band)."""
     out = np.empty((len(values), bins.shape[1] - 1))
     for row in range(len(values)):
         for band in range(out.shape[1]):
@@ -119,12 +120,11 @@ def _sums_between(values: FloatArray, bins: FloatArray) -> FloatArray:
 
 
 def fourier_coefficients(x: FloatArray, fs: float, top: float) -> ComplexArray:
-    """Fourier coefficients of whole records less their mean, up to ``top`` [Hz].
+    """Fourier coefficients of whole records without their mean, up to ``top`` [Hz].
 
-    Coefficient k belongs to the frequency ``k * fs / shape[-1]``; a sine of amplitude a in the middle of a
-    bin reads a / 2. The ends are tapered: the jump from the last sample to the first one looks like an impact
-    once the spectrum is whitened, and a tone ten times above the noise was enough to double the kurtosis of a
-    band far above it.
+    Coefficient k belongs to the frequency ``k * fs / x.shape[-1]``; a sine of amplitude a at the centre of a bin gives
+    a / 2. Both ends of the record are tapered, because whitening would turn the step from the last to the first sample
+    into an impact: a tone ten times above the noise doubled the kurtosis of a band far above the tone.
 
     Parameters
     ----------
@@ -152,7 +152,7 @@ def _taper(n: int, dtype: DTypeLike) -> FloatArray:
 
 
 def cepstrally_whitened(coefficients: ComplexArray) -> ComplexArray:
-    """Coefficients of modulus one with their phases kept, shape (record, frequency)."""
+    """Coefficients of modulus one with unchanged phases, shape (record, frequency)."""
     return _divided(coefficients, squared_modulus(coefficients))
 
 
@@ -163,7 +163,7 @@ def psd_whitened(coefficients: ComplexArray, width: int) -> ComplexArray:
 
 @row_kernel
 def _divided(coefficients: ComplexArray, power: FloatArray) -> ComplexArray:
-    """Coefficients over the root of a power, which is nowhere taken fainter than `FAINTEST` allows."""
+    """Coefficients divided by the root of a power, with `FAINTEST` as the lower bound of the root."""
     out = np.empty(coefficients.shape, coefficients.dtype)
     tiny = np.finfo(power.dtype).tiny
     for row in range(len(power)):
@@ -175,7 +175,7 @@ def _divided(coefficients: ComplexArray, power: FloatArray) -> ComplexArray:
 
 @row_kernel
 def _running_mean(power: FloatArray, width: int) -> FloatArray:
-    """Mean over ``width`` bins around each, mirrored at the first and the last bin, shape (record, frequency)."""
+    """Running mean over ``width`` bins of spectra mirrored at both ends, shape (record, frequency)."""
     n = power.shape[1]
     place = np.abs(np.arange(n + width) - width // 2) % max(2 * (n - 1), 1)
     place = np.minimum(place, 2 * (n - 1) - place)

@@ -22,7 +22,7 @@ from raceway.console.progress import compilation_noticed, notice, progress
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.baselines import Baseline, Scores
+    from features.baselines import Baseline, Results, Scores
 
 # a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
@@ -48,7 +48,7 @@ def plot(corpus: Path, record: int, output: Path) -> None:
 
       raceway plot corpus --record 17 -o record.png
     """
-    from features.report.page import plot_record
+    from features.report.examples import plot_record
 
     plot_record(corpus, record, output)
     show.text(f"{output}: record {record} of {corpus}.")
@@ -66,8 +66,9 @@ def features(corpus: Path, output: Path, as_json: bool) -> None:
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
     """
-    from features.table_files import write_table
+    from features.table_files import check_destination, write_table
 
+    check_destination(output)
     table = _table(corpus)
     write_table(table, output)
     records, columns = table.sizes["record"], table.sizes["feature"]
@@ -121,6 +122,7 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
     model = fit(table.isel(record=~test) if honest else table, estimator)
     save_model(model, output)
     scores = score(table.isel(record=test), model) if honest else None
+    _warn_of_severities(scores)
     if as_json:
         names = ("records", "classes", "groups")
         facts = {name: getattr(model, name) for name in names}
@@ -153,6 +155,7 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
 
     loaded = load_model(model)
     scores = score(_table(corpus), loaded)
+    _warn_of_severities(scores)
     if scores.seen:
         notice(
             f"warning: the model was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
@@ -164,10 +167,20 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
     _show_scores(scores)
 
 
+def _warn_of_severities(*tested: "Scores | Results | None") -> None:
+    """Warn of fault widths that were tested and not trained."""
+    from features.baselines import severity_warning
+
+    for found in tested:
+        if found is not None and found.uncovered_widths:
+            notice(f"warning: {severity_warning(found.uncovered_widths)}")
+
+
 def _show_scores(scores: "Scores") -> None:
-    low, high = scores.interval
+    from features.baselines import interval_text
+
     found = {
-        "balanced accuracy": f"{scores.balanced_accuracy:.3f} (95 % interval {low:.3f} to {high:.3f})",
+        "balanced accuracy": f"{scores.balanced_accuracy:.3f} (95 % interval {interval_text(scores.interval)})",
         "macro F1": f"{scores.macro_f1:.3f}",
         "accuracy": f"{scores.accuracy:.3f}",
         "records": f"{scores.records:,}",
@@ -224,6 +237,7 @@ def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int
     other = None if test is None else _table(test)
     with progress("scoring", "baselines") as report:
         results = run(table, other, by=by, folds=folds, seed=seed, progress=report)
+    _warn_of_severities(results, next(iter(results.baselines.values())).test)
     page = write_report(corpus, results, output)
     if as_json:
         show.as_json({"report": page, "results": output / "results.json", **show.plain(results)})
@@ -234,9 +248,10 @@ def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:
+    from features.baselines import interval_text
+
     def figures(baseline: "Baseline") -> list[str]:
-        low, high = baseline.grouped.interval
-        shown = [f"{baseline.grouped.balanced_accuracy:.3f}", f"{low:.2f}-{high:.2f}"]
+        shown = [f"{baseline.grouped.balanced_accuracy:.3f}", interval_text(baseline.grouped.interval, 2)]
         shown += [f"{control.balanced_accuracy:.3f}" for control in (baseline.leaky, baseline.null)]
         return shown if baseline.test is None else [*shown, f"{baseline.test.balanced_accuracy:.3f}"]
 

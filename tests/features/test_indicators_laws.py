@@ -1,4 +1,4 @@
-"""Laws of the features: what they do not depend on, what they show, and what a hopeless record gets."""
+"""Laws of the features: invariances, the effects of faults, and NaN for records that cannot be evaluated."""
 
 from functools import cache
 
@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.indicators import GROUPS, NAMES, Orders, feature_groups, feature_names, indicators
+from features.indicators import GROUP_FEATURES, GROUPS, NAMES, Orders, feature_groups, feature_names, indicators
 from features.signal.lines import FAMILIES
 
 law = settings(deadline=None, max_examples=12)
@@ -34,8 +34,8 @@ def named(values, groups=GROUPS):
 
 
 @cache
-def ringing(order, shaft_rate, fs=12_000, duration=0.5, seed=0):
-    """Impulses at a fault order, ringing at 3 kHz, in white noise: shape (1, time)."""
+def impulse_train(order, shaft_rate, fs=12_000, duration=0.5, seed=0):
+    """Impulse responses of a 3 kHz resonance at a fault order, in white noise, shape (1, time)."""
     t = np.arange(round(duration * fs)) / fs
     since = np.mod(t + 0.003, 1 / (order * shaft_rate))
     impulses = np.exp(-800 * since) * np.sin(2 * np.pi * 3000 * since)
@@ -48,13 +48,21 @@ def test_names_are_unique_and_each_has_its_group():
     assert set(feature_groups()) == set(GROUPS) == {"lines", "shape", "bands", "time"}
 
 
-def test_groups_come_in_the_order_wanted_with_the_same_numbers():
+def test_each_group_has_one_function_that_computes_all_its_features():
+    assert tuple(GROUP_FEATURES) == GROUPS
+    for group, compute in GROUP_FEATURES.items():
+        found = compute(noise(0).astype(np.float32), 12_000.0, np.full(4, 30.0), orders(4))
+        assert group in found
+        assert {name: values.shape for name, values in found.items()} == {name: (4, len(NAMES[name])) for name in found}
+
+
+def test_groups_are_returned_in_the_requested_order_with_the_same_values():
     x = noise(0)
     whole, names = indicators(x, 12_000.0, np.full(4, 30.0), orders(4))
     for groups in (("time",), ("shape", "lines"), ("bands", "shape")):
-        values, wanted = indicators(x, 12_000.0, np.full(4, 30.0), orders(4), groups)
-        assert wanted == feature_names(groups)
-        np.testing.assert_array_equal(values, whole[:, [names.index(name) for name in wanted]])
+        values, returned = indicators(x, 12_000.0, np.full(4, 30.0), orders(4), groups)
+        assert returned == feature_names(groups)
+        np.testing.assert_array_equal(values, whole[:, [names.index(name) for name in returned]])
 
 
 @pytest.mark.parametrize("groups", [("colour",), "lines"])
@@ -65,7 +73,7 @@ def test_a_group_that_does_not_exist_is_refused_by_name(groups):
 
 @law
 @given(seeds, st.floats(1e-4, 1e4))
-def test_lines_and_shape_are_free_of_gain(seed, gain):
+def test_lines_and_shape_do_not_depend_on_gain(seed, gain):
     x = noise(seed)
     once, again = features(x, 12_000.0, 30.0, TRANSFER), features(gain * x, 12_000.0, 30.0, TRANSFER)
     np.testing.assert_allclose(again, once, rtol=1e-3, atol=1e-3)
@@ -93,7 +101,7 @@ def test_lines_and_shape_do_not_depend_on_the_sample_rate(seed, fs):
 
 @law
 @given(seeds, st.floats(6000.0, 11_000.0))
-def test_nothing_above_5_khz_matters_to_lines_and_shape(seed, tone):
+def test_frequencies_above_5_khz_do_not_change_lines_and_shape(seed, tone):
     x = noise(seed, n=12_000)
     loud = x + np.sin(2 * np.pi * tone * np.arange(12_000) / 24_000)
     np.testing.assert_allclose(
@@ -114,14 +122,15 @@ def test_a_record_does_not_depend_on_the_batch_it_is_in(seed, records, size):
 
 @law
 @given(st.sampled_from(FAMILIES), st.floats(15.0, 50.0), st.floats(-0.015, 0.015), st.integers(0, 99))
-def test_the_comb_of_a_ringing_fault_is_the_highest_whatever_the_speed_label(family, rate, error, seed):
-    """And higher than noise alone has any.
+def test_the_comb_of_a_simulated_fault_is_the_highest_for_every_error_of_the_speed_label(family, rate, error, seed):
+    """The comb is also higher than any comb of noise.
 
-    An envelope has no line above the width of its band, and ever less of them on the way there: in bands of 1 kHz a comb sinks as its third
-    harmonic rises from 600 to 800 Hz, in the broad one it hardly does. Of the narrow bands one rings, the mean is over all.
+    The lines of an envelope become weaker towards the width of its band, above which it has none. So in bands of 1 kHz a comb decreases as
+    its third harmonic rises from 600 to 800 Hz; in the broad band the decrease is small. Only one narrow band contains the resonance, and
+    the mean is over all narrow bands.
     """
     order = {"bpfo": BPFO, "bpfi": BPFI, "2bsf": 2 * BSF}[family]
-    values = named(features(ringing(order, rate, seed=seed), 12_000.0, rate * (1 + error)))
+    values = named(features(impulse_train(order, rate, seed=seed), 12_000.0, rate * (1 + error)))
     within = 3 * order * rate < 600
     least = {"whitened": 1.5, "bands_max": 1.3 if within else 0.8, "bands_mean": 1.3 if within else 0.8}
     for view in least:  # cepstral whitening flattens a train without jitter
@@ -141,19 +150,19 @@ def test_noise_has_no_comb_and_no_impulsiveness(seed, rate):
 
 
 def test_differences_between_families_are_those_of_their_combs():
-    values = named(features(ringing(BPFI, 30.0), 12_000.0, 30.0))
+    values = named(features(impulse_train(BPFI, 30.0), 12_000.0, 30.0))
     for view in ("cepstral", "whitened", "bands_max", "bands_mean"):
         difference = values[f"{view}_bpfo_comb"] - values[f"{view}_bpfi_comb"]
         np.testing.assert_array_equal(values[f"{view}_bpfo_over_bpfi"], difference)
 
 
-def test_a_load_once_a_turn_of_the_cage_makes_the_power_fluctuate_slowly():
+def test_a_load_that_varies_once_per_cage_revolution_gives_a_slow_fluctuation():
     t = np.arange(12_000) / 12_000
     x = noise(1, n=12_000)
-    steady = named(features(x, 12_000.0, 30.0))
-    waving = named(features(x * (1 + 0.7 * np.cos(2 * np.pi * FTF * 30.0 * t)), 12_000.0, 30.0))
+    constant = named(features(x, 12_000.0, 30.0))
+    varying = named(features(x * (1 + 0.7 * np.cos(2 * np.pi * FTF * 30.0 * t)), 12_000.0, 30.0))
     for name in ("whitened_slow_fluctuation", "whitened_slow_share", "whitened_ftf"):
-        assert (waving[name] > 1.5 * steady[name]).all(), name
+        assert (varying[name] > 1.5 * constant[name]).all(), name
 
 
 @law
@@ -165,7 +174,7 @@ def test_log_energies_rise_by_twice_the_logarithm_of_the_gain(seed, gain):
 
 
 @pytest.mark.parametrize("spoil", [np.nan, np.inf, -np.inf, "constant", "silent"])
-def test_a_record_that_cannot_be_read_gets_nan_and_leaves_the_others_alone(spoil):
+def test_a_record_without_a_usable_signal_has_nan_and_the_others_do_not_change(spoil):
     x = noise(3)
     good = features(x, 12_000.0, 30.0)
     if isinstance(spoil, str):
@@ -178,12 +187,12 @@ def test_a_record_that_cannot_be_read_gets_nan_and_leaves_the_others_alone(spoil
 
 
 @pytest.mark.parametrize("rate", [np.nan, 0.0, -30.0, np.inf])
-def test_a_record_of_unknown_speed_gets_nan(rate):
+def test_a_record_of_unknown_speed_has_nan(rate):
     values = features(noise(3), 12_000.0, [30.0, rate, 30.0, 30.0])
     np.testing.assert_array_equal(np.isnan(values).all(axis=1), [False, True, False, False])
 
 
-def test_a_record_of_less_than_two_turns_has_no_lines_and_no_shape_but_statistics():
+def test_a_record_of_less_than_two_revolutions_has_no_lines_and_no_shape_but_statistics():
     values = named(features(noise(3), 12_000.0, [30.0, 3.0, 30.0, 30.0]))
     for name, group in zip(feature_names(), feature_groups(), strict=True):
         assert np.isnan(values[name][1]) == (group in TRANSFER)
@@ -194,26 +203,26 @@ def test_a_record_of_less_than_two_turns_has_no_lines_and_no_shape_but_statistic
     ("n", "fs", "rate"),
     [(2500, 10_000.0, 9.0), (120_000, 12_000.0, 30.0), (25_000, 100_000.0, 400.0), (4000, 4000.0, 30.0)],
 )
-def test_every_usual_length_rate_and_speed_gives_finite_features(n, fs, rate):
+def test_common_lengths_sample_rates_and_speeds_give_finite_features(n, fs, rate):
     assert np.isfinite(features(noise(5, 2, n), fs, rate)).all()
 
 
-def test_a_signal_that_leaves_bands_empty_gives_finite_features():
+def test_a_signal_with_empty_bands_gives_finite_features():
     t = np.arange(6000) / 12_000
     empty = np.stack([np.sin(2 * np.pi * 50 * t), np.where(t == 0.25, 1.0, 0.0), np.sign(t - 0.2)])
     assert np.isfinite(features(empty, 12_000.0, 30.0)).all()
 
 
-def test_no_record_gives_no_row():
+def test_zero_records_give_zero_rows():
     assert features(np.empty((0, 6000)), 12_000.0, 30.0).shape == (0, sum(map(len, NAMES.values())))
 
 
 @law
 @given(st.floats(9.0, 60.0), st.floats(0, 2 * np.pi))
-def test_a_strong_tone_at_the_shaft_rate_is_not_taken_for_impacts(rate, phase):
+def test_a_strong_tone_at_the_shaft_rate_does_not_change_the_impulsiveness(rate, phase):
     x = noise(1)
     tone = 50 * np.sin(2 * np.pi * rate * np.arange(6000) / 12_000 + phase)
-    quiet, loud = named(features(x, 12_000.0, rate)), named(features(x + tone, 12_000.0, rate))
+    without, with_tone = named(features(x, 12_000.0, rate)), named(features(x + tone, 12_000.0, rate))
     for view in ("cepstral", "whitened", "bands_max", "bands_mean"):
         name = f"{view}_impulsiveness"
-        np.testing.assert_allclose(loud[name], quiet[name], atol=0.05)
+        np.testing.assert_allclose(with_tone[name], without[name], atol=0.05)

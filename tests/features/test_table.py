@@ -1,4 +1,4 @@
-"""The feature table: signal and operating variables go in, everything known is carried along."""
+"""The feature table: computed from signal and operating variables, with all other variables copied."""
 
 import re
 import sys
@@ -94,7 +94,7 @@ def test_a_corpus_whose_classes_end_at_ball_gives_the_same_features(table, tmp_p
     xr.testing.assert_equal(feature_table(make_corpus(tmp_path / "old", change=aged)), table)
 
 
-def test_everything_known_of_a_record_is_carried_along_with_its_attributes(corpus, table):
+def test_all_variables_of_a_record_are_copied_with_their_attributes(corpus, table):
     with open_corpus(corpus) as source:
         for variable in (*SCHEMA, SNR):
             xr.testing.assert_identical(
@@ -128,9 +128,9 @@ def test_counts_give_the_features_of_their_accelerations(tmp_path, table):
     np.testing.assert_allclose(counts["features"][:, in_time], table["features"][:, in_time], rtol=0.05)
 
 
-def test_a_missing_count_is_not_taken_for_a_sample(tmp_path):
-    """The fill value read as a sample would be a blow of full scale. One is enough; the other channel does not matter."""
-    missing = [(1, 0, 5), (2, 0), (3, 1)]  # a sample, a channel, and the channel that is not looked at
+def test_a_missing_count_is_not_used_as_a_sample(tmp_path):
+    """Read as a sample, the fill value would be an impact of full scale. Missing counts of other channels are ignored."""
+    missing = [(1, 0, 5), (2, 0), (3, 1)]  # a sample, a channel, and the channel without features
     found = feature_table(make_corpus(tmp_path / "c", change=lambda dataset: in_counts(dataset, missing)))
     rows = found["features"].values[:RECORDS]
     assert np.isnan(rows).all(axis=1).tolist() == [False, True, True, False, False]
@@ -163,7 +163,7 @@ def test_two_workers_and_this_process_give_the_same_numbers(corpus, table):
     assert done == [(1, 3), (2, 3), (3, 3)]
 
 
-def test_a_large_corpus_gets_a_cluster_of_its_own_and_the_same_numbers(corpus, table, monkeypatch):
+def test_a_large_corpus_starts_a_local_cluster_and_gets_the_same_numbers(corpus, table, monkeypatch):
     monkeypatch.setattr("features.table.INLINE_RECORDS", 0)
     xr.testing.assert_identical(feature_table(corpus, scheduler="local"), table)
 
@@ -191,7 +191,7 @@ def test_features_do_not_need_labels_latents_or_provenance(tmp_path, corpus):
     np.testing.assert_array_equal(part_features(tmp_path / "part-00000.nc"), part_features(path))
 
 
-def test_records_of_several_sample_rates_in_a_part_each_have_their_own(tmp_path, corpus):
+def test_each_record_of_a_part_is_evaluated_at_its_own_sample_rate(tmp_path, corpus):
     path = part_paths(corpus)[0]
     with xr.open_dataset(path, decode_times=False) as part:
         mixed = part.load()
@@ -205,14 +205,14 @@ def test_records_of_several_sample_rates_in_a_part_each_have_their_own(tmp_path,
     assert np.isnan(values[4]).all()
 
 
-def test_records_that_cannot_be_read_are_nan_and_counted(tmp_path):
+def test_records_without_a_usable_signal_are_nan_and_counted(tmp_path):
     table = feature_table(make_corpus(tmp_path / "spoiled", spoiled=1))
     missing = np.isnan(table["features"]).all("feature")
     assert np.flatnonzero(missing).tolist() == [RECORDS + 1, RECORDS + 2]
     assert table.attrs["records_with_missing_features"] == 2
 
 
-def test_a_table_survives_netcdf(tmp_path, table):
+def test_a_table_is_unchanged_after_netcdf(tmp_path, table):
     path = tmp_path / "table.nc"
     write_table(table, path)
     again = read_table(path)
@@ -244,11 +244,11 @@ def test_a_table_with_other_attributes_is_refused(tmp_path, table, change):
     write_table(table, tmp_path / "table.nc")
     with netCDF4.Dataset(tmp_path / "table.nc", "r+") as file:
         file.setncatts(change)
-    with pytest.raises(CorpusError, match=r"table\.nc: altered, its content is not what its digest says"):
+    with pytest.raises(CorpusError, match=r"table\.nc: altered, its content does not match its digest"):
         read_table(tmp_path / "table.nc")
 
 
-def test_a_table_survives_parquet_as_columns(tmp_path, table):
+def test_a_table_is_unchanged_in_the_columns_of_parquet(tmp_path, table):
     parquet = pytest.importorskip("pyarrow.parquet")
     path = tmp_path / "table.parquet"
     write_table(table, path)
@@ -263,7 +263,7 @@ def test_a_table_survives_parquet_as_columns(tmp_path, table):
 
 def test_parquet_without_pyarrow_says_what_to_install(tmp_path, table, monkeypatch):
     monkeypatch.setitem(sys.modules, "pyarrow", None)
-    with pytest.raises(CorpusError, match=r"install raceway\[parquet\], or write \.nc"):
+    with pytest.raises(CorpusError, match=r"table\.parquet: Parquet needs pyarrow; pip install 'raceway\[parquet\]'"):
         write_table(table, tmp_path / "table.parquet")
     assert not list(tmp_path.iterdir())
 
@@ -280,13 +280,13 @@ def test_a_table_that_cannot_be_written_is_named(tmp_path, table, name):
         write_table(table, tmp_path / "nowhere" / name)
 
 
-def test_what_is_no_feature_table_is_refused_by_name(tmp_path, corpus):
+def test_a_file_without_a_feature_table_is_refused_by_name(tmp_path, corpus):
     (tmp_path / "text.nc").write_text("no netCDF")
     with pytest.raises(CorpusError, match=r"text\.nc: not a readable netCDF file"):
         read_table(tmp_path / "text.nc")
     with pytest.raises(CorpusError, match=r"missing\.nc: not a readable netCDF file"):
         read_table(tmp_path / "missing.nc")
-    with pytest.raises(CorpusError, match=r"corpus\.nc: holds no features"):
+    with pytest.raises(CorpusError, match=r"corpus\.nc: contains no features"):
         read_table(corpus / "corpus.nc")
 
 

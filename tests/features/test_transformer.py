@@ -1,4 +1,4 @@
-"""The scikit-learn transformer keeps scikit-learn's rules and computes what the feature table holds."""
+"""The scikit-learn transformer passes the checks of scikit-learn and computes the features of the feature table."""
 
 import numpy as np
 from sklearn.base import clone
@@ -7,7 +7,7 @@ from sklearn.utils.estimator_checks import parametrize_with_checks
 from features.indicators import Orders, feature_names, indicators
 from features.transformer import IndicatorTransformer
 
-FAST = {"fs": 3000.0, "shaft_rate": 400.0}  # so fast that scikit-learn's few samples are several turns
+FAST = {"fs": 3000.0, "shaft_rate": 400.0}  # at this speed the few samples of the checks are several revolutions
 
 
 @parametrize_with_checks(
@@ -17,7 +17,7 @@ FAST = {"fs": 3000.0, "shaft_rate": 400.0}  # so fast that scikit-learn's few sa
         IndicatorTransformer(**FAST, groups=("lines", "shape")),
     ]
 )
-def test_the_transformer_keeps_the_rules_of_scikit_learn(estimator, check):
+def test_the_transformer_passes_the_checks_of_scikit_learn(estimator, check):
     check(estimator)
 
 
@@ -36,7 +36,7 @@ def test_the_transformer_has_no_state():
     np.testing.assert_array_equal(transformer.transform(x), clone(transformer).fit(-x).transform(x))
 
 
-def test_signals_too_short_for_a_line_have_statistics_alone():
+def test_signals_too_short_for_a_line_have_only_statistics():
     x = np.random.default_rng(0).standard_normal((2, 40))
     values = IndicatorTransformer().fit_transform(x)
     assert np.isfinite(IndicatorTransformer(groups=("time", "bands")).fit_transform(x)).all()

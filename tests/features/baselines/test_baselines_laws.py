@@ -1,4 +1,4 @@
-"""Laws of the baselines: no leak, no luck, the same numbers every time, and files that cannot do harm."""
+"""Laws of the baselines: splits without leaks, reproducible scores, and model files that are refused if damaged."""
 
 import json
 import zipfile
@@ -20,27 +20,26 @@ from features.baselines import (
     evaluate,
     load_model,
     save_model,
+    splits,
     train,
 )
-from features.baselines.benchmark import permuted_labels, write_results
-from features.baselines.estimators import CAGE_LINES, COMBS, class_probabilities
+from features.baselines.benchmark import _cases, permuted_labels, write_results
+from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
 from features.baselines.splits import check_disjoint, check_taught, grouped_splits, score_splits
+from features.faults import CLASSES, COMBS, EVIDENCE
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
-NAMES = (*COMBS.values(), *CAGE_LINES, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")
+NAMES = (*EVIDENCE, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")
 GROUPS = ("lines",) * 8 + ("shape",) * 2
-TELLING = {fault: (comb,) for fault, comb in COMBS.items()} | {
-    "cage": CAGE_LINES,
-    "compound": (COMBS["inner"], COMBS["outer"]),
-}
+TELLING = {name: row.evidence for name, row in CLASSES.items()} | {"compound": (COMBS["inner"], COMBS["outer"])}
 FOUR = FAULTS[:4]  # the classes of corpora made before there were six
 
 
 @pytest.fixture(scope="module", autouse=True)
 def few_trees():
-    """Laws hold for forests of any size; small ones grow faster."""
+    """The laws are true for forests of any size, and small ones are trained faster."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("features.baselines.estimators.TREES", 30)
         yield
@@ -57,7 +56,7 @@ def make_table(
     rigs: int = 5,
     seed: int = 0,
 ) -> xr.Dataset:
-    """A feature table whose lines tell the fault by ``told`` and whose other features tell the specimen by ``signature``.
+    """A feature table whose lines depend on the fault by ``told`` and whose other features on the specimen by ``signature``.
 
     Each recording is cut into ``windows`` records.
     """
@@ -90,35 +89,42 @@ def records_of(table: xr.Dataset):
 @settings(deadline=None)
 def test_every_record_is_tested_once_and_never_beside_its_own_specimen(specimens, records, folds, seed):
     found = records_of(make_table(4 * max(specimens, folds), records))
-    splits = grouped_splits(found.fault, found.specimen, folds, seed)
-    assert sorted(np.concatenate([test for _, test in splits])) == list(range(len(found.fault)))
-    for known, test in splits:
+    found_splits = grouped_splits(found.fault, found.specimen, folds, seed)
+    assert sorted(np.concatenate([test for _, test in found_splits])) == list(range(len(found.fault)))
+    for known, test in found_splits:
         assert not set(found.specimen[known]) & set(found.specimen[test])
         assert set(found.fault[known]) == set(found.fault)
 
 
-def test_a_split_that_tears_a_specimen_apart_is_refused():
-    with pytest.raises(CorpusError, match="group 7 is in training and test alike"):
+def test_a_split_that_divides_a_specimen_is_refused():
+    with pytest.raises(CorpusError, match="group 7 is in training and in test"):
         check_disjoint(np.array([3, 7, 7]), np.array([0, 1]), np.array([2]))
 
 
-def test_numbers_that_start_again_on_each_rig_are_different_specimens():
+def test_equal_numbers_on_different_rigs_are_different_specimens():
     table = make_table(8, 3)
     again = table.assign(specimen=table.specimen % 4, recording=table.recording * 0)
     assert len(np.unique(records_of(again).specimen)) == 8
     assert len(np.unique(records_of(again).recording)) == 8
 
 
+def test_a_recording_of_a_specimen_that_became_faulty_is_another_recording():
+    table = make_table(8, 2).assign(specimen=("record", np.repeat(np.arange(4), 4)))
+    records = records_of(table.assign(recording=table.recording * 0, rig=table.rig * 0))
+    assert len(np.unique(records.specimen)) == 4
+    assert len(np.unique(records.recording)) == 8
+
+
 @given(seed=st.integers(0, 999))
 @settings(deadline=None)
-def test_permuted_labels_are_dealt_to_whole_specimens(seed):
+def test_labels_are_permuted_among_whole_specimens(seed):
     found = records_of(make_table(12, 3))
     labels = permuted_labels(found, seed)
     assert sorted(labels) == sorted(found.fault)
     assert all(len(set(labels[found.specimen == number])) == 1 for number in range(12))
 
 
-def test_a_leaky_split_finds_labels_that_mean_nothing_and_a_grouped_one_does_not():
+def test_random_labels_score_high_in_a_leaky_split_and_at_chance_in_a_grouped_one():
     results = benchmark(make_table(40, 5, told=0.0, signature=5.0), folds=4).baselines["extra_trees"]
     assert results.leaky.balanced_accuracy > 0.95
     assert results.grouped.balanced_accuracy < 0.45
@@ -130,7 +136,18 @@ def results(few_trees):  # noqa: ARG001
     return benchmark(make_table(24, 3), make_table(8, 4, windows=2, seed=1), folds=3, seed=5)
 
 
-def test_a_benchmark_holds_every_baseline_with_its_controls(results):
+def test_each_control_is_stratified_by_the_labels_that_it_scores():
+    records = records_of(make_table(24, 3))
+    cases = _cases(records, "specimen", 3, 7)
+    assert list(cases) == ["grouped", "leaky", "null"]
+    for name, (labels, found) in cases.items():
+        group = np.arange(len(labels)) if name == "leaky" else records.specimen
+        for one, expected in zip(found, grouped_splits(labels, group, 3, 7), strict=True):
+            np.testing.assert_array_equal(one[1], expected[1])
+    np.testing.assert_array_equal(cases["null"][0], permuted_labels(records, 7))
+
+
+def test_a_benchmark_contains_every_baseline_with_its_controls(results):
     assert list(results.baselines) == list(ESTIMATORS)
     for name, found in results.baselines.items():
         low = 0.24 if name == "majority" else 0.95
@@ -142,7 +159,7 @@ def test_a_benchmark_holds_every_baseline_with_its_controls(results):
     assert results.corpus.classes == dict.fromkeys(FOUR, 18)
 
 
-def test_a_benchmark_of_all_six_classes_tells_them_apart_and_tests_on_corpora_with_fewer(few_trees):  # noqa: ARG001
+def test_a_benchmark_of_all_six_classes_is_tested_on_a_corpus_with_fewer(few_trees):  # noqa: ARG001
     results = benchmark(make_table(24, 3, classes=6), make_table(8, 4, seed=1), folds=3)
     assert results.corpus.classes == dict.fromkeys(FAULTS, 12)
     for name, found in results.baselines.items():
@@ -165,20 +182,28 @@ def test_a_corpus_may_lack_any_class(extra):
         assert found.balanced_accuracy > 0.9
 
 
-def test_permuted_labels_of_a_rare_class_are_scored_where_a_fold_teaches_none_of_it():
+def test_permuted_labels_of_a_rare_class_are_scored_although_a_fold_trains_none_of_it():
     table = make_table(40, 5, classes=5, rigs=8)
     rare = np.where(np.isin(table.specimen, [0, 20]), FAULTS.index("compound"), table.fault)
     records = records_of(table.assign(fault=("record", rare)))
-    untaught = 0
+    untrained = 0
     for seed in range(40):
         labels = permuted_labels(records, seed)
-        splits = grouped_splits(labels, records.rig, 5, seed)
-        if any(FAULTS.index("compound") not in labels[known] for known, _ in splits):
-            untaught += 1
-            with pytest.raises(CorpusError, match="a fold leaves no compound record to train on"):
-                check_taught(labels, splits)
-            assert score_splits(records, labels, "envelope_rule", splits, seed).classes == FAULTS
-    assert untaught > 0
+        folds = grouped_splits(labels, records.rig, 5, seed)
+        if any(FAULTS.index("compound") not in labels[known] for known, _ in folds):
+            untrained += 1
+            with pytest.raises(CorpusError, match="a fold has no compound record to train on"):
+                check_taught(labels, folds)
+            assert score_splits(records, labels, "envelope_rule", folds, seed).classes == FAULTS
+    assert untrained > 0
+
+
+def test_cross_validation_refuses_a_fold_that_trains_no_record_of_a_class(monkeypatch):
+    table = make_table()
+    outer = table.fault.values == FAULTS.index("outer")
+    monkeypatch.setattr(splits, "grouped_splits", lambda *_: [(np.flatnonzero(~outer), np.flatnonzero(outer))])
+    with pytest.raises(CorpusError, match="a fold has no outer record to train on"):
+        cross_validate(table, "majority")
 
 
 def test_a_benchmark_gives_the_same_numbers_again(results):
@@ -202,7 +227,7 @@ def test_cross_validation_by_rig_keeps_rigs_together():
 
 
 @pytest.mark.parametrize("name", list(ESTIMATORS))
-def test_a_baseline_survives_its_file_and_missing_features(name, tmp_path):
+def test_a_baseline_is_unchanged_after_its_file_and_accepts_missing_features(name, tmp_path):
     table = make_table(12, 4)
     holed = table.copy(deep=True)
     holed["features"][::5] = np.nan
@@ -247,7 +272,14 @@ def test_records_seen_in_training_are_counted():
     assert evaluate(xr.concat([other, table.isel(record=[4, 5])], "record"), model).seen == 2
 
 
-def test_a_class_the_model_does_not_know_is_an_error_of_its_own():
+def test_records_without_any_feature_do_not_count_as_seen_in_training():
+    table, other = make_table(), make_table(seed=1)
+    for made in (table, other):
+        made["features"][:3] = np.nan
+    assert evaluate(other, train(table, "logistic_regression")).seen == 0
+
+
+def test_records_of_a_class_that_was_not_trained_count_as_errors():
     found = evaluate(make_table(classes=4), train(make_table(classes=2), "logistic_regression"))
     assert found.classes == FOUR
     assert found.model_classes == ("healthy", "inner")
@@ -255,7 +287,7 @@ def test_a_class_the_model_does_not_know_is_an_error_of_its_own():
     assert np.shape(found.confusion) == (4, 2)
 
 
-def test_the_envelope_rule_learns_nothing():
+def test_the_envelope_rule_does_not_depend_on_its_training_labels():
     table = make_table()
     shuffled = table.assign(fault=("record", np.roll(table.fault.values, 7)))
     assert evaluate(table, train(table, "envelope_rule")) == evaluate(table, train(shuffled, "envelope_rule"))
@@ -272,7 +304,7 @@ def model_file(tmp_path_factory) -> Path:
 
 @given(data=st.data())
 @settings(deadline=None, max_examples=60)
-def test_a_damaged_model_is_refused_in_one_sentence_or_still_the_same(model_file, data):
+def test_a_damaged_model_is_refused_in_one_sentence_or_unchanged(model_file, data):
     content = bytearray(model_file.read_bytes())
     place = data.draw(st.integers(0, len(content) - 1))
     if data.draw(st.booleans()):
@@ -290,8 +322,8 @@ def test_a_damaged_model_is_refused_in_one_sentence_or_still_the_same(model_file
     assert not sentence or (sentence.startswith(str(path)) and "\n" not in sentence)
 
 
-class Stranger(BaseEstimator):
-    """An estimator that is not one of ours."""
+class Foreign(BaseEstimator):
+    """An estimator of another project."""
 
 
 @pytest.mark.parametrize(
@@ -299,10 +331,10 @@ class Stranger(BaseEstimator):
     [
         (b"", "not a readable model"),
         (b"\x80\x04K*.", "not a readable model"),
-        (skops.io.dumps(Stranger()), "Stranger, which no model of raceway holds"),
+        (skops.io.dumps(Foreign()), "Foreign, which no model of raceway contains"),
         (skops.io.dumps({"raceway_model": 99}), "not a model of this version"),
         (skops.io.dumps([1, 2]), "not a model of this version"),
-        (skops.io.dumps({"raceway_model": 1, "estimator": 3}), "not a complete model"),
+        (skops.io.dumps({"raceway_model": 2, "estimator": 3}), "not a complete model"),
     ],
 )
 def test_a_foreign_model_is_refused(content, sentence, tmp_path):
@@ -317,7 +349,7 @@ def test_a_missing_model_is_named(tmp_path):
         load_model(tmp_path / "none.skops")
 
 
-def test_model_files_hold_no_pickle(model_file):
+def test_model_files_contain_no_pickle(model_file):
     with zipfile.ZipFile(model_file) as archive:
         assert all(name == "schema.json" or name.endswith(".npy") for name in archive.namelist())
 
@@ -339,7 +371,7 @@ def without(table: xr.Dataset, name: str) -> xr.Dataset:
         (make_table().assign(fault=("record", np.full(80, 9))), "values outside 0..5"),
     ],
 )
-def test_what_cannot_be_cross_validated_is_refused_in_one_sentence(table, sentence):
+def test_a_table_that_cannot_be_cross_validated_is_refused_in_one_sentence(table, sentence):
     with pytest.raises(CorpusError, match=sentence) as caught:
         cross_validate(table, "logistic_regression")
     assert str(caught.value).startswith("a made-up corpus")
@@ -351,6 +383,6 @@ def test_a_test_corpus_with_training_records_is_refused():
         benchmark(table, table.isel(record=[0, 1]))
 
 
-def test_an_unknown_baseline_is_named_with_what_there_is():
+def test_an_unknown_baseline_is_refused_with_the_names_of_all_baselines():
     with pytest.raises(ValueError, match="'forest' is no baseline; choose from majority, envelope_rule"):
         train(make_table(), "forest")

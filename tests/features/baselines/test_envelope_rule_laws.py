@@ -1,4 +1,4 @@
-"""Laws of the untrained rule: which classes it can name, and what it says of trains of impulses."""
+"""Laws of the untrained rule: the classes it can predict, and its predictions for trains of impulses."""
 
 from functools import cache
 
@@ -9,13 +9,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.special import softmax
 
-from features.baselines.estimators import CAGE_LINES, COMBS, EnvelopeRule
+from features.baselines.estimators import EnvelopeRule
+from features.faults import COMBS, EVIDENCE
 from features.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 
 FS, TURNS, RECORDS = 12_000.0, 30, 40
 FTF, BPFO, BPFI, BSF = 0.3983, 3.5848, 5.4152, 2.3567
-COLUMNS = (*COMBS.values(), *CAGE_LINES)
+COLUMNS = EVIDENCE
 FOUR, SIX = np.arange(4), np.arange(6)
 TRAINS = {
     "healthy": (),
@@ -33,8 +34,8 @@ def table(found):
     return pd.DataFrame(found, columns=list(COLUMNS), dtype=float)
 
 
-def ringing(lines, shaft_rate, rng):
-    """Impulses at some lines, each 1 % of its period early or late, ringing at 3 kHz in white noise."""
+def impulse_trains(lines, shaft_rate, rng):
+    """Impulse responses of a 3 kHz resonance at some lines, with 1 % jitter of the period, in white noise."""
     time = np.arange(round(TURNS / shaft_rate * FS)) / FS
     x = 0.05 * rng.standard_normal(time.size)
     for line in lines:
@@ -48,42 +49,44 @@ def ringing(lines, shaft_rate, rng):
 
 @cache
 def lines_of(fault):
-    """Features of records with the trains of a class, at 25 to 50 turns a second and labels 1 % off at most."""
+    """Features of records with the trains of a class, at 25 to 50 Hz shaft rate and with at most 1 % label error."""
     rng = np.random.default_rng(FAULTS.index(fault))
     orders = Orders(*(np.array([order]) for order in (FTF, BPFO, BPFI, BSF)))
     values = []
     for shaft_rate in rng.uniform(25, 50, RECORDS):
         label = np.array([shaft_rate * rng.uniform(0.99, 1.01)])
-        values.append(indicators(ringing(TRAINS[fault], shaft_rate, rng)[None], FS, label, orders, ("lines",))[0])
+        values.append(
+            indicators(impulse_trains(TRAINS[fault], shaft_rate, rng)[None], FS, label, orders, ("lines",))[0]
+        )
     return pd.DataFrame(np.concatenate(values), columns=list(feature_names(("lines",))))
 
 
 def shares(frame, classes):
-    """Share of the records that are given each name."""
+    """Share of the records that each class is predicted for."""
     named = EnvelopeRule().fit(frame, classes).predict(frame)
     return {fault: float(np.mean(named == code)) for code, fault in enumerate(FAULTS)}
 
 
 @pytest.mark.parametrize("fault", list(TRAINS))
-def test_trains_of_impulses_are_given_the_name_of_the_fault_that_makes_them(fault):
+def test_trains_of_impulses_are_classified_as_the_fault_that_causes_them(fault):
     assert shares(lines_of(fault), SIX)[fault] > 0.9
 
 
-def test_trains_of_a_cage_and_of_two_faults_are_named_as_ever_where_there_are_no_such_classes():
+def test_without_the_classes_cage_and_compound_their_trains_are_classified_as_healthy_or_spalls():
     for fault in ("cage", "compound"):
         found = shares(lines_of(fault), FOUR)
         assert found["cage"] == found["compound"] == 0
     assert found["inner"] + found["outer"] == 1
 
 
-def test_a_cage_without_its_class_is_no_compound_fault_and_two_faults_without_theirs_are_no_cage():
+def test_without_one_of_the_classes_cage_and_compound_its_trains_are_not_classified_as_the_other():
     assert shares(lines_of("cage"), np.array([0, 5]))["compound"] < 0.1
     assert shares(lines_of("compound"), np.array([0, 4]))["cage"] < 0.1
 
 
 @given(rows)
 @settings(deadline=None)
-def test_with_the_classes_of_old_corpora_the_rule_compares_combs_and_threshold_and_nothing_else(found):
+def test_without_cage_and_compound_the_rule_compares_only_combs_and_threshold(found):
     frame = table(found)
     combs = np.nan_to_num(frame[list(COMBS.values())].to_numpy(), nan=-np.inf)
     expected = softmax(np.column_stack([np.ones(len(frame)), combs]), axis=1)
@@ -95,7 +98,7 @@ def test_with_the_classes_of_old_corpora_the_rule_compares_combs_and_threshold_a
 
 @given(rows, st.sets(st.integers(0, 5), min_size=1))
 @settings(deadline=None)
-def test_cage_and_compound_are_named_only_where_the_corpus_has_them(found, known):
+def test_cage_and_compound_are_predicted_only_if_the_corpus_has_them(found, known):
     frame = table(found)
     rule = EnvelopeRule().fit(frame, np.array(sorted(known)))
     assert set(rule.classes_) == known | set(FOUR)
@@ -105,7 +108,7 @@ def test_cage_and_compound_are_named_only_where_the_corpus_has_them(found, known
 
 @given(rows)
 @settings(deadline=None)
-def test_two_more_classes_turn_no_record_healthy_and_take_none_for_a_spall_of_another_site(found):
+def test_the_classes_cage_and_compound_change_no_prediction_to_healthy_or_another_spall(found):
     frame = table(found)
     old = EnvelopeRule().fit(frame, FOUR).predict(frame)
     new = EnvelopeRule().fit(frame, SIX).predict(frame)
@@ -119,7 +122,7 @@ def test_a_record_without_features_is_healthy():
 
 @given(st.floats(1.1, 3), st.floats(1.1, 3), st.floats(-1, 0.5))
 @settings(deadline=None)
-def test_two_race_combs_are_a_compound_fault_where_neither_is_more_than_twice_the_other(inner, outer, ball):
+def test_two_race_combs_are_a_compound_fault_if_neither_exceeds_twice_the_other(inner, outer, ball):
     frame = table([[inner, outer, ball, 0.0, 0.0]])
     compound = EnvelopeRule().fit(frame, SIX).predict(frame)[0] == FAULTS.index("compound")
     assert compound == (min(inner, outer) > max(inner, outer) / 2)
@@ -127,7 +130,7 @@ def test_two_race_combs_are_a_compound_fault_where_neither_is_more_than_twice_th
 
 @given(st.floats(1.1, 3), st.floats(0.1, 3))
 @settings(deadline=None)
-def test_the_lines_of_the_cage_are_those_of_a_spalled_ball_if_twice_its_spin_has_half_as_much(series, ball):
+def test_the_lines_of_the_cage_count_as_a_ball_spall_if_the_ball_comb_is_at_least_half_as_high(series, ball):
     frame = table([[0.0, 0.0, ball, series, series]])
     cage = EnvelopeRule().fit(frame, SIX).predict(frame)[0] == FAULTS.index("cage")
     assert cage == (ball < series / 2)
@@ -135,7 +138,7 @@ def test_the_lines_of_the_cage_are_those_of_a_spalled_ball_if_twice_its_spin_has
 
 @given(st.floats(0, 3))
 @settings(deadline=None)
-def test_twice_the_ball_spin_beside_a_race_comb_counts_only_as_far_as_the_lines_of_the_cage(series):
+def test_beside_a_race_comb_the_ball_comb_counts_only_up_to_the_lines_of_the_cage(series):
     frame = table([[3.0, 0.0, 2.0, series, series]])
     compound = EnvelopeRule().fit(frame, SIX).predict(frame)[0] == FAULTS.index("compound")
     assert compound == (series > 1.5)
@@ -143,6 +146,6 @@ def test_twice_the_ball_spin_beside_a_race_comb_counts_only_as_far_as_the_lines_
 
 @given(st.floats(1.1, 3), st.floats(0.0, 0.99), st.floats(0.0, 0.99))
 @settings(deadline=None)
-def test_lines_at_all_multiples_of_the_cage_are_the_cage_and_no_ball_and_no_compound_fault(series, outer, ball):
+def test_lines_at_all_multiples_of_the_cage_order_are_a_cage_fault(series, outer, ball):
     frame = table([[0.0, outer * series, ball * outer * series, series, series]])
     assert FAULTS[EnvelopeRule().fit(frame, SIX).predict(frame)[0]] == "cage"

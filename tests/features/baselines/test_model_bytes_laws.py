@@ -1,4 +1,4 @@
-"""Laws of the model files of Raceway: what they may hold is what models hold, and equal models give equal bytes."""
+"""Laws of the model files of Raceway: all allowed types occur in models, and equal models give equal bytes."""
 
 import os
 import subprocess
@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from features.baselines import ESTIMATORS, estimators, load_model, save_model, train
-from features.baselines.model_file import KINDS, Known, State, read_state
+from features.baselines.model_file import read_state
 from features.baselines.model_rules import LEARNED, LISTS, TOGETHER
+from features.baselines.model_states import KINDS, Known, State
 from gen.corpus import FAULTS
 from tests.model_files import Archive, make_table, write_models
 from tests.paths import ROOT
@@ -43,7 +44,7 @@ def held(tmp_path_factory) -> set[State]:
     return set().union(*(states(read_state(path, Known())) for path in paths))
 
 
-def test_the_types_a_model_file_may_hold_are_those_that_models_hold(held):
+def test_the_types_allowed_in_a_model_file_are_those_of_models(held):
     assert {state.kind for state in held} == KINDS
 
 

@@ -1,4 +1,4 @@
-"""Pictures of many envelope spectra: a waterfall finds the lines it draws, a grid has a panel for each record."""
+"""Pictures of several envelope spectra: a waterfall has its lines at the drawn orders, a grid has a panel per record."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,7 @@ ORDER = 3.5
 
 @pytest.fixture(scope="module")
 def run_up():
-    """Noise-like carrier whose envelope swings at an order of a shaft that runs up."""
+    """Noise with an envelope that is modulated at one order of a shaft that runs up."""
     turns = np.cumsum(RATE) / FS
     carrier = np.random.default_rng(1).standard_normal(len(RATE))
     return carrier * (1 + 0.9 * np.cos(2 * np.pi * ORDER * turns))

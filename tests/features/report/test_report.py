@@ -1,4 +1,4 @@
-"""The page and the pictures: complete, alone, escaped, the same every time, and refused in one sentence where they cannot be."""
+"""The page and the pictures: complete, self-contained, escaped and reproducible; what cannot be drawn is refused."""
 
 import json
 import re
@@ -10,10 +10,12 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.baselines import ESTIMATORS, benchmark
+from features.baselines import ESTIMATORS, benchmark, evaluate, train
 from features.indicators import Orders
-from features.report.page import _findings, _of_faults, plot_record, write_report
-from features.report.pictures import Shown, draw_record, fault_lines, picture, squared_envelope, thinned
+from features.report import examples
+from features.report.examples import plot_record
+from features.report.page import QUANTITIES, _findings, _of_faults, write_report
+from features.report.pictures import Shown, draw_record, draw_scores, fault_lines, picture, squared_envelope, thinned
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, open_corpus, part_name, write_index, write_manifest, write_part
 from gen.errors import CorpusError
@@ -26,10 +28,10 @@ HOSTILE = "<script>alert(1)</script>'\"{{ 7 * 7 }}$\\frac"
 
 
 def signal_of(fault, shaft_rate, rng):
-    """Noise of which the envelope repeats at the lines of the fault."""
+    """Noise with an envelope that is periodic at the lines of the fault."""
     time = np.arange(4000) / FS
-    loudness = sum(3 * np.exp(-6 * (1 - np.cos(2 * np.pi * line * shaft_rate * time))) for line in LINES[fault])
-    return rng.standard_normal(time.size) * (0.2 + loudness)
+    amplitude = sum(3 * np.exp(-6 * (1 - np.cos(2 * np.pi * line * shaft_rate * time))) for line in LINES[fault])
+    return rng.standard_normal(time.size) * (0.2 + amplitude)
 
 
 def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, classes=4, **changed):
@@ -89,7 +91,7 @@ def page(corpus, results, tmp_path_factory):
 
 
 class Links(HTMLParser):
-    """Addresses a page refers to, the elements it leaves open, and its text."""
+    """Addresses in a page, its unclosed elements, and its text."""
 
     def __init__(self, page):
         super().__init__()
@@ -108,7 +110,7 @@ class Links(HTMLParser):
         self.text += f"{data} "
 
 
-def test_the_page_needs_nothing_but_itself(page):
+def test_the_page_refers_to_no_other_file(page):
     found = Links(page)
     assert found.open == []
     assert len(found.addresses) == 6
@@ -116,7 +118,7 @@ def test_the_page_needs_nothing_but_itself(page):
     assert "http" not in re.sub(r"base64,[^\"]*", "", page).replace("http-equiv", "")
 
 
-def test_the_page_tells_what_the_corpus_holds_and_every_score(page, results):
+def test_the_page_contains_the_counts_of_the_corpus_and_every_score(page, results):
     text = " ".join(Links(page).text.split())
     assert "24 records of 0.4 s at 10 kHz, 8 specimens on 2 rigs." in text
     for name in ESTIMATORS:
@@ -126,6 +128,14 @@ def test_the_page_tells_what_the_corpus_holds_and_every_score(page, results):
         assert f"{fault} 6 2 2 6 0 0" in text
     assert "cage" not in text
     assert "compound" not in text
+
+
+def test_a_model_scores_the_folder_of_a_corpus_as_its_feature_table(corpus):
+    table = feature_table(corpus)
+    model = train(table, "envelope_rule")
+    assert evaluate(corpus, model) == evaluate(table, model)
+    with pytest.raises(CorpusError, match="the model takes features of the group 'colour', and the groups are lines"):
+        evaluate(corpus, replace(model, groups=("colour",)))
 
 
 def test_six_classes_are_counted_drawn_and_scored(results_of, tmp_path):
@@ -139,14 +149,43 @@ def test_six_classes_are_counted_drawn_and_scored(results_of, tmp_path):
     assert "chance is 0.167" in text
 
 
-def test_a_distribution_of_widths_leaves_out_the_records_without_a_spall(tmp_path):
+def test_a_histogram_of_widths_omits_the_records_without_a_spall(tmp_path):
     with open_corpus(write_corpus(tmp_path / "corpus", specimens=12, classes=6)) as corpus:
         widths = _of_faults("width", corpus)
         np.testing.assert_array_equal(np.isnan(widths), np.isin(corpus["fault"].values, [0, 4]))
         np.testing.assert_array_equal(_of_faults("load", corpus), corpus["load"].values)
 
 
-def test_the_page_comes_with_the_numbers_and_is_the_same_every_time(corpus, results, page, tmp_path):
+def test_quantities_are_drawn_in_the_unit_of_their_label():
+    factors = {name: (label, factor) for name, label, factor in QUANTITIES}
+    for name, unit, si, shown in (
+        ("shaft_rate", "[Hz]", 30.0, 30.0),
+        ("load", "[N]", 700.0, 700.0),
+        ("width", "[mm]", 2e-3, 2.0),
+        ("depth", "[µm]", 5e-6, 5.0),
+        ("angle", "[°]", np.pi / 2, 90.0),
+        ("snr", "[dB]", 6.0, 6.0),
+    ):
+        label, factor = factors.pop(name)
+        assert label.endswith(unit)
+        assert si * factor == pytest.approx(shown)
+    assert not factors
+
+
+def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatch):
+    """The healthy records are 0 to 2 of specimen 0 and 12 to 14 of specimen 4; their levels are their numbers here."""
+    monkeypatch.setattr(examples, "_line_level", lambda shown: float(shown.title.split(":")[0].split()[1]))
+    drawn = []
+    monkeypatch.setattr(examples, "draw_record", lambda shown: drawn.append(shown.title) or draw_record(shown))
+    with open_corpus(corpus) as opened:
+        healthy = examples.draw_examples(opened)[0]
+    assert drawn[0].startswith("Record 12: ")
+    assert healthy.fault == "healthy"
+    assert healthy.caption.startswith("Specimen 4 of rig 1, ")
+    assert healthy.caption.endswith("; the median of 6 records by the level of the fault lines.")
+
+
+def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, page, tmp_path):
     assert write_report(corpus, results, tmp_path).read_text() == page
     held = json.loads((tmp_path / "results.json").read_text())
     assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "results.json"]
@@ -164,17 +203,35 @@ def test_text_of_a_corpus_is_escaped_and_cut_short(results_of, tmp_path):
     assert "other corpus" in page
 
 
-def test_permuted_labels_above_chance_are_called_out(results):
+def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results):
     found = results.baselines["ensemble"]
     leaking = replace(found, null=replace(found.null, interval=(0.8, 0.9)))
     suspicious = replace(results, baselines=results.baselines | {"ensemble": leaking})
-    assert "above chance: look for a leak" in _findings(suspicious, 0.25)[2]
+    assert "above chance; look for a leak" in _findings(suspicious, 0.25)[2]
     honest = replace(found, null=replace(found.null, interval=(0.2, 0.9)))
     fine = replace(results, baselines=results.baselines | {"ensemble": honest})
-    assert "at chance, as it must be" in _findings(fine, 0.25)[2]
+    assert "at chance, as expected" in _findings(fine, 0.25)[2]
 
 
-def test_a_class_that_cannot_be_drawn_is_said_so(results, tmp_path):
+def test_an_unknown_interval_is_reported_as_such_and_not_drawn(results):
+    found = results.baselines["ensemble"]
+    alone = replace(
+        found, grouped=replace(found.grouped, interval=None), null=replace(found.null, interval=None), test=None
+    )
+    sentences = _findings(replace(results, baselines=results.baselines | {"ensemble": alone}), 0.25)
+    assert "(95 % interval not known); chance is" in sentences[0]
+    assert sentences[2].endswith("(95 % interval not known).")
+    known, unknown = (draw_scores({"one": one}, 0.25, "specimen").axes[0] for one in (found, alone))
+    assert len(known.collections) == len(unknown.collections) + 1
+
+
+def test_severities_that_were_tested_and_not_trained_are_among_the_findings(results):
+    assert len(_findings(replace(results, uncovered_widths={}), 0.25)) == 3
+    sentences = _findings(replace(results, uncovered_widths={"inner": (0.0014,)}), 0.25)
+    assert sentences[3].startswith("Cross-validation: tested but not trained: inner 1.4 mm wide")
+
+
+def test_the_page_says_if_no_record_of_a_class_can_be_drawn(results, tmp_path):
     faults = np.repeat(np.arange(8) % 4, 3)
     unknown = write_corpus(
         tmp_path / "corpus", shaft_rate=np.where(faults == 2, np.nan, 30.0), load=np.full(24, np.nan)
@@ -187,7 +244,7 @@ def test_a_class_that_cannot_be_drawn_is_said_so(results, tmp_path):
 @pytest.mark.parametrize(
     ("suffix", "start"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF"), (".PNG", b"\x89PNG")]
 )
-def test_a_record_is_drawn_in_the_format_of_the_suffix_and_the_same_every_time(corpus, tmp_path, suffix, start):
+def test_a_record_is_drawn_reproducibly_in_the_format_of_the_suffix(corpus, tmp_path, suffix, start):
     first, second = tmp_path / f"first{suffix}", tmp_path / f"second{suffix}"
     plot_record(corpus, 3, first)
     plot_record(corpus, 3, second)
@@ -207,7 +264,7 @@ def test_a_record_is_drawn_in_the_format_of_the_suffix_and_the_same_every_time(c
         (0, 0, "missing/picture.png", "could not be written"),
     ],
 )
-def test_what_cannot_be_drawn_is_refused_in_one_sentence(corpus, tmp_path, record, channel, name, sentence):
+def test_a_record_that_cannot_be_drawn_is_refused_in_one_sentence(corpus, tmp_path, record, channel, name, sentence):
     with pytest.raises(CorpusError, match=sentence):
         plot_record(corpus, record, tmp_path / name, channel=channel)
 
@@ -236,14 +293,14 @@ def test_the_drawn_envelope_has_its_highest_lines_where_the_fault_is_marked(faul
         assert np.interp(line, order, spectrum) < 0.3 * spectrum[seen].max()
 
 
-def test_the_lines_of_a_fault_are_three_harmonics_and_a_ball_strikes_both_races():
+def test_the_lines_of_a_fault_are_three_harmonics_and_those_of_a_ball_are_even():
     own, others = fault_lines(Orders(**ORDERS), "ball")
     assert own == pytest.approx({"2 BSF": 4.7, "4 BSF": 9.4, "6 BSF": 14.1})
     assert others == {"BPFO": 3.6, "BPFI": 5.4, "shaft": 1.0, "FTF": 0.4}
     assert fault_lines(Orders(**ORDERS), "healthy")[0] == {}
 
 
-def test_a_compound_fault_may_show_the_line_of_any_part_and_a_cage_its_own_only():
+def test_a_compound_fault_has_the_lines_of_all_parts_and_a_cage_only_its_own():
     own, others = fault_lines(Orders(**ORDERS), "compound")
     assert own == pytest.approx({"BPFO": 3.6, "BPFI": 5.4, "2 BSF": 4.7, "FTF": 0.4})
     assert others == {"shaft": 1.0}

@@ -24,7 +24,7 @@ def read(level):
 
 @law
 @given(st.floats(-0.015, 0.015), st.floats(50.0, 390.0))
-def test_a_line_within_the_tolerance_is_read_whole(error, place):
+def test_a_line_within_the_tolerance_is_read_at_its_full_level(error, place):
     assert single_lines(level_with(place * (1 + error)), np.array([[place]]))[0, 0] == 2.0
 
 
@@ -36,7 +36,7 @@ def test_a_line_outside_the_tolerance_is_not_read(error, side, place):
 
 @law
 @given(st.floats(-0.018, 0.018), st.floats(50.0, 390.0))
-def test_a_comb_forgives_a_speed_error_shared_by_its_harmonics(error, base):
+def test_a_comb_tolerates_a_speed_error_shared_by_its_harmonics(error, base):
     harmonics = np.arange(1, 4) * base * (1 + error)
     wide = level_with(*harmonics, *(harmonics - 1), *(harmonics + 1))
     assert combs(wide, np.array([[base]]))[0, 0] == pytest.approx(2.0)
@@ -44,7 +44,7 @@ def test_a_comb_forgives_a_speed_error_shared_by_its_harmonics(error, base):
 
 @law
 @given(st.floats(200.0, 390.0))
-def test_a_comb_does_not_join_harmonics_of_different_speeds(base):
+def test_a_comb_does_not_combine_harmonics_of_different_speeds(base):
     disagreeing = level_with(base * 1.018, 2 * base * 0.982, 3 * base)
     assert combs(disagreeing, np.array([[base]]))[0, 0] == pytest.approx(2.0 / 3)
 
@@ -71,7 +71,7 @@ def test_each_line_is_read_at_its_order():
         assert values["highest_line"] == 2.0, name
 
 
-def test_sidebands_are_a_shaft_turn_away_and_a_cage_turn_for_the_ball():
+def test_sidebands_are_one_shaft_order_away_and_one_cage_order_for_the_ball():
     ftf, bpfo, bpfi, bsf = (order[0] for order in ORDERS)
     for name, base, side in (("bpfo", bpfo, 1.0), ("bpfi", bpfi, 1.0), ("2bsf", 2 * bsf, ftf)):
         both = read(level_with((base - side) * BINS_PER_ORDER, (base + side) * BINS_PER_ORDER))
@@ -80,7 +80,7 @@ def test_sidebands_are_a_shaft_turn_away_and_a_cage_turn_for_the_ball():
         assert one[f"{name}_sidebands"] == 1.0
 
 
-def test_a_line_beyond_the_end_of_the_spectrum_reads_as_high_as_the_floor():
+def test_a_line_beyond_the_end_of_the_spectrum_has_the_level_of_the_floor():
     values = read(np.full((1, 100), 3.0))
     assert values["fr"] == 3.0
     assert values["bpfo_h1"] == values["bpfi_comb"] == 0.0

@@ -1,4 +1,4 @@
-"""Laws of the shape of an envelope, against the sentences that define it."""
+"""Laws of the shape of an envelope, against the definitions of its values."""
 
 import numpy as np
 from hypothesis import given, settings
@@ -12,7 +12,7 @@ law = settings(deadline=None, max_examples=25)
 
 @law
 @given(st.integers(0, 2**32 - 1), st.integers(400, 5000), st.floats(9.0, 60.0))
-def test_the_shape_is_what_its_names_say(seed, n, shaft_rate):
+def test_the_shape_of_an_envelope_follows_its_definitions(seed, n, shaft_rate):
     rate = 2000.0
     power = np.random.default_rng(seed).exponential(size=(2, n)) * (1 + 0.5 * np.sin(np.arange(n) * 20 / rate))
     weighted = hann_weighted(np.sqrt(power))

@@ -1,4 +1,4 @@
-"""Laws of the spectra: energy is kept, modulations show where they are, neighbours do not matter."""
+"""Laws of the spectra: energy is conserved, modulations have their lines, and records do not depend on each other."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ def noise(seed, records=3, n=4096):
 
 @law
 @given(seeds, st.integers(16, 4000), st.floats(1e3, 1e5))
-def test_the_psd_of_one_window_holds_the_energy_of_the_windowed_record(seed, n, fs):
+def test_the_psd_of_one_window_has_the_energy_of_the_windowed_record(seed, n, fs):
     x = noise(seed, n=n)
     frequencies, density = psd(x, fs, segment=n / fs)
     window = hann(n, sym=False)
@@ -38,7 +38,7 @@ def test_the_psd_of_one_window_holds_the_energy_of_the_windowed_record(seed, n, 
 
 @law
 @given(seeds, st.floats(1e3, 1e5))
-def test_the_psd_of_a_long_record_holds_its_variance(seed, fs):
+def test_the_psd_of_a_long_record_has_its_variance(seed, fs):
     x = noise(seed, n=65536)
     frequencies, density = psd(x, fs, segment=512 / fs)
     np.testing.assert_allclose(density.sum(axis=1) * frequencies[1], x.var(axis=1), rtol=0.03)
@@ -48,8 +48,8 @@ def test_the_psd_of_a_long_record_holds_its_variance(seed, fs):
 @given(seeds, st.integers(16, 4000), st.integers(8, 4000))
 def test_the_psd_is_that_of_welch(seed, n, length):
     x = noise(seed, n=n)
-    for ours, his in zip(psd(x, 1.0, length), welch(x, 1.0, nperseg=min(n, length)), strict=True):
-        np.testing.assert_allclose(ours, his, rtol=1e-9, atol=1e-12)
+    for ours, expected in zip(psd(x, 1.0, length), welch(x, 1.0, nperseg=min(n, length)), strict=True):
+        np.testing.assert_allclose(ours, expected, rtol=1e-9, atol=1e-12)
 
 
 @law
@@ -77,7 +77,7 @@ def test_energies_of_adjoining_bands_add_up(seed, edges):
 
 @law
 @given(seeds)
-def test_bands_around_everything_hold_everything(seed):
+def test_a_band_around_all_frequencies_has_the_whole_energy(seed):
     frequencies, density = psd(noise(seed), 12_000.0)
     total = band_energies(density, frequencies, [-1e9, 1e9])[:, 0]
     np.testing.assert_allclose(total, density.sum(axis=1) * frequencies[1])
@@ -113,7 +113,7 @@ def test_the_modulus_of_an_analytic_band_is_the_amplitude_of_a_tone_in_it(amplit
     x = amplitude * np.sin(2 * np.pi * tone * np.arange(12_000) / 12_000)
     z = analytic_band(fourier_coefficients(x[None], 12_000, 5000.0), 500, 1500)
     middle = np.abs(z[0, z.shape[1] // 4 : -z.shape[1] // 4])
-    gain = 1.01  # the taper, whose mean is 0.99, is normalised by its mean
+    gain = 1.01  # the taper is divided by its mean of 0.99
     np.testing.assert_allclose(middle, gain * amplitude, rtol=0.02)
 
 
@@ -132,7 +132,7 @@ def test_a_band_does_not_depend_on_the_sample_rate(seed):
 
 @law
 @given(seeds)
-def test_cepstral_whitening_leaves_phases_alone_and_makes_all_moduli_one(seed):
+def test_cepstral_whitening_keeps_all_phases_and_makes_all_moduli_one(seed):
     coefficients = fourier_coefficients(noise(seed), 12_000.0, 5000.0)
     white = cepstrally_whitened(coefficients)[:, 1:]
     np.testing.assert_allclose(np.abs(white), 1.0)
@@ -141,7 +141,7 @@ def test_cepstral_whitening_leaves_phases_alone_and_makes_all_moduli_one(seed):
 
 @law
 @given(seeds, st.floats(-2.0, 2.0))
-def test_a_psd_whitened_spectrum_is_as_strong_in_every_band(seed, colour):
+def test_a_psd_whitened_spectrum_has_the_same_power_in_every_band(seed, colour):
     coefficients = fourier_coefficients(noise(seed, n=12_000), 12_000.0, 5000.0)
     coloured = coefficients * (1.0 + np.arange(coefficients.shape[1])) ** colour
     power = np.abs(psd_whitened(coloured, 100)[:, 500:4500]) ** 2
@@ -167,7 +167,7 @@ def test_an_interpolated_spectrum_is_that_of_the_padded_signal(seed, n, precisio
 
 
 @pytest.mark.parametrize("whiten", [cepstrally_whitened, lambda c: psd_whitened(c, 25)])
-def test_whitening_silence_leaves_silence(whiten):
+def test_a_signal_of_zeros_is_whitened_to_zeros(whiten):
     assert not whiten(np.zeros((2, 100), complex)).any()
 
 
@@ -182,7 +182,7 @@ def test_the_running_median_follows_a_straight_line(height, slope, width):
 
 @law
 @given(seeds, st.integers(60, 900))
-def test_the_running_median_does_not_see_a_narrow_line(seed, place):
+def test_a_narrow_line_does_not_change_the_running_median(seed, place):
     floor = 1 + 0.01 * noise(seed, records=1, n=1000)
     floor[0, place - 5 : place + 6] = 100.0
     assert running_median(floor, np.array([100.0]), 1000).max() < 1.1

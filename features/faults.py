@@ -1,0 +1,83 @@
+"""Table of the fault classes: everything that a class of the corpus format means to features, baselines and pictures.
+
+A new class of the format needs one new row here, at its place in the order of the format; a test compares the two.
+This module imports nothing of the project, so that the pure signal functions may use it.
+
+A ball spall strikes both races in each spin, so its fundamental line is twice the ball spin frequency ``bsf``.
+"""
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+
+class Line(NamedTuple):
+    """Line of an envelope spectrum: its label in pictures, and its order as a multiple of a nominal order.
+
+    ``base`` is a field of `features.signal.lines.Orders`, or ``shaft`` for the shaft rate itself.
+    """
+
+    label: str
+    base: str
+    multiple: int
+
+
+class FaultClass(NamedTuple):
+    """One fault class.
+
+    Attributes
+    ----------
+    name
+        As in ``gen.corpus.FAULTS``.
+    colour
+        In all pictures.
+    lines
+        The lines marked in its pictures; for a class with harmonics, the fundamental line first.
+    comb
+        The feature that averages three harmonics of its line, empty if no comb belongs to this class alone.
+    single_lines
+        Features whose mean tells the class where it has no comb of its own.
+    """
+
+    name: str
+    colour: str
+    lines: tuple[Line, ...] = ()
+    comb: str = ""
+    single_lines: tuple[str, ...] = ()
+
+    @property
+    def evidence(self) -> tuple[str, ...]:
+        """Features whose mean level tells this class, none for a class without a line of its own."""
+        return (self.comb,) if self.comb else self.single_lines
+
+
+def _harmonics(base: str, *multiples: int) -> tuple[Line, ...]:
+    return tuple(Line(f"{n} {base.upper()}" if n > 1 else base.upper(), base, n) for n in multiples)
+
+
+BPFI, BPFO = _harmonics("bpfi", 1, 2, 3), _harmonics("bpfo", 1, 2, 3)
+BSF, FTF = _harmonics("bsf", 2, 4, 6), _harmonics("ftf", 1, 2, 3)
+SHAFT = Line("shaft", "shaft", 1)
+
+HEALTHY = "healthy"
+CLASSES: Mapping[str, FaultClass] = {
+    row.name: row
+    for row in (
+        FaultClass(HEALTHY, "#009E73"),
+        FaultClass("inner", "#D55E00", BPFI, comb="whitened_bpfi_comb"),
+        FaultClass("outer", "#0072B2", BPFO, comb="whitened_bpfo_comb"),
+        FaultClass("ball", "#CC79A7", BSF, comb="whitened_2bsf_comb"),
+        FaultClass("cage", "#E69F00", FTF, single_lines=("whitened_ftf", "whitened_2ftf")),
+        # the label does not say which parts are damaged, so the fundamental line of every part is marked
+        FaultClass("compound", "#56B4E9", (BPFI[0], BPFO[0], BSF[0], FTF[0])),
+    )
+}
+"""Rows by name, in the order of the codes of the format. Colours: see `features.report.pictures`."""
+
+COMBS: Mapping[str, str] = {name: row.comb for name, row in CLASSES.items() if row.comb}
+"""Comb of each class that has one of its own."""
+
+EVIDENCE = tuple(feature for row in CLASSES.values() for feature in row.evidence)
+"""All features that tell a class."""
+
+FUNDAMENTALS = tuple(row.lines[0] for row in CLASSES.values() if row.evidence)
+"""Fundamental line of each class that has lines of its own."""

@@ -1,0 +1,123 @@
+"""Records of a corpus as pictures: one record by its number, or an example of each class."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from features.faults import CLASSES, COMBS
+from features.indicators import Orders, feature_names, indicators
+from features.report.pictures import PictureFormat, Shown, draw_record, picture
+from gen.corpus import FAULTS, SIGNAL, open_corpus, write_durably
+from gen.errors import CorpusError
+
+CANDIDATES = 15  # records of a class among which its example is chosen
+
+
+class Example(NamedTuple):
+    """A drawn record of one class with its caption; the image is empty if no record can be drawn."""
+
+    fault: str
+    caption: str
+    image: bytes
+
+
+def plot_record(corpus: Path | str, record: int, path: Path | str, *, channel: int = 0) -> None:
+    """Draw waveform, power spectral density and envelope spectrum of a record, with the fault lines.
+
+    Parameters
+    ----------
+    corpus
+        The folder of the corpus.
+    record, channel
+        Numbers from 0.
+    path
+        A .png, .svg or .pdf file, written whole or not at all.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus cannot be read or has no such record or channel, the suffix is another, the signal, shaft rate or
+        orders of the record are not positive finite numbers, or the disk refuses the file.
+    """
+    path = Path(path)
+    formats: dict[str, PictureFormat] = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
+    suffix = path.suffix.lower()
+    if suffix not in formats:
+        message = f"{path}: {path.suffix or 'no suffix'} is no format of pictures; use .png, .svg or .pdf."
+        raise CorpusError(message)
+    with open_corpus(corpus) as opened:
+        for dimension, number in (("record", record), ("channel", channel)):
+            if not 0 <= number < opened.sizes[dimension]:
+                last = opened.sizes[dimension] - 1
+                message = f"{corpus}: no {dimension} {number}; give one of 0 to {last}."
+                raise CorpusError(message)
+        shown = _shown(opened.isel(record=record), record, channel)
+    if not _can_be_drawn(shown):
+        message = (
+            f"{corpus}: record {record} cannot be drawn, because its signal, shaft rate or a fault order is not a "
+            f"finite number or not positive; choose another record."
+        )
+        raise CorpusError(message)
+    write_durably(picture(draw_record(shown), formats[suffix]), path)
+
+
+def draw_examples(corpus: xr.Dataset) -> list[Example]:
+    """Example of each class that the corpus contains."""
+    return [_example(corpus, FAULTS[code]) for code in np.unique(corpus["fault"].values)]
+
+
+def _example(corpus: xr.Dataset, fault: str) -> Example:
+    """Draw the record whose level at the fault lines is the median over some records of the class."""
+    numbers = np.flatnonzero(corpus["fault"].values == FAULTS.index(fault))
+    numbers = numbers[np.linspace(0, len(numbers) - 1, min(CANDIDATES, len(numbers))).astype(int)]
+    shown = {int(n): _shown(corpus.isel(record=n), int(n), 0) for n in numbers}
+    levels = {n: _line_level(record) for n, record in shown.items() if _can_be_drawn(record)}
+    if not levels:
+        return Example(fault, "No record of this class has a signal, a shaft rate and fault orders to draw.", b"")
+    number = sorted(levels, key=lambda n: levels[n])[len(levels) // 2]
+    caption = f"{_conditions(corpus.isel(record=number))}; the median of {len(levels)} records by the level of the fault lines."
+    return Example(fault, caption, picture(draw_record(shown[number]), "svg"))
+
+
+def _conditions(record: xr.Dataset) -> str:
+    """Specimen, speed, load if known, and width of the spall if there is one."""
+    known = [
+        f"Specimen {int(record['specimen'])} of rig {int(record['rig'])}",
+        f"{60 * float(record['shaft_rate']):.0f} rpm",
+    ]
+    if np.isfinite(record["load"]):
+        known.append(f"{float(record['load']):.0f} N")
+    if float(record["width"]) > 0:
+        known.append(f"fault {1e3 * float(record['width']):.2g} mm wide")
+    return ", ".join(known)
+
+
+def _shown(record: xr.Dataset, number: int, channel: int) -> Shown:
+    fault, shaft_rate = FAULTS[int(record["fault"])], float(record["shaft_rate"])
+    return Shown(
+        title=f"Record {number}: {fault}, {60 * shaft_rate:.0f} rpm",
+        signal=record[SIGNAL].isel(channel=channel).values.astype(float),
+        fs=float(record["sample_rate"]),
+        shaft_rate=shaft_rate,
+        orders=Orders(*(np.asarray(record[name].values, dtype=float) for name in Orders._fields)),
+        fault=fault,
+    )
+
+
+def _can_be_drawn(shown: Shown) -> bool:
+    numbers = np.array([shown.fs, shown.shaft_rate, *shown.orders])
+    return bool(np.isfinite(numbers).all() and (numbers > 0).all() and np.isfinite(shown.signal).all())
+
+
+def _line_level(shown: Shown) -> float:
+    """Highest level among the features that tell the class, or among all combs for a class without such features.
+
+    -inf if the record is too short to have features.
+    """
+    names = feature_names(("lines",))
+    orders = Orders(*(order.reshape(1) for order in shown.orders))
+    values, _ = indicators(shown.signal[None], shown.fs, np.array([shown.shaft_rate]), orders, ("lines",))
+    columns = [names.index(name) for name in CLASSES[shown.fault].evidence or COMBS.values()]
+    return float(np.nan_to_num(values[0, columns], nan=-np.inf).max())

@@ -1,0 +1,88 @@
+"""Laws of the table of fault classes: complete, in the order of the format, and the only place that describes a class."""
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from features.baselines import estimators
+from features.baselines.estimators import EnvelopeRule
+from features.faults import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, FaultClass, Line
+from features.indicators import Orders, feature_names
+from features.report import pictures
+from features.report.pictures import Shown, draw_record, fault_lines
+from features.signal.lines import FAMILIES
+from gen.corpus import FAULTS
+from tests.paths import ROOT
+
+ORDERS = Orders(*map(np.float64, (0.4, 3.6, 5.4, 2.35)))
+RULE = ROOT / "features" / "baselines" / "estimators.py"  # three classes interact there: ball, cage and compound
+
+
+def test_the_table_has_the_classes_of_the_format_in_its_order():
+    assert tuple(CLASSES) == FAULTS
+    assert all(row.name == name for name, row in CLASSES.items())
+
+
+def test_classes_are_drawn_in_different_colours():
+    assert len({row.colour for row in CLASSES.values()}) == len(CLASSES)
+
+
+def test_every_class_but_healthy_and_compound_has_features_that_tell_it_and_lines_that_show_it():
+    for name, row in CLASSES.items():
+        assert bool(row.evidence) == (name not in (HEALTHY, "compound"))
+        assert bool(row.lines) == (name != HEALTHY)
+
+
+def test_the_features_that_tell_the_classes_are_computed_and_tell_one_class_each():
+    assert len(set(EVIDENCE)) == len(EVIDENCE)
+    assert set(EVIDENCE) <= set(feature_names(("lines",)))
+    assert sorted(COMBS.values()) == sorted(f"whitened_{family}_comb" for family in FAMILIES)
+
+
+def test_each_class_has_its_textbook_lines_as_multiples_of_the_nominal_orders():
+    multiples = {"inner": (1, 2, 3), "outer": (1, 2, 3), "ball": (2, 4, 6), "cage": (1, 2, 3)}
+    bases = {"inner": "bpfi", "outer": "bpfo", "ball": "bsf", "cage": "ftf"}
+    for name, base in bases.items():
+        assert [(line.base, line.multiple) for line in CLASSES[name].lines] == [(base, n) for n in multiples[name]]
+    assert CLASSES["compound"].lines == FUNDAMENTALS
+    assert {line.base for row in CLASSES.values() for line in row.lines} <= {*Orders._fields, "shaft"}
+
+
+def described_classes(path: Path) -> Iterator[str]:
+    """Names of faulty classes among the string literals of a file."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Constant) and node.value in FAULTS:
+            yield str(node.value)
+
+
+def test_no_other_module_of_features_names_a_class():
+    named = {path: set(described_classes(path)) for path in (ROOT / "features").rglob("*.py")}
+    assert named.pop(ROOT / "features" / "faults.py") == set(FAULTS)
+    assert named.pop(RULE) == {"outer", "ball", "cage", "compound"}
+    assert not {path: names for path, names in named.items() if names}
+
+
+@pytest.fixture
+def looseness(monkeypatch):
+    """A seventh class, in the format and in the table."""
+    row = FaultClass(
+        "looseness", "#F0E442", (Line("fr", "shaft", 1), Line("2 fr", "shaft", 2)), single_lines=("whitened_fr",)
+    )
+    table = {**CLASSES, row.name: row}
+    monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, row.name))
+    for module in (estimators, pictures):
+        monkeypatch.setattr(module, "CLASSES", table)
+    return row
+
+
+def test_a_new_class_needs_one_row_to_be_predicted_and_drawn(looseness):
+    frame = pd.DataFrame(np.zeros((2, len(EVIDENCE))), columns=list(EVIDENCE)).assign(whitened_fr=[0.0, 4.0])
+    rule = EnvelopeRule().fit(frame, np.arange(7))
+    np.testing.assert_array_equal(rule.predict(frame), [0, 6])
+    assert fault_lines(ORDERS, looseness.name)[0] == {"fr": 1.0, "2 fr": 2.0}
+    signal = np.random.default_rng(0).standard_normal(4000)
+    draw_record(Shown("loose", signal, 10_000.0, 30.0, ORDERS, looseness.name))

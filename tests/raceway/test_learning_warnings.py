@@ -1,0 +1,75 @@
+"""Warnings and refusals of the commands that learn: they come before the work, or beside the score that they concern."""
+
+import sys
+
+import numpy as np
+import pytest
+
+from features.baselines import save_model, train
+from raceway.commands import learning
+from tests.model_files import make_table
+
+SENTENCE = "warning: tested but not trained: inner 2 mm wide; the scores of these classes include extrapolation."
+
+
+def table(widths_of_inner=(1e-3,), test_split=()):
+    """A feature table with widths for the records of the inner race, in turn, and some records in the test split."""
+    made = make_table(records=48)
+    inner = made.fault.values == 1
+    width = np.zeros(48)
+    width[inner] = np.resize(widths_of_inner, inner.sum())
+    return made.assign(width=("record", width), split=("record", np.isin(np.arange(48), test_split) * 2))
+
+
+@pytest.fixture
+def model(tmp_path):
+    save_model(train(table(), "logistic_regression"), tmp_path / "model.skops")
+    return tmp_path / "model.skops"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """A folder in the place of a corpus, and the table that the commands compute of it."""
+    (tmp_path / "corpus").mkdir()
+
+    def returning(made):
+        monkeypatch.setattr(learning, "_table", lambda _: made)
+        return tmp_path / "corpus"
+
+    return returning
+
+
+def test_parquet_without_pyarrow_is_refused_before_any_feature_is_computed(run, folder, tmp_path, monkeypatch):
+    corpus = folder(None)
+    monkeypatch.setattr(learning, "_table", lambda _: pytest.fail("features were computed"))
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    result = run("features", corpus, "-o", tmp_path / "x.parquet")
+    assert result.exit_code != 0
+    sentence = str(result.exception) + result.output
+    assert "x.parquet: Parquet needs pyarrow; pip install 'raceway[parquet]'" in sentence
+
+
+def test_evaluate_warns_of_widths_that_the_model_was_not_trained_on(run, folder, model):
+    assert SENTENCE in run("evaluate", folder(table((1e-3, 2e-3))), "--model", model).stderr
+    assert "not trained" not in run("evaluate", folder(table()), "--model", model).stderr
+
+
+def test_train_warns_of_widths_that_only_the_test_split_has(run, folder, tmp_path):
+    corpus = folder(table((1e-3,) * 8 + (2e-3,) * 8, test_split=range(24, 48)))
+    result = run("train", corpus, "-o", tmp_path / "m.skops", "--estimator", "logistic_regression")
+    assert SENTENCE in result.stderr
+
+
+def test_benchmark_warns_of_widths_that_a_fold_or_the_other_corpus_adds(run, folder, tmp_path, monkeypatch):
+    monkeypatch.setattr("features.baselines.estimators.TREES", 2)
+    monkeypatch.setattr("features.baselines.estimators.ROUNDS", 2)
+    monkeypatch.setattr("features.report.page.write_report", lambda *_: tmp_path / "report.html")
+    corpus = folder(table((2e-3,) + (1e-3,) * 15))
+    assert SENTENCE in run("benchmark", corpus, "-o", tmp_path / "out", "--folds", 3).stderr
+
+
+def test_an_interval_over_one_specimen_of_a_class_is_not_known(run, told, folder, model):
+    one = table().assign(specimen=("record", np.zeros(48, int)), rig=("record", np.zeros(48, int)))
+    corpus = folder(one)
+    assert "(95 % interval not known)" in run("evaluate", corpus, "--model", model).stdout
+    assert told("evaluate", corpus, "--model", model)["interval"] is None
