@@ -1,4 +1,4 @@
-"""What can go wrong on the way from a recipe to a corpus, one class per stage.
+"""Exceptions on the way from a recipe to a corpus, one class per stage.
 
 Each carries one sentence: where, what was found, what is allowed, what to do. The command line prints it as it stands.
 """

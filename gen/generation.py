@@ -5,14 +5,11 @@ corpus: a part is kept if the manifest lists it with the size and hash of the fi
 """
 
 import fcntl
-import functools
-import json
 import os
 from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import partial
-from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -22,28 +19,18 @@ from gen.corpus import (
     check_name,
     data_card,
     open_corpus,
-    open_part,
     part_name,
     read_manifest,
     remove_left_behind,
-    sha256,
     summed,
     write_durably,
     write_index,
     write_manifest,
-    write_part,
     write_text_durably,
 )
-from gen.errors import CorpusError, RecipeError, SimulationError
-from gen.labels import part_dataset
-from gen.measurement.measure import compile_mixing, measure
-from gen.physics.kernel.batch import input_shape
+from gen.errors import CorpusError, RecipeError
+from gen.part_task import Outcome, compile_kernels, library_versions, make_part, record_numbers
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
-from gen.scenarios import draw_scenarios
-from gen.simulation.inputs import kernel_input
-from gen.simulation.outline import outlined_input
-from gen.simulation.simulate import compile_kernel, simulate, step_errors
-from gen.simulation.timeline import timeline
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -69,15 +56,6 @@ class Generated:
     """One sentence for each record that is left out because it could not be simulated."""
     signals: SignalCounts
     """Number of records that cannot be used."""
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """Result of a task; the records stay on disk."""
-
-    row: PartRow
-    kept: bool
-    failures: tuple[str, ...]
 
 
 def generate(
@@ -132,7 +110,7 @@ def generate(
                 if len(outcomes) < checked.n_parts:
                     rows = [outcomes[number].row for number in sorted(outcomes) if outcomes[number].row.records]
                     write_manifest(directory, rows, complete=False, **facts)
-                tally.note(part, len(_numbers(checked, part)))
+                tally.note(part, len(record_numbers(checked, part)))
                 tally.show()
         return _finished(directory, [outcomes[number] for number in sorted(outcomes)], checked, facts)
 
@@ -209,19 +187,13 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     return known
 
 
-@functools.cache
-def _versions() -> dict[str, str]:
-    """Versions of the libraries that determine the bytes of a part."""
-    return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
-
-
 def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, Any]:
     return {
         "title": recipe.title,
         "recipe": recipe.name,
         "recipe_sha256": recipe_hash(recipe),
         "overrides": {"seed": seed, "records": records},
-        "versions": _versions(),
+        "versions": library_versions(),
     }
 
 
@@ -253,9 +225,7 @@ def _client_of(scheduler: str | None) -> "AbstractContextManager[Client | None]"
     """Client of the scheduler at an address; None if no address is given."""
     if scheduler is None:
         return nullcontext()
-    from gen.cluster import (
-        client_of,
-    )  # not at the top: distributed takes 0.3 s to load, and work in this process needs none
+    from gen.cluster import client_of  # distributed takes 0.3 s to load, and work in this process does not need it
 
     return client_of(scheduler)
 
@@ -279,73 +249,8 @@ def _made(
         yield from run_tasks(crew, task, tasks, meanwhile=tally.show)
 
 
-def _numbers(recipe: Recipe, part: int) -> range:
-    """Numbers of the records of a part."""
-    size = recipe.corpus.records_per_part
-    return range(part * size, min((part + 1) * size, recipe.n_records))
-
-
 def _numbered_part(
     recipe: Recipe, directory: Path, report: Callable[[int, int], None], task: tuple[int, PartRow | None]
 ) -> tuple[int, Outcome]:
     part, known = task
     return part, make_part(recipe, part, directory, known, partial(report, part))
-
-
-def compile_kernels(recipe: Recipe) -> None:
-    """Compile the kernels of a recipe into numba's cache on disk, before several processes compile the same ones."""
-    compile_mixing(draw_scenarios(recipe, 0, 1)[0], recipe)
-    done = set()
-    for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
-        for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
-            try:
-                shape = input_shape(outlined_input(scenario, timeline(recipe)))
-            except SimulationError:  # the record is left out when its part is made
-                continue
-            if shape not in done:
-                done.add(shape)
-                compile_kernel(kernel_input(scenario, timeline(recipe)))
-
-
-def make_part(
-    recipe: Recipe,
-    part: int,
-    directory: Path,
-    known: PartRow | None = None,
-    report: Callable[[int], None] = lambda _: None,
-) -> Outcome:
-    """Write one part, unless the file is the one that ``known``, its row of the manifest, lists.
-
-    ``report`` is called with the number of simulated records; the last record is not reported before the part is written.
-    """
-    path = directory / "parts" / part_name(part)
-    kept = None if known is None else _kept_part(path, known)
-    if kept is not None:
-        return kept
-    numbers = _numbers(recipe, part)
-    scenarios = draw_scenarios(recipe, numbers.start, numbers.stop)
-    response = simulate(scenarios, recipe, report=lambda done: report(min(done, len(scenarios) - 1)))
-    measured = measure(response.acceleration, scenarios, recipe)
-    failures = tuple(response.failures[place] for place in sorted(response.failures))
-    fine = [place for place in range(len(scenarios)) if place not in response.failures]
-    if not fine:
-        return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
-    errors = step_errors(scenarios, recipe, response)
-    dataset = part_dataset(measured, scenarios, recipe, response, errors)
-    if failures:
-        dataset = dataset.isel(record=fine)
-    dataset.attrs |= {
-        "recipe_sha256": recipe_hash(recipe),
-        "versions": json.dumps(_versions()),
-        "failures": json.dumps(failures),
-    }
-    return Outcome(write_part(dataset, path, recipe.corpus.codec), kept=False, failures=failures)
-
-
-def _kept_part(path: Path, known: PartRow) -> Outcome | None:
-    """Outcome of the part at ``path`` if it has the size and hash of ``known``; None otherwise."""
-    if not path.is_file() or path.stat().st_size != known.bytes or sha256(path) != known.sha256:
-        return None
-    with open_part(path) as dataset:
-        failures = tuple(json.loads(dataset.attrs["failures"]))
-    return Outcome(known, kept=True, failures=failures)

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from gen.corpus import FAULTS, SPLITS
+from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.errors import SimulationError
 from gen.pace import measured_pace
 from gen.physics.kernel.compiling import LANES
@@ -27,7 +27,6 @@ MOST_DRAWN = 5000  # records, about 2 s; from a larger corpus whole parts are dr
 MOST_DRAWN_DEAR = 1500  # with an axial load or a load that wanders: each takes 0.5 ms more per record
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
-COMPRESSED = {"zlib": 0.67, "zstd": 0.75, "none": 1.0}  # share of vibration that uses a part of the converter's range
 BYTES_PER_RECORD = 700  # labels and drawn values
 BYTES_PER_FILE = 80_000  # overhead of a part or of the index
 
@@ -188,5 +187,5 @@ def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> G
 def _bytes(recipe: Recipe) -> int:
     """Estimated size of the corpus [B]."""
     samples = recipe.n_records * recipe.n_samples * len(recipe.recording.channels)
-    of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * COMPRESSED[recipe.corpus.codec]
+    of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * CODECS[recipe.corpus.codec].share
     return round(of_signals + recipe.n_records * BYTES_PER_RECORD) + (recipe.n_parts + 1) * BYTES_PER_FILE

@@ -3,6 +3,7 @@
 ========== =====================================================
 module     responsibility
 ========== =====================================================
+codecs     codecs of stored signals
 schema     dimensions, variables, units and roles
 simulated  further variables of simulated corpora
 hdf5       lock of the HDF5 library, refusal of links to other files
@@ -23,6 +24,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from gen.corpus.card import data_card, format_page
+    from gen.corpus.codecs import CODECS, Codec
     from gen.corpus.files import (
         check_name,
         plain_file,
@@ -47,7 +49,6 @@ if TYPE_CHECKING:
         SCHEMA,
         SIGNAL,
         SPLITS,
-        Codec,
         Variable,
         make_dataset,
     )
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
     from gen.corpus.validation import validate_corpus
 
 __all__ = [
+    "CODECS",
     "DRAWS",
     "FAULTS",
     "FORMAT",
@@ -102,6 +104,7 @@ _NAMES = {
         "data_card",
         "format_page",
     ),
+    "codecs": ("CODECS", "Codec"),
     "files": (
         "check_name",
         "plain_file",
@@ -141,7 +144,6 @@ _NAMES = {
         "SCHEMA",
         "SIGNAL",
         "SPLITS",
-        "Codec",
         "Variable",
         "make_dataset",
     ),

@@ -10,16 +10,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import sha256, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.schema import SIGNAL, Codec
+from gen.corpus.schema import SIGNAL
 from gen.corpus.signals import SignalCounts, counted, judge
 
-_CODECS: dict[Codec, dict[str, Any]] = {
-    "zlib": {"zlib": True, "complevel": 1, "shuffle": True},
-    "zstd": {"compression": "zstd", "complevel": 1, "shuffle": True},
-    "none": {},
-}
 _INCOMPRESSIBLE = 7.8  # bits per byte
 
 
@@ -81,11 +77,11 @@ def _declare(
     values, dimensions, attributes = variable.values, tuple(map(str, variable.dims)), dict(variable.attrs)
     storage: dict[str, Any] = {"fill_value": attributes.pop("_FillValue", False)}
     if name == SIGNAL:
-        storage |= {"chunksizes": (1, 1, values.shape[2]), **_CODECS[codec]}
+        storage |= {"chunksizes": (1, 1, values.shape[2]), **CODECS[codec].options}
         if values.dtype.kind == "f":
             storage["fill_value"] = np.nan
     elif name == "elapsed_time":
-        storage |= _CODECS["zlib"]
+        storage |= CODECS["zlib"].options
     elif values.dtype.kind in "OU":
         values = np.array([text.encode() for text in values], "S")
         values = values.view("S1").reshape(len(values), -1)

@@ -6,7 +6,7 @@
 """
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,7 +23,6 @@ ROLES = ("operating", "label", "latent", "provenance")
 SIGNAL = "acceleration"
 DRAWS = "draws"  # variable of simulated corpora: all drawn values of a record, as JSON of some kilobytes
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
-Codec = Literal["zlib", "zstd", "none"]
 MISSING_COUNT = -32768  # value that a missing part reads as; the converter never gives it
 
 

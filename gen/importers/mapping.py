@@ -9,7 +9,7 @@ import math
 import reprlib
 import unicodedata
 from pathlib import Path
-from typing import Annotated, Any, Literal, NamedTuple, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
 
 from pydantic import (
     AfterValidator,
@@ -23,13 +23,17 @@ from pydantic import (
     model_validator,
 )
 
+from gen.corpus import FAULTS
 from gen.errors import CorpusError
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 from gen.units import to_si
 from gen.yaml_files import read_yaml
 
-FaultClass = Literal["healthy", "inner", "outer", "ball", "cage", "compound"]
+if TYPE_CHECKING:
+    FaultClass = str
+else:
+    FaultClass = Literal[FAULTS]
 _MOST_COLUMNS = 1_000_000
 _RENAMED = {"depth_mm": "depth_um, in micrometres"}
 Millimetres = Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]

@@ -10,7 +10,7 @@ from gen.importers.files import UnusableError
 from gen.limits import check_limit
 
 LARGEST_RATIO = 100  # decompressed over stored bytes; recordings of noise reach 2, those with few distinct counts 10
-_ALWAYS = 64_000_000  # bytes that can be decompressed whatever the ratio
+_ALWAYS = 64_000_000  # bytes that can be decompressed at any ratio
 _SLICE, _PIECE = 65_536, 1_000_000  # compressed bytes taken, and bytes decompressed, at a time
 _PADDING = 64  # bytes after the values
 

@@ -1,6 +1,7 @@
 """Error sentences for broken recipes: the place, the value found, and what is allowed or what to do."""
 
 import difflib
+import functools
 import reprlib
 from typing import Any, get_args
 
@@ -96,17 +97,21 @@ def _place(location: tuple[int | str, ...]) -> str:
     for step in location:
         if isinstance(step, int):
             place += f"[{step}]"
-        elif node.knows(step) or (step != "[key]" and not node.models) or step not in _BRANCHES:
+        elif node.knows(step) or (step != "[key]" and not node.models) or step not in _branches():
             shown = step if step.isprintable() and len(step) <= _LONGEST_KEY else reprlib.repr(step)
             place += f".{shown}" if place else shown
             node = node.into(step)
     return place
 
 
-_BRANCHES = {
-    "constant", "uniform", "loguniform", "normal", "choice", "grid", "catalogue", "geometry", "adc", "float32", "physical", "snr",
-    "healthy", "inner", "outer", "ball", "cage", "distributed", "compound", "ramp", "run_up", "steps", "table", "[key]",
-}  # fmt: skip
+@functools.cache
+def _branches() -> set[str]:
+    """Steps of a location that are no keys: the value of ``kind`` of every section and distribution, and ``[key]`` of a mapping."""
+    models: list[type[BaseModel]] = [BaseModel]
+    for model in models:  # the list grows
+        models += model.__subclasses__()
+    kinds = [model.model_fields["kind"].annotation for model in models[1:] if "kind" in model.model_fields]
+    return {"[key]", *(value for kind in kinds for value in get_args(kind))}
 
 
 class _Cursor:

@@ -1,4 +1,4 @@
-"""What the kernel needs of a scenario, put together from machine, motion and damage."""
+"""Kernel input of a scenario, put together from machine, motion and damage."""
 
 import math
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""What is true of a record by construction, computed once and stored as its labels."""
+"""Truth of a record: values known by construction, computed once and stored as its labels."""
 
 import math
 from typing import NamedTuple

@@ -242,14 +242,14 @@ def test_progress_moves_within_a_part_and_ends_once_at_the_whole(write_recipe, t
     """Two batches of one part: the first is reported before the part is written."""
     recipe = write_recipe(tmp_path / "one.yaml", {"corpus.records_per_part": 24})
     done, written = [], []
-    write_part = GENERATE.write_part
+    from gen.part_task import write_part
 
     def slowly(*given):
         time.sleep(0 if where == "this process" else 0.5)  # several times POLL_S
         written.append(len(done))
         return write_part(*given)
 
-    monkeypatch.setattr(GENERATE, "write_part", slowly)
+    monkeypatch.setattr("gen.part_task.write_part", slowly)
     monkeypatch.setattr("gen.cluster.POLL_S", 0.05)
     if where == "this process":
         generate(recipe, tmp_path / "c", progress=lambda *counts: done.append(counts))

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gen.corpus import SIGNAL, open_corpus, open_part, part_name, read_channel, reading, validate_corpus
+from gen.corpus import CODECS, SIGNAL, open_corpus, open_part, part_name, read_channel, reading, validate_corpus
 from gen.errors import CorpusError
 from tests.corpora import physical, write_corpus
 
@@ -128,7 +128,7 @@ def test_a_missing_sample_is_nan_and_no_other_is(tmp_path):
         np.testing.assert_allclose(np.delete(found, 7, 1), np.delete(values[:, 0] / 65.534, 7, 1), rtol=1e-6)
 
 
-@pytest.mark.parametrize("codec", ["zlib", "zstd", "none"])
+@pytest.mark.parametrize("codec", CODECS)
 @pytest.mark.parametrize("kind", ["counts", "float32"])
 def test_xarray_alone_decodes_a_part_to_the_same_bits(tmp_path, kind, codec):
     write_corpus(tmp_path / "c", kind=kind, codec=codec)

@@ -108,10 +108,10 @@ def test_a_channel_with_a_path_of_its_own_hears_by_that_path(recipe_with):
     )
     scenarios = draw_scenarios(recipe, 0, 2)
     moved = np.random.default_rng(1).normal(size=(2, 1, timeline(recipe).lead + recipe.n_samples))
-    heard = measure(np.repeat(moved, 4, axis=1), scenarios, recipe).signal
-    np.testing.assert_allclose(heard[:, 1], 0.5 * heard[:, 0], atol=1e-5)
-    np.testing.assert_allclose(heard[:, 3], 4 * heard[:, 0], atol=1e-5)
-    assert heard[:, 2].std() > 1.2 * heard[:, 1].std()
+    measured = measure(np.repeat(moved, 4, axis=1), scenarios, recipe).signal
+    np.testing.assert_allclose(measured[:, 1], 0.5 * measured[:, 0], atol=1e-5)
+    np.testing.assert_allclose(measured[:, 3], 4 * measured[:, 0], atol=1e-5)
+    assert measured[:, 2].std() > 1.2 * measured[:, 1].std()
 
 
 def test_everything_at_once_moves_and_stays_within_its_step(recipe_with):

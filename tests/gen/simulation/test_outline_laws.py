@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.errors import SimulationError
-from gen.generation import compile_kernels
+from gen.part_task import compile_kernels
 from gen.physics.kernel.batch import input_shape
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
@@ -20,7 +20,7 @@ from gen.simulation.steps import steps_per_sample
 from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
 
-GENERATE = importlib.import_module("gen.generation")
+GENERATE = importlib.import_module("gen.part_task")
 
 percents = st.floats(10, 1000)
 profiles = st.one_of(

@@ -87,8 +87,8 @@ def test_the_line_of_a_fault_stands_at_its_order_times_the_shaft_rate(site, seed
 
 def passages(channels, period):
     """Samples of the peaks of bursts about ``period`` samples apart, for x and y of the sensor, without the first and the last."""
-    heard = np.hypot(*map(envelope, channels))
-    return find_peaks(heard, distance=int(0.6 * period), height=0.3 * heard.max())[0][1:-1]
+    size = np.hypot(*map(envelope, channels))
+    return find_peaks(size, distance=int(0.6 * period), height=0.3 * size.max())[0][1:-1]
 
 
 @pytest.mark.parametrize(("site", "factor"), [("outer", 0.990), ("inner", 1.0065)])
