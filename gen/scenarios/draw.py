@@ -251,14 +251,12 @@ def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
     split, corpus = recipe.corpus.split, recipe.corpus
     if split.by == "rig":
         rank = _ranks(recipe.seed, 0, corpus.rigs)[rig]
-        u = (
-            rank / corpus.rigs if corpus.rigs > 1 else 1.0
-        )  # the first of two or more rigs is in the test part, if there is one
+        # the first of two or more rigs is in the test part, if there is one
+        u = rank / corpus.rigs if corpus.rigs > 1 else 1.0
     else:
         rank = _ranks(recipe.seed, rig, corpus.specimens_per_rig)[position]
-        u = (
-            rank + (rig * 0.6180339887 + 0.5) % 1
-        ) / corpus.specimens_per_rig  # golden ratio: evenly distributed over rigs too
+        # the offset by the golden ratio distributes the parts evenly over the rigs
+        u = (rank + (rig * 0.6180339887 + 0.5) % 1) / corpus.specimens_per_rig
     train, validation, test = SPLITS
     return test if u < split.test else validation if u < split.test + split.validation else train
 
