@@ -2,7 +2,6 @@
 
 import json
 from collections.abc import Sequence
-from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
@@ -41,16 +40,19 @@ def read_scenario(text: str) -> Scenario:
         # a key of the text may have any length and any characters
         place = repr(".".join(str(part) for part in first["loc"]) or "the whole text")[1:-1][:_LONGEST_PLACE]
         raise CorpusError(f"stored scenario: {place}: {first['msg']}; {_ADVICE}") from None
-    values = json.loads(text)
-    # pydantic drops keys that a dataclass does not have, and accepts numbers that are not finite
-    if values != json.loads(scenario_texts([scenario])[0]) or not _is_finite(values):
+    if not _holds_exactly(text, scenario):
         raise CorpusError(f"stored scenario: it has keys or numbers that no scenario has; {_ADVICE}")
     return scenario
 
 
-def _is_finite(values: Any) -> bool:
+def _holds_exactly(text: str, scenario: Scenario) -> bool:
+    """True if a text has the keys and numbers of a scenario and no others, and every number is finite.
+
+    pydantic ignores keys that a dataclass does not have, and accepts NaN and infinity.
+    """
     try:
+        values = json.loads(text)
         json.dumps(values, allow_nan=False)
     except ValueError:
         return False
-    return True
+    return values == json.loads(scenario_texts([scenario])[0])

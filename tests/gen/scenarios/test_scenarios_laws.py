@@ -269,6 +269,18 @@ def test_values_are_in_si_units(recipe_with):
     assert scenario.specimen.properties["diametral_clearance"] == pytest.approx(8e-6)
 
 
+def test_resonances_are_damping_ratios_and_amplitudes(recipe_with):
+    modes = {"count": 8, "frequency_hz": 2500, "damping_percent": 3, "gain_db": 6}
+    recipe = recipe_with({"path.modes": modes, "background.modes": modes, "machine.resonator.damping_percent": 4})
+    rig = draw_scenarios(recipe, 0, 1)[0].rig
+    for found in (rig.path.modes, rig.background.modes):
+        assert len(found) == 8
+        assert {mode.frequency for mode in found} == {2500.0}
+        assert [mode.damping for mode in found] == pytest.approx([0.03] * 8)
+        assert [abs(mode.gain) for mode in found] == pytest.approx([10 ** (6 / 20)] * 8)
+    assert rig.resonator["damping"] == pytest.approx(0.04)
+
+
 def test_a_profile_of_steps_changes_within_the_step_time_between_equal_intervals(recipe_with):
     steps = {"kind": "steps", "levels_percent": [50, 100, 80], "step_s": 0.01}
     recipe = recipe_with({"recording.duration_s": 0.3, "operation.speed_profile": steps})

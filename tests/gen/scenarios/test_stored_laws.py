@@ -116,6 +116,11 @@ CHANGES = {
     "an unknown body": (lambda text: text.replace('"body": "', '"body": "un', 1), "rig.channels.0.body: "),
     "a list for an object": (lambda text: text.replace(MACHINE_KEY, '"machine": [], "x": {'), "rig.machine: "),
     "a key that no scenario has": (lambda text: text.replace('"seed"', '"x": 1, "seed"'), "keys or numbers"),
+    "an integer of 5000 digits": (lambda text: text.replace('"seed"', f'"x": {"1" * 5000}, "seed"'), "number out of range"),
+    "a deep key that no scenario has": (
+        lambda text: text.replace('"seed"', f'"x": {"[" * 100_000 + "]" * 100_000}, "seed"'),
+        "recursion limit exceeded",
+    ),
     "no number": (lambda text: text.replace(MACHINE_KEY, MACHINE_KEY + '"x": NaN, '), "keys or numbers"),
     "an infinite number": (lambda text: text.replace(MACHINE_KEY, MACHINE_KEY + '"x": 1e999, '), "keys or numbers"),
     "a key of a megabyte": (lambda text: text.replace(MACHINE_KEY, MACHINE_KEY + f'"{"x" * 1_000_000}": "1", '), "rig.machine.xxx"),
