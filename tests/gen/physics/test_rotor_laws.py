@@ -13,6 +13,7 @@ from gen.physics.rotor import (
     as_columns,
     ball_forces,
     highest_angular_frequency,
+    highest_damping_rate,
     likely_stiffness,
     rest,
     sensor_springs,
@@ -86,6 +87,25 @@ def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
     masses = np.repeat([machine.shaft_mass, machine.housing_mass, machine.sensor_mass], 2)
     squares = np.linalg.eigvals(stiffness(machine, at_rest, places) / masses[:, None]).real
     assert math.sqrt(squares.max()) <= float(highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS)))
+
+
+@law
+@given(machines(), angles)
+def test_no_damping_rate_exceeds_its_bound_nor_is_it_below_a_third_of_it(machine, cage):
+    """The bound is the sum of the rates of shaft, housing and sensor; the largest of three is at least a third of their sum."""
+    along = np.cos(ball_angles(cage)[0])
+    contact = machine.ring_damping + machine.contact_damping * np.sum(along**2)  # all balls loaded, along the x axis
+    support, sensor = max(machine.support_damping_x, machine.support_damping_y), machine.sensor_damping
+    damping = np.array([
+        [contact + machine.shaft_damping, -contact, 0],
+        [-contact, contact + support + sensor, -sensor],
+        [0, -sensor, sensor],
+    ])  # fmt: skip
+    masses = np.array([machine.shaft_mass, machine.housing_mass, machine.sensor_mass])
+    largest = np.linalg.eigvals(damping / masses[:, None]).real.max()
+    bound = highest_damping_rate(machine, N_BALLS)
+    assert largest <= bound * (1 + 1e-12)
+    assert bound <= 3 * largest * (1 + 1e-12)
 
 
 @law
