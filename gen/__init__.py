@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from gen.corpus import open_corpus, validate_corpus
     from gen.generation import generate
     from gen.recipe import read_recipe
-    from gen.replaying import replay
+    from gen.replaying import replay, stored_scenario
     from gen.scenarios import draw_scenarios
     from gen.simulation.simulate import simulate
 
@@ -56,6 +56,7 @@ __all__ = [
     "read_recipe",
     "replay",
     "simulate",
+    "stored_scenario",
     "validate_corpus",
 ]
 
@@ -66,6 +67,7 @@ _MODULES = {
     "read_recipe": "gen.recipe",
     "replay": "gen.replaying",
     "simulate": "gen.simulation.simulate",
+    "stored_scenario": "gen.replaying",
     "validate_corpus": "gen.corpus",
 }
 

@@ -1,4 +1,4 @@
-"""Simulate a record of a generated corpus again, from the recipe in the corpus, and compare it with the stored record."""
+"""Simulate a record of a generated corpus again and compare it with the stored record; read the scenario stored with a record."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -6,12 +6,12 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gen.corpus import SIGNAL, open_corpus, read_manifest
+from gen.corpus import DRAWS, SIGNAL, open_corpus, read_manifest
 from gen.errors import CorpusError
 from gen.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.recipe import Recipe, read_recipe, recipe_hash
-from gen.scenarios import draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios, read_scenario
 from gen.simulation.simulate import simulate
 
 
@@ -56,9 +56,7 @@ def replay(directory: Path | str, record: int) -> Replayed:
     directory = Path(directory)
     recipe = corpus_recipe(directory)
     with open_corpus(directory, check="size") as corpus:
-        n_records = corpus.sizes["record"]
-        if not 0 <= record < n_records:
-            raise CorpusError(f"{directory}: record {record} is not in it; it has records 0 to {n_records - 1}.")
+        _check_record(directory, corpus, record)
         number = int(corpus["recording"][record])
         stored = corpus[SIGNAL][record].values
     scenarios = draw_scenarios(recipe, number, number + 1)
@@ -67,3 +65,31 @@ def replay(directory: Path | str, record: int) -> Replayed:
     dataset = part_dataset(measured, scenarios, recipe, response)
     again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
+
+
+def stored_scenario(directory: Path | str, record: int) -> Scenario:
+    """Scenario that a generated corpus stores with a record.
+
+    ``record`` counts the records of the corpus from 0.
+
+    Raises
+    ------
+    CorpusError
+        If there is no such record, or the corpus stores no scenario of it.
+    """
+    directory = Path(directory)
+    with open_corpus(directory, check="size") as corpus:
+        _check_record(directory, corpus, record)
+        if DRAWS not in corpus:
+            raise CorpusError(f"{directory}: has no variable {DRAWS}, so it was not generated and stores no scenarios.")
+        text = str(corpus[DRAWS][record].values)
+    try:
+        return read_scenario(text)
+    except CorpusError as error:
+        raise CorpusError(f"{directory}: record {record}: {error}") from None
+
+
+def _check_record(directory: Path, corpus: xr.Dataset, record: int) -> None:
+    n_records = corpus.sizes["record"]
+    if not 0 <= record < n_records:
+        raise CorpusError(f"{directory}: record {record} is not in it; it has records 0 to {n_records - 1}.")

@@ -17,7 +17,7 @@ from scipy.fft import irfft, rfft
 from gen.measurement.mixing import Lines, ShaftAngle, mix
 from gen.measurement.rig import RigFilters, rig_filters
 from gen.physics.elementary import decibels
-from gen.physics.profile import turned
+from gen.physics.profile import integrated_share
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario
 from gen.simulation.timeline import Timeline, timeline
@@ -165,7 +165,7 @@ def _shaft_angle(scenario: Scenario, axis: Timeline, start: float) -> ShaftAngle
     profile = scenario.record.speed_profile
     if profile is None:
         return ShaftAngle(start, step, _NO_ANGLES)
-    return ShaftAngle(start, step, start + step * axis.fs * turned(profile, axis.response_times()))
+    return ShaftAngle(start, step, start + step * axis.fs * integrated_share(profile, axis.response_times()))
 
 
 def _impulses(

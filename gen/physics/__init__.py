@@ -1,20 +1,20 @@
-"""The model: floats and arrays in and out, no files, no units but SI.
+"""The physical model: functions of floats and arrays in SI units, without files.
 
-========== ================================================================
+========== =====================================================================
 module     responsibility
-========== ================================================================
-extent     how many balls, orders and points the model holds
+========== =====================================================================
+extent     largest numbers of balls, waviness orders and table points
 bearing    geometry, fault frequencies in orders of the shaft
-elementary powers and logarithms with the same bits everywhere
+elementary powers and logarithms with the same bits on every processor
 catalogue  bearings by designation, with ratings and sources
-hertz      point and line contact: geometry to load-deflection factor
-rotor      machine constants, static rest, fastest swing
+hertz      load-deflection factor of point and line contacts
+rotor      machine constants, static equilibrium, bounds of its eigenfrequencies
 rating     static load rating and equivalent static load
 lubricant  oil film and temperature: clearance, stiffness, damping
-axial      how much clearance an axial load takes up
-profile    how speed and load change over a record
+axial      squeeze of the balls by an axial load
+profile    change of speed and load over a record
 trace      path of a ball over a measured surface, and its mean over a contact
-inputs     the nouns that the kernel takes
-kernel     compiled: records in lanes, integrated and decimated
-========== ================================================================
+inputs     input of the kernel for one record
+kernel     compiled: integrates and decimates many records at once
+========== =====================================================================
 """

@@ -1,10 +1,11 @@
-"""How far an axial load presses the balls up their grooves.
+"""Squeeze of the balls by an axial load.
 
-Shaft and balls move by ``axial`` along the axis, which squeezes every ball by ``axial * sin(contact_angle)`` more; in equilibrium the
-axial parts of all ball forces carry the load. The contact angle is that of the drawing, and stays; the radial load rests on the
-balls alone. A radial load pushes the rings of such a bearing apart: below about ``1.25 * radial load * tan(contact_angle)`` fewer
-than half of the balls carry, and the pair comes loose. T. A. Harris, *Rolling Bearing Analysis*, 4th ed., Wiley, 2001, ch. 7,
-combined radial and thrust load.
+If the inner ring moves by ``axial`` along the axis, every ball is squeezed by ``axial * sin(contact_angle)`` more. In equilibrium the
+axial components of all ball forces add up to the axial load, and the radial components to the radial load. The contact angle is
+constant. A radial load pushes the rings apart: with an axial load below about ``1.25 * radial load * tan(contact_angle)`` fewer than
+half of the balls are loaded, and the bearing has no stable axial position [1]_.
+
+.. [1] T. A. Harris, *Rolling Bearing Analysis*, 4th ed., Wiley, 2001, ch. 7, combined radial and thrust load.
 """
 
 import numpy as np
@@ -14,36 +15,36 @@ from scipy.optimize import minimize
 from gen.physics.rotor import Machine
 
 FloatArray = NDArray[np.float64]
-# axial over radial load times the tangent of the contact angle, at which half of the balls are loaded
+# least axial load, over radial load times the tangent of the contact angle, at which half of the balls are loaded
 HALF_LOADED = 1.25
-_MICROMETRE = 1e-6
+_MICROMETRE = 1e-6  # [m]; the minimiser works in micrometres
 
 
-def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, heaviest: float = 1.0) -> float:
+def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, largest_load_share: float = 1.0) -> float:
     """Squeeze that an axial load adds to every ball [m].
 
     Parameters
     ----------
     machine : Machine
-        Gives radial load, clearance, contact angle and load-deflection law.
+        Its radial load, clearance, contact angle and load-deflection law are used.
     axial_load : float
         Above 0 [N].
     angles : array, shape (ball,)
-        Where the balls are [rad].
-    heaviest : float
-        Largest share of the radial load, which the axial load must hold against [1].
+        Angular positions of the balls [rad].
+    largest_load_share : float
+        Largest radial load of the record over the load of ``machine``; the axial load must suffice for it [1].
 
     Raises
     ------
     ValueError
-        If the contact angle is 0, or the axial load too small to hold the rings together.
+        If the contact angle is 0, or if the axial load is too small to load half of the balls.
     """
     cosine = machine.contact_cosine
     sine = np.sqrt(1 - cosine**2)
-    least = HALF_LOADED * heaviest * np.hypot(machine.load_x, machine.load_y) * sine / cosine
+    least = HALF_LOADED * largest_load_share * np.hypot(machine.load_x, machine.load_y) * sine / cosine
     if sine == 0 or axial_load < least:
         message = (
-            f"an axial load of {axial_load:.4g} N is too small to hold its rings together; at least {least:.4g} N do."
+            f"an axial load of {axial_load:.4g} N is too small to hold its rings together; give at least {least:.4g} N."
         )
         if sine == 0:
             message = f"an axial load of {axial_load:g} N needs a contact angle above 0."
@@ -65,10 +66,12 @@ def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, heav
         stiffness = n * factor * _MICROMETRE * squeeze(q) ** (n - 1)
         return (directions.T * stiffness) @ directions
 
-    alone = (axial_load / (len(angles) * sine * factor)) ** (1 / n)  # if all balls share it alike
-    start = np.array([0.0, 0.0, (max(machine.half_clearance, 0.0) + alone) / sine / _MICROMETRE])
+    equal_squeeze = (axial_load / (len(angles) * sine * factor)) ** (
+        1 / n
+    )  # every ball carries the same part of the axial load
+    start = np.array([0.0, 0.0, (max(machine.half_clearance, 0.0) + equal_squeeze) / sine / _MICROMETRE])
     found = minimize(
         energy, start, jac=slope, hess=curvature, method="trust-exact", options={"gtol": 1e-6 * axial_load}
     )
-    # to the picometre: beyond it the digits are those of the processor's linear algebra
+    # rounded to a picometre: further digits depend on the linear algebra library of the processor
     return round(float(found.x[2] * _MICROMETRE * sine), 12)

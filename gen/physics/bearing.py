@@ -1,7 +1,8 @@
-"""Geometry of a rolling bearing and the fault frequencies that follow from it.
+"""Geometry of a rolling bearing and its fault frequencies.
 
 With the outer ring fixed and pure rolling, the cage turns at ``(1 - gamma) / 2`` of the shaft rate, where
-``gamma = ball_diameter * cos(contact_angle) / pitch_diameter``; every other frequency follows from counting passages [1]_.
+``gamma = ball_diameter * cos(contact_angle) / pitch_diameter``. The other fault frequencies are the rates at which balls pass a point of
+a race, and the rate at which a ball spins [1]_.
 
 .. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics - A tutorial", Mech. Syst. Signal Process. 25 (2011) 485-520.
 """
@@ -13,10 +14,10 @@ from typing import Literal, NamedTuple
 
 @dataclass(frozen=True)
 class Bearing:
-    """Geometry, material and catalogue data of one row of a rolling bearing, in SI units; ``None`` is not known.
+    """Geometry, material and catalogue data of a single-row rolling bearing, in SI units; an unknown value is ``None``.
 
-    ``inner_conformity`` and ``outer_conformity`` are groove radius over ball diameter. In a roller bearing ``n_balls`` and
-    ``ball_diameter`` count and measure the rollers, and ``roller_length`` is the length that touches the raceways.
+    ``inner_conformity`` and ``outer_conformity`` are groove radius over ball diameter. In a roller bearing ``n_balls`` is the number of
+    rollers, ``ball_diameter`` their diameter, and ``roller_length`` the length of their contact with the raceways.
     """
 
     designation: str
@@ -38,11 +39,11 @@ class Bearing:
     outside_diameter: float | None = None
     width: float | None = None
     source: str = ""
-    """Where the numbers were seen."""
+    """Publication of the numbers."""
 
     @property
     def gamma(self) -> float:
-        """Ball diameter over pitch diameter, seen along the contact [1]."""
+        """Ball diameter times the cosine of the contact angle, over pitch diameter [1]."""
         return self.ball_diameter * math.cos(self.contact_angle) / self.pitch_diameter
 
     @property
@@ -56,7 +57,7 @@ class Bearing:
         return (self.pitch_diameter + self.ball_diameter * math.cos(self.contact_angle)) / 2
 
     def radius(self, site: str) -> float:
-        """Radius of the surface that a ``site`` is on: ``inner`` or ``outer`` raceway, or ``ball`` [m]."""
+        """Radius of the damaged surface: that of the ``inner`` or ``outer`` raceway, or that of the ``ball`` [m]."""
         return {"inner": self.inner_radius, "outer": self.outer_radius, "ball": self.ball_diameter / 2}[site]
 
 
@@ -82,7 +83,7 @@ def orders(bearing: Bearing) -> Orders:
 
 
 def slipping_orders(bearing: Bearing, slip: float) -> Orders:
-    """Fault frequencies when the cage lags by the fraction ``slip`` of its rolling speed [orders of the shaft]."""
+    """Fault frequencies of a cage that is slower than in pure rolling by the fraction ``slip`` [orders of the shaft]."""
     rolling = orders(bearing)
     ftf = rolling.ftf * (1 - slip)
     return Orders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), rolling.bsf)

@@ -1,10 +1,10 @@
-"""Bearings by designation: numbers, sizes, ratings, and where each of them was seen.
+"""Bearings by designation: geometry, outer dimensions, load ratings, and the source of each row.
 
-A number is here because it was seen at the source named in its row; ``one source`` marks a geometry that was seen once.
-Makers publish the outer dimensions and the load ratings but rarely the balls: Timken's frequency coefficients [1]_ give the number
-of balls and their ratio to the pitch circle, which lies midway between bore and outside diameter; the ball is then the nearest size
-in whole 1/32 in. Ratings are kept only where they follow from the same balls (ISO 76 [3]_, ISO 281), for makers build one
-designation in more than one way.
+Every number is taken from the source of its row; ``one source`` marks a geometry that only one source gives. Makers publish the outer
+dimensions and the load ratings but rarely the balls. The frequency coefficients of Timken [1]_ give the number of balls and the ratio of
+ball to pitch diameter; the pitch diameter is the mean of bore and outside diameter, and the ball diameter is the nearest multiple of
+1/32 in. A row has ratings only if they agree with its balls (ISO 76 [3]_, ISO 281), because makers build one designation in more than
+one way.
 
 .. [1] The Timken Company, *Ball Bearing Housed Unit Catalog*, p. A-13, table A-9, frequency coefficients of wide inner ring bearings.
 .. [2] The Timken Company, *Deep Groove Ball Bearing Catalog*, order no. 10857, 2017, tables 10 and 11.
@@ -13,7 +13,7 @@ designation in more than one way.
 
 import math
 from collections.abc import Iterator
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from gen.physics.bearing import Bearing, orders
 
@@ -26,34 +26,40 @@ _TABLES = "; two public tables of nominal geometry"
 _SKF = "; ratings SKF"
 
 
-def _bearing(
-    designation: str,
-    n_balls: int,
-    pitch: float,
-    ball: float,
-    source: str,
-    *,
-    size: tuple[float | None, float | None, float | None] = (None, None, None),
-    ratings: tuple[float | None, float | None] = (None, None),
-    angle: float = 0.0,
-    rolling_element: Literal["ball", "roller"] = "ball",
-    roller_length: float | None = None,
-) -> Bearing:
-    """One row, from mm, kN and degrees; ``size`` is bore, outside diameter, width, ``ratings`` dynamic and static."""
+class _Row(NamedTuple):
+    """One bearing in mm, kN and degrees."""
+
+    designation: str
+    n_balls: int
+    pitch: float
+    ball: float
+    source: str
+    size: tuple[float | None, float | None, float | None] = (None, None, None)
+    """Bore, outside diameter and width."""
+    ratings: tuple[float | None, float | None] = (None, None)
+    """Dynamic and static rating."""
+    angle: float = 0.0
+    rolling_element: Literal["ball", "roller"] = "ball"
+    roller_length: float | None = None
+
+
+def _bearing(row: _Row) -> Bearing:
+    bore, outside_diameter, width = row.size
+    dynamic, static = row.ratings
     return Bearing(
-        designation,
-        n_balls,
-        pitch * 1e-3,
-        ball * 1e-3,
-        math.radians(angle),
-        rolling_element=rolling_element,
-        roller_length=_scaled(roller_length, 1e-3),
-        dynamic_rating=_scaled(ratings[0], 1e3),
-        static_rating=_scaled(ratings[1], 1e3),
-        bore=_scaled(size[0], 1e-3),
-        outside_diameter=_scaled(size[1], 1e-3),
-        width=_scaled(size[2], 1e-3),
-        source=source,
+        designation=row.designation,
+        n_balls=row.n_balls,
+        pitch_diameter=row.pitch * 1e-3,
+        ball_diameter=row.ball * 1e-3,
+        contact_angle=math.radians(row.angle),
+        rolling_element=row.rolling_element,
+        roller_length=_scaled(row.roller_length, 1e-3),
+        dynamic_rating=_scaled(dynamic, 1e3),
+        static_rating=_scaled(static, 1e3),
+        bore=_scaled(bore, 1e-3),
+        outside_diameter=_scaled(outside_diameter, 1e-3),
+        width=_scaled(width, 1e-3),
+        source=row.source,
     )
 
 
@@ -61,7 +67,7 @@ def _scaled(value: float | None, factor: float) -> float | None:
     return None if value is None else value * factor
 
 
-def _deep_groove() -> Iterator[Bearing]:
+def _deep_groove() -> Iterator[_Row]:
     """Metric deep groove ball bearings."""
     # designation, balls, pitch, ball [mm], (bore, outside diameter, width) [mm], (dynamic, static) [kN], source
     rows = (
@@ -102,38 +108,38 @@ def _deep_groove() -> Iterator[Bearing]:
         ("6316", 8, 125.0, INCH * 9 / 8, (80, 170, 39), (123.0, 86.5), _RATIO.format("316K") + "; a public table" + _TIMKEN),
     )  # fmt: skip
     for designation, n_balls, pitch, ball, size, ratings, source in rows:
-        yield _bearing(designation, n_balls, pitch, ball, source, size=size, ratings=ratings)
+        yield _Row(designation, n_balls, pitch, ball, source, size=size, ratings=ratings)
 
 
-def _test_rigs() -> Iterator[Bearing]:
-    """Ball bearings of published test rigs that are no metric deep groove bearings, or whose size is not stated."""
-    yield _bearing(
+def _test_rigs() -> Iterator[_Row]:
+    """Ball bearings of published test rigs: other types than metric deep groove, or types of unknown size."""
+    yield _Row(
         "ER-10K", 8, 1.319 * INCH, 0.3125 * INCH, "PHM Society 2009 challenge, apparatus page; NPTEL course 112103024, ex. 15.2",
         size=(10 / 16 * INCH, None, None),
     )  # fmt: skip
-    yield _bearing(
+    yield _Row(
         "ER-12K", 8, 1.319 * INCH, 0.3125 * INCH,
         "maker's multipliers in Gutierrez and Simon 2026, doi:10.17632/sp3fbf8d9y.1: those of the ER-10K",
         size=(12 / 16 * INCH, None, None),
     )  # fmt: skip
-    yield _bearing(
+    yield _Row(
         "ER-16K", 9, 38.52, 7.94, "Huang and Baddour 2018, doi:10.1016/j.dib.2018.11.019; Forbes, Curtin University (38.50 mm)",
         size=(INCH, None, None),
     )  # fmt: skip
-    yield _bearing(
+    yield _Row(
         "UER204", 8, 34.55, 7.92, "XJTU-SY, Wang et al. 2020, doi:10.1109/TR.2018.2882682",
         size=(20, None, None), ratings=(12.82, None),
     )  # fmt: skip
-    yield _bearing("NICE", 8, 1.245 * INCH, 0.235 * INCH, "Bechhoefer 2013, MFPT fault data sets")
-    yield _bearing("MAFAULDA", 8, 28.519, 7.145, "MAFAULDA, Machinery Fault Database, COPPE/UFRJ")
-    yield _bearing(
+    yield _Row("NICE", 8, 1.245 * INCH, 0.235 * INCH, "Bechhoefer 2013, MFPT fault data sets")
+    yield _Row("MAFAULDA", 8, 28.519, 7.145, "MAFAULDA, Machinery Fault Database, COPPE/UFRJ")
+    yield _Row(
         "QJ212", 15, 85.15, 15.87, "Ismail et al. 2023, doi:10.1016/j.dib.2023.109019, angle from their fault frequencies",
         size=(60, 110, 22), angle=35.0,
     )  # fmt: skip
 
 
-def _rollers() -> Iterator[Bearing]:
-    """Roller bearings; a length that no source states stays unknown."""
+def _rollers() -> Iterator[_Row]:
+    """Roller bearings; the roller length is None if no source gives it."""
     # designation, rollers, pitch, diameter, length [mm], angle [deg], (bore, outside diameter, width) [mm], source
     rows = (
         ("NU206", 13, 46.5, 9.0, 10.0, 0.0, (30, 62, 16),
@@ -147,13 +153,13 @@ def _rollers() -> Iterator[Bearing]:
         ("DIRG-B2", 16, 54.0, 8.0, None, 0.0, (None, None, None), "Daga et al. 2019, doi:10.1016/j.ymssp.2018.10.010"),
     )  # fmt: skip
     for designation, n_rollers, pitch, diameter, length, angle, size, source in rows:
-        yield _bearing(
+        yield _Row(
             designation, n_rollers, pitch, diameter, source,
             size=size, angle=angle, rolling_element="roller", roller_length=length,
         )  # fmt: skip
 
 
-CATALOGUE = {bearing.designation: bearing for part in (_deep_groove, _test_rigs, _rollers) for bearing in part()}
+CATALOGUE = {row.designation: _bearing(row) for rows in (_deep_groove, _test_rigs, _rollers) for row in rows()}
 
 _PAGE = """# Catalogue of bearings
 
@@ -184,7 +190,7 @@ _HEAD = (
 
 
 def catalogue_page() -> str:
-    """Markdown page: every bearing of the catalogue with its fault orders and its source."""
+    """Markdown page of all bearings of the catalogue, with fault orders and source."""
     columns = (*_HEAD, "FTF", "BPFO", "BPFI", "BSF", "source")
     lines = ["| " + " | ".join(columns) + " |", "|" + "---|" * len(columns)]
     lines += ["| " + " | ".join(_cells(bearing)) + " |" for bearing in CATALOGUE.values()]

@@ -1,6 +1,7 @@
-"""Elementary functions with the same bits on every machine: the C library's, number by number.
+"""Elementary functions of arrays with the same bits on every processor.
 
-NumPy's own differ in the last bit between processors with AVX2 and with AVX-512; its sines, cosines, square roots and sums do not.
+The power, exponential and logarithm of NumPy differ in the last bit between processors with AVX2 and with AVX-512, so these call the C
+library for each number. The sines, cosines, square roots and sums of NumPy have the same bits on both.
 """
 
 import math
@@ -14,7 +15,7 @@ _pow, _exp, _log10 = np.frompyfunc(math.pow, 2, 1), np.frompyfunc(math.exp, 1, 1
 
 
 def power(base: ArrayLike, exponent: ArrayLike) -> FloatArray:
-    """``base`` to the ``exponent``, of the shape they have together; roots of Hertz contacts, the usual case, are square roots.
+    """``base`` to the ``exponent``, of their broadcast shape; an exponent of 0.5, the usual one, is a square root.
 
     >>> power([4.0, 9.0], 0.5)
     array([2., 3.])
@@ -25,12 +26,12 @@ def power(base: ArrayLike, exponent: ArrayLike) -> FloatArray:
 
 
 def exponential(x: ArrayLike) -> FloatArray:
-    """``e`` to the ``x``, of the shape of ``x``."""
+    """Exponential function, of the shape of ``x``."""
     return np.asarray(_exp(x), dtype=np.float64)
 
 
 def decibels(ratio: ArrayLike) -> FloatArray:
-    """A ratio of amplitudes, of its shape [dB].
+    """Level of a ratio of amplitudes, of the shape of ``ratio`` [dB].
 
     >>> decibels([1.0, 10.0])
     array([ 0., 20.])

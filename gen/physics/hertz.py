@@ -1,9 +1,9 @@
 """Contact of a ball or a roller with its two raceways.
 
-A rolling element squeezed by ``deflection`` pushes back with ``factor * deflection**exponent``. For the point contact of a ball the
-exponent is 3/2 and the factor follows from the curvatures through the elliptic integrals of the contact ellipse [1]_; for the line
-contact of a steel roller they are 10/9 and Palmgren's empirical factor, which depends on the length alone [2]_. The contacts on the
-inner and on the outer raceway act in series.
+The force on a rolling element squeezed by ``deflection`` is ``factor * deflection**exponent``. For the point contact of a ball the
+exponent is 3/2, and the factor follows from the curvatures through the elliptic integrals of the contact ellipse [1]_. For the line
+contact of a steel roller the exponent is 10/9, and the factor is the empirical one of Palmgren, a function of the length alone [2]_.
+The contacts on the inner and on the outer raceway act in series.
 
 .. [1] T. A. Harris, *Rolling Bearing Analysis*, 4th ed., Wiley, 2001, ch. 6.
 .. [2] A. Palmgren, *Ball and Roller Bearing Engineering*, 3rd ed., Burbank, 1959; in [1]_ the line contacts of ch. 6 and 7.
@@ -34,7 +34,7 @@ def ellipticity(rolling_curvature: float, transverse_curvature: float) -> float:
         m = 1 - ratio**-2
         return ((ratio**2 + 1) * ellipe(m) - 2 * ellipk(m)) / ((ratio**2 - 1) * ellipe(m)) - difference
 
-    # a nearly round contact: the quotient loses its digits and its limit at ratio 1 is the sphere
+    # near ratio 1 the quotient is 0/0 and loses its digits; the limit is a circular contact
     return brentq(mismatch, 1 + 1e-5, 1e4, xtol=1e-14, rtol=1e-14) if difference > 1e-4 else 1.0
 
 
@@ -44,7 +44,7 @@ def contact_factor(rolling_curvature: float, transverse_curvature: float, modulu
     Parameters
     ----------
     rolling_curvature, transverse_curvature : float
-        Sum of the curvatures of both bodies along and across the rolling direction, the larger one first [1/m].
+        Sum of the curvatures of both bodies along and across the rolling direction; the first is the larger one [1/m].
     modulus : float
         Effective modulus [Pa].
     """
@@ -55,10 +55,11 @@ def contact_factor(rolling_curvature: float, transverse_curvature: float, modulu
 
 
 def line_contact_factor(length: float) -> float:
-    """Load-deflection factor of one contact of a steel roller that touches its raceway over ``length`` [N m^-10/9].
+    """Load-deflection factor of one contact of a steel roller with a raceway, of contact length ``length`` [N m^-10/9].
 
-    Palmgren's approach of roller and raceway in mm, ``3.84e-5 * force**0.9 / length**0.8`` with newtons and millimetres, solved
-    for the force. Some authors take it for both contacts of a roller; compared with the elastic half-space it is that of one.
+    Palmgren gives the approach of roller and raceway in mm, ``3.84e-5 * force**0.9 / length**0.8`` with newtons and millimetres; the
+    factor is that of the force as a function of the approach. Some authors use the formula for both contacts of a roller together;
+    comparison with the elastic half-space shows that it holds for one contact.
 
     >>> round(line_contact_factor(0.010) / 1e9, 4)  # ten millimetres
     1.3444
@@ -67,7 +68,7 @@ def line_contact_factor(length: float) -> float:
 
 
 def series_factor(inner: float, outer: float, exponent: float = POINT_EXPONENT) -> float:
-    """Load-deflection factor of both contacts of one ball [N m^-3/2], or roller with its own ``exponent``.
+    """Load-deflection factor of two contacts in series [N m^-n], ``n`` the ``exponent`` of both.
 
     >>> round(series_factor(1.0, 1.0), 4)
     0.3536
@@ -97,7 +98,7 @@ def contact_exponent(bearing: Bearing) -> float:
 
 
 def known_roller_length(bearing: Bearing) -> float:
-    """Length of a roller that touches its raceways [m]; ValueError if it is not known."""
+    """Contact length of a roller [m]; raises ValueError if the bearing has none."""
     if bearing.roller_length is None:
         message = f"bearing {bearing.designation}: the length of its rollers is not known; give roller_length."
         raise ValueError(message)

@@ -1,7 +1,6 @@
-"""The nouns that the kernel takes: one bearing on one machine in one record.
+"""Input of the kernel for one record, in SI units.
 
-A :class:`KernelInput` is a :class:`~gen.physics.rotor.Machine` with its :class:`Turning`, its spalls, its waviness and its schedule, all in
-SI units.
+A :class:`KernelInput` holds a :class:`~gen.physics.rotor.Machine`, a :class:`Turning`, spalls, waviness and a schedule of speed and load.
 """
 
 import math
@@ -26,70 +25,77 @@ class SpallInput(NamedTuple):
     depth: float
     """[m]."""
     angle: float
-    """On a race from the x axis, on a ball from its first contact [rad]."""
+    """Angle on a race from the x axis, on a ball from its first contact [rad]."""
     ball: int = 0
-    """Number of the ball that carries it, if ``site`` is ``ball``."""
+    """Number of the damaged ball, if ``site`` is ``ball``."""
     profile: str = "geometric"
     table: tuple[tuple[float, ...], ...] = ()
-    """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``: on the race, or for a ball on either race."""
+    """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``: one row for a race spall, one per race for a ball spall."""
 
 
 class Turning(NamedTuple):
-    """How shaft, cage and balls of one record turn, and the forces that turn with them."""
+    """Rotation of shaft, cage and balls in one record, and the forces that depend on it."""
 
     shaft_rate: float
     """[Hz]."""
     speed_rms: float = 0.0
-    """Rms of the relative wander of the speed [1]."""
+    """Rms of the relative random variation of the speed [1]."""
     mean_slip: float = 0.0
-    """Of the cage, as a share of its rolling speed [1]."""
+    """Mean slip of the cage, as a share of its speed in pure rolling [1]."""
     slip_rms: float = 0.0
+    """Rms of the variation of the slip [1]."""
     spin_rms: float = 0.0
-    """Rms of the relative wander of the ball spin [1]."""
+    """Rms of the relative random variation of the ball spin [1]."""
     jitter_rms: float = 0.0
-    """Rms of the angle of a ball from its place in the cage [rad]."""
+    """Rms of the angle between a ball and the centre of its cage pocket [rad]."""
     axis_offset: float = 0.0
-    """Mean tilt of the spin axis, its rms, and the tilt beyond which a ball spall misses the track [rad]."""
+    """Mean tilt of the spin axis of the damaged ball [rad]."""
     axis_rms: float = 0.0
+    """Rms of the variation of the tilt [rad]."""
     axis_limit: float = 0.0
+    """Tilt beyond which the spall misses the track [rad]."""
     unbalance: float = 0.0
     """Mass times eccentricity [kg m]."""
     shaft_angle: float = 0.0
-    """Angles at the start [rad]."""
+    """Angle of the shaft at the start [rad]."""
     cage_angle: float = 0.0
+    """Angle of the cage at the start [rad]."""
     spin_angle: float = 0.0
+    """Angle of the ball spin at the start [rad]."""
     bow: float = 0.0
-    """Force of a bent shaft in its bearings: it turns with the shaft and does not depend on the speed [N]."""
+    """Force of a bent shaft on its bearings, which rotates with the shaft and does not depend on the speed [N]."""
     twice_x: float = 0.0
+    """Force of misalignment at twice the shaft rate, x component [N]."""
     twice_y: float = 0.0
-    """Force of misalignment along a fixed direction at twice the shaft rate [N]."""
+    """Force of misalignment at twice the shaft rate, y component [N]."""
     knock: float = 0.0
+    """Force of the cage on the housing once per turn of the cage [N]."""
     knock_angle: float = 0.0
-    """Knock of the cage on the housing [N], once per turn of the cage, when its first pocket is at this angle [rad]."""
+    """Angle of the first cage pocket at each knock [rad]."""
     knock_seed: int = 0
-    """Whole number that determines the scatter of the knocks."""
+    """Seed of the random variation of the knocks."""
     late_ball: int = -1
-    """Number of the ball that is out of its place in the cage, -1 for none."""
+    """Number of the ball that is displaced from the centre of its pocket, -1 for none."""
     late_by: float = 0.0
-    """Angle by which it is [rad]."""
+    """Angle of that displacement [rad]."""
 
 
 class Waviness(NamedTuple):
-    """Fourier amplitudes of a wavy bearing, phases included; empty arrays where a surface is round."""
+    """Complex Fourier amplitudes of the surfaces; an empty array stands for round surfaces."""
 
     races: NDArray[np.complex128]
     """Orders LOWEST_ORDER to HIGHEST_ORDER of the inner and the outer race, shape (race, order) or (2, 0) [m]."""
     balls: NDArray[np.complex128]
-    """Even orders from 2 on of every ball, both contacts together, shape (order, ball) or (0, 0) [m]."""
+    """Even orders of every ball from order 2 on, sum of both contacts, shape (order, ball) or (0, 0) [m]."""
 
 
 ROUND = Waviness(np.empty((2, 0), complex), np.empty((0, 0), complex))
 CONSTANT = np.empty((0, 2))
-"""Schedule of a record whose speed and load do not change."""
+"""Schedule of a record of constant speed and load."""
 
 
 class KernelInput(NamedTuple):
-    """Everything the kernel needs of one record."""
+    """Input of the kernel for one record."""
 
     bearing: Bearing
     machine: Machine
@@ -98,27 +104,27 @@ class KernelInput(NamedTuple):
     frequencies: FloatArray
     """Frequencies of the cosine terms of all processes, shape (term,) [Hz]; see :func:`gen.physics.kernel.layout.n_process_terms`."""
     phases: FloatArray
-    """Their phases, shape (term,) [rad]."""
+    """Phases of the cosine terms, shape (term,) [rad]."""
     pickups: FloatArray
     """Weights of the six accelerations in each channel, shape (channel, coordinate) [1]."""
     waviness: Waviness = ROUND
     schedule: FloatArray = CONSTANT
-    """Factors of shaft rate (over the knot) and load (at its start), shape (knot, 2); (0, 2) if both are constant."""
+    """Factors of the shaft rate (mean over the knot) and of the load (at the start of the knot), shape (knot, 2); (0, 2) if constant."""
     displacement: bool = False
-    """Whether the channels give displacements [m] instead of accelerations [m s-2]."""
+    """True for channels of displacement [m], False for channels of acceleration [m s-2]."""
 
 
 def is_wavy(waviness: Waviness) -> bool:
-    """Whether a race or a ball is wavy."""
+    """True if a race or a ball has waviness."""
     return waviness.races.size > 0 or waviness.balls.size > 0
 
 
 def spall_span(bearing: Bearing, spall: SpallInput) -> tuple[float, float]:
-    """Half the angle that a spall spans [rad], and the radius on which it is measured [m]."""
+    """Half the angle between the edges of a spall [rad], and the radius of the damaged surface [m]."""
     radius = bearing.radius(spall.site)
     return 0.5 * spall.width / radius, radius
 
 
 def farthest_jitter(turning: Turning, n_terms: int) -> float:
-    """Largest angle of a ball from its place in the cage: all ``n_terms`` cosines of its jitter at their peaks [rad]."""
+    """Largest possible angle between a ball and the centre of its pocket: sum of the ``n_terms`` cosine amplitudes of the jitter [rad]."""
     return turning.jitter_rms * math.sqrt(2 * n_terms) + abs(turning.late_by)

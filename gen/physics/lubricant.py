@@ -1,9 +1,10 @@
-"""Temperature and the oil film of a rolling element: clearance, viscosity, film thickness, stiffness and damping.
+"""Temperature and oil film of a rolling element: clearance, viscosity, film thickness, stiffness and damping.
 
-A warm inner ring takes up clearance [1]_ and warm oil is thin [2]_ [3]_. Rolling drags oil into both contacts of an element,
-where it stands as thick as elastohydrodynamic theory says, for balls [4]_ and for rollers [5]_. What a heavier load takes off
-that film is its stiffness; what pressing the oil out of the gap costs is its damping, by Reynolds' equation [6]_. The contacts
-are flooded and isothermal, their surfaces smooth, and oil in the inlet has the temperature of the bearing.
+A warm inner ring expands and reduces the clearance [1]_. Warm oil has a lower viscosity [2]_ and density [3]_. Rolling carries oil
+into both contacts of an element; elastohydrodynamic theory gives the film thickness for balls [4]_ and for rollers [5]_. The stiffness
+of the film is the change of load over the change of thickness. Its damping is the force, over the closing speed, that squeezes oil out
+of the gap, after Reynolds [6]_. The model assumes flooded isothermal contacts, smooth surfaces, and oil at the temperature of the
+bearing.
 
 .. [1] NTN Corporation, *Ball and Roller Bearings*, catalogue, eq. (8.3); IKO, *Needle Roller Bearings*, eq. (29), is the same.
 .. [2] ASTM D341, Standard practice for viscosity-temperature charts for liquid petroleum products: Walther's equation.
@@ -38,14 +39,14 @@ class Lubricant(NamedTuple):
     density_15: float = 880.0
     """Density at 15 C [kg/m3]."""
     pressure_viscosity: float = 2e-8
-    """Pressure-viscosity coefficient [1/Pa], taken as the same at every temperature."""
+    """Pressure-viscosity coefficient [1/Pa], the same at every temperature."""
 
 
 class Film(NamedTuple):
-    """Both films of one rolling element, on the inner and on the outer race, as one."""
+    """Films of one rolling element on the inner and on the outer race, in series."""
 
     thickness: float
-    """Sum of both [m]."""
+    """Sum of both thicknesses [m]."""
     stiffness: float
     """Force per change of ``thickness`` [N/m]."""
     damping: float
@@ -53,9 +54,9 @@ class Film(NamedTuple):
 
 
 def kinematic_viscosity(lubricant: Lubricant, celsius: float) -> float:
-    """Kinematic viscosity at a temperature in C [m2/s]: ``log log (nu + 0.7)`` falls linearly with ``log T``.
+    """Kinematic viscosity at a temperature in C [m2/s]: ``log log (nu + 0.7)`` is a falling linear function of ``log T``.
 
-    The form with 0.7 mm2/s is that of the standard for oils above 2 mm2/s.
+    The standard uses the constant 0.7 mm2/s for oils above 2 mm2/s.
 
     >>> round(1e6 * kinematic_viscosity(Lubricant(), 70), 2)
     20.12
@@ -67,25 +68,25 @@ def kinematic_viscosity(lubricant: Lubricant, celsius: float) -> float:
 
 
 def density(lubricant: Lubricant, celsius: float) -> float:
-    """Density at a temperature in C [kg/m3], the expansion of the petroleum tables to first order."""
+    """Density at a temperature in C [kg/m3], with the expansion of the petroleum tables to first order."""
     return lubricant.density_15 - OIL_EXPANSION * (celsius - 15)
 
 
 def dynamic_viscosity(lubricant: Lubricant, celsius: float) -> float:
-    """Dynamic viscosity at a temperature in C and no pressure [Pa s]."""
+    """Dynamic viscosity at a temperature in C and atmospheric pressure [Pa s]."""
     return density(lubricant, celsius) * kinematic_viscosity(lubricant, celsius)
 
 
-def warm_clearance(bearing: Bearing, diametral_clearance: float, hotter: float) -> float:
-    """Diametral clearance when inner ring and balls are ``hotter`` than the outer ring by so many K [m]; below 0 is preload."""
-    return diametral_clearance - STEEL_EXPANSION * hotter * 2 * bearing.outer_radius
+def warm_clearance(bearing: Bearing, diametral_clearance: float, inner_ring_hotter: float) -> float:
+    """Diametral clearance if inner ring and balls are hotter than the outer ring by ``inner_ring_hotter`` [K]; negative for preload [m]."""
+    return diametral_clearance - STEEL_EXPANSION * inner_ring_hotter * 2 * bearing.outer_radius
 
 
 def entrainment_speed(bearing: Bearing, shaft_rate: float) -> float:
-    """Speed at which rolling surfaces carry oil into a contact [m/s], one for both races.
+    """Speed at which rolling surfaces carry oil into a contact, the same for both races [m/s].
 
-    Seen from the cage both races and the surface of the ball pass a contact at
-    ``pi * shaft_rate * pitch_diameter * (1 - gamma**2) / 2``, the circumference of the ball times its rate of spin.
+    In the frame of the cage both races and the ball surface pass a contact at ``pi * shaft_rate * pitch_diameter * (1 - gamma**2) / 2``,
+    which is the circumference of the ball times its rate of spin.
     """
     return math.pi * bearing.ball_diameter * shaft_rate * orders(bearing).bsf
 
@@ -97,7 +98,7 @@ def point_film_thickness(
     viscous_speed: float,
     load: float,
 ) -> float:
-    """Central thickness of the film of a ball on a race, after Hamrock and Dowson [m].
+    """Central film thickness between a ball and a race, after Hamrock and Dowson [m].
 
     Parameters
     ----------
@@ -121,40 +122,44 @@ def point_film_thickness(
 def line_film_thickness(
     curvature: float, modulus: float, pressure_viscosity: float, viscous_speed: float, load_per_length: float
 ) -> float:
-    """Least thickness of the film of a roller on a race, after Dowson [m]; arguments as above, the load in N/m."""
+    """Smallest film thickness between a roller and a race, after Dowson [m].
+
+    The arguments are those of :func:`point_film_thickness`, with the curvature along the rolling direction and the load in N/m.
+    """
     radius = 1 / curvature
     U, G, W = viscous_speed / (modulus * radius), pressure_viscosity * modulus, load_per_length / (modulus * radius)
     return 2.65 * U**0.7 * G**0.54 * W**-LINE_LOAD_EXPONENT * radius
 
 
 def point_squeeze_damping(curvatures: tuple[float, float], viscosity: float, thickness: float) -> float:
-    """Damping of oil pressed out of the narrowest gap between two rigid bodies [N s/m].
+    """Damping by oil that is squeezed out of the gap between two rigid bodies [N s/m].
 
     In a gap ``h = thickness + (along * x**2 + across * y**2) / 2`` that closes at the speed ``v`` the pressure
-    ``6 * viscosity * v / ((along + across) * h**2)`` solves Reynolds' equation. For a ball of radius ``R`` on a plane its sum is
-    the ``6 * pi * viscosity * R**2 / thickness`` of Cox and Brenner.
+    ``6 * viscosity * v / ((along + across) * h**2)`` solves the equation of Reynolds. For a ball of radius ``R`` on a plane the integral
+    of the pressure over ``v`` is ``6 * pi * viscosity * R**2 / thickness``, the result of Cox and Brenner.
     """
     along, across = curvatures
     return 12 * math.pi * viscosity / ((along + across) * math.sqrt(along * across) * thickness)
 
 
 def line_squeeze_damping(curvature: float, length: float, viscosity: float, thickness: float) -> float:
-    """Damping of oil pressed out from under a roller [N s/m]: the same pressure over ``length``, without curvature across."""
+    """Damping by oil that is squeezed out under a roller [N s/m]: the pressure of a ball with ``across = 0``, over ``length``."""
     return 3 * math.sqrt(2) * math.pi * viscosity * length * (curvature * thickness) ** -1.5
 
 
 def film(bearing: Bearing, lubricant: Lubricant, celsius: float, shaft_rate: float, ball_load: float) -> Film:
-    """Oil film of one ball or roller, its two contacts in series.
+    """Oil film of one ball or roller, with its two contacts in series.
 
-    The stiffness is that of the formulas for the thickness, which falls with a power of the load. The damping is that of rigid
-    surfaces and oil at the viscosity of the inlet: an order of magnitude, for a loaded contact is flat and its oil far thicker.
+    The stiffness follows from the film thickness, which is proportional to a negative power of the load. The damping is that of rigid
+    surfaces and of oil with its viscosity at the inlet. It is an order of magnitude only: a loaded contact is flat, and the pressure in it
+    raises the viscosity of the oil.
 
     Parameters
     ----------
     bearing : Bearing
-        Its outer ring at rest.
+        A bearing with a fixed outer ring.
     lubricant : Lubricant
-        The oil, as much as the contacts take in.
+        The oil, in flooded contacts.
     celsius : float
         Temperature of bearing and oil [C].
     shaft_rate : float
@@ -165,7 +170,7 @@ def film(bearing: Bearing, lubricant: Lubricant, celsius: float, shaft_rate: flo
     Raises
     ------
     ValueError
-        If the shaft stands, the element carries nothing, or it is a roller of unknown length.
+        If the shaft does not rotate, the element has no load, or it is a roller of unknown length.
     """
     if shaft_rate <= 0 or ball_load <= 0:
         message = f"no film forms at shaft_rate = {shaft_rate} Hz and ball_load = {ball_load} N; both must be above 0."
@@ -189,7 +194,7 @@ def film(bearing: Bearing, lubricant: Lubricant, celsius: float, shaft_rate: flo
 
 
 def lubricated_factor(factor: float, exponent: float, ball_load: float, stiffness: float) -> float:
-    """Load-deflection factor whose tangent at ``ball_load`` is that of ``factor`` in series with a film's ``stiffness``.
+    """Load-deflection factor with the tangent, at ``ball_load``, of ``factor`` and of a film of ``stiffness`` in series.
 
     ``factor`` and the result are in N m^-n with ``n = exponent``, ``ball_load`` in N, ``stiffness`` in N/m.
     """

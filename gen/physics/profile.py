@@ -1,7 +1,7 @@
-"""How a quantity changes over time between given points: linearly or smoothly.
+"""Change of speed or load over a record: interpolation between given points, linear or smooth.
 
-Smooth means the polynomial of degree five whose first two derivatives are zero at both ends, so that a speed that runs up has a continuous
-acceleration.
+Smooth interpolation uses the polynomial of degree five whose first two derivatives are zero at both ends, so that the acceleration of a
+run-up is continuous.
 """
 
 from dataclasses import dataclass
@@ -14,17 +14,18 @@ FloatArray = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Profile:
-    """Shares of a nominal value at rising times; constant before the first point and after the last."""
+    """Shares of the nominal value at increasing times, constant before the first time and after the last."""
 
     times: tuple[float, ...]
     """From the start of the record [s]."""
     shares: tuple[float, ...]
+    """[1]."""
     smooth: bool = False
-    """Whether it changes smoothly between points."""
+    """True for smooth interpolation, False for linear interpolation."""
 
 
 def share_at(profile: Profile, times: NDArray[np.floating]) -> FloatArray:
-    """Share at ``times`` [s], of their shape [1].
+    """Share of the nominal value at ``times`` [s], of the shape of ``times`` [1].
 
     >>> [float(share) for share in share_at(Profile((0.0, 2.0), (1.0, 3.0), smooth=True), np.array([-1.0, 1.0, 5.0]))]
     [1.0, 2.0, 3.0]
@@ -39,14 +40,14 @@ def share_at(profile: Profile, times: NDArray[np.floating]) -> FloatArray:
 
 
 def mean_share(profile: Profile | None, duration: float) -> float:
-    """Mean share over the record, 1 without a profile [1]."""
+    """Mean share over a record of ``duration`` [s]; 1 if there is no profile [1]."""
     if profile is None:
         return 1.0
     return float(share_at(profile, (np.arange(4096) + 0.5) * (duration / 4096)).mean())
 
 
-def turned(profile: Profile | None, times: FloatArray) -> FloatArray:
-    """Integral of the share from the first of evenly spaced ``times`` on, of their shape [s]."""
+def integrated_share(profile: Profile | None, times: FloatArray) -> FloatArray:
+    """Integral of the share from the first of evenly spaced ``times`` to each of them, of the shape of ``times`` [s]."""
     if profile is None:
         return times - times[0]
     step = times[1] - times[0]

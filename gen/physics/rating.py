@@ -1,8 +1,8 @@
-"""Static load rating of a bearing: the radial load at which its most loaded rolling element dents the raceway.
+"""Static load rating of a bearing, and equivalent static load.
 
-ISO 76 [1]_ names the contact pressure that leaves a permanent dent of about 1/10,000 of the element's diameter. The rating is the load at
-which the most loaded element, which carries ``5 F / (Z cos(contact_angle))`` after Stribeck, reaches that pressure on the inner or on the
-outer raceway [2]_.
+ISO 76 [1]_ defines a limit of the contact pressure, at which a permanent dent of about 1/10,000 of the element diameter remains. The load
+of the most loaded element is ``5 F / (Z cos(contact_angle))`` after Stribeck. The static rating is the radial load ``F`` at which this
+element reaches the limit on the inner or on the outer raceway [2]_.
 
 .. [1] ISO 76:2006, Rolling bearings - Static load ratings.
 .. [2] T. A. Harris, *Rolling Bearing Analysis*, 4th ed., Wiley, 2001, ch. 6 (contact pressure) and ch. 21 (static rating).
@@ -17,27 +17,27 @@ from gen.physics.bearing import Bearing
 from gen.physics.hertz import effective_modulus, ellipticity, known_roller_length, race_curvatures
 from gen.physics.rotor import STRIBECK
 
-BALL_PRESSURE, ROLLER_PRESSURE = 4200e6, 4000e6  # Pa, ISO 76, radial bearings that do not align themselves
+BALL_PRESSURE, ROLLER_PRESSURE = 4200e6, 4000e6  # [Pa], ISO 76, radial bearings that are not self-aligning
 
-# Static rating over equivalent static load. Makers ask for 0.5 or more even where a bearing hardly turns. Below it a ball contact is past
-# 5300 MPa (pressure grows with the cube root of the load) and yields, so that the elastic contact of the model says nothing of it.
+# Least static rating over equivalent static load. Makers require 0.5 or more even for bearings that hardly turn. Below 0.5 the pressure of
+# a ball contact is above 5300 MPa (it grows with the cube root of the load): the contact yields, and the elastic model does not hold.
 LEAST_SAFETY = 0.5
 
 
 @functools.lru_cache(maxsize=4096)
 def static_rating(bearing: Bearing) -> float:
-    """Basic static load rating [N]: that of the catalogue, or else the one that follows from the geometry.
+    """Basic static load rating [N]: the rating of the catalogue if there is one, otherwise the rating computed from the geometry.
 
     Raises
     ------
     ValueError
-        If the bearing has no rating in the catalogue and rollers of unknown length.
+        If the bearing has no rating in the catalogue and its rollers have no known length.
     """
     return computed_rating(bearing) if bearing.static_rating is None else bearing.static_rating
 
 
 def computed_rating(bearing: Bearing) -> float:
-    """Basic static load rating that follows from the geometry [N].
+    """Basic static load rating computed from the geometry [N].
 
     >>> round(computed_rating(Bearing("6205", 9, 39.04e-3, 7.94e-3)) / 1e3, 1)
     7.9
@@ -60,8 +60,8 @@ def computed_rating(bearing: Bearing) -> float:
 def equivalent_load(radial: float, axial: float, contact_angle: float) -> float:
     """Equivalent static load [N]: ``max(F, 0.5 F + 0.22 cot(contact_angle) A)`` of ISO 76, and ``F`` without an axial load.
 
-    The standard has the second term for angular contact bearings. It stands here for any contact angle, because the balls of the model
-    keep theirs: an axial load ``A`` presses each of them with ``A / (Z sin(contact_angle))``, however small the angle.
+    The standard uses the second term for angular contact bearings only. The model has a constant contact angle, so the term holds here for
+    any angle: an axial load ``A`` adds the force ``A / (Z sin(contact_angle))`` to each ball, however small the angle is.
 
     >>> round(equivalent_load(1000.0, 2000.0, math.radians(40)))
     1024
@@ -72,9 +72,9 @@ def equivalent_load(radial: float, axial: float, contact_angle: float) -> float:
 
 
 def _point_load(along: float, across: float, modulus: float) -> float:
-    """Load of a ball at which the middle of its elliptical contact reaches ``BALL_PRESSURE`` [N].
+    """Load of a ball at which the centre of its elliptical contact reaches ``BALL_PRESSURE`` [N].
 
-    Pressure ``3 Q / (2 pi a b)`` with semi-axes ``b = (6 k^2 E Q / (pi E' sum of curvatures))^(1/3) / k`` and ``a = k b``.
+    The pressure is ``3 Q / (2 pi a b)`` with semi-axes ``b = (6 k^2 E Q / (pi E' sum of curvatures))^(1/3) / k`` and ``a = k b``.
     """
     ratio = ellipticity(along, across)
     shape = 6 * ratio**2 * float(ellipe(1 - ratio**-2)) / (math.pi * modulus * (along + across))

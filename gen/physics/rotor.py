@@ -1,6 +1,6 @@
-"""The machine around the bearing: masses, springs, dampers, loads; where it rests, and how fast it can swing.
+"""The machine around the bearing: masses, springs, dampers and loads; static equilibrium and bounds of the eigenfrequencies.
 
-Body 1 is the shaft with the inner ring, 2 the housing with the outer ring, r the sensor on its resonance; see docs/model.md.
+Body 1 is the shaft with the inner ring, body 2 the housing with the outer ring, body r the mass of the sensor resonance; see docs/model.md.
 """
 
 import math
@@ -15,7 +15,7 @@ from gen.physics.elementary import power
 FloatArray = NDArray[np.float64]
 Fields = TypeVar("Fields", bound=tuple[Any, ...])
 
-# Heaviest ball load before anything moves, Stribeck: 5 W / Z; three times that covers what spalls were seen to do to it.
+# The largest static ball load is 5 W / Z after Stribeck; the dynamic load of simulated spalls stayed below three times that.
 STRIBECK, DYNAMIC_FACTOR, LOADED_BALLS = 5.0, 3.0, 3
 
 
@@ -30,7 +30,7 @@ class Machine(NamedTuple):
     shaft_mass: float
     housing_mass: float
     sensor_mass: float
-    """0 if there is no sensor resonance."""
+    """0 for a machine without a sensor resonance."""
     ring_damping: float
     shaft_damping: float
     shaft_stiffness: float
@@ -46,21 +46,21 @@ class Machine(NamedTuple):
     load_x: float
     load_y: float
     looseness: float = 0.0
-    """Half the play of the housing in its support [m]."""
+    """Half the free play of the housing in its support [m]."""
     contact_exponent: float = 1.5
 
 
 def as_columns(items: Sequence[Fields]) -> Fields:
-    """The fields of several items as arrays, shape (item,) each, in one item of the same type."""
+    """One item of the same type whose fields are arrays of the fields of several items, shape (item,)."""
     kind: Any = type(items[0])
     return kind(**{name: np.array([getattr(item, name) for item in items], float) for name in kind._fields})
 
 
 def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> FloatArray | float:
-    """Contact stiffness that a record will hardly exceed [N/m]; fields may be arrays of shape (record,).
+    """Estimate of the largest contact stiffness of a record [N/m]; fields may be arrays of shape (record,).
 
-    Ball loads are taken as ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, and the preload on all. ``pull`` is what
-    else may pull at the shaft, beside the load [N].
+    The estimate has ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, and the preload on all balls. ``pull`` is the sum of
+    the forces on the shaft other than the load [N].
     """
     load, n = np.hypot(machine.load_x, machine.load_y) + pull, np.asarray(machine.contact_exponent)
     factor = np.asarray(machine.load_deflection_factor)
@@ -70,10 +70,10 @@ def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> Float
     return loaded + n * factor * n_balls * power(squeeze, n - 1)
 
 
-def fastest_swing(machine: Machine, contact_stiffness: FloatArray | float) -> FloatArray | float:
+def highest_angular_frequency(machine: Machine, contact_stiffness: FloatArray | float) -> FloatArray | float:
     """Upper bound of the angular eigenfrequencies at a contact stiffness [N/m]; fields may be arrays of shape (record,) [rad/s].
 
-    The sum of the squared eigenfrequencies per direction bounds the largest.
+    The sum of the squared eigenfrequencies of a direction is not below the square of the largest one.
     """
     ring = np.maximum(machine.ring_stiffness_x, machine.ring_stiffness_y)
     support = np.maximum(machine.support_stiffness_x, machine.support_stiffness_y)
@@ -85,8 +85,8 @@ def fastest_swing(machine: Machine, contact_stiffness: FloatArray | float) -> Fl
     return np.sqrt(square)
 
 
-def fastest_decay(machine: Machine, n_balls: int) -> float:
-    """Upper bound of the damping rates [1/s]: of evenly spaced balls half act along any direction."""
+def highest_damping_rate(machine: Machine, n_balls: int) -> float:
+    """Upper bound of the damping rates [1/s]; evenly spaced balls damp any direction like half of their number along it."""
     inverse = 1 / machine.shaft_mass + 1 / machine.housing_mass
     rate = (
         machine.ring_damping + 0.5 * n_balls * machine.contact_damping
@@ -107,7 +107,7 @@ def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) 
     displacement : array, shape (record, axis)
         Relative displacement [m].
     angles : array, shape (record, ball)
-        Where the balls are [rad].
+        Angular positions of the balls [rad].
 
     Returns
     -------
@@ -123,14 +123,14 @@ def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) 
 
 
 def rest(machine: Machine, angles: FloatArray) -> FloatArray:
-    """Static equilibrium under the load, spalls aside, by damped Newton steps; a loose housing lies at one end of its play.
+    """Static equilibrium under the load, without spalls, by damped Newton steps; a loose housing is at the limit of its play.
 
     Parameters
     ----------
     machine : Machine
         Arrays of shape (record,).
     angles : array, shape (record, ball)
-        Where the balls are [rad].
+        Angular positions of the balls [rad].
 
     Returns
     -------
@@ -148,20 +148,22 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     housing = load / (support + ground) + play * np.sign(load)
     q = np.concatenate([housing + load / weight[:, None] * reach[:, None], housing], axis=1)
     for _ in range(200):
-        residual, jacobian = _balance(machine, q, angles, load, support, ring, ground, play)
+        residual, jacobian = _unbalanced_force(machine, q, angles, load, support, ring, ground, play)
         moving = np.abs(residual).max(axis=1) >= 1e-9 * weight
         if not moving.any():
             break
-        # a lone ball holds nothing sideways: a soft spring keeps the step finite and vanishes with the residual
+        # one loaded ball has no stiffness across its direction: a soft spring keeps the step finite, and becomes 0 with the residual
         soft = 1e-3 * np.abs(residual).max(axis=1) / 1e-6 + 1e-3
         step = _solved(jacobian + soft[:, None, None] * np.eye(4), residual)
         longest = np.abs(step).max(axis=1, keepdims=True)
         step *= np.minimum(1.0, 2e-6 / np.maximum(longest, 1e-30))
-        q = np.where(moving[:, None], q + step, q)  # who has arrived does not wait for the others: they must not matter
+        q = np.where(
+            moving[:, None], q + step, q
+        )  # converged records are frozen, so that results do not depend on the batch
     return q
 
 
-def _balance(
+def _unbalanced_force(
     machine: Machine,
     q: FloatArray,
     angles: FloatArray,
@@ -171,7 +173,7 @@ def _balance(
     ground: FloatArray,
     play: FloatArray,
 ) -> tuple[FloatArray, FloatArray]:
-    """Unbalanced force on each coordinate, shape (record, 4), and its negative derivative, shape (record, 4, 4)."""
+    """Sum of the forces on each coordinate, shape (record, 4), and its negative derivative, shape (record, 4, 4)."""
     relative = q[:, :2] - q[:, 2:]
     force, stiffness = ball_forces(machine, relative, angles)
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=2)
@@ -188,7 +190,7 @@ def _balance(
 
 
 def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solution of positive definite systems, shape (record, row), by elimination; LAPACK's bits depend on the processor."""
+    """Solution of positive definite systems by elimination, shape (record, row); LAPACK has other bits on other processors."""
     matrix, right = matrix.copy(), right.copy()
     size = right.shape[1]
     for pivot in range(size):

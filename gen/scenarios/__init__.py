@@ -1,14 +1,14 @@
-"""Scenarios: rigs, specimens and records with every value drawn; only the course of random processes in time is left to the simulation.
+"""Scenarios: rigs, specimens and records with every value drawn; the simulation draws only the random processes in time.
 
-====== ============================================================
+====== =================================================================
 module responsibility
-====== ============================================================
-model  rigs, specimens, records, and the random streams they own
-draws  values drawn one after the other, from the distributions
-faults which specimens are damaged, and how
-draw   how each is drawn, level by level
-stored scenarios as the text that a corpus stores, and back
-====== ============================================================
+====== =================================================================
+model  dataclasses of rig, specimen and record; random streams
+draws  draw values from the distributions of a recipe section
+faults choose the fault class of each specimen and draw its damage
+draw   draw rigs, specimens and records
+stored write a scenario as the JSON text that a corpus stores, and read it
+====== =================================================================
 """
 
 from gen.scenarios.draw import draw_scenarios

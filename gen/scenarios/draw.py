@@ -1,8 +1,8 @@
-"""Scenarios: rigs, specimens and records, fully drawn; what is random about a record is settled here.
+"""Draw scenarios: rigs, specimens and records.
 
-A rig is one machine with its path, background and sensor; it has healthy and faulty specimens, and each specimen several records.
-Every level and purpose has a random stream of its own, found by number and never by the order of work. The streams of everything but
-the fault do not know the fault: a record with and without it differ in the fault alone.
+A rig is one machine with its path, background and sensor; it has healthy and faulty specimens, and each specimen has several records.
+Every rig, specimen, record and purpose has its own random stream, which depends on their numbers and not on the order of work. Only the
+fault stream depends on the fault: a record with its fault and the same record without it differ in the fault alone.
 """
 
 import functools
@@ -47,15 +47,15 @@ from gen.scenarios.model import (
 from gen.units import decibel_to_ratio, percent_to_share
 
 STEEPEST_CONTACT = math.radians(45)
-_DIMENSIONS = 64  # quasi-random values of an item; what it draws beyond them is plain random
-# dimensions of its own for each level: the same ones tied the first values of a specimen and its only record together (r up to 1)
+_DIMENSIONS = 64  # quasi-random values of an item; its further values are pseudo-random
+# Each level has its own dimensions: with common ones the first values of a specimen and of its only record were correlated (r up to 1).
 _FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
 
 
 def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> list[Scenario]:
-    """Records ``first`` to ``stop`` of a corpus, drawn.
+    """Draw the scenarios of the records ``first`` to ``stop`` (exclusive) of a corpus.
 
-    Any range gives the same records as a range that contains it.
+    The scenario of a record does not depend on the range.
 
     Raises
     ------
@@ -86,22 +86,21 @@ def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> l
 
 
 def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
-    """Quasi-random points of items ``first`` to ``stop`` of a level; empty ones if sampling is random."""
+    """Quasi-random points of the items ``first`` to ``stop`` of a level, by number; empty points if sampling is random."""
     if recipe.corpus.sampling == "random":
         return {number: np.empty(0) for number in range(first, stop)}
-    from scipy.stats import qmc  # loads for half a second, and few recipes need it
+    from scipy.stats import qmc  # the import takes half a second, and few recipes need it
 
     engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
     rng = stream(recipe.seed, 0, 0, 0, Purpose.SAMPLING)
     engine = engine_type(_FIRST_DIMENSION[level] + _DIMENSIONS, scramble=True, rng=rng)
     if isinstance(engine, qmc.Halton):
-        engine.num_generated = first  # its own way there makes all points before
-    elif first > 0:  # scipy's Sobol overflows on 0
+        engine.num_generated = first  # Halton.fast_forward computes all points before it
+    elif first > 0:  # Sobol.fast_forward(0) overflows in scipy
         engine.fast_forward(first)
     with warnings.catch_warnings():
-        warnings.filterwarnings(
-            "ignore", "The balance properties", UserWarning
-        )  # of the range; the whole sequence has them
+        # a range of the sequence is not balanced, the whole sequence is
+        warnings.filterwarnings("ignore", "The balance properties", UserWarning)
         points = engine.random(stop - first)[:, _FIRST_DIMENSION[level] :]
     return dict(zip(range(first, stop), points, strict=True))
 
@@ -109,7 +108,7 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
 def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
     draws = Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number)
     machine = draws.section(recipe.machine)
-    # the balance grade holds at the highest speed that a machine is made for (ISO 21940-11)
+    # ISO 21940-11 defines the balance grade at the highest speed of the machine
     highest_rate = recipe.operation.shaft_rpm.support()[1] / 60
     machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
     resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator)
@@ -125,7 +124,7 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
     oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)
     if oil is not None and oil["viscosity_100"] >= oil["viscosity_40"]:
         raise RecipeError(
-            f"rig {number}: oil of {oil['viscosity_40'] * 1e6:.3g} mm2/s at 40 C is thicker at 100 C; "
+            f"rig {number}: oil of {oil['viscosity_40'] * 1e6:.3g} mm2/s at 40 C has no lower viscosity at 100 C; "
             f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
         )
     return Rig(
@@ -152,12 +151,19 @@ def _draw_bearing(recipe: Recipe, draws: Draws, rig: int) -> Bearing:
     n_balls = round(drawn["n_balls"])
     ball = chosen.largest_ball(n_balls, drawn["pitch_diameter"], drawn["ball_share"])
     if drawn["ball_share"] > 0.6 or ball <= 0:
-        raise RecipeError(f"rig {rig}: ball_share {drawn['ball_share']:g} gives no bearing; keep it below 0.45.")
+        raise RecipeError(
+            f"rig {rig}: ball_share {drawn['ball_share']:g} leaves no room for the balls; keep it below 0.45."
+        )
     rollers = drawn["roller_length"]
     return Bearing(
-        chosen.designation, n_balls, drawn["pitch_diameter"], ball, drawn["contact_angle"],
-        rolling_element="roller" if rollers > 0 else "ball", roller_length=rollers or None,
-    )  # fmt: skip
+        designation=chosen.designation,
+        n_balls=n_balls,
+        pitch_diameter=drawn["pitch_diameter"],
+        ball_diameter=ball,
+        contact_angle=drawn["contact_angle"],
+        rolling_element="roller" if rollers > 0 else "ball",
+        roller_length=rollers or None,
+    )
 
 
 def _draw_path(draws: Draws, path: PathSection) -> Path:
@@ -178,7 +184,7 @@ def _draw_modes(draws: Draws, modes: Modes | None) -> tuple[Mode, ...]:
 
 
 def _draw_modulation(draws: Draws, modulation: Any) -> ShaftModulation:
-    if modulation is None or not draws.happens(modulation):
+    if modulation is None or not draws.is_present(modulation):
         return ShaftModulation()
     return ShaftModulation(draws.value(modulation.first), draws.value(modulation.second))
 
@@ -187,17 +193,17 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     wanted = recipe.background
     slope, floor = draws.value(wanted.slope), decibel_to_ratio(draws.value(wanted.floor_db))
     harmonics, tones = [], []
-    if wanted.harmonics is not None and draws.happens(wanted.harmonics):
+    if wanted.harmonics is not None and draws.is_present(wanted.harmonics):
         orders = range(1, round(draws.value(wanted.harmonics.count)) + 1)
         harmonics = [Tone(order, decibel_to_ratio(draws.value(wanted.harmonics.level_db))) for order in orders]
-    if wanted.tones is not None and draws.happens(wanted.tones):
+    if wanted.tones is not None and draws.is_present(wanted.tones):
         for _ in range(round(draws.value(wanted.tones.count))):
             level = decibel_to_ratio(draws.value(wanted.tones.level_db))
             tones.append(Tone(draws.value(wanted.tones.frequency_hz), level, draws.value(wanted.tones.modulation)))
     impulses = knocks = None
-    if wanted.impulses is not None and draws.happens(wanted.impulses):
+    if wanted.impulses is not None and draws.is_present(wanted.impulses):
         impulses = Tone(draws.value(wanted.impulses.rate_hz), decibel_to_ratio(draws.value(wanted.impulses.level_db)))
-    if wanted.knocks is not None and draws.happens(wanted.knocks):
+    if wanted.knocks is not None and draws.is_present(wanted.knocks):
         knocks = Tone(draws.value(wanted.knocks.orders), decibel_to_ratio(draws.value(wanted.knocks.level_db)))
     modes, modulation = _draw_modes(draws, wanted.modes), _draw_modulation(draws, wanted.modulation)
     return Background(
@@ -227,35 +233,37 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     )
     if abs(bearing.contact_angle) > STEEPEST_CONTACT:
         raise RecipeError(
-            f"specimen {number}: a contact angle of {math.degrees(bearing.contact_angle):.3g} degrees is no radial bearing's; keep "
-            f"drawing and specimen together below {math.degrees(STEEPEST_CONTACT):.0f}."
+            f"specimen {number}: a contact angle of {math.degrees(bearing.contact_angle):.3g} degrees is too large for a radial bearing; "
+            f"keep the angles of bearing and specimen together below {math.degrees(STEEPEST_CONTACT):.0f}."
         )
-    place = number % recipe.corpus.specimens_per_rig
-    fault = classes[place]
+    position = number % recipe.corpus.specimens_per_rig
+    fault = classes[position]
     draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
     wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
     specimen = Specimen(
-        number, bearing, properties, fault, spalls=(), axis={}, split=_draw_split(recipe, rig.number, place)
+        number, bearing, properties, fault, spalls=(), axis={}, split=_draw_split(recipe, rig.number, position)
     )
     return damaged(draws, entry, specimen)
 
 
-def _draw_split(recipe: Recipe, rig: int, place: int) -> str:
+def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
     split, corpus = recipe.corpus.split, recipe.corpus
     if split.by == "rig":
         rank = _ranks(recipe.seed, 0, corpus.rigs)[rig]
-        u = rank / corpus.rigs if corpus.rigs > 1 else 1.0  # the first of two or more is set aside if any is
+        # the first of two or more rigs is in the test part, if there is one
+        u = rank / corpus.rigs if corpus.rigs > 1 else 1.0
     else:
-        rank = _ranks(recipe.seed, rig, corpus.specimens_per_rig)[place]
-        u = (rank + (rig * 0.6180339887 + 0.5) % 1) / corpus.specimens_per_rig  # golden ratio: even over rigs too
+        rank = _ranks(recipe.seed, rig, corpus.specimens_per_rig)[position]
+        # the offset by the golden ratio distributes the parts evenly over the rigs
+        u = (rank + (rig * 0.6180339887 + 0.5) % 1) / corpus.specimens_per_rig
     train, validation, test = SPLITS
     return test if u < split.test else validation if u < split.test + split.validation else train
 
 
 @functools.lru_cache(maxsize=4)
 def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
-    """Order in which rigs, or the specimens of a rig, are set aside."""
+    """Random order of the rigs, or of the specimens of a rig, for the split."""
     return stream(seed, rig, 0, 0, Purpose.SPLIT).permutation(count)
 
 
@@ -281,7 +289,7 @@ def _draw_profile(draws: Draws, profile: ProfileSection, duration: float) -> Pro
         return Profile(profile.times_s, tuple(map(percent_to_share, profile.percent)))
     if profile.kind == "steps":
         levels = tuple(map(percent_to_share, profile.levels_percent))
-        changes = [duration * place / len(levels) for place in range(1, len(levels))]
+        changes = [duration * change / len(levels) for change in range(1, len(levels))]
         times = [time + side * profile.step_s / 2 for time in changes for side in (-1, 1)]
         shares = [level for pair in pairwise(levels) for level in pair]
         return Profile(tuple(times), tuple(shares), smooth=True)

@@ -1,4 +1,4 @@
-"""Values of one rig, specimen or record, drawn one after the other."""
+"""Draw the values of one rig, specimen or record, one after the other."""
 
 import functools
 from typing import Any
@@ -16,30 +16,31 @@ _unit_of = functools.cache(split_unit)
 
 
 class Draws:
-    """Values of one rig, specimen or record, drawn one after the other.
+    """Source of the values of one rig, specimen or record.
 
-    The first come from a quasi-random point if there is one; grids follow the number of the item.
+    The first values come from the coordinates of a quasi-random ``point``, further ones from ``rng``. A grid takes its value by the
+    ``number`` of the item; several grids enumerate all combinations.
     """
 
-    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], turn: int) -> None:
+    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], number: int) -> None:
         self._rng = rng
         self._point = list(point[::-1])
-        self._turn = turn
+        self._combination = number
 
     def u(self) -> float:
         """Next number in [0, 1)."""
         return float(self._point.pop()) if self._point else float(self._rng.random())
 
     def value(self, distribution: Any) -> float:
-        """Value of a distribution in its own unit."""
+        """Next value of a distribution, in the unit of the recipe key."""
         u = self.u()
         if isinstance(distribution, Grid):
-            self._turn, place = divmod(self._turn, len(distribution.values))
-            return float(distribution.values[place])
+            self._combination, position = divmod(self._combination, len(distribution.values))
+            return float(distribution.values[position])
         return distribution.draw(u)
 
     def section(self, section: Section) -> Drawn:
-        """Every distribution of a section, in SI units, by its key without the unit."""
+        """One value of every distribution of a section, in SI units, by the key without its unit."""
         drawn: Drawn = {}
         for key, distribution in section:
             if isinstance(distribution, BaseModel) and hasattr(distribution, "draw"):
@@ -47,6 +48,6 @@ class Draws:
                 drawn[name] = self.value(distribution) * factor
         return drawn
 
-    def happens(self, section: Any) -> bool:
-        """Whether something with a probability is there."""
+    def is_present(self, section: Any) -> bool:
+        """True with the probability that a section gives."""
         return self.u() < section.probability

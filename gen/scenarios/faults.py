@@ -1,4 +1,4 @@
-"""Which specimens of a rig are damaged, and how."""
+"""Choose the fault class of every specimen of a rig, and draw its damage."""
 
 import functools
 import math
@@ -25,11 +25,11 @@ from gen.scenarios.draws import Draws
 from gen.scenarios.model import Purpose, Spall, Specimen, Wear, stream
 from gen.units import to_si
 
-_WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # width of a spall over the radius it lies on
+_WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # largest width of a spall over the radius of its surface
 
 
 def damaged(draws: Draws, entry: Fault, specimen: Specimen) -> Specimen:
-    """A specimen with the fault that an entry of the recipe describes."""
+    """Specimen with the fault of one ``faults`` entry of the recipe."""
     if isinstance(entry, Healthy):
         return specimen
     if isinstance(entry, DistributedFault):
@@ -79,7 +79,7 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
 
 
 def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
-    """Fault classes of the specimens of a rig: by weight, but never all healthy or all faulty if the recipe has both."""
+    """Fault class of each specimen of a rig, by weight; a rig has healthy and faulty specimens if the recipe has both."""
     weights: dict[str, float] = dict.fromkeys(FAULTS, 0.0)
     for entry in recipe.faults:
         weights[fault_class(entry)] += entry.weight
@@ -89,7 +89,7 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     chosen = [kind for kind, share in shares.items() for _ in range(math.floor(share + 1e-9))]
     rest = np.array([share - math.floor(share + 1e-9) for share in shares.values()])
     if len(chosen) < count:
-        # systematic sampling in random order: as many of the rest as are missing, each as often as its fraction says, none twice
+        # systematic sampling in random order: each remaining class at most once, with a probability equal to its fraction
         order = rng.permutation(len(rest))
         edges = np.cumsum(np.maximum(rest[order], 0.0))
         picks = np.searchsorted(edges, rng.random() + np.arange(count - len(chosen)), side="right")
@@ -105,7 +105,7 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
 
 @functools.lru_cache(maxsize=16)
 def first_specimens(recipe: Recipe) -> dict[str, int]:
-    """Number of the first specimen of each fault class in the corpus; rigs beyond the last of them are not looked at."""
+    """Number of the first specimen of each fault class in the corpus; the search stops when it has found every class."""
     corpus = recipe.corpus
     n_specimens = -(-recipe.n_records // corpus.records_per_specimen)
     n_classes = len({fault_class(entry) for entry in recipe.faults if entry.weight > 0})

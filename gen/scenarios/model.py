@@ -1,10 +1,11 @@
-"""Rigs with their background, specimens with their damage, records with their conditions.
+"""Dataclasses of a scenario: the rig with its background, the specimen with its damage, the record with its conditions.
 
-Every value is plain and in SI units, so that a scenario can be stored with its record and read back.
+Every value is a number, a text or a tuple, in SI units, so that a corpus can store the scenario of each record as JSON.
 """
 
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
+from typing import Literal
 
 import numpy as np
 
@@ -12,10 +13,11 @@ from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 
 Drawn = dict[str, float]
+"""Values drawn from one recipe section, by the key without its unit."""
 
 
 class Purpose(IntEnum):
-    """Purpose of a random stream."""
+    """Purpose of a random stream; the number is part of the seed of the stream and must not change."""
 
     RIG = 0
     CLASSES = 1
@@ -35,50 +37,57 @@ class Purpose(IntEnum):
 
 @dataclass(frozen=True)
 class Spall:
-    """One spall as it was drawn."""
+    """Drawn dimensions of one spall."""
 
-    site: str
-    """``inner``, ``outer`` or ``ball``."""
+    site: Literal["inner", "outer", "ball"]
     width: float
     """Along the rolling direction [m]."""
     depth: float
     """[m]."""
     angle: float
-    """On the outer race from the direction of the load [rad]."""
+    """Angle [rad]; on the outer race it counts from the direction of the load."""
     ball: int = 0
-    """Number of the ball that carries it, if ``site`` is ``ball``."""
-    profile: str = "geometric"
+    """Number of the damaged ball, if ``site`` is ``ball``."""
+    profile: Literal["geometric", "half_sine", "raised_cosine", "rectangular", "trace"] = "geometric"
     trace: tuple[float, ...] = ()
-    """Depths of a measured surface from edge to edge [m]."""
+    """Depths of a measured surface from edge to edge, evenly spaced [m]."""
     roughness: float = 0.0
-    """Rms roughness of its floor [m]."""
+    """Rms roughness of the floor [m]."""
 
 
 @dataclass(frozen=True)
 class Wear:
-    """Waviness of a worn race: rms [m], at one ``order`` per turn, or with amplitudes that fall as 1/order."""
+    """Waviness of a worn race."""
 
-    site: str
+    site: Literal["inner", "outer"]
     waviness: float
+    """Rms [m]."""
     order: int | None
+    """Waves per turn; None for all orders, with amplitudes proportional to 1/order."""
 
 
 @dataclass(frozen=True)
 class Mode:
-    """A resonance: frequency [Hz], damping ratio and signed gain [1]."""
+    """A resonance."""
 
     frequency: float
+    """[Hz]."""
     damping: float
+    """Damping ratio [1]."""
     gain: float
+    """Amplitude with its sign [1]."""
 
 
 @dataclass(frozen=True)
 class Tone:
-    """A spectral line: frequency [Hz or shaft orders], rms relative to the noise, and depth of its modulation by the shaft."""
+    """A spectral line, or a series of impulses."""
 
     frequency: float
+    """[Hz], or orders of the shaft for harmonics and knocks; of impulses the mean rate [Hz]."""
     level: float
+    """Rms of the line, or peak of an impulse, over the rms of the noise [1]."""
     modulation: float = 0.0
+    """Depth of the amplitude modulation once per turn of the shaft [1]."""
 
 
 @dataclass(frozen=True)
@@ -91,10 +100,11 @@ class ShaftModulation:
 
 @dataclass(frozen=True)
 class Pickup:
-    """The body whose acceleration a channel measures, and the direction in which it does [rad]."""
+    """Body and direction of the acceleration that a channel measures."""
 
-    body: str
+    body: Literal["shaft", "housing", "sensor"]
     angle: float
+    """Direction [rad]."""
 
 
 @dataclass(frozen=True)
@@ -102,16 +112,19 @@ class Path:
     """Transfer path from bearing to sensor: a direct part, resonances, and modulation by the shaft."""
 
     direct: float
+    """Gain of the part without resonance [1]."""
     modes: tuple[Mode, ...]
     modulation: ShaftModulation
 
 
 @dataclass(frozen=True)
 class Background:
-    """Vibration of a machine without the bearing; levels are relative to its noise."""
+    """Vibration of the machine without the bearing; levels are relative to the rms of its noise."""
 
     slope: float
+    """The PSD of the noise falls as ``f**-slope`` [1]."""
     floor: float
+    """Amplitude of the white floor of the noise [1]."""
     modes: tuple[Mode, ...]
     modulation: ShaftModulation
     harmonics: tuple[Tone, ...]
@@ -131,13 +144,15 @@ class Rig:
     channels: tuple[Pickup, ...]
     path: Path
     own_paths: tuple[Path | None, ...]
-    """Path of each channel, None where it is the common one."""
+    """Transfer path of each channel; None for a channel on the common ``path``."""
     background: Background
     gain: float
+    """Gain of bearing and background, for ``level.kind: physical`` [1]."""
     background_rms: float
+    """Rms of the background before the gain, for ``level.kind: physical`` [m s-2]."""
     lubricant: Drawn | None = None
     footprint: bool = False
-    """Whether contacts have their Hertzian width, or are points."""
+    """True for contacts of Hertzian width, False for point contacts."""
 
 
 @dataclass(frozen=True)
@@ -150,7 +165,7 @@ class Specimen:
     fault: str
     spalls: tuple[Spall, ...]
     axis: Drawn
-    """Tilt of the spin axis of a bearing with a ball spall: its mean, its rms, and the tilt that misses the track [rad]."""
+    """Tilt of the spin axis of a damaged ball [rad]: mean, rms, and tilt beyond which the spall misses the track."""
     split: str
     cage: Drawn = field(default_factory=dict)
     """Pitch error [rad] and knock [N] of a broken cage."""
@@ -159,19 +174,21 @@ class Specimen:
 
 @dataclass(frozen=True)
 class Operation:
-    """One record: operating conditions, and level of the bearing."""
+    """Operating conditions and level of one record."""
 
     number: int
     conditions: Drawn
     snr: float | None
+    """Bearing over background, for ``level.kind: snr`` [dB]."""
     rms: float | None
+    """Rms of bearing and background together, for ``level.kind: snr`` [m s-2]."""
     speed_profile: Profile | None = None
     load_profile: Profile | None = None
 
 
 @dataclass(frozen=True)
 class Scenario:
-    """One record, fully drawn."""
+    """All drawn values of one record."""
 
     seed: int
     rig: Rig
@@ -188,6 +205,6 @@ class Scenario:
 
 
 def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:
-    """Random stream of one purpose at one place; levels above a record leave the lower numbers at 0."""
+    """Random stream of one purpose; a stream of a rig or a specimen has 0 for the numbers of the lower levels."""
     sequence = np.random.SeedSequence(seed, spawn_key=(rig, specimen, record, int(purpose)))
     return np.random.Generator(np.random.PCG64DXSM(sequence))

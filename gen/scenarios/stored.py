@@ -1,4 +1,4 @@
-"""Scenarios as the JSON text that a corpus stores with each record, and back."""
+"""Write a scenario as the JSON text that a corpus stores with each record, and read it."""
 
 import json
 from collections.abc import Sequence
@@ -9,11 +9,13 @@ from gen.errors import CorpusError
 from gen.scenarios.model import Scenario
 
 _SCENARIO = TypeAdapter(Scenario)
+_LONGEST_PLACE = 100
+_ADVICE = "read the corpus with the version that wrote it."
 
 
 def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
     """One JSON object for each scenario, with its seed, rig, specimen and record; :func:`read_scenario` reads it."""
-    # records share rigs and specimens: each of these is written once
+    # many records share a rig or a specimen, so each of these is encoded once
     shared = {id(item): item for scenario in scenarios for item in (scenario.rig, scenario.specimen)}
     texts = {number: json.dumps(item, default=vars) for number, item in shared.items()}
     return [
@@ -32,8 +34,25 @@ def read_scenario(text: str) -> Scenario:
         If the text is not a scenario.
     """
     try:
-        return _SCENARIO.validate_json(text, strict=True)
+        scenario = _SCENARIO.validate_json(text, strict=True)
     except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(part) for part in first["loc"]) or "the whole text"
-        raise CorpusError(f"stored scenario: {place}: {first['msg']}; it was not written by this version.") from None
+        first = error.errors(include_url=False, include_input=False)[0]
+        # a key of the text may have any length and any characters
+        place = repr(".".join(str(part) for part in first["loc"]) or "the whole text")[1:-1][:_LONGEST_PLACE]
+        raise CorpusError(f"stored scenario: {place}: {first['msg']}; {_ADVICE}") from None
+    if not _holds_exactly(text, scenario):
+        raise CorpusError(f"stored scenario: it has keys or numbers that no scenario has; {_ADVICE}")
+    return scenario
+
+
+def _holds_exactly(text: str, scenario: Scenario) -> bool:
+    """True if a text has the keys and numbers of a scenario and no others, and every number is finite.
+
+    pydantic ignores keys that a dataclass does not have, and accepts NaN and infinity.
+    """
+    try:
+        values = json.loads(text)
+        json.dumps(values, allow_nan=False)
+    except ValueError:
+        return False
+    return values == json.loads(scenario_texts([scenario])[0])

@@ -12,7 +12,7 @@ from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
 from gen.physics.inputs import ROUND, SpallInput, Waviness
 from gen.physics.kernel.drop import PROFILES, drop, largest_drop
-from gen.physics.trace import ball_path, contact_mean, places, with_roughness
+from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
 from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
 
 FloatArray = NDArray[np.float64]
@@ -84,7 +84,7 @@ def largest_drop_over(scenario: Scenario, number: int) -> float:
 def _paths(
     spall: Spall, ball: float, races: tuple[float, ...], place: tuple[int, int, int, int]
 ) -> tuple[FloatArray, ...]:
-    at = places(spall.width)
+    at = spall_positions(spall.width)
     if spall.profile not in ("geometric", "trace"):
         arc = ball if spall.site == "ball" else abs(races[0])
         profile, half = PROFILES.index(spall.profile), 0.5 * spall.width / arc

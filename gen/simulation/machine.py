@@ -83,7 +83,7 @@ def machine_of(scenario: Scenario, cage_angle: float) -> Machine:
     profile = scenario.record.load_profile
     return machine._replace(
         half_clearance=half_clearance
-        - axial_approach(machine, axial, angles, heaviest=1.0 if profile is None else max(profile.shares))
+        - axial_approach(machine, axial, angles, largest_load_share=1.0 if profile is None else max(profile.shares))
     )
 
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gen.errors import SimulationError
 from gen.physics.inputs import KernelInput
 from gen.physics.kernel.compiling import LANES
-from gen.physics.rotor import fastest_decay, fastest_swing, likely_stiffness
+from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING, Recipe
 from gen.scenarios import Scenario, first_specimens
 from gen.simulation.batches import Group
@@ -69,7 +69,7 @@ def fastest_rate(given: KernelInput) -> float:
     """Angular frequency that the step must follow: that of the stiffest mode, or of the strongest damping [rad/s]."""
     machine, n_balls = given.machine, given.bearing.n_balls
     stiffness = likely_stiffness(machine, n_balls, largest_pull(given))
-    return max(float(fastest_swing(machine, stiffness)), fastest_decay(machine, n_balls) / 2.5)
+    return max(float(highest_angular_frequency(machine, stiffness)), highest_damping_rate(machine, n_balls) / 2.5)
 
 
 def largest_pull(given: KernelInput) -> float:
@@ -84,7 +84,7 @@ def largest_pull(given: KernelInput) -> float:
 
 def step_phase(given: KernelInput, steepest: float, steps: int, fs: float) -> float:
     """Fastest angular frequency at the contact stiffness ``steepest`` [N/m], times the step [rad]."""
-    return float(fastest_swing(given.machine, steepest)) / (fs * steps)
+    return float(highest_angular_frequency(given.machine, steepest)) / (fs * steps)
 
 
 def failure(number: int, steps: int, diverged: float, phase: float) -> str | None:

@@ -146,6 +146,20 @@ def plain(recipe, **changes):
     return with_rig(draw_scenarios(recipe, 0, 1), **(quiet | changes))
 
 
+def test_a_sample_at_full_scale_is_not_clipped_and_one_count_beyond_it_is(recipe_with):
+    recipe = recipe_with(PLAIN)
+    moved, start = silence(recipe, 1), timeline(recipe).lead
+    at_full_scale = COUNT * np.array([LARGEST_COUNT, -LARGEST_COUNT])
+    moved[0, 0, start : start + 2] = at_full_scale
+    found = measure(moved, plain(recipe), recipe)
+    assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
+    assert found.clipped.tolist() == [0]
+    moved[0, 0, start : start + 2] = at_full_scale * (1 + 1 / LARGEST_COUNT)
+    found = measure(moved, plain(recipe), recipe)
+    assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
+    assert found.clipped.tolist() == [2]
+
+
 def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_converter(recipe_with):
     """Rounding to counts has an error of 1/sqrt(12) count, which is the only background of such a record."""
     recipe = recipe_with(PLAIN)
@@ -303,6 +317,18 @@ def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):
     for order, depth in ((1, 0.6), (2, 0.2)):
         assert line(signal, 2000 + 30 * order) == pytest.approx(depth / 2, abs=1e-3)
         assert line(signal, 2000 - 30 * order) == pytest.approx(depth / 2, abs=1e-3)
+
+
+def test_channels_on_the_common_path_share_its_modulation_and_a_path_of_its_own_has_another(recipe_with):
+    three = [{"name": name, "body": "sensor"} for name in ("first", "second", "third")]
+    recipe = recipe_with(FLOAT | {"recording.channels": three})
+    modulated = Path(1.0, (), ShaftModulation(0.6, 0.2))
+    changes = {"path": modulated, "own_paths": (None, None, modulated), "background": QUIET, "background_rms": 0.0}
+    scenarios = with_rig(draw_scenarios(recipe, 0, 1), **changes)
+    first, second, third = measure(response(recipe, 1, np.ones_like), scenarios, recipe).signal[0]
+    assert first.std() > 0.1
+    np.testing.assert_array_equal(first, second)
+    assert np.abs(first - third).max() > 0.1
 
 
 def test_two_channels_hear_the_same_lines_but_each_its_own_noise(recipe_with):

@@ -82,7 +82,7 @@ def test_rings_that_an_axial_load_cannot_hold_together_are_refused(angle):
     machine = slanted(angle, 5e-6, (9.26e9, 1.5), 300.0)
     least = 1.25 * 300 * math.tan(angle)
     places = 2 * np.pi * np.arange(N_BALLS) / N_BALLS
-    with pytest.raises(ValueError, match=rf"is too small to hold its rings together; at least {least:.4g} N do\."):
+    with pytest.raises(ValueError, match=rf"is too small to hold its rings together; give at least {least:.4g} N\."):
         axial_approach(machine, 0.99 * least, places)
     assert axial_approach(machine, 1.01 * least, places) > 0
 
@@ -101,7 +101,7 @@ def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write
         "operation.axial_load_n": {"kind": "grid", "values": [200, 50]},
     }
     recipe = write_recipe(tmp_path / "r.yaml", changes)
-    reason = "an axial load of 50 N is too small to hold its rings together; at least 100.5 N do."
+    reason = "an axial load of 50 N is too small to hold its rings together; give at least 100.5 N."
     planned = plan(recipe)
     assert (planned.left_out, planned.first_left_out) == (12, f"record 1: {reason}")
     assert sum(planned.steps_per_sample.values()) == 12

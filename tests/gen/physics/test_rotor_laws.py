@@ -8,7 +8,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.kernel.compiling import LANES
-from gen.physics.rotor import Machine, as_columns, ball_forces, fastest_swing, likely_stiffness, rest, sensor_springs
+from gen.physics.rotor import (
+    Machine,
+    as_columns,
+    ball_forces,
+    highest_angular_frequency,
+    highest_damping_rate,
+    likely_stiffness,
+    rest,
+    sensor_springs,
+)
 from tests.strategies import angles, machines
 
 law = settings(deadline=None, max_examples=50)
@@ -77,23 +86,42 @@ def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
     at_rest = rest(as_columns([machine]), places)[0]
     masses = np.repeat([machine.shaft_mass, machine.housing_mass, machine.sensor_mass], 2)
     squares = np.linalg.eigvals(stiffness(machine, at_rest, places) / masses[:, None]).real
-    assert math.sqrt(squares.max()) <= float(fastest_swing(machine, likely_stiffness(machine, N_BALLS)))
+    assert math.sqrt(squares.max()) <= float(highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS)))
+
+
+@law
+@given(machines(), angles)
+def test_no_damping_rate_exceeds_its_bound_nor_is_it_below_a_third_of_it(machine, cage):
+    """The bound is the sum of the rates of shaft, housing and sensor; the largest of three is at least a third of their sum."""
+    along = np.cos(ball_angles(cage)[0])
+    contact = machine.ring_damping + machine.contact_damping * np.sum(along**2)  # all balls loaded, along the x axis
+    support, sensor = max(machine.support_damping_x, machine.support_damping_y), machine.sensor_damping
+    damping = np.array([
+        [contact + machine.shaft_damping, -contact, 0],
+        [-contact, contact + support + sensor, -sensor],
+        [0, -sensor, sensor],
+    ])  # fmt: skip
+    masses = np.array([machine.shaft_mass, machine.housing_mass, machine.sensor_mass])
+    largest = np.linalg.eigvals(damping / masses[:, None]).real.max()
+    bound = highest_damping_rate(machine, N_BALLS)
+    assert largest <= bound * (1 + 1e-12)
+    assert bound <= 3 * largest * (1 + 1e-12)
 
 
 @law
 @given(machines())
 def test_a_machine_without_a_sensor_mass_swings_no_faster_than_with_one(machine):
     without = machine._replace(sensor_mass=0.0)
-    assert float(fastest_swing(without, likely_stiffness(without, N_BALLS))) < float(
-        fastest_swing(machine, likely_stiffness(machine, N_BALLS))
+    assert float(highest_angular_frequency(without, likely_stiffness(without, N_BALLS))) < float(
+        highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))
     )
 
 
 @law
 @given(st.lists(machines(), min_size=1, max_size=5))
 def test_the_bound_is_the_same_for_one_machine_and_for_many(some):
-    together = np.asarray(fastest_swing(as_columns(some), likely_stiffness(as_columns(some), N_BALLS)))
-    alone = [float(fastest_swing(machine, likely_stiffness(machine, N_BALLS))) for machine in some]
+    together = np.asarray(highest_angular_frequency(as_columns(some), likely_stiffness(as_columns(some), N_BALLS)))
+    alone = [float(highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))) for machine in some]
     np.testing.assert_allclose(together, alone, rtol=1e-14)
 
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import TABLE_POINTS
 from gen.physics.kernel.drop import GEOMETRIC, drop, sagitta
-from gen.physics.trace import ball_path, contact_mean, places, with_roughness
+from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
 
 law = settings(deadline=None, max_examples=40)
 BEARING = CATALOGUE["6205"]
@@ -27,7 +27,7 @@ surfaces = st.lists(st.floats(0, 1e-4), min_size=3, max_size=40)
 def test_over_sound_edges_and_a_flat_floor_a_ball_follows_the_geometric_path(width, depth, race):
     """A spall this narrow is as good as flat: chord and arc differ by 2e-4, and the sagitta by twice that."""
     arc = abs(race)
-    expected = [drop(GEOMETRIC, x / arc, width / 2 / arc, arc, BALL, race, depth) for x in places(width)]
+    expected = [drop(GEOMETRIC, x / arc, width / 2 / arc, arc, BALL, race, depth) for x in spall_positions(width)]
     found = ball_path(np.full(9, depth), width, BALL, race)
     np.testing.assert_allclose(found, expected, rtol=1e-3, atol=1e-15)
 
@@ -61,7 +61,7 @@ def test_a_wide_ball_bridges_a_narrow_scratch(half, race):
     path = ball_path(surface, width, BALL, race)
     assert path.max() == pytest.approx(float(sagitta(lip, BALL) + sagitta(lip, race)), rel=1e-6)
     assert path.max() < 1e-5
-    assert not path[np.abs(places(width)) >= lip].any()
+    assert not path[np.abs(spall_positions(width)) >= lip].any()
 
 
 @law
@@ -69,8 +69,8 @@ def test_a_wide_ball_bridges_a_narrow_scratch(half, race):
 def test_a_contact_feels_the_area_of_the_path_and_nothing_higher(surface, width, race, footprint, more):
     path, margin = ball_path(np.array(surface), width, BALL, race), footprint + more
     found = contact_mean(path, width, footprint, margin)
-    area = np.trapezoid(path, places(width))
-    assert np.trapezoid(found, places(width + 2 * margin)) == pytest.approx(area, rel=2e-3, abs=1e-15)
+    area = np.trapezoid(path, spall_positions(width))
+    assert np.trapezoid(found, spall_positions(width + 2 * margin)) == pytest.approx(area, rel=2e-3, abs=1e-15)
     assert found.max() <= path.max() * (1 + 1e-12)
     assert found.min() >= 0
 
@@ -97,7 +97,7 @@ def test_a_narrower_contact_feels_more_of_the_path_and_in_the_end_all_of_it(site
 def test_under_a_contact_the_pressure_weighs_as_half_an_ellipse():
     """Over a step the contact feels the share of its load that has crossed it: 1/2 + (u sqrt(1 - u^2) + asin u) / pi."""
     width, footprint = 2e-3, 1e-4
-    at = places(width + 2 * footprint)
+    at = spall_positions(width + 2 * footprint)
     found = contact_mean(np.ones(TABLE_POINTS), width, footprint, footprint)
     across = np.abs(at + width / 2) < 0.9 * footprint
     u = (at[across] + width / 2) / footprint

@@ -178,7 +178,7 @@ TABLE = [
     ("machine: {shaft_mass_kg: 5}", "contact: {lubricant: {density: 3}}",
      "contact.lubricant.density: no such key; did you mean density_kg_m3?"),
     ("machine: {shaft_mass_kg: 5}", "contact: {lubricant: {viscosity_100_mm2_s: 80}}",
-     "rig 0: oil of 68 mm2/s at 40 C is thicker at 100 C; keep viscosity_100_mm2_s below viscosity_40_mm2_s."),
+     "rig 0: oil of 68 mm2/s at 40 C has no lower viscosity at 100 C; keep viscosity_100_mm2_s below viscosity_40_mm2_s."),
     # sensors
     ("angle_deg: 90", "body: {}", "recording.channels[0].body: no body has a weight above 0; give one, such as body: sensor."),
     ("angle_deg: 90", "body: {sensor: 0}", "recording.channels[0].body: no body has a weight above 0; give one, such as body: sensor."),

@@ -269,6 +269,26 @@ def test_values_are_in_si_units(recipe_with):
     assert scenario.specimen.properties["diametral_clearance"] == pytest.approx(8e-6)
 
 
+def test_resonances_are_damping_ratios_and_amplitudes(recipe_with):
+    modes = {"count": 8, "frequency_hz": 2500, "damping_percent": 3, "gain_db": 6}
+    recipe = recipe_with({"path.modes": modes, "background.modes": modes, "machine.resonator.damping_percent": 4})
+    rig = draw_scenarios(recipe, 0, 1)[0].rig
+    for found in (rig.path.modes, rig.background.modes):
+        assert len(found) == 8
+        assert {mode.frequency for mode in found} == {2500.0}
+        assert [mode.damping for mode in found] == pytest.approx([0.03] * 8)
+        assert [abs(mode.gain) for mode in found] == pytest.approx([10 ** (6 / 20)] * 8)
+    assert rig.resonator["damping"] == pytest.approx(0.04)
+
+
+def test_a_profile_of_steps_changes_within_the_step_time_between_equal_intervals(recipe_with):
+    steps = {"kind": "steps", "levels_percent": [50, 100, 80], "step_s": 0.01}
+    recipe = recipe_with({"recording.duration_s": 0.3, "operation.speed_profile": steps})
+    profile = draw_scenarios(recipe, 0, 1)[0].record.speed_profile
+    assert profile.times == pytest.approx((0.095, 0.105, 0.195, 0.205))
+    assert profile.shares == (0.5, 1.0, 1.0, 0.8)
+
+
 def test_a_spall_that_does_not_fit_its_ball_is_refused_by_name(recipe_with):
     wide = [{"kind": "healthy"}, {"kind": "ball", "width_mm": 9.0}]
     with pytest.raises(

@@ -194,6 +194,13 @@ def test_a_profile_starts_with_the_record_and_not_with_its_settling(record_of):
     assert record.schedule[start + round(0.05 * FS), 0] == pytest.approx(0.85, abs=0.01)
 
 
+def test_a_broken_cage_knocks_where_its_pocket_has_left_the_load_zone(record_of):
+    """The cage turns in the positive direction, so a pocket that has left the load zone is at a larger angle than the load."""
+    for angle in (-90, 20):
+        changes = {"faults": [{"kind": "cage"}], "machine.load_angle_deg": angle}
+        assert record_of(changes).turning.knock_angle == pytest.approx(math.radians(angle + 60))
+
+
 def test_a_wandering_load_has_its_rms_and_never_pulls_the_other_way(record_of):
     gentle, wild = (
         record_of({"operation.load_wander_percent": wander, "recording.duration_s": 60}).schedule[:, 1]

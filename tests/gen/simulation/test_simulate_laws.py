@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen.errors import SimulationError
-from gen.physics.rotor import fastest_swing, likely_stiffness
+from gen.physics.rotor import highest_angular_frequency, likely_stiffness
 from gen.scenarios import draw_scenarios
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
@@ -106,7 +106,9 @@ def test_the_step_is_the_coarsest_that_is_fine_for_the_stiffest_mode(simulated):
     recipe, scenarios, response = simulated
     for scenario, factor in zip(scenarios, response.oversampling, strict=True):
         record = kernel_input(scenario, timeline(recipe))
-        swing = float(fastest_swing(record.machine, likely_stiffness(record.machine, record.bearing.n_balls)))
+        swing = float(
+            highest_angular_frequency(record.machine, likely_stiffness(record.machine, record.bearing.n_balls))
+        )
         assert swing / (FS * factor) <= FINE_STEP
         assert factor == steps_per_sample(record, scenario.record.number, recipe)
 

@@ -9,7 +9,7 @@ from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
 from gen.errors import RecipeError, SimulationError
 from gen.generation import generate
 from gen.physics.kernel.compiling import LANES
-from gen.physics.rotor import fastest_swing
+from gen.physics.rotor import highest_angular_frequency
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate, step_errors
@@ -164,7 +164,7 @@ def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
             contact_stiffness(record.machine, contacts(record, slow, at, 0.0, trip.states[at]).squeeze)
             for at in range(n_knots)
         )
-        phase = float(fastest_swing(record.machine, stiffest)) / (FS * factor)
+        phase = float(highest_angular_frequency(record.machine, stiffest)) / (FS * factor)
         assert phase * (1 - 1e-9) <= response.step_phase[place] < 1.02 * phase
 
 

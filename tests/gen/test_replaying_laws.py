@@ -1,0 +1,44 @@
+"""Laws of the scenario stored in a corpus: it is the drawn one, and a corpus without one gets a sentence."""
+
+import shutil
+
+import pytest
+
+from gen import draw_scenarios, open_corpus, stored_scenario
+from gen.errors import CorpusError
+from gen.replaying import corpus_recipe
+from tests import corpora
+
+
+def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        numbers = corpus["recording"].values
+    drawn = draw_scenarios(corpus_recipe(tiny_corpus))
+    assert [stored_scenario(tiny_corpus, record) for record in range(len(numbers))] == [drawn[n] for n in numbers]
+
+
+def test_a_corpus_without_its_recipe_still_gives_its_scenarios(tiny_corpus, tmp_path):
+    copied = shutil.copytree(tiny_corpus, tmp_path / "corpus")
+    (copied / "recipe.yaml").unlink()
+    assert stored_scenario(copied, 7) == stored_scenario(tiny_corpus, 7)
+
+
+@pytest.mark.parametrize("record", [-1, 48])
+def test_a_record_that_is_not_there_has_no_scenario(tiny_corpus, record):
+    with pytest.raises(CorpusError, match=f"record {record} is not in it; it has records 0 to 47"):
+        stored_scenario(tiny_corpus, record)
+
+
+def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(tmp_path):
+    corpora.write_corpus(tmp_path / "corpus")
+    with pytest.raises(CorpusError, match=r"corpus: record 4: stored scenario: the whole text: Invalid JSON"):
+        stored_scenario(tmp_path / "corpus", 4)
+
+
+def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
+    with_draws = corpora.columns
+    monkeypatch.setattr(corpora, "EXTRA", ())
+    monkeypatch.setattr(corpora, "columns", lambda *part: {k: v for k, v in with_draws(*part).items() if k != "draws"})
+    corpora.write_corpus(tmp_path / "corpus")
+    with pytest.raises(CorpusError, match="has no variable draws, so it was not generated and stores no scenarios"):
+        stored_scenario(tmp_path / "corpus", 0)
