@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from xarray.backends import BackendArray, BackendEntrypoint
 from xarray.core import indexing
 
-from gen.corpus.files import Stamp, stamp
-from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
+from gen.corpus.files import Stamp, sha256, stamp
+from gen.corpus.hdf5 import CRASHES, LIBRARY_LOCK, own_dataset, survives_opening
 from gen.corpus.layout import (
     PACKING,
     Packing,
@@ -244,8 +244,10 @@ def open_records(path: Path, parts: Sequence[Path], counts: Sequence[int] | None
     Raises
     ------
     CorpusError
-        If a file is missing or unreadable, or has links, values in other files or unknown dimensions.
+        If a file is missing or unreadable, crashes the library, or has links, values in other files or unknown dimensions.
     """
+    if counts is not None and path.is_file() and not survives_opening(str(path), sha256(path), SIGNAL):
+        raise CorpusError(f"{path}: {CRASHES}.")
     opened: Any = xr.open_dataset(path, engine=_Records, parts=parts, counts=counts)
     return opened
 

@@ -6,7 +6,8 @@ import h5py
 import numpy as np
 import xarray as xr
 
-from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
+from gen.corpus.files import sha256
+from gen.corpus.hdf5 import CRASHES, LIBRARY_LOCK, own_dataset, survives_opening
 from gen.corpus.index import open_corpus
 from gen.corpus.layout import PACKING
 from gen.corpus.manifest import INDEX_NAME, Manifest, file_problems, read_manifest
@@ -59,6 +60,8 @@ def _mapping_problems(directory: Path, manifest: Manifest) -> list[str]:
     for row in manifest.parts:
         expected.append((f"parts/{row.name}", SIGNAL, first, first + row.records - 1))
         first += row.records
+    if not survives_opening(str(path), sha256(path), SIGNAL):
+        return [f"{path}: {CRASHES}."]
     try:
         with LIBRARY_LOCK, h5py.File(path, "r", locking=False) as index:
             sources = own_dataset(index, SIGNAL, virtual=True).virtual_sources()

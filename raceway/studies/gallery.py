@@ -3,11 +3,10 @@
 It shows the seed paper's figures beside its statements, every kind of fault, and run-ups.
 """
 
-import json
 from collections.abc import Iterator
 from html import escape
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -17,8 +16,8 @@ from features.report.envelopes import draw_envelopes, draw_waterfall
 from features.report.pictures import Shown, picture
 from gen import generate, open_corpus
 from gen.corpus import FAULTS, write_durably, write_text_durably
-from gen.physics.profile import Profile, share_at
-from gen.scenarios import Spall
+from gen.physics.profile import share_at
+from gen.scenarios import Specimen, read_scenario
 from raceway.console.progress import progress
 from raceway.studies.paper import FIGURES, PRESETS, draw_figure, run
 from raceway.studies.statements import Finding, findings, span
@@ -99,7 +98,7 @@ def _every_fault(output: Path) -> Section:
     corpus = _corpus("every_fault", output)
     kinds: dict[str, int] = {}
     for record, draws in enumerate(corpus["draws"].values):
-        kinds.setdefault(_described(json.loads(str(draws))["specimen"]), record)
+        kinds.setdefault(_described(read_scenario(str(draws)).specimen), record)
     shown = [
         _shown(corpus.isel(record=record), kind)
         for kind, record in sorted(kinds.items(), key=lambda item: _rank(corpus, item[1]))
@@ -116,15 +115,14 @@ def _rank(corpus: xr.Dataset, record: int) -> tuple[int, int]:
     return int(corpus["fault"][record]), record
 
 
-def _described(specimen: dict[str, Any]) -> str:
+def _described(specimen: Specimen) -> str:
     """Damage of a specimen in a few words."""
-    if specimen["wear"]:
-        return f"{specimen['wear']['site']} race worn all round"
-    spalls = [Spall(*spall) for spall in specimen["spalls"]]
-    more = [", traced" if spall.trace else ", rough floor" if spall.roughness > 0 else "" for spall in spalls]
-    words = [f"{spall.site} {1e3 * spall.width:g} mm{text}" for spall, text in zip(spalls, more, strict=True)]
-    wander = ", axis wanders" if specimen["axis"].get("axis_wander", 0) > 0 else ""
-    return (" + ".join(words) or ("cage" if specimen["cage"] else "healthy")) + wander
+    if specimen.wear is not None:
+        return f"{specimen.wear.site} race worn all round"
+    more = [", traced" if spall.trace else ", rough floor" if spall.roughness > 0 else "" for spall in specimen.spalls]
+    words = [f"{spall.site} {1e3 * spall.width:g} mm{text}" for spall, text in zip(specimen.spalls, more, strict=True)]
+    wander = ", axis wanders" if specimen.axis.get("axis_wander", 0) > 0 else ""
+    return (" + ".join(words) or ("cage" if specimen.cage else "healthy")) + wander
 
 
 def _shown(record: xr.Dataset, title: str) -> Shown:
@@ -142,9 +140,10 @@ def _run_up(output: Path) -> Section:
     names = []
     for fault in np.unique(corpus["fault"].values):
         record = corpus.isel(record=int(np.flatnonzero(corpus["fault"].values == fault)[0]))
-        shown, drawn = _shown(record, FAULTS[fault]), json.loads(str(record["draws"].values))["record"]
+        shown, drawn = _shown(record, FAULTS[fault]), read_scenario(str(record["draws"].values)).record
         times = np.arange(len(shown.signal)) / shown.fs
-        rate = drawn["conditions"]["shaft"] * share_at(Profile(*drawn["speed_profile"]), times)
+        share = 1.0 if drawn.speed_profile is None else share_at(drawn.speed_profile, times)
+        rate = drawn.conditions["shaft"] * share * np.ones(len(times))
         figure = draw_waterfall(
             f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _orders_of(shown)
         )

@@ -390,3 +390,18 @@ def test_a_full_disk_leaves_the_last_index_as_it_was(copied, request):
         write_index(copied, read_manifest(copied).parts)
     assert (copied / "corpus.nc").read_bytes() == before
     assert {path.name for path in copied.iterdir()} == {"corpus.nc", "manifest.json", "parts"}
+
+
+@pytest.mark.parametrize("place", range(len(b"parts/part-00001.nc.acceleration."), 96, 4))
+def test_an_index_with_a_damaged_mapping_is_refused_and_does_not_end_the_process(copied, place):
+    """Some of these bytes are ranks and versions, with which HDF5 writes beyond its arrays."""
+    path = copied / "corpus.nc"
+    whole = path.read_bytes()
+    place += whole.index(b"parts/part-00001.nc")
+    path.write_bytes(whole[:place] + b"\xff" + whole[place + 1 :])
+    seal(copied)
+    (problem,) = validate_corpus(copied)
+    with pytest.raises(CorpusError):
+        open_corpus(copied)
+    if place == whole.index(b"parts/part-00001.nc") + 65:
+        assert problem.endswith("is damaged: the HDF5 library crashes on it; make or copy the corpus again.")
