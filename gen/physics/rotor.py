@@ -56,33 +56,34 @@ def as_columns(items: Sequence[Fields]) -> Fields:
     return kind(**{name: np.array([getattr(item, name) for item in items], float) for name in kind._fields})
 
 
-def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> FloatArray | float:
-    """Estimate of the largest contact stiffness of a record [N/m]; fields may be arrays of shape (record,).
+def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> float:
+    """Estimate of the largest contact stiffness of a record [N/m].
 
     The estimate has ``DYNAMIC_FACTOR`` times the static Stribeck load on three balls, and the preload on all balls. ``pull`` is the sum of
     the forces on the shaft other than the load [N].
     """
-    load, n = np.hypot(machine.load_x, machine.load_y) + pull, np.asarray(machine.contact_exponent)
-    factor = np.asarray(machine.load_deflection_factor)
+    load, n = float(np.hypot(machine.load_x, machine.load_y)) + pull, machine.contact_exponent
+    factor = machine.load_deflection_factor
     ball_load = DYNAMIC_FACTOR * STRIBECK * load / n_balls
-    squeeze = np.maximum(-np.asarray(machine.half_clearance), 0.0)
-    loaded = n * power(factor, 1 / n) * LOADED_BALLS * power(ball_load, 1 - 1 / n)
-    return loaded + n * factor * n_balls * power(squeeze, n - 1)
+    squeeze = max(-machine.half_clearance, 0.0)
+    loaded = n * factor ** (1 / n) * LOADED_BALLS * ball_load ** (1 - 1 / n)
+    return loaded + n * factor * n_balls * float(power(squeeze, n - 1))
 
 
-def highest_angular_frequency(machine: Machine, contact_stiffness: FloatArray | float) -> FloatArray | float:
-    """Upper bound of the angular eigenfrequencies at a contact stiffness [N/m]; fields may be arrays of shape (record,) [rad/s].
+def highest_angular_frequency(machine: Machine, contact_stiffness: float) -> float:
+    """Upper bound of the angular eigenfrequencies at a contact stiffness [N/m], in rad/s.
 
     The sum of the squared eigenfrequencies of a direction is not below the square of the largest one.
     """
-    ring = np.maximum(machine.ring_stiffness_x, machine.ring_stiffness_y)
-    support = np.maximum(machine.support_stiffness_x, machine.support_stiffness_y)
+    ring = max(machine.ring_stiffness_x, machine.ring_stiffness_y)
+    support = max(machine.support_stiffness_x, machine.support_stiffness_y)
     square = (contact_stiffness + ring) * (1 / machine.shaft_mass + 1 / machine.housing_mass)
-    square = square + machine.shaft_stiffness / machine.shaft_mass + support / machine.housing_mass
-    sensor = np.maximum(machine.sensor_stiffness_x, machine.sensor_stiffness_y)
-    sensor_mass = np.where(np.asarray(machine.sensor_mass) > 0, machine.sensor_mass, np.inf)
-    square = square + np.where(np.isfinite(sensor_mass), sensor * (1 / sensor_mass + 1 / machine.housing_mass), 0.0)
-    return np.sqrt(square)
+    square += machine.shaft_stiffness / machine.shaft_mass
+    square += support / machine.housing_mass
+    if machine.sensor_mass > 0:
+        sensor = max(machine.sensor_stiffness_x, machine.sensor_stiffness_y)
+        square += sensor * (1 / machine.sensor_mass + 1 / machine.housing_mass)
+    return math.sqrt(square)
 
 
 def highest_damping_rate(machine: Machine, n_balls: int) -> float:

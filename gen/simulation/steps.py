@@ -69,7 +69,7 @@ def fastest_rate(given: KernelInput) -> float:
     """Angular frequency that the step must follow: that of the stiffest mode, or of the strongest damping [rad/s]."""
     machine, n_balls = given.machine, given.bearing.n_balls
     stiffness = likely_stiffness(machine, n_balls, largest_pull(given))
-    return max(float(highest_angular_frequency(machine, stiffness)), highest_damping_rate(machine, n_balls) / 2.5)
+    return max(highest_angular_frequency(machine, stiffness), highest_damping_rate(machine, n_balls) / 2.5)
 
 
 def largest_pull(given: KernelInput) -> float:
@@ -84,7 +84,7 @@ def largest_pull(given: KernelInput) -> float:
 
 def step_phase(given: KernelInput, steepest: float, steps: int, fs: float) -> float:
     """Fastest angular frequency at the contact stiffness ``steepest`` [N/m], times the step [rad]."""
-    return float(highest_angular_frequency(given.machine, steepest)) / (fs * steps)
+    return highest_angular_frequency(given.machine, steepest) / (fs * steps)
 
 
 def failure(number: int, steps: int, diverged: float, phase: float) -> str | None:

@@ -86,7 +86,7 @@ def test_no_mode_at_rest_is_faster_than_the_bound_on_all_modes(machine, cage):
     at_rest = rest(as_columns([machine]), places)[0]
     masses = np.repeat([machine.shaft_mass, machine.housing_mass, machine.sensor_mass], 2)
     squares = np.linalg.eigvals(stiffness(machine, at_rest, places) / masses[:, None]).real
-    assert math.sqrt(squares.max()) <= float(highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS)))
+    assert math.sqrt(squares.max()) <= highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))
 
 
 @law
@@ -110,19 +110,10 @@ def test_no_damping_rate_exceeds_its_bound_nor_is_it_below_a_third_of_it(machine
 
 @law
 @given(machines())
-def test_a_machine_without_a_sensor_mass_swings_no_faster_than_with_one(machine):
+def test_a_machine_without_a_sensor_mass_has_a_lower_bound_than_with_one(machine):
     without = machine._replace(sensor_mass=0.0)
-    assert float(highest_angular_frequency(without, likely_stiffness(without, N_BALLS))) < float(
-        highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))
-    )
-
-
-@law
-@given(st.lists(machines(), min_size=1, max_size=5))
-def test_the_bound_is_the_same_for_one_machine_and_for_many(some):
-    together = np.asarray(highest_angular_frequency(as_columns(some), likely_stiffness(as_columns(some), N_BALLS)))
-    alone = [float(highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))) for machine in some]
-    np.testing.assert_allclose(together, alone, rtol=1e-14)
+    own = highest_angular_frequency(without, likely_stiffness(without, N_BALLS))
+    assert own < highest_angular_frequency(machine, likely_stiffness(machine, N_BALLS))
 
 
 @law
