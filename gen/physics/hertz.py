@@ -11,9 +11,6 @@ The contacts on the inner and on the outer raceway act in series.
 
 import math
 
-from scipy.optimize import brentq
-from scipy.special import ellipe, ellipk
-
 from gen.physics.bearing import Bearing
 
 POINT_EXPONENT = 3 / 2
@@ -27,6 +24,9 @@ def effective_modulus(youngs_modulus: float, poisson_ratio: float) -> float:
 
 def ellipticity(rolling_curvature: float, transverse_curvature: float) -> float:
     """Long semi-axis of the contact ellipse over the short one [1], from the curvatures of ``contact_factor``."""
+    from scipy.optimize import brentq  # SciPy loads for 0.2 s, and reading a recipe seldom needs it
+    from scipy.special import ellipe, ellipk
+
     radius = 1 / (rolling_curvature + transverse_curvature)
     difference = radius * (rolling_curvature - transverse_curvature)
 
@@ -48,6 +48,8 @@ def contact_factor(rolling_curvature: float, transverse_curvature: float, modulu
     modulus : float
         Effective modulus [Pa].
     """
+    from scipy.special import ellipe, ellipk
+
     radius = 1 / (rolling_curvature + transverse_curvature)
     ratio = ellipticity(rolling_curvature, transverse_curvature)
     m = 1 - ratio**-2
@@ -134,5 +136,12 @@ def footprints(bearing: Bearing, ball_load: float) -> tuple[float, float]:
 
 def _half_width(along: float, across: float, load: float, modulus: float) -> float:
     ratio = ellipticity(along, across)
-    shape = 6 * ratio**2 * float(ellipe(1 - ratio**-2)) / (math.pi * modulus * (along + across))
-    return (shape * load) ** (1 / 3) / ratio
+    return (ellipse_volume(along, across, modulus) * load) ** (1 / 3) / ratio
+
+
+def ellipse_volume(along: float, across: float, modulus: float) -> float:
+    """Cube of the long semi-axis of the contact ellipse over the load [m3/N]: ``6 k^2 E(m) R / (pi E')`` with ``m = 1 - 1 / k^2``."""
+    from scipy.special import ellipe
+
+    ratio = ellipticity(along, across)
+    return 6 * ratio**2 * float(ellipe(1 - ratio**-2)) / (math.pi * modulus * (along + across))

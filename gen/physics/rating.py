@@ -11,10 +11,8 @@ element reaches the limit on the inner or on the outer raceway [2]_.
 import functools
 import math
 
-from scipy.special import ellipe
-
 from gen.physics.bearing import Bearing
-from gen.physics.hertz import effective_modulus, ellipticity, known_roller_length, race_curvatures
+from gen.physics.hertz import effective_modulus, ellipse_volume, ellipticity, known_roller_length, race_curvatures
 from gen.physics.rotor import STRIBECK
 
 BALL_PRESSURE, ROLLER_PRESSURE = 4200e6, 4000e6  # [Pa], ISO 76, radial bearings that are not self-aligning
@@ -77,8 +75,8 @@ def _point_load(along: float, across: float, modulus: float) -> float:
     The pressure is ``3 Q / (2 pi a b)`` with semi-axes ``b = (6 k^2 E Q / (pi E' sum of curvatures))^(1/3) / k`` and ``a = k b``.
     """
     ratio = ellipticity(along, across)
-    shape = 6 * ratio**2 * float(ellipe(1 - ratio**-2)) / (math.pi * modulus * (along + across))
-    return (BALL_PRESSURE * math.pi * shape ** (2 / 3) / (1.5 * ratio)) ** 3
+    volume = ellipse_volume(along, across, modulus)
+    return (BALL_PRESSURE * math.pi * volume ** (2 / 3) / (1.5 * ratio)) ** 3
 
 
 def _line_load(along: float, modulus: float) -> float:

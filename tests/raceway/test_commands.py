@@ -73,7 +73,7 @@ SIMULATOR = {"numba", "distributed", "scipy.stats", "sklearn", "matplotlib"}
 
 @pytest.mark.parametrize("line", ["recipes", "plan quikstart", "generate quikstart -o new", "bench quikstart"])
 def test_a_list_of_recipes_and_a_misspelt_name_load_no_simulator(line):
-    assert loaded(line.split(), SIMULATOR | {"xarray", "netCDF4"}) == set()
+    assert loaded(line.split(), SIMULATOR | {"xarray", "netCDF4", "scipy"}) == set()
 
 
 def test_info_loads_no_simulator(tiny_corpus):
