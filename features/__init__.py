@@ -18,8 +18,9 @@ report      figures of records, corpora and scores, and one page with all of the
 =========== =================================================================================
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from features.baselines import evaluate
@@ -27,15 +28,4 @@ if TYPE_CHECKING:
 
 __all__ = ["evaluate", "feature_table"]
 
-_MODULES = {"evaluate": "features.baselines", "feature_table": "features.table"}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used, since scikit-learn takes a second."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazy_names(__name__, {"features.baselines": ("evaluate",), "features.table": ("feature_table",)})

@@ -6,6 +6,7 @@
 module      responsibility
 =========== ==================================================================
 errors      one exception class per stage; each carries one sentence
+lazy        public names that are imported when they are first used
 limits      how much a file from elsewhere may ask for
 units       units of recipes and mapping files, turned into SI
 cluster     independent tasks on dask
@@ -31,10 +32,10 @@ Data flows down this list; a module imports only modules above it. Public names 
 opening a corpus loads neither numba nor distributed. No public name is the name of a module: importing a module would replace it.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from gen.errors import ClusterError, CorpusError, RacewayError, RecipeError, SimulationError
+from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.corpus import open_corpus, validate_corpus
@@ -60,24 +61,14 @@ __all__ = [
     "validate_corpus",
 ]
 
-_MODULES = {
-    "draw_scenarios": "gen.scenarios",
-    "generate": "gen.generation",
-    "open_corpus": "gen.corpus",
-    "read_recipe": "gen.recipe",
-    "replay": "gen.replaying",
-    "simulate": "gen.simulation.simulate",
-    "stored_scenario": "gen.replaying",
-    "validate_corpus": "gen.corpus",
-}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "gen.corpus": ("open_corpus", "validate_corpus"),
+        "gen.generation": ("generate",),
+        "gen.recipe": ("read_recipe",),
+        "gen.replaying": ("replay", "stored_scenario"),
+        "gen.scenarios": ("draw_scenarios",),
+        "gen.simulation.simulate": ("simulate",),
+    },
+)

@@ -19,8 +19,9 @@ card       data card of a corpus, page about the format
 ========== =====================================================
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.corpus.card import data_card, format_page
@@ -99,72 +100,26 @@ __all__ = [
     "write_text_durably",
 ]
 
-_NAMES = {
-    "card": (
-        "data_card",
-        "format_page",
-    ),
-    "codecs": ("CODECS", "Codec"),
-    "files": (
-        "check_name",
-        "plain_file",
-        "remove_left_behind",
-        "sha256",
-        "temporary_beside",
-        "whole_or_not_at_all",
-        "write_durably",
-        "write_text_durably",
-    ),
-    "hdf5": ("LIBRARY_LOCK",),
-    "index": (
-        "open_corpus",
-        "write_index",
-    ),
-    "manifest": (
-        "Manifest",
-        "part_paths",
-        "read_manifest",
-        "write_manifest",
-    ),
-    "part": (
-        "PartRow",
-        "part_name",
-        "write_part",
-    ),
-    "reading": (
-        "open_part",
-        "read_channel",
-    ),
-    "schema": (
-        "DRAWS",
-        "FAULTS",
-        "FORMAT",
-        "MISSING_COUNT",
-        "ROLES",
-        "SCHEMA",
-        "SIGNAL",
-        "SPLITS",
-        "Variable",
-        "make_dataset",
-    ),
-    "simulated": ("SIMULATED",),
-    "signals": (
-        "SignalCounts",
-        "complaint",
-        "described",
-        "summed",
-    ),
-    "validation": ("validate_corpus",),
-}
-_MODULES = {name: f"gen.corpus.{module}" for module, names in _NAMES.items() for name in names}
-
-
-def __getattr__(name: str) -> Any:
-    """Import a public name when it is first used: xarray, netCDF4 and h5py take 0.3 s, and a recipe needs none of them."""
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(_MODULES[name]), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+# xarray, netCDF4 and h5py take 0.3 s to load, and a recipe needs none of them
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "gen.corpus.card": ("data_card", "format_page"),
+        "gen.corpus.codecs": ("CODECS", "Codec"),
+        "gen.corpus.files": (
+            "check_name", "plain_file", "remove_left_behind", "sha256", "temporary_beside", "whole_or_not_at_all", "write_durably",
+            "write_text_durably",
+        ),
+        "gen.corpus.hdf5": ("LIBRARY_LOCK",),
+        "gen.corpus.index": ("open_corpus", "write_index"),
+        "gen.corpus.manifest": ("Manifest", "part_paths", "read_manifest", "write_manifest"),
+        "gen.corpus.part": ("PartRow", "part_name", "write_part"),
+        "gen.corpus.reading": ("open_part", "read_channel"),
+        "gen.corpus.schema": (
+            "DRAWS", "FAULTS", "FORMAT", "MISSING_COUNT", "ROLES", "SCHEMA", "SIGNAL", "SPLITS", "Variable", "make_dataset",
+        ),
+        "gen.corpus.signals": ("SignalCounts", "complaint", "described", "summed"),
+        "gen.corpus.simulated": ("SIMULATED",),
+        "gen.corpus.validation": ("validate_corpus",),
+    },
+)  # fmt: skip
