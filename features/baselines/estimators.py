@@ -92,8 +92,8 @@ class EnvelopeRule(ClassifierMixin, BaseEstimator):
 def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray]:
     """Level of each class, shape (record,); the rule predicts the class with the highest level.
 
-    The level of a class is the mean of the features of its row in `features.faults`; a missing feature counts as -inf.
-    Three classes differ:
+    The level of a class is the mean of the features of its row in `features.faults`; a missing feature counts as -inf,
+    and so does a class whose row has no features: the rule never predicts it. Three classes differ:
 
     - Healthy: the threshold.
     - Cage: the mean of the first two lines of FTF, or -inf if these lines come from a spalled ball, which passes the
@@ -110,7 +110,8 @@ def rule_levels(features: "DataFrame", threshold: float) -> dict[str, FloatArray
     combs = {name: levels[name] for name in COMBS} | {"ball": np.minimum(ball, series)}
     second, first = np.sort(list(combs.values()), axis=0)[-2:]
     bar = np.maximum.reduce([np.full_like(cage, threshold), cage, RIVAL_SHARE * first])
-    return levels | {HEALTHY: np.full_like(cage, threshold), "cage": cage, "compound": first + second - bar}
+    unknown = dict.fromkeys(CLASSES, np.full_like(cage, -np.inf))
+    return unknown | levels | {HEALTHY: np.full_like(cage, threshold), "cage": cage, "compound": first + second - bar}
 
 
 def _mean(features: "DataFrame", columns: Sequence[str]) -> FloatArray:

@@ -86,3 +86,12 @@ def test_a_new_class_needs_one_row_to_be_predicted_and_drawn(looseness):
     assert fault_lines(ORDERS, looseness.name)[0] == {"fr": 1.0, "2 fr": 2.0}
     signal = np.random.default_rng(0).standard_normal(4000)
     draw_record(Shown("loose", signal, 10_000.0, 30.0, ORDERS, looseness.name))
+
+
+def test_a_class_without_features_of_its_own_is_never_predicted_by_the_rule(monkeypatch):
+    monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, "creep"))
+    monkeypatch.setattr(estimators, "CLASSES", {**CLASSES, "creep": FaultClass("creep", "#999999")})
+    frame = pd.DataFrame(np.zeros((2, len(EVIDENCE))), columns=list(EVIDENCE))
+    rule = EnvelopeRule().fit(frame, np.arange(7))
+    np.testing.assert_array_equal(rule.predict(frame), [0, 0])
+    np.testing.assert_array_equal(rule.predict_proba(frame)[:, 6], [0.0, 0.0])
