@@ -13,7 +13,7 @@ import xarray as xr
 
 from features.indicators import Orders
 from features.report.envelopes import draw_envelopes, draw_waterfall
-from features.report.pictures import Shown, picture
+from features.report.pictures import Shown, fault_lines, picture
 from gen import generate, open_corpus
 from gen.corpus import FAULTS, write_durably, write_text_durably
 from gen.physics.profile import share_at
@@ -126,7 +126,6 @@ def _described(specimen: Specimen) -> str:
 
 
 def _shown(record: xr.Dataset, title: str) -> Shown:
-
     orders = Orders(*(record[name].values for name in Orders._fields))
     signal = record["acceleration"].values[0].astype(float)
     return Shown(
@@ -145,7 +144,7 @@ def _run_up(output: Path) -> Section:
         share = 1.0 if drawn.speed_profile is None else share_at(drawn.speed_profile, times)
         rate = drawn.conditions["shaft"] * share * np.ones(len(times))
         figure = draw_waterfall(
-            f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _orders_of(shown)
+            f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _marked(shown)
         )
         names.append(f"run-up-{shown.fault}.png")
         write_durably(picture(figure, "png"), output / names[-1])
@@ -153,17 +152,13 @@ def _run_up(output: Path) -> Section:
     return Section("Run-ups", text, names)
 
 
-def _orders_of(shown: Shown) -> dict[str, float]:
-    ftf, bpfo, bpfi, bsf = (float(order) for order in shown.orders)
-    return {
-        "inner": {"fr": 1.0, "BPFI": bpfi, "2 BPFI": 2 * bpfi},
-        "outer": {"BPFO": bpfo, "2 BPFO": 2 * bpfo, "3 BPFO": 3 * bpfo},
-        "ball": {"FTF": ftf, "2 BSF": 2 * bsf, "4 BSF": 4 * bsf},
-    }.get(shown.fault, {"fr": 1.0, "BPFO": bpfo, "BPFI": bpfi})
+def _marked(shown: Shown) -> dict[str, float]:
+    """Orders drawn into a waterfall: the shaft and the first two lines of the fault, or of a healthy bearing all fundamental lines."""
+    own, others = fault_lines(shown.orders, shown.fault)
+    return {"shaft": 1.0, **dict(list(own.items())[:2])} if own else others
 
 
 def _corpus(recipe: str, output: Path) -> xr.Dataset:
-
     with progress(f"generating {recipe}", "records") as report:
         generate(recipe, output / recipe, progress=report)
     return open_corpus(output / recipe)
