@@ -163,15 +163,18 @@ CATALOGUE = {row.designation: _bearing(row) for rows in (_deep_groove, _test_rig
 
 _PAGE = """# Catalogue of bearings
 
-Generated from `gen/physics/catalogue.py`. A recipe names a ball bearing by its designation, a mapping file of recordings any of these.
-Lengths in mm, angles in degrees, dynamic rating C and static rating C0 in kN, fault frequencies in orders of the shaft for a standing
-outer ring; a dash is not known. *One source* marks a geometry that was seen once.
+Generated from `gen/physics/catalogue.py`. A recipe takes ball bearings, and roller bearings of known length, by their
+designation; a mapping file of recordings takes any of these. Lengths are in mm, angles in degrees, the dynamic rating C
+and the static rating C0 in kN, fault frequencies in orders of the shaft for a fixed outer ring; a dash means unknown.
+*One source* marks a geometry that only one source gives.
 
-[1] The Timken Company, *Ball Bearing Housed Unit Catalog*, p. A-13, table A-9: frequency coefficients. They give the number of balls
-and the ratio of ball to pitch diameter; the pitch is midway between bore and outside diameter (6006: from the ratio) and the ball the
-nearest size in whole 1/32 in. [2] The Timken Company, *Deep Groove Ball Bearing Catalog*, order no. 10857, 2017, tables 10 and 11.
-A rating stands here only where the balls in the row explain it (static, ISO 76: within 2.5 %), for makers build one designation in
-more than one way.
+[1] The Timken Company, *Ball Bearing Housed Unit Catalog*, p. A-13, table A-9: frequency coefficients. They give the
+number of balls and the ratio of ball to pitch diameter. The pitch diameter is midway between bore and outside diameter
+(6006: from the ratio), and the ball diameter is the nearest size in whole 1/32 in.
+
+[2] The Timken Company, *Deep Groove Ball Bearing Catalog*, order no. 10857, 2017, tables 10 and 11. A rating is listed
+only if the balls of the row explain it (static, ISO 76: within 2.5 %), because makers build one designation in more than
+one way.
 
 """
 
