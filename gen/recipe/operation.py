@@ -1,5 +1,6 @@
 """Operating conditions of a record: speed and load with their profiles, slip, jitter and temperature."""
 
+import math
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
@@ -9,6 +10,7 @@ from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Section
 
 Share = Annotated[Number, Field(gt=0, le=1000)]
+CLOSEST_TIMES_S = 1e-6  # between two points of a profile; its slope stays a finite number
 
 
 class Ramp(Section):
@@ -54,7 +56,7 @@ class Table(Section):
     kind: Literal["table"]
     """Follows points that were measured on a machine."""
     times_s: Annotated[tuple[Number, ...], Field(min_length=1, max_length=10_000)]
-    """Times of the points, from the start of the record, in rising order."""
+    """Times of the points, from the start of the record, in rising order and at least a microsecond apart."""
     percent: Annotated[tuple[Share, ...], Field(min_length=1, max_length=10_000)]
     """Share of the drawn speed or load at each point."""
 
@@ -64,6 +66,9 @@ class Table(Section):
             raise ValueError(f"{len(self.times_s)} times_s for {len(self.percent)} percent; give one each.")
         if any(after <= before for before, after in pairwise(self.times_s)):
             raise ValueError("times_s do not rise; sort them, each once.")
+        closest = min((after - before for before, after in pairwise(self.times_s)), default=math.inf)
+        if closest < CLOSEST_TIMES_S:
+            raise ValueError(f"times_s: two are {closest:.3g} s apart; keep them at least {CLOSEST_TIMES_S:g} s apart.")
         return self
 
 

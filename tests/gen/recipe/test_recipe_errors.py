@@ -143,6 +143,8 @@ TABLE = [
     # profiles
     (RPM, RPM + ", speed_profile: {kind: table, times_s: [0, 0], percent: [9, 9]}",
      "operation.speed_profile: times_s do not rise; sort them, each once."),
+    (RPM, RPM + ", speed_profile: {kind: table, times_s: [0, 1e-308], percent: [9, 10]}",
+     "operation.speed_profile.times_s: two are 1e-308 s apart; keep them at least 1e-06 s apart."),
     (RPM, RPM + ", speed_profile: {kind: table, times_s: [0, 1], percent: [9]}",
      "operation.speed_profile: 2 times_s for 1 percent; give one each."),
     (RPM, RPM + ", speed_profile: {kind: table, times_s: [0, 1], percent: [0, 9]}",

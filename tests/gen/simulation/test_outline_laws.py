@@ -23,6 +23,7 @@ from tests.recipes import EVERYTHING
 GENERATE = importlib.import_module("gen.part_task")
 
 percents = st.floats(10, 1000)
+times = st.floats(-0.1, 0.3).map(lambda time: round(time, 5))
 profiles = st.one_of(
     st.fixed_dictionaries({"kind": st.just("ramp"), "from_percent": percents, "to_percent": percents}),
     st.fixed_dictionaries(
@@ -37,7 +38,7 @@ profiles = st.one_of(
     st.fixed_dictionaries(
         {"kind": st.just("steps"), "levels_percent": st.lists(percents, min_size=2, max_size=5), "step_s": st.just(0.005)}
     ),
-    st.lists(st.tuples(st.floats(-0.1, 0.3), percents), min_size=1, max_size=8, unique_by=lambda pair: pair[0]).map(
+    st.lists(st.tuples(times, percents), min_size=1, max_size=8, unique_by=lambda pair: pair[0]).map(
         lambda pairs: {
             "kind": "table",
             "times_s": [time for time, _ in sorted(pairs)],
