@@ -32,8 +32,8 @@ CHANNELS = ("x1", "y1", "x2", "y2")
 CRACK = SpallInput("inner", 2 * math.radians(10) * 15.5e-3, 1e-3, math.radians(15), profile="rectangular")
 FIGURES = (
     ("figure3", "Healthy: displacements", "healthy", False),
-    ("figure4", "Healthy: power spectra", "healthy", True),
-    ("figure5", "Cracked inner race: displacements", "cracked", False),
+    ("figure4", "Cracked inner race: displacements", "cracked", False),
+    ("figure5", "Healthy: power spectra", "healthy", True),
     ("figure6", "Cracked inner race: power spectra", "cracked", True),
 )
 _TITLES = ("shaft, x1", "shaft, y1", "housing, x2", "housing, y2")

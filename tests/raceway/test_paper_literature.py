@@ -7,7 +7,7 @@ import pytest
 from benchmarks.paper_search import holding
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
-from raceway.studies.paper import FS, PRESETS, run
+from raceway.studies.paper import FIGURES, FS, PRESETS, run
 from raceway.studies.statements import findings
 
 # values of the model study, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
@@ -62,3 +62,14 @@ def test_constants_a_few_percent_off_cost_statements_but_leave_more_than_half():
     assert held.shape == (16,)
     assert held.min() > 38 / 2
     assert held.mean() < 31
+
+
+def test_figures_carry_the_numbers_of_the_paper():
+    """Displacements are figures 3 and 4, power spectra 5 and 6; of each pair the healthy bearing comes first."""
+    numbered = {number: (state, spectral) for number, _, state, spectral in FIGURES}
+    assert numbered == {
+        "figure3": ("healthy", False),
+        "figure4": ("cracked", False),
+        "figure5": ("healthy", True),
+        "figure6": ("cracked", True),
+    }
