@@ -5,6 +5,7 @@ A file is written under a temporary name, flushed to disk and renamed, so that a
 
 import hashlib
 import os
+import re
 import shutil
 import threading
 import time
@@ -100,10 +101,8 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
             finally:
                 os.close(folder)
     except (OSError, RuntimeError) as error:
-        code = getattr(error, "errno", None)  # the text of HDF5 errors has addresses and line breaks
-        reason = os.strerror(code) if code else " ".join(str(error).split())
         raise CorpusError(
-            f"{path}: could not be written ({reason}); free some space or choose another folder."
+            f"{path}: could not be written ({_reason(error)}); free some space or choose another folder."
         ) from error
 
 
@@ -148,3 +147,14 @@ def write_durably(content: bytes, path: Path) -> None:
 def write_text_durably(text: str, path: Path) -> None:
     """Write a text file atomically; CorpusError if writing fails."""
     write_durably(text.encode(), path)
+
+
+def _reason(error: OSError | RuntimeError) -> str:
+    """Why the system refused to write. HDF5 puts the error number into a text with addresses and line breaks.
+
+    >>> _reason(RuntimeError("write failed (errno = 28, error message = 'No space left on device', buf = 0x7fafb143fe10)"))
+    'No space left on device'
+    """
+    in_text = re.search(r"errno = (\d+)", str(error))
+    code = getattr(error, "errno", None) or (in_text and int(in_text[1]))
+    return os.strerror(code) if code else " ".join(str(error).split())
