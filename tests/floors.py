@@ -10,7 +10,7 @@ import tomllib
 
 from tests.paths import ROOT
 
-REQUIREMENT = re.compile(r"(?P<name>[\w.-]+)(?:\[[\w,-]+\])?>=(?P<floor>[\d.]+)(?:,!=[\d.]+)*")
+REQUIREMENT = re.compile(r"(?P<name>[\w.-]+)(?:\[[\w,-]+\])?>=(?P<floor>[\d.]+)(?:,(?:!=|<)[\d.]+)*")
 
 
 def floors() -> dict[str, str]:

@@ -93,7 +93,8 @@ def _matches(source: Path, position: int, pattern: str, looked_at: int) -> list[
             f"{where} leads out of the folder of the mapping file; put the mapping file in a folder above the data."
         )
         raise CorpusError(message)
-    if not parts or parts.count("**") > 1:  # each further ** looks at every folder once more
+    beside_names = any("**" in part for part in parts if part != "**")  # Python 3.13 takes it for a single *
+    if not parts or parts.count("**") > 1 or beside_names:  # each further ** looks at every folder once more
         message = f"{where} is not a pattern of file names; write it like data/*.mat, with ** at most once."
         raise CorpusError(message)
     exact = folder / pattern
