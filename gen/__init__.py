@@ -21,7 +21,8 @@ simulation  scenarios to accelerations
 measurement accelerations to stored counts, as a data-acquisition card gives
 labels      variables written beside each record
 pace        seconds that some records take on this machine
-part_task   one part: drawn, simulated, measured, labelled, written
+records     records drawn, simulated and measured; faults that cannot be seen drawn again
+part_task   one part: made, labelled, written
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
 plan        counts, size and steps of a corpus before it is made

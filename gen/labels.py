@@ -23,14 +23,19 @@ def part_dataset(
     step_error: NDArray[np.float64] | None = None,
 ) -> xr.Dataset:
     """Measured records with their labels, in the layout of the corpus; ``step_error`` is NaN throughout if it is not given."""
-    rows = [
-        {**_drawn(scenario, recipe), **truth._asdict()}
-        for scenario, truth in zip(scenarios, response.truth, strict=True)
-    ]
+    rows = []
+    for scenario, truth, seen in zip(scenarios, response.truth, measured.detectable, strict=True):
+        if recipe.corpus.undetected == "healthy" and not seen:
+            rows.append({**_drawn(scenario.without_fault(), recipe), **truth.without_fault()._asdict()})
+        else:
+            rows.append({**_drawn(scenario, recipe), **truth._asdict()})
     columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
     columns |= {
         "clipped": measured.clipped,
         "snr": measured.snr,
+        "fault_snr": measured.fault_snr,
+        "fault_share": measured.fault_share,
+        "detectable": measured.detectable,
         "oversampling": response.oversampling,
         "step_phase": response.step_phase,
         "step_error": np.full(len(rows), np.nan) if step_error is None else step_error,
@@ -75,4 +80,8 @@ def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         "split": SPLITS.index(specimen.split),
         "source": f"{recipe.name}/{record.number}",
         "diametral_clearance": specimen.properties["diametral_clearance"],
+        "gain": rig.gain if recipe.level.kind == "physical" else np.nan,
+        "background_rms": rig.background_rms if recipe.level.kind == "physical" else np.nan,
+        "fault_tries": specimen.fault_try,
+        "level_tries": record.level_try,
     }

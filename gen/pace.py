@@ -76,7 +76,7 @@ def _timed(scenarios: list[Scenario], recipe: Recipe) -> tuple[float, float]:
     start = time.perf_counter()
     response = simulate(scenarios, recipe)
     simulated = time.perf_counter()
-    measured = measure(response.acceleration, scenarios, recipe)
+    measured = measure(response.acceleration, scenarios, recipe, response.twins)
     with tempfile.TemporaryDirectory() as folder:
         dataset = part_dataset(measured, scenarios, recipe, response)
         write_part(dataset, Path(folder) / "part-00000.nc", recipe.corpus.codec)

@@ -13,13 +13,14 @@ from pathlib import Path
 from gen.corpus import PartRow, open_part, part_name, sha256, write_part
 from gen.errors import SimulationError
 from gen.labels import part_dataset
-from gen.measurement.measure import compile_mixing, measure
+from gen.measurement.measure import compile_mixing
 from gen.physics.kernel.batch import input_shape
 from gen.recipe import Recipe, recipe_hash
+from gen.records import made_records
 from gen.scenarios import draw_scenarios
 from gen.simulation.inputs import kernel_input
 from gen.simulation.outline import outlined_input
-from gen.simulation.simulate import compile_kernel, simulate, step_errors
+from gen.simulation.simulate import compile_kernel, step_errors
 from gen.simulation.timeline import timeline
 
 
@@ -60,15 +61,14 @@ def make_part(
     if kept is not None:
         return kept
     numbers = record_numbers(recipe, part)
-    scenarios = draw_scenarios(recipe, numbers.start, numbers.stop)
-    response = simulate(scenarios, recipe, report=lambda done: report(min(done, len(scenarios) - 1)))
-    measured = measure(response.acceleration, scenarios, recipe)
+    made = made_records(recipe, numbers, lambda done: report(min(done, len(numbers) - 1)))
+    response, scenarios = made.response, made.measured.scenarios
     failures = tuple(response.failures[place] for place in sorted(response.failures))
     fine = [place for place in range(len(scenarios)) if place not in response.failures]
     if not fine:
         return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
     errors = step_errors(scenarios, recipe, response)
-    dataset = part_dataset(measured, scenarios, recipe, response, errors)
+    dataset = part_dataset(made.measured, scenarios, recipe, response, errors)
     if failures:
         dataset = dataset.isel(record=fine)
     dataset.attrs |= {

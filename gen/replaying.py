@@ -9,10 +9,9 @@ import xarray as xr
 from gen.corpus import DRAWS, SIGNAL, open_corpus, read_manifest
 from gen.errors import CorpusError
 from gen.labels import part_dataset
-from gen.measurement.measure import measure
 from gen.recipe import Recipe, read_recipe, recipe_hash
-from gen.scenarios import Scenario, draw_scenarios, read_scenario
-from gen.simulation.simulate import simulate
+from gen.records import made_again
+from gen.scenarios import Scenario, read_scenario
 
 
 def corpus_recipe(directory: Path) -> Recipe:
@@ -59,10 +58,9 @@ def replay(directory: Path | str, record: int) -> Replayed:
         _check_record(directory, corpus, record)
         number = int(corpus["recording"][record])
         stored = corpus[SIGNAL][record].values
-    scenarios = draw_scenarios(recipe, number, number + 1)
-    response = simulate(scenarios, recipe)
-    measured = measure(response.acceleration, scenarios, recipe)
-    dataset = part_dataset(measured, scenarios, recipe, response)
+        tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
+    made = made_again(recipe, number, *tries)
+    dataset = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
     again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
 

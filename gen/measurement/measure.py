@@ -1,33 +1,44 @@
 """From the motion of the bodies to the samples that a data-acquisition card stores.
 
 response -> transfer path -> modulation by the shaft -> machine background -> level -> converter. Healthy and faulty records are measured
-alike: path and background belong to the rig, and their random streams do not depend on the fault. All of it is in single precision. Its
-error is 1e-7 of the largest value of a record: a three-hundredth of a count of the converter at full scale.
+alike: path and background belong to the rig, and their random streams do not depend on the fault. Where the same record without its fault
+is known, the two are filtered and modulated side by side, so what the fault adds is known at every stage. All of it is in single
+precision. Its error is 1e-7 of the largest value of a record: a three-hundredth of a count of the converter at full scale.
 """
 
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
-from gen.measurement.mixing import Lines, ShaftAngle, mix
+from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
+from gen.measurement.judging import Bands, is_detectable, judged_bands
+from gen.measurement.levels import (
+    Gains,
+    bearing_over_background,
+    fault_over_rest,
+    gains_of,
+    mean_square,
+)
+from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
-from gen.physics.elementary import decibels
-from gen.physics.profile import integrated_share
 from gen.recipe import Recipe
-from gen.scenarios import Purpose, Scenario
+from gen.scenarios import Purpose, Scenario, with_level
+from gen.simulation.shaft import shaft_angles
+from gen.simulation.simulate import Twins
 from gen.simulation.timeline import Timeline, timeline
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
 LARGEST_COUNT = 32767
-SILENCE = 1e-30  # m s-2; a smaller rms counts as no signal
+UNJUDGED = 2  # value of ``detectable`` where it is neither 0 nor 1
+LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
+SIGNIFICANT_RISE = 1.25  # of the rms by a fault without lines: ISO 20816-1:2016, criterion II
 _ROWS = 8  # records times channels per pass: transforms run side by side, and their arrays fit the second-level cache
-_NO_IMPULSES, _NO_ANGLES = np.empty((0, 0), np.float32), np.empty(0)
 
 
 @dataclass(frozen=True)
@@ -43,9 +54,25 @@ class Measured:
     snr: FloatArray
     """Rms of the bearing over that of the background, or over the rounding noise of the converter if that is larger, shape (record,) [dB].
     NaN for a record without a bearing signal, without a background, or with no sample but zeros."""
+    fault_snr: FloatArray
+    """Rms of what the fault adds over that of all else: the bearing without the fault, and the background, shape (record,) [dB]. Minus
+    infinity if the fault adds nothing, NaN for a healthy record or if the record without the fault is not known."""
+    fault_share: FloatArray
+    """Power of what the fault adds over its sum with the power of all else, shape (record,) [1]; 0 for a healthy record, NaN if unknown."""
+    detectable: NDArray[np.int8]
+    """1 if the fault can be seen in the record, 0 if not or if there is none, ``UNJUDGED`` if it was not judged, shape (record,)."""
+    scenarios: list[Scenario]
+    """The scenarios as measured: with the level that was taken, if several were tried."""
 
 
-def measure(acceleration: Float32Array, scenarios: list[Scenario], recipe: Recipe) -> Measured:
+def measure(
+    acceleration: Float32Array,
+    scenarios: list[Scenario],
+    recipe: Recipe,
+    twins: Twins | None = None,
+    *,
+    level_tries: int = 1,
+) -> Measured:
     """Turn accelerations of the bodies into records.
 
     Parameters
@@ -56,30 +83,68 @@ def measure(acceleration: Float32Array, scenarios: list[Scenario], recipe: Recip
         The scenarios that were simulated, in the same order.
     recipe : Recipe
         Gives sample rate, level and converter.
+    twins : Twins, optional
+        The same records without their faults, which tell what the faults add.
+    level_tries : int
+        Number of levels that may be drawn for a record until its fault can be seen.
     """
     recording, axis = recipe.recording, timeline(recipe)
     shape = len(scenarios), len(recording.channels), axis.record
     rigs = {scenario.rig.number: scenario.rig for scenario in scenarios}
-    of_rig = {number: rig_filters(rig, axis.returned, axis.fs) for number, rig in rigs.items()}
-    filters = [of_rig[scenario.rig.number] for scenario in scenarios]
+    of_rig = {number: rig_filters(rig, axis.returned, axis.fs, recipe.seed) for number, rig in rigs.items()}
     converter = recording.converter
     counts_per_unit = None if converter.kind == "float32" else LARGEST_COUNT / converter.full_scale_m_s2
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
-    clipped, snr = np.zeros(shape[0], np.int32), np.empty(shape[0])
+    clipped, taken = np.zeros(shape[0], np.int32), list(scenarios)
+    snr, fault_snr, fault_share = np.full((3, shape[0]), np.nan)
+    detectable = np.empty(shape[0], np.int8)
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
     several = max(1, _ROWS // shape[1])
     for first in range(0, shape[0], several):
         some = slice(first, first + several)
-        mixed, rms = _mixed(acceleration[some], scenarios[some], filters[some], axis)
-        if counts_per_unit is not None:
-            np.rint(np.multiply(mixed, np.float32(counts_per_unit), out=mixed), out=mixed)
-            clipped[some] = np.count_nonzero(np.abs(mixed) > LARGEST_COUNT, axis=(1, 2))
-            np.clip(mixed, -LARGEST_COUNT, LARGEST_COUNT, out=mixed)
-            mixed[np.isnan(rms).any(axis=0)] = 0.0  # a record that diverged is left out, but NaN has no count
-        signal[some] = mixed
-        snr[some] = np.where(signal[some].any(axis=(1, 2)), _ratio(rms[0], np.maximum(rms[1], rounding)), np.nan)
-    return Measured(signal, counts_per_unit, clipped, snr)
+        filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
+        for row, part in enumerate(_parts(acceleration[some], scenarios[some], filters, axis, twins, first), first):
+            found = _levelled(part, scenarios[row], recipe, rounding, level_tries)
+            mixed = _mixed(part, found.gains)
+            if counts_per_unit is not None:
+                np.rint(np.multiply(mixed, np.float32(counts_per_unit), out=mixed), out=mixed)
+                clipped[row] = np.count_nonzero(np.abs(mixed) > LARGEST_COUNT)
+                np.clip(mixed, -LARGEST_COUNT, LARGEST_COUNT, out=mixed)
+                if not math.isfinite(sum(part.products)):
+                    mixed[:] = 0.0  # a record that diverged is left out, but NaN has no count
+            signal[row] = mixed
+            taken[row], detectable[row] = found.scenario, found.detectable
+            fault_snr[row], fault_share[row] = found.fault_snr, found.fault_share
+            if signal[row].any():
+                snr[row] = bearing_over_background(part.products, found.gains, rounding)
+    return Measured(signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken)
+
+
+class Part(NamedTuple):
+    """The parts of one record, filtered and modulated, before their gains."""
+
+    fault: Float32Array
+    """What the fault adds, shape (channel, time), or (0, 0) if there is no fault or it is not known [m s-2]."""
+    healthy: Float32Array
+    """The bearing without it, or the whole bearing, shape (channel, time) [m s-2]."""
+    background: Float32Array
+    """Shape (channel, time) [1]."""
+    products: Products
+    angles: FloatArray
+    """Angle of the shaft, shape (time,) [rad]."""
+    orders: tuple[float, ...]
+    """Orders at which the faults repeat [1]."""
+
+
+class Levelled(NamedTuple):
+    """Level of one record, and what can be seen of its fault; see :class:`Measured`."""
+
+    scenario: Scenario
+    gains: Gains
+    fault_snr: float
+    fault_share: float
+    detectable: int
 
 
 def compile_mixing(scenario: Scenario, recipe: Recipe) -> None:
@@ -88,31 +153,76 @@ def compile_mixing(scenario: Scenario, recipe: Recipe) -> None:
     measure(silence, [scenario], recipe)
 
 
-def _mixed(
-    acceleration: Float32Array, scenarios: Sequence[Scenario], filters: Sequence[RigFilters], axis: Timeline
-) -> tuple[Float32Array, FloatArray]:
-    """Bearing plus background at the drawn levels, shape (record, channel, time), and the rms of each, shape (2, record) [m s-2]."""
-    n_records, n_channels, _ = acceleration.shape
+def _parts(
+    acceleration: Float32Array,
+    scenarios: Sequence[Scenario],
+    filters: Sequence[RigFilters],
+    axis: Timeline,
+    twins: Twins | None,
+    first: int,
+) -> list[Part]:
+    """The parts of some records, of which ``first`` is the place of the first one in ``twins``."""
+    count, n_channels, _ = acceleration.shape
+    faulty = [row for row in range(count) if twins is not None and scenarios[row].specimen.fault != "healthy"]
+    healthy, added = acceleration, np.empty((0, *acceleration.shape[1:]), np.float32)
+    if twins is not None and faulty:
+        healthy = acceleration.copy()
+        healthy[faulty] = twins.acceleration[first : first + count][faulty]
+        added = acceleration[faulty] - healthy[faulty]
+    both = _through_paths(np.concatenate([healthy, added]), [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
-    phases = [_phases(found, rng) for found, rng in zip(filters, rngs, strict=True)]
-    shafts = [_shaft_angle(scenario, axis, start) for scenario, (_, start, _) in zip(scenarios, phases, strict=True)]
-    bearing, background = _through_paths(acceleration, filters), _noise(filters, n_channels, rngs)
-    impulses = _impulses(filters, shafts, [knock for _, _, knock in phases], axis.returned, rngs)
-    rms, gains = np.empty((2, n_records)), np.empty((2, n_records))
-    for row, (lines, _, _) in enumerate(phases):
-        kept = axis.kept
-        rms[:, row] = mix(bearing[row], background[row], impulses[row], shafts[row], lines, kept.start, kept.stop)
-        gains[:, row] = _gains(scenarios[row], *np.maximum(rms[:, row], SILENCE))
-    of_bearing, of_background = gains.astype(np.float32)[:, :, None, None]
-    mixed = of_bearing * bearing[..., axis.kept]
-    mixed += np.multiply(of_background, background[..., axis.kept], out=background[..., axis.kept])
-    return mixed, rms * gains
+    angles = [shaft_angles(scenario, axis) for scenario in scenarios]
+    lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
+    background = noise_of(filters, n_channels, rngs)
+    impulses = impulses_of(filters, angles, rngs)
+    parts = []
+    for row in range(count):
+        fault = both[count + faulty.index(row)] if row in faulty else NO_SIGNAL
+        one = fault, both[row], background[row]
+        products = Products(*mix(*one, impulses[row], angles[row], lines[row], axis.kept.start, axis.kept.stop))
+        kept = [some[..., axis.kept] if some.size else some for some in one]
+        orders = twins.orders[first + row] if twins is not None else ()
+        parts.append(Part(*kept, products, angles[row][axis.kept], orders))
+    return parts
 
 
-def _ratio(bearing: FloatArray, background: FloatArray) -> FloatArray:
-    """Ratio of two rms values, NaN if either is below SILENCE or not finite [dB]."""
-    known = (bearing > SILENCE) & (background > SILENCE) & np.isfinite(bearing) & np.isfinite(background)
-    return np.where(known, decibels(np.where(known, bearing, 1.0) / np.where(known, background, 1.0)), np.nan)
+def _mixed(part: Part, gains: Gains) -> Float32Array:
+    """Bearing plus background, shape (channel, time) [m s-2]."""
+    whole = part.healthy + part.fault if part.fault.size else part.healthy
+    mixed = np.float32(gains.bearing) * whole
+    mixed += np.float32(gains.background) * part.background
+    return mixed
+
+
+def _levelled(part: Part, scenario: Scenario, recipe: Recipe, rounding: float, tries: int) -> Levelled:
+    """Level of a record: the drawn one, or if its fault cannot be seen the first of some more draws at which it can."""
+    bands = None
+    if part.orders and part.fault.size and math.isfinite(sum(part.products)):
+        steady = scenario.record.speed_profile is None
+        bands = judged_bands(part.fault, part.healthy, part.background, part.orders, part.angles, steady=steady)
+    found = []
+    for attempt in range(tries if recipe.level.kind == "snr" and part.fault.size else 1):
+        tried = with_level(scenario, recipe, attempt) if attempt else scenario
+        gains = gains_of(tried, part.products)
+        found.append(Levelled(tried, gains, *_seen(part, bands, tried, gains, rounding)))
+        if found[-1].detectable:
+            return found[-1]
+    return found[0]
+
+
+def _seen(
+    part: Part, bands: Bands | None, scenario: Scenario, gains: Gains, rounding: float
+) -> tuple[float, float, int]:
+    """Level of the fault over the rest [dB], its share of the power [1], and whether it can be seen: 1, 0 or ``UNJUDGED``."""
+    if scenario.specimen.fault == "healthy":
+        return math.nan, 0.0, 0
+    if not part.fault.size:
+        return math.nan, math.nan, UNJUDGED
+    level, share = fault_over_rest(part.products, gains, rounding)
+    if bands is not None:
+        return level, share, int(is_detectable(bands, gains))
+    rise = mean_square(part.products, gains) >= SIGNIFICANT_RISE**2 * mean_square(part.products, gains, fault=False)
+    return level, share, int(rise)
 
 
 def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) -> Float32Array:
@@ -131,81 +241,3 @@ def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) ->
             spectrum *= filters[row].paths
         filtered[resonant] = irfft(spectra, filters[0].n)[..., : filtered.shape[2]]
     return filtered
-
-
-def _noise(filters: Sequence[RigFilters], n_channels: int, rngs: Sequence[np.random.Generator]) -> Float32Array:
-    """Noise of unit rms, drawn as its spectrum, shape (record, channel, time) [1]."""
-    n = filters[0].n
-    drawn = np.empty((len(filters), n_channels, 2 * (n // 2 + 1)), np.float32)
-    for row, rng in zip(drawn, rngs, strict=True):
-        rng.standard_normal(out=row, dtype=np.float32)
-    spectra = drawn.view(np.complex64)
-    for spectrum, found in zip(spectra, filters, strict=True):
-        spectrum *= found.noise
-    return irfft(spectra, n)
-
-
-def _phases(filters: RigFilters, rng: np.random.Generator) -> tuple[Lines, float, float]:
-    """Lines and modulations with the phases drawn for this record; angle of the shaft and of the knocks at the start [rad]."""
-    n_modulations, n_harmonics = 2 * (len(filters.modulations) + 1), len(filters.harmonics)
-    drawn = 2 * np.pi * rng.random(2 + n_modulations + n_harmonics + 2 * len(filters.tones))
-    modulations, harmonics, tones = np.split(drawn[2:], [n_modulations, n_modulations + n_harmonics])
-    own = modulations.reshape(-1, 2)[filters.modulation_numbers]
-    lines = Lines(
-        np.concatenate([filters.modulations, own], axis=1),
-        np.stack([filters.harmonics, harmonics], axis=1),
-        np.concatenate([filters.tones, tones.reshape(-1, 2)], axis=1),
-    )
-    return lines, drawn[0], drawn[1]
-
-
-def _shaft_angle(scenario: Scenario, axis: Timeline, start: float) -> ShaftAngle:
-    """Angle of the shaft from the start of the response on, at the mean rate or along its profile."""
-    step = 2 * math.pi * scenario.record.conditions["shaft"] / axis.fs
-    profile = scenario.record.speed_profile
-    if profile is None:
-        return ShaftAngle(start, step, _NO_ANGLES)
-    return ShaftAngle(start, step, start + step * axis.fs * integrated_share(profile, axis.response_times()))
-
-
-def _impulses(
-    filters: Sequence[RigFilters],
-    shafts: Sequence[ShaftAngle],
-    knocks: Sequence[float],
-    length: int,
-    rngs: Sequence[np.random.Generator],
-) -> list[Float32Array]:
-    """Impulses at random times, and knocks locked to the shaft, behind the paths: shape (channel, time) each, or (0, 0) for none [1]."""
-    found = [_NO_IMPULSES] * len(filters)
-    rows = [row for row, some in enumerate(filters) if some.impulses[0] > 0 or some.knocks[0] > 0]
-    if rows:
-        hits = np.stack([_hits(filters[row], shafts[row], knocks[row], length, rngs[row]) for row in rows])
-        paths = np.stack([filters[row].impulse_paths for row in rows])
-        spectra = rfft(hits, filters[0].n)[:, None] * paths
-        for row, filtered in zip(rows, irfft(spectra, filters[0].n), strict=True):
-            found[row] = filtered
-    return found
-
-
-def _hits(filters: RigFilters, shaft: ShaftAngle, knock: float, length: int, rng: np.random.Generator) -> Float32Array:
-    """Strength of impulses and knocks at the samples where they start, shape (time,) [1]."""
-    hits = np.zeros(length, np.float32)
-    number, level = filters.impulses
-    times = rng.integers(length, size=rng.poisson(number))
-    np.add.at(hits, times, level * rng.standard_normal(len(times), dtype=np.float32))
-    orders, level = filters.knocks
-    if orders > 0:
-        angles = shaft.angles if len(shaft.angles) else shaft.start + shaft.step * np.arange(length)
-        times = np.flatnonzero(np.diff(np.floor((orders * angles + knock) / (2 * np.pi))) > 0) + 1
-        hits[times] += level * (1 + 0.2 * rng.standard_normal(len(times), dtype=np.float32))
-    return hits
-
-
-def _gains(scenario: Scenario, bearing: float, background: float) -> tuple[float, float]:
-    """Gains of bearing and background, given the rms of each [1]."""
-    rig, record = scenario.rig, scenario.record
-    if record.snr is None or record.rms is None:
-        return rig.gain, rig.gain * rig.background_rms
-    ratio = 10 ** (record.snr / 20)
-    whole = record.rms / math.hypot(1.0, ratio)
-    return whole * ratio / bearing, whole / background

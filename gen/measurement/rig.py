@@ -8,10 +8,13 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len
 
 from gen.physics.elementary import power
-from gen.scenarios import Background, Mode, Rig
+from gen.scenarios import Background, Mode, Purpose, Rig, ShaftModulation, stream
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
+
+_FLATTEST = 0.8  # orbit at a harmonic: the shaft never moves along a straight line
+_SMALLEST_GAIN = 1e-6  # of a motion behind the paths; a line that all paths suppress stays out
 
 
 @dataclass(frozen=True)
@@ -20,30 +23,53 @@ class RigFilters:
 
     n: int
     """Samples of a Fourier transform: at least as many as a response has."""
+    fs: float
+    """Sample rate [Hz]."""
     paths: NDArray[np.complex64]
     """Transfer path of each channel, shape (channel, frequency)."""
     direct: Float32Array | None
     """The same where no path has resonances, shape (channel, 1), else None."""
     noise: Float32Array
     """Factors that turn complex numbers of unit variance into the spectrum of noise of unit rms, shape (frequency,)."""
+    common_noise: float
+    """Share of the power of the noise that all channels have in common [1]."""
+    modulations: FloatArray
+    """Parts of the modulation once and twice per turn, of the noise and of the path of each channel, shape (1 + channel, 4)."""
     harmonics: FloatArray
     """Amplitude of each harmonic of the shaft, shape (order,)."""
+    harmonic_motion: NDArray[np.complex128]
+    """Motion of the machine at each harmonic along each channel, shape (channel, order)."""
+    growth: float
+    """Exponent of the growth of the harmonics with the speed [1]."""
     tones: FloatArray
-    """Angle per sample [rad], amplitude and depth of modulation of each tone, shape (tone, 3)."""
-    modulations: FloatArray
-    """Depth of modulation once and twice per turn, of the noise and of the path of each channel, shape (1 + channel, 2)."""
-    modulation_numbers: NDArray[np.int_]
-    """Index of the modulation that each of them uses; channels on the common path share one."""
+    """Angle per sample [rad], amplitude, and parts of the modulation by the shaft, of each tone, shape (tone, 4)."""
+    tone_motion: NDArray[np.complex128]
+    """Motion of the machine at each tone along each channel, shape (channel, tone)."""
     impulses: tuple[float, float]
     """Expected number in a response, and level."""
-    knocks: tuple[float, float]
-    """Number in a turn of the shaft, and level."""
+    knocks: tuple[float, float, float]
+    """Number in a turn of the shaft, level, and phase [rad]."""
     impulse_paths: NDArray[np.complex64]
     """The paths, scaled so that an impulse has a peak of 1 behind each, shape (channel, frequency); unscaled without impulses."""
 
+    def in_channels(
+        self, motion: NDArray[np.complex128], amplitudes: FloatArray, frequencies: FloatArray
+    ) -> NDArray[np.complex128]:
+        """Complex amplitudes of lines behind the paths, shape (channel, line); their rms over the channels is that of ``amplitudes``.
 
-def rig_filters(rig: Rig, length: int, fs: float) -> RigFilters:
-    """Transfer paths and background of a rig, for responses of ``length`` samples."""
+        ``motion``, shape (channel, line), and the paths at ``frequencies`` [Hz] divide each line among the channels.
+        """
+        at = np.clip(frequencies, 0.0, self.fs / 2) * (self.n / self.fs)
+        bins = np.arange(self.paths.shape[1])
+        found = motion * [np.interp(at, bins, path.real) + 1j * np.interp(at, bins, path.imag) for path in self.paths]
+        return found * (amplitudes / np.maximum(np.sqrt(np.mean(np.abs(found) ** 2, axis=0)), _SMALLEST_GAIN))
+
+
+def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
+    """Transfer paths and background of a rig, for responses of ``length`` samples.
+
+    Everything that is locked to the shaft has a phase that belongs to the rig, drawn from its own stream of ``seed``.
+    """
     n, background = next_fast_len(length, real=True), rig.background
     frequency = np.arange(n // 2 + 1) * (fs / n)
     own = [path or rig.path for path in rig.own_paths]
@@ -52,20 +78,27 @@ def rig_filters(rig: Rig, length: int, fs: float) -> RigFilters:
     impulse_paths = paths
     if impulses is not None or knocks is not None:
         impulse_paths = paths / np.abs(irfft(paths, n)).max(axis=1, keepdims=True)
-    modulations = [background.modulation, *(path.modulation for path in own)]
+    of_modulations, of_harmonics, of_tones, of_knocks = stream(seed, rig.number, 0, 0, Purpose.PHASES).spawn(4)
+    directions = np.array([channel.angle for channel in rig.channels])
+    harmonics, harmonic_motion = _harmonics(background, directions, of_harmonics)
+    tones, tone_motion = _tones(background, fs, directions, of_tones)
     return RigFilters(
         n=n,
+        fs=fs,
         paths=paths,
         direct=None if any(path.modes for path in own) else np.array([[path.direct] for path in own], np.float32),
         noise=_noise_factors(background, frequency, n),
-        harmonics=_harmonics(background),
-        tones=_tones(background, fs),
-        modulations=np.array([[modulation.once, modulation.twice] for modulation in modulations]),
-        modulation_numbers=np.array(
-            [0, *(1 if path is None else place for place, path in enumerate(rig.own_paths, 2))]
-        ),
+        common_noise=math.sqrt(background.coherence),
+        modulations=_modulations(rig, of_modulations),
+        harmonics=harmonics,
+        harmonic_motion=harmonic_motion,
+        growth=background.growth,
+        tones=tones,
+        tone_motion=tone_motion,
         impulses=(0.0, 0.0) if impulses is None else (impulses.frequency * length / fs, impulses.level),
-        knocks=(0.0, 0.0) if knocks is None else (knocks.frequency, knocks.level),
+        knocks=(0.0, 0.0, 0.0)
+        if knocks is None
+        else (knocks.frequency, knocks.level, 2 * math.pi * of_knocks.random()),
         impulse_paths=impulse_paths,
     )
 
@@ -78,17 +111,56 @@ def _noise_factors(background: Background, frequency: FloatArray, n: int) -> Flo
     return factors.astype(np.float32)
 
 
-def _harmonics(background: Background) -> FloatArray:
+def _modulations(rig: Rig, rng: np.random.Generator) -> FloatArray:
+    """Parts of all modulations, shape (1 + channel, 4); channels on the common path share one."""
+    of_noise, of_path, *of_own = 2 * np.pi * rng.random((2 + len(rig.own_paths), 2))
+    rows = [_parts(rig.background.modulation, of_noise)]
+    for path, phases in zip(rig.own_paths, of_own, strict=True):
+        rows.append(_parts(rig.path.modulation, of_path) if path is None else _parts(path.modulation, phases))
+    return np.array(rows)
+
+
+def _parts(modulation: ShaftModulation, phases: FloatArray) -> FloatArray:
+    """Parts of a modulation once per turn, then of that twice per turn, shape (4,)."""
+    depths = np.array([modulation.once, modulation.twice])
+    return np.stack([depths * np.cos(phases), depths * np.sin(phases)], axis=1).ravel()
+
+
+def _harmonics(
+    background: Background, directions: FloatArray, rng: np.random.Generator
+) -> tuple[FloatArray, NDArray[np.complex128]]:
+    """Amplitudes and motions of the harmonics; the first is in phase with the unbalance, which points along the mark of the shaft."""
     levels = np.zeros(max((int(line.frequency) for line in background.harmonics), default=0))
     for line in background.harmonics:
         levels[int(line.frequency) - 1] = math.sqrt(2) * line.level
-    return levels
+    forward, backward, flatness = rng.random((3, len(levels)))
+    forward[:1] = 0.0
+    return levels, along(directions, 2 * np.pi * forward, 2 * np.pi * backward, _FLATTEST * flatness)
 
 
-def _tones(background: Background, fs: float) -> FloatArray:
-    root = math.sqrt(2)
-    tones = [(2 * math.pi * tone.frequency / fs, root * tone.level, tone.modulation) for tone in background.tones]
-    return np.array(tones).reshape(-1, 3)
+def _tones(
+    background: Background, fs: float, directions: FloatArray, rng: np.random.Generator
+) -> tuple[FloatArray, NDArray[np.complex128]]:
+    root, count = math.sqrt(2), len(background.tones)
+    forward, backward, flatness, phases = rng.random((4, count))
+    depths = np.array([tone.modulation for tone in background.tones])
+    steps = np.array([2 * math.pi * tone.frequency / fs for tone in background.tones])
+    levels = np.array([root * tone.level for tone in background.tones])
+    tones = np.stack([steps, levels, depths * np.cos(2 * np.pi * phases), depths * np.sin(2 * np.pi * phases)], axis=1)
+    return tones, along(directions, 2 * np.pi * forward, 2 * np.pi * backward, flatness)
+
+
+def along(
+    directions: FloatArray, forward: FloatArray, backward: FloatArray, flatness: FloatArray
+) -> NDArray[np.complex128]:
+    """Complex amplitudes of elliptical motions along ``directions`` [rad], shape (direction, line) [1].
+
+    An ellipse is the sum of a vector that turns with the shaft and one that turns against it, with the phases ``forward`` and
+    ``backward`` [rad]; ``flatness`` is the ratio of their lengths: 0 for a circle, 1 for a straight line. Each has shape (line,). See
+    A. Muszynska, Rotordynamics, CRC Press, 2005.
+    """
+    turned = np.exp(-1j * directions)[:, None]
+    return np.exp(1j * forward) * turned + flatness * np.exp(1j * backward) * np.conj(turned)
 
 
 def base_excited(modes: tuple[Mode, ...], frequency: FloatArray) -> NDArray[np.complex128]:

@@ -47,6 +47,11 @@ class CorpusSection(Section):
     """Random numbers that the draws come from: pseudo-random, or a low-discrepancy sequence that covers ranges more evenly."""
     split: Split = Split()
     """Division into training, validation and test records."""
+    truth: Literal["full", "none"] = "full"
+    """`full` simulates each record with a fault once more without it, to know what the fault adds to it; `none` takes less time."""
+    undetected: Literal["redraw", "keep", "healthy"] = "keep"
+    """What becomes of a record in which its fault cannot be seen. `keep`: it keeps its label. `redraw`: its level is drawn again, then the
+    fault of its specimen. `healthy`: it is labelled healthy. With `truth: none` all records keep their labels."""
     codec: Codec = "zlib"
     """Compression of the signal: `zlib` can be read everywhere, `zstd` needs a plugin for h5py and ncdump, `none` stores it as it is."""
 

@@ -122,7 +122,9 @@ class Harmonics(Section):
     count: Distribution = within(1, 64)
     """Number of lines, at 1x, 2x, ... shaft rate; rounded to a whole number."""
     level_db: Distribution = within(-80, 40)
-    """Rms of a line relative to that of the background noise, drawn for each."""
+    """Rms of a line relative to that of the background noise, drawn for each; the mean over all directions and channels."""
+    growth: Distribution = within(0, 4, default=0.0)
+    """Power of the speed with which the lines grow along `operation.speed_profile`; 2 is that of an unbalance."""
 
 
 class Tones(Section):
@@ -181,6 +183,8 @@ class BackgroundSection(Section):
     """Impulses at random times; none if left out."""
     knocks: Knocks | None = None
     """Impulses locked to the shaft; none if left out."""
+    coherence: Distribution = within(0, 1, default=0.0)
+    """Magnitude-squared coherence of the noise between two channels: 0 for independent noise, 1 for the same."""
 
 
 class PhysicalLevel(Section):
@@ -200,7 +204,8 @@ class SnrLevel(Section):
     kind: Literal["snr"]
     """Scales bearing signal and background per record."""
     faulty_db: Distribution = within(-60, 60)
-    """Rms of the bearing signal over that of the background, for records with a fault."""
+    """Rms of what the fault adds over that of all else, background and bearing without the fault; for records with a fault. With
+    `corpus.truth: none` it is that of the whole bearing signal over the background."""
     healthy_db: Distribution = within(-60, 60)
     """Rms of the bearing signal over that of the background, for healthy records."""
     rms_m_s2: Distribution = within(0, 1000, open_low=True, default=5.0)

@@ -11,7 +11,7 @@ stored write a scenario as the JSON text that a corpus stores, and read it
 ====== =================================================================
 """
 
-from gen.scenarios.draw import draw_scenarios
+from gen.scenarios.draw import draw_scenarios, with_level
 from gen.scenarios.faults import fault_of_each_specimen, first_specimens
 from gen.scenarios.model import (
     Background,
@@ -51,4 +51,5 @@ __all__ = [
     "read_scenario",
     "scenario_texts",
     "stream",
+    "with_level",
 ]

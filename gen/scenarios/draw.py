@@ -8,6 +8,7 @@ fault stream depends on the fault: a record with its fault and the same record w
 import functools
 import math
 import warnings
+from collections.abc import Mapping
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -52,10 +53,13 @@ _DIMENSIONS = 64  # quasi-random values of an item; its further values are pseud
 _FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
 
 
-def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> list[Scenario]:
+def draw_scenarios(
+    recipe: Recipe, first: int = 0, stop: int | None = None, *, fault_tries: Mapping[int, int] | None = None
+) -> list[Scenario]:
     """Draw the scenarios of the records ``first`` to ``stop`` (exclusive) of a corpus.
 
-    The scenario of a record does not depend on the range.
+    The scenario of a record does not depend on the range. ``fault_tries`` gives, by the number of a specimen, how many faults are drawn
+    and left before the one that it has; 0 for specimens that are not in it.
 
     Raises
     ------
@@ -71,7 +75,14 @@ def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> l
     rigs = {number: _draw_rig(recipe, number, point) for number, point in rig_points.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
     specimens = {
-        number: _draw_specimen(recipe, rigs[number // per_rig], number, point, classes[number // per_rig])
+        number: _draw_specimen(
+            recipe,
+            rigs[number // per_rig],
+            number,
+            point,
+            classes[number // per_rig],
+            (fault_tries or {}).get(number, 0),
+        )
         for number, point in _points(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
     }
     return [
@@ -127,6 +138,11 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
             f"rig {number}: oil of {oil['viscosity_40'] * 1e6:.3g} mm2/s at 40 C has no lower viscosity at 100 C; "
             f"keep viscosity_100_mm2_s below viscosity_40_mm2_s."
         )
+    background = replace(
+        background,
+        coherence=draws.value(recipe.background.coherence),
+        growth=0.0 if recipe.background.harmonics is None else draws.value(recipe.background.harmonics.growth),
+    )
     return Rig(
         number=number,
         bearing=bearing,
@@ -218,7 +234,18 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     )
 
 
-def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str]) -> Specimen:
+def with_level(scenario: Scenario, recipe: Recipe, level_try: int) -> Scenario:
+    """The same record with the level of a later try; the first one is drawn with the record."""
+    if level_try == 0 or recipe.level.kind != "snr":
+        return scenario
+    u = float(scenario.rng(Purpose.LEVEL).random(level_try)[-1])
+    wanted = recipe.level.healthy_db if scenario.specimen.fault == "healthy" else recipe.level.faulty_db
+    return replace(scenario, record=replace(scenario.record, snr=wanted.draw(u), level_try=level_try))
+
+
+def _draw_specimen(
+    recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str], fault_try: int
+) -> Specimen:
     draws = Draws(
         stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN),
         point,
@@ -238,11 +265,18 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
         )
     position = number % recipe.corpus.specimens_per_rig
     fault = classes[position]
-    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
+    draws = Draws(stream(recipe.seed, rig.number, number, fault_try, Purpose.FAULT), np.empty(0), number)
     wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
     entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
     specimen = Specimen(
-        number, bearing, properties, fault, spalls=(), axis={}, split=_draw_split(recipe, rig.number, position)
+        number,
+        bearing,
+        properties,
+        fault,
+        spalls=(),
+        axis={},
+        split=_draw_split(recipe, rig.number, position),
+        fault_try=fault_try,
     )
     return damaged(draws, entry, specimen)
 

@@ -33,6 +33,8 @@ class Purpose(IntEnum):
     WEAR = 11
     LOAD_WANDER = 12
     KNOCKS = 13
+    PHASES = 14
+    LEVEL = 15
 
 
 @dataclass(frozen=True)
@@ -131,6 +133,10 @@ class Background:
     tones: tuple[Tone, ...]
     impulses: Tone | None
     knocks: Tone | None
+    coherence: float = 0.0
+    """Magnitude-squared coherence of the noise between two channels [1]."""
+    growth: float = 0.0
+    """The harmonics grow with the speed of a course to this power [1]."""
 
 
 @dataclass(frozen=True)
@@ -170,6 +176,8 @@ class Specimen:
     cage: Drawn = field(default_factory=dict)
     """Pitch error [rad] and knock [N] of a broken cage."""
     wear: Wear | None = None
+    fault_try: int = 0
+    """Number of faults that were drawn before this one and could not be seen."""
 
 
 @dataclass(frozen=True)
@@ -179,11 +187,13 @@ class Operation:
     number: int
     conditions: Drawn
     snr: float | None
-    """Bearing over background, for ``level.kind: snr`` [dB]."""
+    """Fault over all else, or bearing over background without a fault, for ``level.kind: snr`` [dB]."""
     rms: float | None
     """Rms of bearing and background together, for ``level.kind: snr`` [m s-2]."""
     speed_profile: Profile | None = None
     load_profile: Profile | None = None
+    level_try: int = 0
+    """Number of levels that were drawn before this one and at which the fault could not be seen."""
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,10 @@ module   responsibility
 timeline the time axis: settling, lead, record
 machine  constants of the machine: oil, temperature and axial load included
 motion   how shaft, cage and balls turn; speed and load over time
+shaft    angle of the shaft at every sample
 damage   spalls and waviness
 inputs   kernel inputs, put together from these
+hits     how often loaded balls pass the spalls
 truth    what is true of a record by construction
 batches  records grouped by kernel and step, and integrated in lanes
 steps    the step: chosen before the run, checked after it

@@ -1,6 +1,6 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,9 +18,19 @@ from gen.simulation.batches import Group, batches, group_of, integrate_all
 from gen.simulation.inputs import kernel_input
 from gen.simulation.steps import checked_places, failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
-from gen.simulation.truth import Truth, truth_of
+from gen.simulation.truth import Truth, lines_of_faults, truths_of
 
 FloatArray = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Twins:
+    """The same records without their faults."""
+
+    acceleration: NDArray[np.float32]
+    """Shape (record, channel, time); of a record without a fault its own [m s-2]."""
+    orders: list[tuple[float, ...]]
+    """Orders at which the faults of each record repeat [1]."""
 
 
 @dataclass(frozen=True)
@@ -38,6 +48,8 @@ class Response:
     inputs: list[KernelInput | None]
     """Kernel input of each record, None for a record that is not possible."""
     truth: list[Truth]
+    twins: Twins | None
+    """None with ``corpus.truth: none``."""
 
 
 def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int], None] = lambda _: None) -> Response:
@@ -66,7 +78,9 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
     inputs, failures = possible_inputs(scenarios, recipe)
     given = {place: some for place, some in enumerate(inputs) if some is not None}
     steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
-    made = integrate_all(list(given.values()), list(steps.values()), axis, report)
+    healthy = _healthy_inputs(scenarios, given, recipe)
+    every, of_steps = [*given.values(), *healthy.values()], [*steps.values(), *(steps[place] for place in healthy)]
+    made = integrate_all(every, of_steps, axis, lambda done: report(done * len(given) // len(every)))
     acceleration = np.full((len(scenarios), len(recipe.recording.channels), axis.returned), np.nan, np.float32)
     oversampling, phases = np.zeros(len(scenarios), np.int64), np.full(len(scenarios), np.nan)
     for row, (place, some) in enumerate(given.items()):
@@ -77,8 +91,35 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
             acceleration[place] = made.response[row]
         else:
             failures[place] = sentence
-    truth = [truth_of(scenario, axis, some) for scenario, some in zip(scenarios, inputs, strict=True)]
-    return Response(acceleration, oversampling, phases, failures, inputs, truth)
+    truth = truths_of(scenarios, axis, inputs)
+    twins = None
+    if recipe.corpus.truth == "full":
+        twins = Twins(
+            acceleration.copy(), [lines_of_faults(*of) for of in zip(scenarios, (t.orders for t in truth), strict=True)]
+        )
+        for row, place in enumerate(healthy, len(given)):
+            if place not in failures:
+                twins.acceleration[place] = made.response[row]
+    return Response(acceleration, oversampling, phases, failures, inputs, truth, twins)
+
+
+def _healthy_inputs(
+    scenarios: list[Scenario], given: Mapping[int, KernelInput], recipe: Recipe
+) -> dict[int, KernelInput]:
+    """Kernel inputs of the records with a fault, as they were without it, by place; none with ``corpus.truth: none``.
+
+    They take the steps of the records with the fault, so the difference of the two is due to the fault alone.
+    """
+    if recipe.corpus.truth == "none":
+        return {}
+    healthy = {}
+    for place, some in given.items():
+        specimen = scenarios[place].specimen
+        if specimen.wear is not None or specimen.cage:
+            healthy[place] = kernel_input(scenarios[place].without_fault(), timeline(recipe))
+        elif specimen.fault != "healthy":  # spalls are the only difference
+            healthy[place] = some._replace(spalls=())
+    return healthy
 
 
 def possible_inputs(scenarios: list[Scenario], recipe: Recipe) -> tuple[list[KernelInput | None], dict[int, str]]:

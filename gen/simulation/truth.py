@@ -1,14 +1,17 @@
 """Truth of a record: values known by construction, computed once and stored as its labels."""
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
+from gen.physics.bearing import Orders
 from gen.physics.inputs import KernelInput
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over
+from gen.simulation.hits import LoadZone, load_zones, loaded_hits
 from gen.simulation.motion import mean_motion, start_of
 from gen.simulation.timeline import Timeline
 
@@ -41,6 +44,17 @@ class Truth(NamedTuple):
     """Of a rigid ball over it [m]."""
     width_share: float
     """Its width over the distance from ball to ball, or over the circumference of a ball [1]."""
+    loaded_hits: int
+    """Expected number of passages of loaded balls over all spalls, 0 if no such machine is possible [1]."""
+
+    def without_fault(self) -> "Truth":
+        """The same without damage."""
+        return self._replace(**WidestSpall()._asdict(), loaded_hits=0)
+
+    @property
+    def orders(self) -> Orders:
+        """Mean fault orders, slip included [1]."""
+        return Orders(self.true_ftf, self.true_bpfo, self.true_bpfi, self.true_bsf)
 
 
 class WidestSpall(NamedTuple):
@@ -53,8 +67,24 @@ class WidestSpall(NamedTuple):
     width_share: float = 0.0
 
 
-def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) -> Truth:
-    """Truth of a scenario; ``given`` is its kernel input, None if no such machine is possible."""
+def truths_of(scenarios: Sequence[Scenario], timeline: Timeline, inputs: Sequence[KernelInput | None]) -> list[Truth]:
+    """Truth of each scenario; its kernel input is None if no such machine is possible."""
+    spalled = [place for place, given in enumerate(inputs) if given is not None and given.spalls]
+    zones = dict(zip(spalled, load_zones([inputs[place] for place in spalled]), strict=True))
+    return [
+        _truth_of(scenario, timeline, given, zones.get(place))
+        for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True))
+    ]
+
+
+def lines_of_faults(scenario: Scenario, orders: Orders) -> tuple[float, ...]:
+    """Orders at which the faults of a record repeat; none for a worn race, which hits nothing [1]."""
+    of_site = {"inner": orders.bpfi, "outer": orders.bpfo, "ball": 2 * orders.bsf}
+    lines = dict.fromkeys(of_site[spall.site] for spall in scenario.specimen.spalls)
+    return (*lines, *([orders.ftf] if scenario.specimen.cage else []))
+
+
+def _truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None, zone: LoadZone | None) -> Truth:
     record, duration = scenario.record, timeline.duration
     start = start_of(scenario) if given is None else given
     motion = mean_motion(scenario, timeline, start.frequencies, start.phases)
@@ -69,6 +99,9 @@ def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) 
         **{f"true_{name}": order for name, order in motion.orders._asdict().items()},
         operating_clearance=math.nan if given is None else 2 * given.machine.half_clearance,
         **widest_spall(scenario)._asdict(),
+        loaded_hits=0
+        if given is None or zone is None
+        else loaded_hits(given, zone, motion.orders, motion.shaft_rate * duration),
     )
 
 

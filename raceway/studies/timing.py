@@ -92,7 +92,7 @@ def _repeated(recipe: Recipe, scenarios: list[Scenario], response: Response) -> 
             timed("draw", draw_scenarios, recipe, 0, len(scenarios))
             in_lanes = timed("lay_out", laid_out, scenarios, recipe)
             timed("integrate", _integrate, in_lanes, recipe)
-            measured = timed("measure", measure, response.acceleration, scenarios, recipe)
+            measured = timed("measure", measure, response.acceleration, scenarios, recipe, response.twins)
             timed("write", _write, measured, scenarios, recipe, response, path)
             timed("features", part_features, path)
     return seconds

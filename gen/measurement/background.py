@@ -1,0 +1,87 @@
+"""Background of the records of a rig: noise, spectral lines, impulses and knocks of the machine.
+
+Lines, knocks and modulations that are locked to the shaft have phases of the rig and turn with the true angle of the shaft. Noise, tones
+and impulses at random times are drawn for each record.
+"""
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.fft import irfft, rfft
+
+from gen.measurement.mixing import Lines
+from gen.measurement.rig import RigFilters
+from gen.physics.elementary import power
+from gen.physics.profile import share_at
+from gen.scenarios import Scenario
+from gen.simulation.timeline import Timeline
+
+FloatArray = NDArray[np.floating]
+Float32Array = NDArray[np.float32]
+NO_SIGNAL, _NO_GROWTH = np.empty((0, 0), np.float32), np.empty(0)
+
+
+def noise_of(filters: Sequence[RigFilters], n_channels: int, rngs: Sequence[np.random.Generator]) -> Float32Array:
+    """Noise of unit rms, drawn as its spectrum, shape (record, channel, time) [1]; a part of it is common to all channels."""
+    n = filters[0].n
+    drawn = np.empty((len(filters), n_channels, 2 * (n // 2 + 1)), np.float32)
+    for row, found, rng in zip(drawn, filters, rngs, strict=True):
+        rng.standard_normal(out=row, dtype=np.float32)
+        if found.common_noise > 0 and n_channels > 1:
+            row *= np.float32(math.sqrt(1 - found.common_noise))
+            row += np.float32(math.sqrt(found.common_noise)) * rng.standard_normal(row.shape[1], dtype=np.float32)
+    spectra = drawn.view(np.complex64)
+    for spectrum, found in zip(spectra, filters, strict=True):
+        spectrum *= found.noise
+    return irfft(spectra, n)
+
+
+def lines_of(filters: RigFilters, scenario: Scenario, rng: np.random.Generator, axis: Timeline) -> Lines:
+    """Lines and modulations of a record: only tones, which are not locked to the shaft, have phases of their own in each record."""
+    record, steps = scenario.record, filters.tones[:, 0]
+    n_orders = len(filters.harmonics)
+    phases = 2 * np.pi * rng.random(len(steps))
+    rates = record.conditions["shaft"] * np.arange(1, n_orders + 1)
+    harmonics = filters.in_channels(filters.harmonic_motion, filters.harmonics, rates)
+    tones = filters.in_channels(filters.tone_motion, filters.tones[:, 1], steps * axis.fs / (2 * np.pi))
+    growth = _NO_GROWTH
+    if record.speed_profile is not None and filters.growth > 0 and n_orders:
+        growth = power(share_at(record.speed_profile, axis.response_times()), filters.growth)
+    return Lines(
+        modulations=filters.modulations,
+        harmonics=np.stack([harmonics.real, harmonics.imag], axis=2),
+        growth=growth,
+        tones=np.stack([steps, phases, filters.tones[:, 2], filters.tones[:, 3]], axis=1),
+        tone_parts=np.stack([tones.real, tones.imag], axis=2),
+    )
+
+
+def impulses_of(
+    filters: Sequence[RigFilters], angles: Sequence[FloatArray], rngs: Sequence[np.random.Generator]
+) -> list[Float32Array]:
+    """Impulses at random times, and knocks locked to the shaft, behind the paths: shape (channel, time) each, or (0, 0) for none [1]."""
+    found = [NO_SIGNAL] * len(filters)
+    rows = [row for row, some in enumerate(filters) if some.impulses[0] > 0 or some.knocks[0] > 0]
+    if rows:
+        hits = np.stack([_hits(filters[row], angles[row], rngs[row]) for row in rows])
+        paths = np.stack([filters[row].impulse_paths for row in rows])
+        spectra = rfft(hits, filters[0].n)[:, None] * paths
+        for row, filtered in zip(rows, irfft(spectra, filters[0].n), strict=True):
+            found[row] = filtered
+    return found
+
+
+def _hits(filters: RigFilters, angles: FloatArray, rng: np.random.Generator) -> Float32Array:
+    """Strength of impulses and knocks at the samples where they start, shape (time,) [1]."""
+    length = len(angles)
+    hits = np.zeros(length, np.float32)
+    number, level = filters.impulses
+    times = rng.integers(length, size=rng.poisson(number))
+    np.add.at(hits, times, level * rng.standard_normal(len(times), dtype=np.float32))
+    orders, level, phase = filters.knocks
+    if orders > 0:
+        times = np.flatnonzero(np.diff(np.floor((orders * angles + phase) / (2 * np.pi))) > 0) + 1
+        hits[times] += level * (1 + 0.2 * rng.standard_normal(len(times), dtype=np.float32))
+    return hits

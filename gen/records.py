@@ -1,0 +1,128 @@
+"""Records drawn, simulated and measured. What becomes of a fault that cannot be seen is decided here.
+
+A fault that no loaded ball meets is drawn again before anything is simulated. After the measurement, a record whose fault cannot be seen
+gets other levels; if that does not help, its specimen gets another fault. Everything else of rig, specimen and record stays, so the
+operating conditions of a class do not depend on what can be seen in them. All records of a specimen are judged together, also those of
+another part, so that every part finds the same fault.
+"""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, fields, replace
+
+from gen.measurement.measure import LEVEL_TRIES, Measured, measure
+from gen.recipe import Recipe
+from gen.scenarios import Scenario, draw_scenarios, with_level
+from gen.simulation.hits import felt_places
+from gen.simulation.simulate import Response, simulate
+
+FAULT_TRIES = 6  # faults drawn for a specimen until one can be seen in all of its records
+
+
+@dataclass(frozen=True)
+class Records:
+    """Records as they were made; ``measured.scenarios`` has their final scenarios."""
+
+    response: Response
+    measured: Measured
+
+
+def made_records(recipe: Recipe, numbers: range, report: Callable[[int], None] = lambda _: None) -> Records:
+    """Make the records with the given numbers; ``report`` is called with the number of simulated records."""
+    if recipe.corpus.undetected != "redraw" or recipe.corpus.truth == "none":
+        return _made(draw_scenarios(recipe, numbers.start, numbers.stop), recipe, 1, report)
+    per = recipe.corpus.records_per_specimen
+    whole = range(numbers.start // per * per, min(-(-numbers.stop // per) * per, recipe.n_records))
+    tries: dict[int, int] = {}
+    scenarios = _with_hits(draw_scenarios(recipe, whole.start, whole.stop), recipe, tries)
+    made = _made(scenarios, recipe, LEVEL_TRIES, report)
+    again = _unseen(made, tries)
+    while again:
+        redrawn = _with_hits(_redrawn(again, recipe, tries), recipe, tries)
+        _replace(made, _made(redrawn, recipe, LEVEL_TRIES), [one.record.number - whole.start for one in redrawn])
+        again = _unseen(made, tries)
+    for place, seen in enumerate(made.measured.detectable):
+        scenario = made.measured.scenarios[place]
+        if scenario.specimen.fault != "healthy" and not seen:
+            sentence = (
+                f"record {scenario.record.number}: no {scenario.specimen.fault} fault of {FAULT_TRIES} that were drawn can be seen in it; "
+                f"raise level.faulty_db, or choose corpus.undetected: keep."
+            )
+            made.response.failures.setdefault(place, sentence)
+    return _rows(made, range(numbers.start - whole.start, numbers.stop - whole.start))
+
+
+def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> Records:
+    """Make one record again, with the fault and the level that were taken when it was made first."""
+    specimen = number // recipe.corpus.records_per_specimen
+    drawn = draw_scenarios(recipe, number, number + 1, fault_tries={specimen: fault_try})
+    return _made([with_level(scenario, recipe, level_try) for scenario in drawn], recipe, 1)
+
+
+def _made(
+    scenarios: list[Scenario], recipe: Recipe, level_tries: int, report: Callable[[int], None] = lambda _: None
+) -> Records:
+    response = simulate(scenarios, recipe, report=report)
+    measured = measure(response.acceleration, scenarios, recipe, response.twins, level_tries=level_tries)
+    return Records(response, measured)
+
+
+def _redrawn(specimens: Iterable[int], recipe: Recipe, tries: dict[int, int]) -> list[Scenario]:
+    """Scenarios of all records of some specimens with their next fault, which ``tries`` counts."""
+    per, found = recipe.corpus.records_per_specimen, []
+    for number in specimens:
+        tries[number] = tries.get(number, 0) + 1
+        found += draw_scenarios(recipe, number * per, (number + 1) * per, fault_tries=tries)
+    return found
+
+
+def _with_hits(scenarios: list[Scenario], recipe: Recipe, tries: dict[int, int]) -> list[Scenario]:
+    """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record."""
+    found = {scenario.record.number: scenario for scenario in scenarios}
+    tried = scenarios
+    while tried:
+        felt = felt_places(tried)
+        missed = {one.specimen.number for one, is_felt in zip(tried, felt, strict=True) if not is_felt}
+        tried = _redrawn(sorted(n for n in missed if tries.get(n, 0) < FAULT_TRIES - 1), recipe, tries)
+        found.update({scenario.record.number: scenario for scenario in tried})
+    return list(found.values())
+
+
+def _unseen(made: Records, tries: dict[int, int]) -> list[int]:
+    """Numbers of the specimens that have a record whose fault cannot be seen, and may have another fault."""
+    unseen = set()
+    for place, scenario in enumerate(made.measured.scenarios):
+        if (
+            scenario.specimen.fault != "healthy"
+            and not made.measured.detectable[place]
+            and place not in made.response.failures
+        ):
+            unseen.add(scenario.specimen.number)
+    return sorted(number for number in unseen if tries.get(number, 0) < FAULT_TRIES - 1)
+
+
+def _replace(made: Records, by: Records, places: list[int]) -> None:
+    """Replace the records at some places, in place."""
+    for new, place in enumerate(places):
+        made.response.failures.pop(place, None)
+        if new in by.response.failures:
+            made.response.failures[place] = by.response.failures[new]
+    for old, new in ((made.response, by.response), (made.measured, by.measured)):
+        for name in _columns(old):
+            for row, place in enumerate(places):
+                getattr(old, name)[place] = getattr(new, name)[row]
+
+
+def _rows(made: Records, places: range) -> Records:
+    """The records at some places alone."""
+    response, measured = made.response, made.measured
+    if len(places) == len(measured.scenarios):
+        return made
+    failures = {place - places.start: said for place, said in response.failures.items() if place in places}
+    some = slice(places.start, places.stop)
+    rows = [{name: getattr(old, name)[some] for name in _columns(old)} for old in (response, measured)]
+    return Records(replace(response, failures=failures, **rows[0]), replace(measured, **rows[1]))
+
+
+def _columns(of: Response | Measured) -> list[str]:
+    """Fields that have one row for each record."""
+    return [field.name for field in fields(of) if field.name not in ("failures", "twins", "counts_per_unit")]

@@ -1,0 +1,170 @@
+"""Laws of the one shaft: all that the machine locks to it stands at its orders, whatever course the speed takes."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from gen.measurement.measure import measure
+from gen.measurement.rig import along
+from gen.scenarios import Background, Path, ShaftModulation, Tone, draw_scenarios
+from gen.simulation.shaft import shaft_angles
+from gen.simulation.timeline import timeline
+
+FLOAT = {"recording.converter": {"kind": "float32"}, "recording.duration_s": 1.0, "operation.shaft_rpm": 1800}
+QUIET = Background(0.0, 1e-6, (), ShaftModulation(), (), (), None, None)
+COURSES = {
+    "wandering": {"operation.speed_wander_percent": 1},
+    "ramp": {"operation.speed_profile": {"kind": "ramp", "from_percent": 50, "to_percent": 130}},
+    "run-up": {"operation.speed_profile": {"kind": "run_up", "from_percent": 30, "to_percent": 100, "lasting_s": 0.8}},
+    "steps": {"operation.speed_profile": {"kind": "steps", "levels_percent": [60, 100, 80], "step_s": 0.1}},
+    "table": {"operation.speed_profile": {"kind": "table", "times_s": [0, 0.4, 1], "percent": [100, 50, 90]}},
+}
+courses = pytest.mark.parametrize("changes", COURSES.values(), ids=COURSES)
+CROSSED = [
+    {"name": "horizontal", "body": "housing", "angle_deg": 0},
+    {"name": "vertical", "body": "housing", "angle_deg": 90},
+]
+
+
+def background_of(recipe, background, *, acceleration=0.0):
+    """Signals of a machine with a background and a bearing at rest, shape (record, channel, time), and their scenarios."""
+    scenarios = draw_scenarios(recipe, 0, 2)
+    rig = {"background": background, "background_rms": 1.0, "gain": 1.0}
+    scenarios = [replace(scenario, rig=replace(scenario.rig, **rig)) for scenario in scenarios]
+    n = timeline(recipe).returned
+    moved = np.full((2, len(recipe.recording.channels), n), acceleration, np.float32)
+    return measure(moved, scenarios, recipe).signal.astype(float), scenarios
+
+
+def by_order(signal, scenario, recipe):
+    """Spectrum over orders of the shaft, shape (line,), and orders of the lines [1]; along the true angle."""
+    axis = timeline(recipe)
+    turns = shaft_angles(scenario, axis)[axis.kept] / (2 * np.pi)
+    even = np.linspace(turns[0], turns[-1], 4 * len(turns))
+    resampled = np.interp(even, turns, signal) * np.hanning(len(even))
+    return np.abs(np.fft.rfft(resampled, 4 * len(even))), np.arange(2 * len(even) + 1) / (4 * (even[-1] - even[0]))
+
+
+def turns_of(scenario, recipe):
+    """Turns of the shaft in a record; one line of its order spectrum is one over this."""
+    axis = timeline(recipe)
+    return np.ptp(shaft_angles(scenario, axis)[axis.kept]) / (2 * np.pi)
+
+
+def nearest_line(spectrum, orders, order):
+    """Order of the strongest line within a third of an order."""
+    near = np.abs(orders - order) < 1 / 3
+    return orders[near][np.argmax(spectrum[near])]
+
+
+@courses
+def test_every_harmonic_stands_at_its_order(recipe_with, changes):
+    """With 1 % wander the rate at the twelfth harmonic moves by many lines of the spectrum; its order does not."""
+    recipe = recipe_with(FLOAT | changes)
+    harmonics = tuple(Tone(order, 1.0) for order in (1, 2, 5, 12))
+    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=harmonics))
+    for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
+        spectrum, orders = by_order(signal, scenario, recipe)
+        turns = turns_of(scenario, recipe)
+        assert turns > 10
+        for order in (1, 2, 5, 12):
+            assert nearest_line(spectrum, orders, order) == pytest.approx(order, abs=0.5 / turns)
+
+
+@courses
+def test_knocks_and_the_modulation_of_the_noise_stand_at_their_orders(recipe_with, changes):
+    recipe = recipe_with(FLOAT | changes | {"path.modes": None})
+    knocking = replace(QUIET, knocks=Tone(3.0, 30.0))
+    modulated = replace(QUIET, modulation=ShaftModulation(0.9, 0.0))
+    for background, order in ((knocking, 3), (modulated, 1)):
+        signals, scenarios = background_of(recipe, background)
+        power = signals[0, 0] ** 2
+        spectrum, orders = by_order(power - power.mean(), scenarios[0], recipe)
+        turns = turns_of(scenarios[0], recipe)
+        assert nearest_line(spectrum, orders, order) == pytest.approx(order, abs=0.5 / turns)
+
+
+@courses
+def test_the_path_is_modulated_at_the_order_of_the_shaft(recipe_with, changes):
+    recipe = recipe_with(FLOAT | changes)
+    scenarios = draw_scenarios(recipe, 0, 1)
+    rig = {"path": Path(1.0, (), ShaftModulation(0.5, 0.0)), "background": QUIET, "background_rms": 0.0, "gain": 1.0}
+    scenarios = [replace(scenarios[0], rig=replace(scenarios[0].rig, **rig))]
+    steady = np.ones((1, 1, timeline(recipe).returned), np.float32)
+    signal = measure(steady, scenarios, recipe).signal[0, 0].astype(float)
+    spectrum, orders = by_order(signal - signal.mean(), scenarios[0], recipe)
+    turns = turns_of(scenarios[0], recipe)
+    assert nearest_line(spectrum, orders, 1) == pytest.approx(1, abs=0.5 / turns)
+
+
+def test_harmonics_have_the_same_phase_to_the_shaft_in_every_record_of_a_rig(recipe_with):
+    recipe = recipe_with(FLOAT)
+    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0), Tone(3, 1.0))))
+    for order in (1, 3):
+        phases = [
+            np.angle(at_order(one, scenario, recipe, order))
+            for one, scenario in zip(signals[:, 0], scenarios, strict=True)
+        ]
+        assert phases[0] == pytest.approx(phases[1], abs=0.02)
+
+
+def at_order(signal, scenario, recipe, order):
+    """Complex amplitude of a line at an order of the shaft, over the largest whole number of turns."""
+    axis = timeline(recipe)
+    angles = shaft_angles(scenario, axis)[axis.kept]
+    whole = angles - angles[0] < 2 * np.pi * np.floor(np.ptp(angles) / (2 * np.pi))
+    return 2 * np.mean(signal[whole] * np.exp(-1j * order * angles[whole]))
+
+
+def test_the_first_harmonic_is_in_phase_with_the_unbalance(recipe_with):
+    """A sensor at the direction of the mark of the shaft sees the positive peak of a circular orbit, behind a path without delay."""
+    recipe = recipe_with(
+        FLOAT | {"recording.channels": CROSSED, "path": {"direct": 1.0}, "operation.speed_wander_percent": 0}
+    )
+    signals, scenarios = background_of(recipe, replace(QUIET, harmonics=(Tone(1, 1.0),)))
+    horizontal, vertical = (at_order(one, scenarios[0], recipe, 1) for one in signals[0])
+    forward = (horizontal + 1j * vertical) / 2  # the part that turns with the shaft
+    assert np.angle(forward) == pytest.approx(0.0, abs=0.02)
+
+
+@pytest.mark.parametrize("flatness", [0.0, 0.5, 1.0])
+def test_an_orbit_is_an_ellipse_with_the_drawn_flatness(flatness):
+    directions = np.array([0.0, np.pi / 2])
+    x, y = along(directions, np.array([0.3]), np.array([1.1]), np.array([flatness]))[:, 0]
+    angle = np.linspace(0, 2 * np.pi, 2000)
+    orbit = (x * np.exp(1j * angle)).real + 1j * (y * np.exp(1j * angle)).real
+    assert np.abs(orbit).max() == pytest.approx(1 + flatness, rel=1e-5)
+    assert np.abs(orbit).min() == pytest.approx(1 - flatness, abs=1e-3)
+
+
+def test_lines_have_their_level_on_average_over_the_channels_and_a_phase_of_their_own_in_each(recipe_with):
+    recipe = recipe_with(FLOAT | {"recording.channels": CROSSED, "operation.speed_wander_percent": 0})
+    lines = {"harmonics": (Tone(1, 1.0), Tone(2, 2.0)), "tones": (Tone(1000.0, 3.0),)}
+    signals, scenarios = background_of(recipe, replace(QUIET, **lines))
+    for order, level in ((1, 1.0), (2, 2.0)):
+        x, y = (at_order(one, scenarios[0], recipe, order) for one in signals[0])
+        assert np.sqrt((abs(x) ** 2 + abs(y) ** 2) / 2) == pytest.approx(np.sqrt(2) * level, rel=0.03)
+        assert abs(np.sin(np.angle(x / y))) > 0.05  # not a straight line
+    tones = [2 * np.mean(one * np.exp(-2j * np.pi * 1000 * np.arange(len(one)) / 12000)) for one in signals[0]]
+    assert np.sqrt(np.mean(np.abs(tones) ** 2)) == pytest.approx(np.sqrt(2) * 3.0, rel=0.03)
+
+
+@pytest.mark.parametrize("coherence", [0.0, 0.25, 1.0])
+def test_the_noise_of_two_channels_has_the_drawn_coherence(recipe_with, coherence):
+    from scipy.signal import coherence as measured
+
+    recipe = recipe_with(FLOAT | {"recording.channels": CROSSED, "recording.duration_s": 8.0})
+    signals, _ = background_of(recipe, replace(QUIET, coherence=coherence))
+    _, found = measured(*signals[0], 12000, nperseg=256)
+    assert found[4:-4].mean() == pytest.approx(coherence, abs=0.02)
+    assert np.std(signals[0], axis=1) == pytest.approx([1.0, 1.0], rel=0.03)
+
+
+def test_harmonics_grow_with_the_drawn_power_of_the_speed(recipe_with):
+    steps = {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.01}
+    recipe = recipe_with(FLOAT | {"operation.speed_profile": steps, "operation.speed_wander_percent": 0})
+    signals, _ = background_of(recipe, replace(QUIET, harmonics=(Tone(4, 1.0),), growth=2.0))
+    slow, fast = np.std(signals[0, 0][:5500]), np.std(signals[0, 0][6500:])
+    noise = np.std(background_of(recipe, QUIET)[0][0, 0])
+    assert np.sqrt((slow**2 - noise**2) / (fast**2 - noise**2)) == pytest.approx(0.25, abs=0.05)
