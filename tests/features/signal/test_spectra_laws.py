@@ -121,7 +121,9 @@ def test_a_modulation_at_a_frequency_of_the_grid_is_read_as_its_depth(depth, pla
 
 @law
 @given(DEPTHS, st.floats(40.0, 250.0), FS, LENGTHS)
-def test_between_frequencies_of_the_grid_a_modulation_is_read_with_the_loss_of_a_hann_window(depth, frequency, fs, seconds):
+def test_between_frequencies_of_the_grid_a_modulation_is_read_with_the_loss_of_a_hann_window(
+    depth, frequency, fs, seconds
+):
     lines, _, resolution = modulated(depth, frequency, fs, round(seconds * fs))
     beside = (np.argmax(lines) - frequency / resolution) / 4  # in frequencies of the record
     assert abs(beside) <= 0.126
