@@ -30,13 +30,13 @@ SECONDS = 2.0
 
 
 def contributions(
-    kind: str, width_mm: float, load_n: float, n_seeds: int, seconds: float = SECONDS, depth_um: float = DEEP
+    kind: str, width_mm: float, n_seeds: int, seconds: float = SECONDS, depth_um: float = DEEP, **operation: float
 ) -> FloatArray:
     """What a spall on the ``inner`` or ``outer`` race adds to the records of the seeds, shape (seed, time) [m s-2]."""
-    fault = {"kind": kind, "width_mm": width_mm, "depth_um": depth_um} | (
-        {} if kind == "outer" else {"angle_deg": TURNING}
-    )
-    recipe = reference_recipe(fault, n_seeds, operation={"load_n": load_n}, recording={"duration_s": seconds})
+    fault = {"kind": kind, "width_mm": width_mm, "depth_um": depth_um}
+    if kind == "inner":
+        fault["angle_deg"] = TURNING
+    recipe = reference_recipe(fault, n_seeds, operation=operation, recording={"duration_s": seconds})
     scenarios = draw_scenarios(recipe)
     response = simulate(scenarios + [scenario.without_fault() for scenario in scenarios], recipe).acceleration
     damaged, healthy = response[:, 0, timeline(recipe).kept].astype(float).reshape(2, n_seeds, -1)
@@ -53,6 +53,12 @@ def unloading_drop(machine: Machine, bearing: Bearing, angle: float) -> float:
     pressed = rest(of_one, balls[:, 1:])
     along = (pressed[0, :2] - pressed[0, 2:]) @ (math.cos(angle), math.sin(angle))
     return float(along * machine.contact_cosine - machine.half_clearance)
+
+
+def unloading_length(kind: str, drop: float, bearing: Bearing) -> float:
+    """Distance from the edge of a spall at which a rigid ball has dropped so far [m]."""
+    race = bearing.inner_radius if kind == "inner" else -bearing.outer_radius
+    return math.sqrt(2 * drop / (1 / bearing.radius("ball") + 1 / race))
 
 
 def unloads(scenario: Scenario, number: int = 0) -> bool | None:
@@ -87,13 +93,13 @@ def main() -> None:
     parser.add_argument("--recipe", default="domain_randomised")
     parser.add_argument("--records", type=int, default=2000)
     options = parser.parse_args()
-    for kind in ("outer", "inner"):
-        print(f"| {kind}, width [mm] |", " | ".join(f"{load} N" for load in LOADS), "|")
-        print("|---|" + "---:|" * len(LOADS))
-        for width in WIDTHS:
-            cells = [_cell(kind, width, load, options.seeds) for load in LOADS]
-            print(f"| {width:g} |", " | ".join(cells), "|", flush=True)
-        print()
+    columns = [(kind, load) for kind in ("outer", "inner") for load in LOADS]
+    print("| width [mm] |", " | ".join(f"{kind} {load} N" for kind, load in columns), "|")
+    print("|---|" + "---:|" * len(columns))
+    for width in WIDTHS:
+        cells = [_cell(kind, width, load, options.seeds) for kind, load in columns]
+        print(f"| {width:g} |", " | ".join(cells), "|", flush=True)
+    print("| unloads from |", " | ".join(f"{1e3 * narrowest(kind, load):.2f} mm" for kind, load in columns), "|\n")
     print(
         f"| spalls of {options.recipe} | number | unload a ball [%] | of those that meet load [%] |\n|---|---:|---:|---:|"
     )
@@ -101,10 +107,20 @@ def main() -> None:
         print(f"| {site} | {yes + no + unmet} | {100 * yes / (yes + no + unmet):.0f} | {100 * yes / (yes + no):.0f} |")
 
 
+def narrowest(kind: str, load_n: float) -> float:
+    """Width from which on a spall in the direction of the load unloads a ball of the reference machine [m]."""
+    scenario = _reference(kind, 1.0, load_n)
+    drop = unloading_drop(bare_input(scenario).machine, scenario.specimen.bearing, scenario.rig.machine["load_angle"])
+    return 2 * unloading_length(kind, drop, scenario.specimen.bearing)
+
+
+def _reference(kind: str, width_mm: float, load_n: float) -> Scenario:
+    return draw_scenarios(reference_recipe({"kind": kind, "width_mm": width_mm}, 1, operation={"load_n": load_n}))[0]
+
+
 def _cell(kind: str, width_mm: float, load_n: float, n_seeds: int) -> str:
-    found = contributions(kind, width_mm, load_n, n_seeds)
-    recipe = reference_recipe({"kind": kind, "width_mm": width_mm}, 1, operation={"load_n": load_n})
-    star = "*" if unloads(draw_scenarios(recipe)[0]) else ""
+    found = contributions(kind, width_mm, n_seeds, load_n=load_n)
+    star = "*" if unloads(_reference(kind, width_mm, load_n)) else ""
     rms = np.median(np.sqrt(np.mean(found**2, axis=1)))
     return f"{rms:.3g} ({np.median(kurtosis(found, axis=1, fisher=False)):.0f}){star}"
 

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from benchmarks.severity import unloading_drop
+from benchmarks.severity import unloading_drop, unloading_length
 from benchmarks.visibility import FloatArray, reference_recipe
 from gen.physics.bearing import Bearing, orders
 from gen.physics.inputs import KernelInput
@@ -96,12 +96,6 @@ def passage(kind: str, width_mm: float, rpm: float, profile: str = "geometric", 
 def contact_speed(bearing: Bearing, shaft_rate: float) -> float:
     """Speed of a contact over the race, the same on both races: pi f (D^2 - d^2) / (2 D) [m/s]."""
     return 2 * math.pi * shaft_rate * orders(bearing).ftf * bearing.outer_radius
-
-
-def unloading_length(kind: str, drop: float, bearing: Bearing) -> float:
-    """Distance from the edge of a spall at which a rigid ball has dropped so far [m]."""
-    race = bearing.inner_radius if kind == "inner" else -bearing.outer_radius
-    return math.sqrt(2 * drop / (1 / bearing.radius("ball") + 1 / race))
 
 
 def _starts(scenario: Scenario, given: KernelInput, axis: Timeline, n: int) -> list[int]:
