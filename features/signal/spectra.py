@@ -122,9 +122,10 @@ def _sums_between(values: FloatArray, bins: FloatArray) -> FloatArray:
 def fourier_coefficients(x: FloatArray, fs: float, top: float) -> ComplexArray:
     """Fourier coefficients of whole records without their mean, up to ``top`` [Hz].
 
-    Coefficient k belongs to the frequency ``k * fs / x.shape[-1]``; a sine of amplitude a at the centre of a bin gives
-    a / 2. Both ends of the record are tapered, because whitening would turn the step from the last to the first sample
-    into an impact: a tone ten times above the noise doubled the kurtosis of a band far above the tone.
+    Coefficient k belongs to the frequency ``k * fs / x.shape[-1]``. Both ends of the record are tapered, because
+    whitening would turn the step from the last to the first sample into an impact: a tone ten times above the noise
+    doubled the kurtosis of a band far above the tone. The inverse transform is the record itself between its tapered
+    ends. A sine of amplitude a at the centre of a bin therefore gives 0.99 a / 2: the mean of the taper is 0.99.
 
     Parameters
     ----------
@@ -147,8 +148,8 @@ def fourier_coefficients(x: FloatArray, fs: float, top: float) -> ComplexArray:
 
 @lru_cache(8)
 def _taper(n: int, dtype: DTypeLike) -> FloatArray:
-    taper = tukey(n, TAPERED, sym=False)
-    return (taper / taper.sum()).astype(dtype)
+    taper = tukey(n, TAPERED, sym=False)  # one between its ends: divided by its sum, it raised envelopes by 1 %
+    return (taper / n).astype(dtype)
 
 
 def cepstrally_whitened(coefficients: ComplexArray) -> ComplexArray:

@@ -28,6 +28,13 @@ def test_the_strongest_line_of_each_piece_is_where_the_order_is_drawn(run_up):
     np.testing.assert_allclose(strongest, drawn, atol=4.0)
 
 
+def test_the_lines_of_a_piece_have_the_amplitude_of_its_envelope():
+    t = np.arange(round(4 * FS)) / FS
+    signal = 3 * (1 + 0.4 * np.cos(2 * np.pi * 90 * t)) * np.sin(2 * np.pi * 3000 * t)
+    _, frequencies, spectra = envelope_pieces(signal, FS, (2000.0, 4000.0))
+    np.testing.assert_allclose(spectra[:, frequencies == 90], 1.2, rtol=1e-3)
+
+
 def test_a_waterfall_draws_every_order_it_is_given(run_up):
     figure = draw_waterfall("Run-up", run_up, FS, (1000.0, 5000.0), RATE, {"fr": 1.0, "line": ORDER})
     drawn = figure.axes[0].lines

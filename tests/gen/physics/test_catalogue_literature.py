@@ -8,6 +8,7 @@
 .. [6] I. Gutierrez, N. Simon, 2026, doi:10.17632/sp3fbf8d9y.1, multipliers of the maker.
 .. [7] G. Forbes, Curtin University, 2012, read-me of measurements on an MB ER-16K.
 .. [8] ISO 76:2006, factor f0 of deep groove ball bearings; ISO 281:2007, factor fc after Lundberg and Palmgren.
+.. [9] EWA Sensors, case "Bearing fault", https://ewasensors.com/cases/bearing-fault, quoting the data sheet of an SKF 6308.
 """
 
 import math
@@ -15,9 +16,9 @@ import math
 import pytest
 
 from gen.physics.bearing import orders
-from gen.physics.catalogue import CATALOGUE
+from gen.physics.catalogue import CATALOGUE, PRINTED_OTHERWISE, catalogue_page
 
-TIMKEN = {  # FTF, BSF, BPFO, BPFI [1], the rows that are no misprinted copy of a neighbour
+TIMKEN = {  # FTF, BSF, BPFO, BPFI [1], the sizes whose row agrees
     "6004": (0.398, 2.339, 3.578, 5.422),
     "6006": (0.417, 2.933, 4.588, 6.412),
     "6203": (0.382, 1.994, 3.053, 4.947),
@@ -42,6 +43,16 @@ TIMKEN = {  # FTF, BSF, BPFO, BPFI [1], the rows that are no misprinted copy of 
     "6316": (0.386, 2.073, 3.086, 4.914),
 }
 
+OTHERWISE = {  # FTF, BSF, BPFO, BPFI [1], and how far BPFO is from that of the row [%]
+    "6205": (0.397, 2.328, 3.574, 5.426, -0.3),
+    "6208": (0.394, 2.256, 3.547, 5.453, -1.5),
+    "6305": (0.367, 2.328, 3.574, 5.426, 17.1),
+    "6306": (0.368, 1.757, 2.574, 4.426, -16.1),
+    "6308": (0.378, 1.925, 3.023, 4.977, -1.6),
+    "UER204": (0.382, 1.992, 3.052, 4.948, -1.0),
+}
+SIZES = {"ER-16K": "6205", "6205-paper": "6205", "6203-paderborn": "6203"}  # further rows of a size of the table
+
 # designation, FTF, BSF, BPFO, BPFI and how many of the last digit they may be off
 PUBLISHED = (
     ("6205", 0.39828, 4.7135 / 2, 3.5848, 5.4152, 1e-4),  # [2]
@@ -51,6 +62,7 @@ PUBLISHED = (
     ("MAFAULDA", 0.375, 1.871, 2.998, 5.002, 1e-3),  # [5]
     ("ER-12K", None, 1.992, 3.048, 4.950, 5e-3),  # [6], printed with three digits per rpm
     ("ER-16K", 0.3969, 2.32, 3.572, 5.428, 5e-3),  # [7]
+    ("6308", None, 4.078 / 2, None, None, 5e-4),  # [9], the orders of SKF
 )
 
 RATED = [bearing for bearing in CATALOGUE.values() if bearing.static_rating and bearing.rolling_element == "ball"]
@@ -62,6 +74,25 @@ def test_the_orders_are_the_frequency_coefficients_of_the_maker(designation):
     """Three printed digits, and a ball rounded to a commercial size moves the spin by 0.001."""
     found = orders(CATALOGUE[designation])
     assert (found.ftf, found.bsf, found.bpfo, found.bpfi) == pytest.approx(TIMKEN[designation], abs=1.6e-3)
+
+
+@pytest.mark.parametrize("designation", OTHERWISE)
+def test_a_row_that_differs_from_the_cited_table_of_the_maker_says_so(designation):
+    ftf, bsf, bpfo, bpfi, share = OTHERWISE[designation]
+    assert PRINTED_OTHERWISE[designation].orders == (ftf, bpfo, bpfi, bsf)
+    row = next(line for line in catalogue_page().splitlines() if line.startswith(f"| {designation} |"))
+    assert f"BPFO {share:+.1f} %" in row
+
+
+def test_every_row_of_a_size_of_the_table_that_differs_by_more_than_its_rounding_is_listed():
+    printed = {name: row[2:4] for name, row in (TIMKEN | OTHERWISE).items()}
+    printed |= {name: printed[size] for name, size in SIZES.items()}
+    differing = {
+        name
+        for name, passages in printed.items()
+        if passages != pytest.approx((orders(CATALOGUE[name]).bpfo, orders(CATALOGUE[name]).bpfi), rel=2e-3)
+    }
+    assert differing == set(PRINTED_OTHERWISE) == set(OTHERWISE)
 
 
 @pytest.mark.parametrize("row", PUBLISHED, ids=lambda row: row[0])

@@ -1,0 +1,92 @@
+"""Laws of the level of a stored record: its rms, over all channels and samples, is the drawn one.
+
+Bearing and background are correlated where both have lines of the shaft. Their sum therefore has an rms of its own, and gains that are
+computed as if they were not correlated miss the drawn rms by several per cent.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.measurement.measure import measure
+from gen.recipe import Recipe, read_recipe, shipped_recipes
+from gen.scenarios import draw_scenarios
+from gen.simulation.simulate import simulate
+from gen.simulation.timeline import timeline
+from tests.gen.conftest import small_with
+from tests.paths import ROOT
+
+pytestmark = pytest.mark.xfail(
+    strict=True, reason="gains are computed as if bearing and background were not correlated"
+)
+
+TOLERANCE = 1e-3
+LEVEL = {
+    "kind": "snr",
+    "faulty_db": {"kind": "uniform", "low": -15, "high": 25},
+    "healthy_db": {"kind": "uniform", "low": -20, "high": 10},
+    "rms_m_s2": {"kind": "loguniform", "low": 0.2, "high": 50},
+}
+LINES = {  # a background of nothing but lines of the shaft, on a noise that is far below them
+    "background.harmonics": {"probability": 1, "count": 4, "level_db": 30},
+    "background.tones": {"probability": 0, "count": 1, "frequency_hz": 100, "level_db": 0},
+    "background.impulses": {"probability": 0, "rate_hz": 1, "level_db": 0},
+}
+TWO = [{"name": "drive_end", "body": "sensor"}, {"name": "fan_end", "body": "housing", "path": {"direct": 0.2}}]
+
+
+def stored(measured):
+    """Samples in m s-2, shape (record, channel, time)."""
+    return measured.signal.astype(float) / (measured.counts_per_unit or 1.0)
+
+
+def check(acceleration, scenarios, recipe):
+    """Every record that is not clipped has the drawn rms, up to the rounding of the converter."""
+    measured = measure(acceleration, scenarios, recipe)
+    found = np.sqrt(np.mean(stored(measured) ** 2, axis=(1, 2)))
+    drawn = np.array([scenario.record.rms for scenario in scenarios])
+    rounding = 0.0 if measured.counts_per_unit is None else 1 / (measured.counts_per_unit * np.sqrt(12))
+    kept = (measured.clipped == 0) & np.isfinite(acceleration).all(axis=(1, 2))
+    assert kept.any()
+    np.testing.assert_array_less(np.abs(found - drawn)[kept], (TOLERANCE * drawn + rounding)[kept])
+
+
+def lines_of_the_shaft(recipe, scenarios, orders, seed):
+    """Bearings that vibrate at multiples of the shaft rate alone, shape (record, channel, time) [m s-2]."""
+    rng = np.random.default_rng(seed)
+    turns = np.outer([scenario.record.conditions["shaft"] for scenario in scenarios], timeline(recipe).response_times())
+    phases = rng.uniform(0, 2 * np.pi, (len(orders), len(scenarios), len(recipe.recording.channels), 1))
+    waves = (np.cos(2 * np.pi * n * turns[:, None] + phase) for n, phase in zip(orders, phases, strict=True))
+    return sum(waves).astype(np.float32)
+
+
+@settings(deadline=None, max_examples=10)
+@given(
+    st.integers(0, 2**32 - 1), st.sets(st.integers(1, 6), min_size=1).map(sorted), st.sampled_from(["adc", "float32"])
+)
+def test_a_record_has_the_drawn_rms_where_bearing_and_background_have_the_same_lines(seed, orders, kind):
+    changes = {"level": LEVEL, "recording.converter": {"kind": kind}, "recording.channels": TWO, "seed": seed % 1000}
+    recipe = Recipe.model_validate(small_with(changes | LINES))
+    scenarios = draw_scenarios(recipe)
+    check(lines_of_the_shaft(recipe, scenarios, orders, seed), scenarios, recipe)
+
+
+def shipped():
+    """Shipped recipes whose records have a drawn rms."""
+    recipes = (read_recipe(ROOT / "recipes" / f"{name}.yaml") for name in shipped_recipes())
+    return [recipe for recipe in recipes if recipe.level.kind == "snr"]
+
+
+@pytest.mark.parametrize("recipe", shipped(), ids=lambda recipe: recipe.name)
+def test_the_records_of_a_shipped_recipe_have_the_drawn_rms(recipe):
+    scenarios = draw_scenarios(recipe, 0, 24)
+    check(simulate(scenarios, recipe).acceleration, scenarios, recipe)
+
+
+def test_a_record_of_noise_has_the_drawn_rms_too():
+    """Independent noises correlate by chance, by the more the shorter the record."""
+    recipe = Recipe.model_validate(small_with({"level": LEVEL, "recording.converter": {"kind": "float32"}}))
+    scenarios = draw_scenarios(recipe)
+    shape = len(scenarios), 1, timeline(recipe).returned
+    check(np.random.default_rng(0).standard_normal(shape).astype(np.float32), scenarios, recipe)
