@@ -1,7 +1,6 @@
 """Laws of the level of a stored record: its rms, over all channels and samples, is the drawn one.
 
-Bearing and background are correlated where both have lines of the shaft. Their sum therefore has an rms of its own, and gains that are
-computed as if they were not correlated miss the drawn rms by several per cent.
+Bearing and background are correlated where both have lines of the shaft, so gains that ignore it miss the drawn rms by several per cent.
 """
 
 import numpy as np
@@ -16,10 +15,6 @@ from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 from tests.gen.conftest import small_with
 from tests.paths import ROOT
-
-pytestmark = pytest.mark.xfail(
-    strict=True, reason="gains are computed as if bearing and background were not correlated"
-)
 
 TOLERANCE = 1e-3
 LEVEL = {

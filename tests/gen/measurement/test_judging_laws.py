@@ -1,0 +1,75 @@
+"""Laws of the test that says whether a fault can be seen."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gen.measurement.judging import FALSE_ALARM, is_detectable, judged_bands
+from gen.measurement.levels import Gains
+
+FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
+ANGLES = 2 * np.pi * RATE * np.arange(N) / FS
+
+
+def noise(seed, n=N):
+    return np.random.default_rng(seed).standard_normal((1, n)).astype(np.float32)
+
+
+def ringing(order, frequency=3000.0, angles=ANGLES):
+    """A decaying oscillation at every passage of a fault, of unit rms, shape (channel, time)."""
+    hits = np.zeros(len(angles))
+    hits[1:] = np.diff(np.floor(order * angles / (2 * np.pi))) > 0
+    time = np.arange(200) / FS
+    wave = np.convolve(hits, np.exp(-500 * time) * np.sin(2 * np.pi * frequency * time))[: len(angles)]
+    return (wave / wave.std())[None].astype(np.float32)
+
+
+def judged(fault, rest, orders=(ORDER,), angles=ANGLES, *, steady=True, bearing=1.0):
+    bands = judged_bands(fault, np.zeros_like(fault), rest, orders, angles, steady=steady)
+    return is_detectable(bands, Gains(bearing, 1.0))
+
+
+def test_noise_in_place_of_a_fault_is_called_a_fault_as_rarely_as_stated():
+    """What a fault adds may be noise of the same power as all else; the whole is then Gaussian noise without a line."""
+    alarms = sum(judged(noise(2 * k), np.zeros((1, N), np.float32)) for k in range(2000))
+    assert alarms <= 2000 * FALSE_ALARM + 3 * math.sqrt(2000 * FALSE_ALARM) + 1
+
+
+def test_a_train_of_impacts_is_seen_down_to_some_level_and_not_below():
+    seen = [judged(ringing(ORDER), noise(1), bearing=10 ** (level / 20)) for level in (0, -5, -10, -20, -30, -60)]
+    assert seen[:2] == [True, True]
+    assert seen[-2:] == [False, False]
+    assert seen == sorted(seen, reverse=True)
+
+
+def test_impacts_at_another_order_are_not_the_line_of_the_class():
+    assert not judged(ringing(5.4 * 0.83), noise(1))
+    assert judged(ringing(5.4 * 0.83), noise(1), orders=(5.4 * 0.83,))
+
+
+def test_one_loud_channel_does_not_hide_a_fault_that_another_shows():
+    fault = np.concatenate([ringing(ORDER), ringing(ORDER)])
+    rest = np.concatenate([1000 * noise(1), noise(2)])
+    assert judged(fault, rest)
+
+
+def test_a_fault_that_is_loud_in_one_band_is_seen_behind_noise_in_another():
+    time = np.arange(N) / FS
+    hum = 30 * np.sin(2 * np.pi * 700 * time)[None].astype(np.float32)
+    bands = judged_bands(ringing(ORDER), np.zeros_like(hum), hum, (ORDER,), ANGLES, steady=True)
+    assert is_detectable(bands, Gains(1.0, 1.0))
+    assert not is_detectable(bands._replace(**{name: getattr(bands, name)[:, :1] for name in ("lines", "bearing", "background", "cross")},
+                                            thresholds=bands.thresholds[:1]), Gains(1.0, 1.0))  # fmt: skip
+
+
+def test_a_fault_is_seen_in_a_run_up_by_the_angle_of_the_shaft():
+    angles = 2 * np.pi * (10 * np.arange(N) / FS + 40 * (np.arange(N) / FS) ** 2)
+    fault = ringing(ORDER, angles=angles)
+    assert judged(fault, noise(1), angles=angles, steady=False)
+    assert not judged(fault, 3 * noise(1), angles=angles, steady=True)
+
+
+@pytest.mark.parametrize("n", [64, 1000, 6001])
+def test_records_of_any_length_are_judged(n):
+    assert judged(noise(1, n), noise(2, n), angles=ANGLES[:1] + 2 * np.pi * RATE * np.arange(n) / FS) in (True, False)

@@ -1,0 +1,69 @@
+"""Laws of the hits: how often loaded balls pass the spalls, counted from statics."""
+
+import math
+
+import pytest
+
+from gen.scenarios import draw_scenarios
+from gen.simulation.hits import felt_places, load_zones, loaded_hits
+from gen.simulation.inputs import kernel_input
+from gen.simulation.timeline import timeline
+from tests.responses import truth
+
+LOADED = {"machine.load_angle_deg": -90, "operation.load_n": 300, "operation.mean_slip_percent": 0}
+
+
+def first_of(recipe_with, fault, **changes):
+    recipe = recipe_with(LOADED | {"faults": [fault], "corpus.specimens_per_rig": 1} | changes)
+    scenario = draw_scenarios(recipe, 0, 1)[0]
+    return recipe, scenario, kernel_input(scenario, timeline(recipe))
+
+
+@pytest.mark.parametrize(("clearance", "half"), [(-8, math.pi), (0, math.pi / 2)])
+def test_the_load_zone_is_half_the_bearing_without_clearance_and_all_of_it_under_preload(recipe_with, clearance, half):
+    _, _, given = first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": clearance})
+    zone = load_zones([given])[0]
+    assert zone.half == pytest.approx(half, abs=0.02)
+    assert math.remainder(zone.direction + math.pi / 2, 2 * math.pi) == pytest.approx(0.0, abs=0.05)
+
+
+def test_clearance_narrows_the_load_zone(recipe_with):
+    halves = [
+        load_zones([first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": c})[2]])[0].half
+        for c in (0, 10, 40, 160)
+    ]
+    assert halves == sorted(halves, reverse=True)
+    assert halves[-1] < 0.75
+
+
+def test_an_outer_spall_is_hit_at_the_ball_pass_frequency_in_the_load_zone_and_never_outside(recipe_with):
+    inside, outside = ({"kind": "outer", "width_mm": 0.5, "angle_deg": angle} for angle in (0, 150))
+    recipe, scenario, _ = first_of(recipe_with, inside)
+    found = truth(scenario, recipe)
+    assert found.loaded_hits == pytest.approx(found.true_bpfo * found.true_shaft_rate * 0.1, abs=0.51)
+    recipe, scenario, _ = first_of(recipe_with, outside)
+    assert truth(scenario, recipe).loaded_hits == 0
+    assert felt_places([scenario]) == [False]
+
+
+def test_an_inner_spall_is_hit_during_the_part_of_a_turn_that_the_load_zone_takes(recipe_with):
+    fault = {"kind": "inner", "width_mm": 0.5}
+    recipe, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
+    found, zone = truth(scenario, recipe), load_zones([given])[0]
+    every = found.true_bpfi * found.true_shaft_rate * 2.0
+    assert found.loaded_hits == pytest.approx(every * zone.half / math.pi, abs=1)
+    assert 0 < zone.half < math.pi
+
+
+def test_two_spalls_are_hit_twice_as_often(recipe_with):
+    fault = {"kind": "outer", "width_mm": 0.5, "n_spalls": 2}
+    _, scenario, given = first_of(recipe_with, fault)
+    orders, zone = truth(scenario, recipe_with()).orders, load_zones([given])[0]
+    one = loaded_hits(given._replace(spalls=given.spalls[:1]), zone, orders, 100)
+    assert loaded_hits(given, zone, orders, 100) == pytest.approx(2 * one, abs=1)
+
+
+def test_the_zone_of_a_record_does_not_depend_on_the_others(recipe_with):
+    recipe = recipe_with()
+    inputs = [kernel_input(scenario, timeline(recipe)) for scenario in draw_scenarios(recipe, 0, 6)]
+    assert load_zones(inputs) == [load_zones([given])[0] for given in inputs]

@@ -1,0 +1,153 @@
+"""Laws of the faults that can be seen: what a record without its fault tells, and what becomes of a fault that cannot be seen."""
+
+import numpy as np
+import pytest
+
+from gen.labels import part_dataset
+from gen.records import FAULT_TRIES, made_again, made_records
+from gen.scenarios import draw_scenarios
+from gen.simulation.simulate import simulate
+
+OUTER = {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -180, "high": 180}}
+LEVEL = {
+    "kind": "snr",
+    "faulty_db": {"kind": "uniform", "low": -15, "high": 10},
+    "healthy_db": {"kind": "uniform", "low": -15, "high": 10},
+}
+TRAINING = {
+    "level": LEVEL,
+    "recording.duration_s": 0.25,
+    "corpus.rigs": 4,
+    "faults": [{"kind": "healthy"}, OUTER, {"kind": "inner", "width_mm": 0.5}],
+}
+
+
+def labelled(made, recipe):
+    return part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
+
+
+@pytest.fixture(scope="module")
+def redrawing(recipe_with):
+    recipe = recipe_with(TRAINING | {"corpus.undetected": "redraw"})
+    return recipe, made_records(recipe, range(recipe.n_records))
+
+
+def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
+    recipe, made = redrawing
+    faulty = np.array([scenario.specimen.fault != "healthy" for scenario in made.measured.scenarios])
+    kept = [place for place in np.flatnonzero(faulty) if place not in made.response.failures]
+    assert len(kept) > 10
+    assert (made.measured.detectable[kept] == 1).all()
+    assert any(scenario.specimen.fault_try for scenario in made.measured.scenarios)
+    assert any(scenario.record.level_try for scenario in made.measured.scenarios)
+    assert recipe.corpus.undetected == "redraw"
+
+
+def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing):
+    recipe, made = redrawing
+    for first, final in zip(draw_scenarios(recipe), made.measured.scenarios, strict=True):
+        assert final.rig == first.rig
+        assert final.record.conditions == first.record.conditions
+        assert final.specimen.properties == first.specimen.properties
+        assert final.specimen.fault == first.specimen.fault
+        assert (final.specimen.spalls == first.specimen.spalls) == (
+            final.specimen.fault_try == 0 or not first.specimen.spalls
+        )
+
+
+def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
+    _, made = redrawing
+    found = {}
+    for scenario in made.measured.scenarios:
+        assert found.setdefault(scenario.specimen.number, scenario.specimen) == scenario.specimen
+
+
+@pytest.mark.parametrize("cut", [range(3, 9), range(7, 8), range(24, 32)])
+def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut):
+    recipe, whole = redrawing
+    some = made_records(recipe, cut)
+    np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[cut.start : cut.stop])
+    np.testing.assert_array_equal(some.measured.fault_snr, whole.measured.fault_snr[cut.start : cut.stop])
+    assert some.measured.scenarios == whole.measured.scenarios[cut.start : cut.stop]
+
+
+def test_a_record_is_made_again_with_the_fault_and_the_level_that_it_has(redrawing):
+    recipe, whole = redrawing
+    redrawn = [one for one in whole.measured.scenarios if one.specimen.fault_try or one.record.level_try]
+    for scenario in redrawn[:3]:
+        number = scenario.record.number
+        again = made_again(recipe, number, scenario.specimen.fault_try, scenario.record.level_try)
+        np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[number])
+        assert again.measured.scenarios == [scenario]
+
+
+def test_the_ratio_of_a_fault_is_the_drawn_one(redrawing):
+    _, made = redrawing
+    for place, scenario in enumerate(made.measured.scenarios):
+        if scenario.specimen.fault != "healthy" and place not in made.response.failures:
+            found = made.measured.fault_snr[place]
+            assert found == pytest.approx(scenario.record.snr, abs=0.05) or found < scenario.record.snr
+            power = 10 ** (found / 10)
+            assert made.measured.fault_share[place] == pytest.approx(power / (1 + power), rel=1e-6)
+
+
+def test_a_spall_that_no_loaded_ball_meets_adds_exactly_nothing(recipe_with):
+    """Records with and without it have the same bits, although they share a kernel with damaged records."""
+    unloaded = {"kind": "outer", "width_mm": 0.5, "angle_deg": 170}
+    recipe = recipe_with({"faults": [unloaded], "corpus.specimens_per_rig": 1, "specimen.diametral_clearance_um": 30})
+    made = made_records(recipe, range(2))
+    assert made.measured.fault_snr.tolist() == [-np.inf, -np.inf]
+    assert made.measured.fault_share.tolist() == [0.0, 0.0]
+    assert made.measured.detectable.tolist() == [0, 0]
+    assert [truth.loaded_hits for truth in made.response.truth] == [0, 0]
+
+
+@pytest.mark.parametrize("waviness", [0, 20])
+def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, waviness):
+    recipe = recipe_with(
+        {"specimen.waviness_nm": waviness, "faults": [{"kind": "inner", "width_mm": 0.5}, {"kind": "cage"}]}
+    )
+    scenarios = draw_scenarios(recipe, 0, 4)
+    twins = simulate(scenarios, recipe).twins
+    alone = simulate([scenario.without_fault() for scenario in scenarios], recipe)
+    np.testing.assert_array_equal(twins.acceleration, alone.acceleration)
+
+
+def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with):
+    recipe = recipe_with({"corpus.truth": "none"})
+    made = made_records(recipe, range(8))
+    assert made.response.twins is None
+    healthy = np.array([scenario.specimen.fault == "healthy" for scenario in made.measured.scenarios])
+    assert np.isnan(made.measured.fault_snr).all()
+    assert (made.measured.detectable[~healthy] == 2).all()
+    assert (made.measured.detectable[healthy] == 0).all()
+
+
+def hidden(recipe_with, undetected):
+    unloaded = {"kind": "outer", "width_mm": 0.5, "angle_deg": 170}
+    changes = {"faults": [unloaded], "corpus.specimens_per_rig": 1, "specimen.diametral_clearance_um": 30}
+    recipe = recipe_with(changes | {"corpus.undetected": undetected})
+    return recipe, made_records(recipe, range(2))
+
+
+def test_a_fault_that_cannot_be_seen_keeps_its_label_where_the_recipe_says_so(recipe_with):
+    recipe, made = hidden(recipe_with, "keep")
+    dataset = labelled(made, recipe)
+    assert dataset["fault"].values.tolist() == [2, 2]
+    assert dataset["detectable"].values.tolist() == [0, 0]
+    assert (dataset["width"] > 0).all()
+
+
+def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(recipe_with):
+    recipe, made = hidden(recipe_with, "healthy")
+    dataset = labelled(made, recipe)
+    assert dataset["fault"].values.tolist() == [0, 0]
+    assert dataset["n_spalls"].values.tolist() == [0, 0]
+    assert (dataset["width"] == 0).all()
+    assert dataset["fault_snr"].values.tolist() == [-np.inf, -np.inf]
+
+
+def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):
+    _, made = hidden(recipe_with, "redraw")
+    assert sorted(made.response.failures) == [0, 1]
+    assert f"no outer fault of {FAULT_TRIES}" in made.response.failures[0]
