@@ -121,3 +121,34 @@ def test_the_page_on_errata_has_the_tables_that_the_statements_give():
     page = ERRATA.read_text(encoding="utf-8").splitlines()
     for row in (*further(), *causes(holds=True), *causes(holds=False)):
         assert row in page, "python -m benchmarks.paper_tables prints the tables of docs/errata.md"
+
+
+def test_an_experiment_is_run_by_hand(told, tmp_path):
+    change = ("--preset", "paper", "--change", "support_damping_y=4500")
+    found = {each["id"]: each for each in told("reproduce", "ophel2025", *change, "-o", tmp_path)["findings"]}
+    assert found["H8"]["holds"]
+    assert found["H8"]["preset"] == "paper-changed"
+    assert (tmp_path / "paper-changed-figure3.png").exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--preset", "printed"), "printed is none of paper, paper-hertz, paper-refit"),
+        (("--change", "stiffness=1"), "'stiffness' is none of housing_mass, ring_stiffness,"),
+        (("--change", "load"), "load: give a number"),
+        (("--change", "load=nan"), "load=nan: give a number"),
+        (("--change", "housing_mass=0"), "housing_mass=0: give a number, above zero for a mass or a rate"),
+    ],
+)
+def test_an_experiment_that_cannot_be_run_is_refused(run, tmp_path, options, sentence):
+    result = run("reproduce", "ophel2025", *options, "-o", tmp_path / "out")
+    assert result.exit_code == 2
+    assert sentence in result.output
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_system_that_grows_without_limit_is_named(run, tmp_path):
+    result = run("reproduce", "ophel2025", "--preset", "paper", "--change", "support_stiffness_x=-1e9", "-o", tmp_path)
+    assert result.exit_code == 2
+    assert "paper-changed: the displacements grow without limit; change its constants less." in result.output
