@@ -146,9 +146,7 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
             lanes = lay_out(some, shape, 1 / fs, at_rest=False)
             made = integrate(shape, lanes, 1 / fs, 1, decimation(1), 0, round(SECONDS * fs))
             response = made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)]
-            found[cracked] += list(
-                np.ascontiguousarray(response, dtype=float) * 1e6
-            )  # one channel contiguous: exact sums
+            found[cracked] += list(1e6 * np.ascontiguousarray(response, dtype=float))  # sums over float32 would be off
     return [
         Run(healthy, cracked, preset.shaft_rate)
         for healthy, cracked, preset in zip(found[0], found[1], presets, strict=True)
