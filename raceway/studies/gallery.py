@@ -19,7 +19,8 @@ from gen.corpus import FAULTS, write_durably, write_text_durably
 from gen.physics.profile import share_at
 from gen.scenarios import Specimen, read_scenario
 from raceway.console.progress import progress
-from raceway.studies.paper import FIGURES, PRESETS, draw_figure, run
+from raceway.studies.paper import FIGURES, PRESETS, draw_figures, run
+from raceway.studies.schematics import draw_schematics
 from raceway.studies.statements import Finding, findings, span
 
 _STATES = {"healthy": "H", "cracked": "C"}  # state of the bearing, and first letter of the paper's statements about it
@@ -70,25 +71,29 @@ def _html(section: Section) -> str:
 
 
 def _paper(output: Path) -> Iterator[Section]:
-    """Figures 3 to 6 of the seed paper beside its statements about them."""
-    made = run(PRESETS["paper"])
+    """Figures 1 to 6 of the seed paper; 3 to 6 beside its statements about them."""
+    preset = PRESETS["paper"]
+    made = run(preset)
     found = findings("paper", made)
+    for name, drawn in (*draw_schematics(preset), *draw_figures(made)):
+        write_durably(picture(drawn, "png"), output / f"{name}.png")
+    text = "The system of the seed paper with the constants of preset paper, and its bearing with the crack. Drawn anew, not copied."
+    yield Section("Ophel et al., the system", text, ["figure1.png", "figure2.png"])
     for state, letter in _STATES.items():
-        names = []
-        for figure, title, shown, spectral in FIGURES:
-            if shown == state:
-                names.append(f"{figure}.png")
-                write_durably(picture(draw_figure(made, state, spectral, title), "png"), output / names[-1])
+        names = [f"{figure}.png" for figure, _, shown, _ in FIGURES if shown == state]
         table = _findings_table([finding for finding in found if finding.id.startswith(letter)])
         text = (
-            "Preset paper of the seed paper, displacements in thousandths of a millimetre, and the paper's statements."
+            "Preset paper of the seed paper, displacements in thousandths of a millimetre, and the paper's statements. "
+            "Beside a statement that does not hold stands the change of the preset with which it holds."
         )
         yield Section(f"Ophel et al., {state}", text, names, table)
 
 
 def _findings_table(found: list[Finding]) -> str:
     cells = [("", "statement", "value", "accepted", "holds")]
-    cells += [(f.id, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else f"no: {f.why}") for f in found]
+    cells += [
+        (f.id, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else f"no: {f.reason}") for f in found
+    ]
     rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in cells]
     return "<table>" + "".join(f"<tr>{row}</tr>" for row in rows) + "</table>"
 

@@ -28,13 +28,15 @@ FloatArray = NDArray[np.floating]
 
 FS = 40_000  # Hz, and the step of the integration; 320 kHz changes no value by 0.4 %
 SECONDS = 1.0
+SHOWN_S = 0.3  # s of the displacements drawn; a whole second would be one black band
+SHAFT_MASS = 5.5  # kg, the rotor
 CHANNELS = ("x1", "y1", "x2", "y2")
 CRACK = SpallInput("inner", 2 * math.radians(10) * 15.5e-3, 1e-3, math.radians(15), profile="rectangular")
 FIGURES = (
-    ("figure3", "Healthy: displacements", "healthy", False),
-    ("figure4", "Cracked inner race: displacements", "cracked", False),
-    ("figure5", "Healthy: power spectra", "healthy", True),
-    ("figure6", "Cracked inner race: power spectra", "cracked", True),
+    ("figure3", "Figure 3. Healthy: displacements", "healthy", False),
+    ("figure4", "Figure 4. Cracked inner race: displacements", "cracked", False),
+    ("figure5", "Figure 5. Healthy: power spectra", "healthy", True),
+    ("figure6", "Figure 6. Cracked inner race: power spectra", "cracked", True),
 )
 _TITLES = ("shaft, x1", "shaft, y1", "housing, x2", "housing, y2")
 
@@ -143,7 +145,8 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
             some = records[first : first + LANES]
             lanes = lay_out(some, shape, 1 / fs, at_rest=False)
             made = integrate(shape, lanes, 1 / fs, 1, decimation(1), 0, round(SECONDS * fs))
-            found[cracked] += list(made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)] * 1e6)
+            response = made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)]
+            found[cracked] += list(1e6 * np.ascontiguousarray(response, dtype=float))  # sums over float32 would be off
     return [
         Run(healthy, cracked, preset.shaft_rate)
         for healthy, cracked, preset in zip(found[0], found[1], presets, strict=True)
@@ -157,7 +160,7 @@ def _machine(preset: Preset, bearing: Bearing) -> Machine:
         contact_cosine=1.0,
         half_clearance=preset.half_clearance,
         ball_radius=bearing.ball_diameter / 2,
-        shaft_mass=5.5,
+        shaft_mass=SHAFT_MASS,
         housing_mass=preset.housing_mass,
         sensor_mass=0.0,
         ring_damping=preset.ring_damping,
@@ -184,6 +187,11 @@ def power_spectrum(x: FloatArray, window: str = "boxcar") -> tuple[FloatArray, F
     return np.fft.rfftfreq(x.shape[-1], 1 / FS), 2 * spectrum
 
 
+def draw_figures(made: Run) -> list[tuple[str, Any]]:
+    """Figures 3 to 6 of the paper: name and figure."""
+    return [(name, draw_figure(made, state, spectral, title)) for name, title, state, spectral in FIGURES]
+
+
 def draw_figure(made: Run, state: str, spectral: bool, title: str) -> Any:
     """One figure of the paper: four channels, over time or over frequency."""
     from matplotlib.figure import Figure
@@ -197,8 +205,8 @@ def draw_figure(made: Run, state: str, spectral: bool, title: str) -> Any:
             axes.semilogy(frequency[1:1001], power[1:1001], color="black", linewidth=0.7)
             axes.set(xlabel="frequency [Hz]", ylabel="power [µm²]")
         else:
-            shown = slice(None, round((0.3 if state == "healthy" else 1.0) * FS))
-            axes.plot(np.arange(len(x))[shown] / FS, x[shown], color="black", linewidth=0.7)
+            shown = x[: round(SHOWN_S * FS)]
+            axes.plot(np.arange(len(shown)) / FS, shown, color="black", linewidth=0.5)
             axes.set(xlabel="time [s]", ylabel="displacement [µm]")
         axes.set_title(name, loc="left", fontsize=10)
         axes.spines[["top", "right"]].set_visible(False)

@@ -5,8 +5,11 @@ def test_the_gallery_shows_the_paper_every_fault_and_the_run_ups(tmp_path, told)
     found = told("gallery", "-o", tmp_path / "gallery")
     page = (tmp_path / "gallery" / "index.html").read_text()
     names = [path.rpartition("/")[2] for path in found["pictures"]]
-    assert {"figure3.png", "figure6.png", "envelopes.png", "run-up-inner.png", "run-up-ball.png"} <= set(names)
+    assert names[:6] == [f"figure{number}.png" for number in (1, 2, 3, 5, 4, 6)]  # system, healthy, cracked
+    assert {"envelopes.png", "run-up-inner.png", "run-up-ball.png"} <= set(names)
     for name in names:
         assert f'src="{name}"' in page
         assert (tmp_path / "gallery" / name).read_bytes().startswith(b"\x89PNG")
+    assert page.index(">Ophel et al., cracked<") < page.index("figure4.png") < page.index("figure6.png")
     assert "3 BPFI" in page  # why a statement of the paper does not hold
+    assert "shaft_rate 44.66 -&gt; 43 Hz" in page  # and the change with which it holds

@@ -6,7 +6,6 @@ import re
 import pytest
 
 from gen.errors import CorpusError
-from raceway.studies import paper, statements
 
 
 @pytest.fixture
@@ -118,14 +117,13 @@ def test_bench_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, 
     assert shown.startswith(f"tiny: 1 record, median of 1 run on {found['machine']['processor']}\n")
 
 
-def test_the_seed_paper_is_drawn_and_its_statements_are_listed(run, told, tmp_path, monkeypatch):
-    monkeypatch.setattr(statements, "PRESETS", {"paper": paper.PRESETS["paper"]})
+def test_the_seed_paper_is_drawn_and_its_statements_are_listed(run, told, tmp_path):
     folder = tmp_path / "ophel"
-    found = told("reproduce", "ophel2025", "-o", folder)
+    found = told("reproduce", "ophel2025", "--preset", "paper", "-o", folder)
     assert found == json.loads((folder / "findings.json").read_text())
-    assert sorted(path.name for path in folder.glob("*.png")) == [f"paper-figure{n}.png" for n in (3, 4, 5, 6)]
+    assert sorted(path.name for path in folder.glob("*.png")) == [f"paper-figure{n}.png" for n in range(1, 7)]
     holding = [finding["id"] for finding in found["findings"] if finding["holds"]]
-    shown = run("reproduce", "ophel2025", "-o", folder).stdout
+    shown = run("reproduce", "ophel2025", "--preset", "paper", "-o", folder).stdout
     assert f"paper: {len(holding)} of {len(found['findings'])} statements hold." in shown
     for finding in found["findings"]:
         assert (f"paper {finding['id']} " in shown) == (not finding["holds"])

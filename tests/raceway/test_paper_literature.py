@@ -2,12 +2,13 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from benchmarks.paper_search import holding
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
-from raceway.studies.paper import FIGURES, FS, PRESETS, run
+from raceway.studies.paper import CHANNELS, FIGURES, FS, PRESETS, draw_figures, power_spectrum, run
 from raceway.studies.statements import findings
 
 # values of the model study, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
@@ -29,11 +30,24 @@ def test_the_statements_have_the_values_they_had(runs, preset, values):
     assert {key: found[key] for key in values} == pytest.approx(values, rel=0.02)
 
 
-@pytest.mark.parametrize(("preset", "count"), [("paper", 33), ("paper-hertz", 28), ("paper-refit", 35)])
-def test_at_least_as_many_statements_hold_as_did(runs, preset, count):
+@pytest.mark.parametrize(
+    ("preset", "fitted", "all_of_them"), [("paper", 33, 49), ("paper-hertz", 29, 45), ("paper-refit", 35, 51)]
+)
+def test_at_least_as_many_statements_hold_as_did(runs, preset, fitted, all_of_them):
     found = findings(preset, runs[preset])
-    assert len(found) == 38
-    assert sum(finding.holds for finding in found) >= count
+    assert len(found) == len({finding.id for finding in found}) == 61
+    assert sum(finding.fitted for finding in found) == 38
+    assert sum(finding.holds for finding in found if finding.fitted) >= fitted
+    assert sum(finding.holds for finding in found) >= all_of_them
+
+
+def test_every_channel_is_judged_where_the_paper_speaks_of_all(runs):
+    """Growth, decay, steadiness, modulation and the cluster at 650-800 Hz: one statement for each of the four displacements."""
+    found = {finding.id for finding in findings("paper", runs["paper"])}
+    for key, first in (("C1", "x1"), ("H3", "x1"), ("H9", "x1"), ("C9", "y1")):
+        assert {key, *(f"{key}.{name}" for name in CHANNELS if name != first)} <= found
+    assert {f"C16.{name}" for name in CHANNELS} <= found
+    assert {"H12", "H12.y", "C17.x", "C17.y", "C18"} <= found
 
 
 def test_the_refit_has_the_contact_of_the_geometry_and_the_weight_of_the_rotor_pulling_as_the_figures_show():
@@ -43,11 +57,6 @@ def test_the_refit_has_the_contact_of_the_geometry_and_the_weight_of_the_rotor_p
     assert preset.ring_stiffness == 0
     assert preset.load_x > 0
     assert preset.load_y > 0
-
-
-def test_every_statement_that_does_not_hold_has_a_reason(runs):
-    for preset, made in runs.items():
-        assert all(finding.holds or finding.why for finding in findings(preset, made))
 
 
 def test_the_values_do_not_depend_on_the_step(runs):
@@ -73,3 +82,23 @@ def test_figures_carry_the_numbers_of_the_paper():
         "figure5": ("healthy", True),
         "figure6": ("cracked", True),
     }
+
+
+def test_the_figures_show_what_their_numbers_say(runs):
+    made = runs["paper"]
+    drawn = dict(draw_figures(made))
+    assert list(drawn) == ["figure3", "figure4", "figure5", "figure6"]
+    for number, state, spectral in (
+        (3, "healthy", False),
+        (4, "cracked", False),
+        (5, "healthy", True),
+        (6, "cracked", True),
+    ):
+        figure = drawn[f"figure{number}"]
+        title = figure.get_suptitle()
+        assert title.startswith(f"Figure {number}. {state.capitalize()}")
+        assert title.endswith("power spectra" if spectral else "displacements")
+        for axes, x in zip(figure.axes, getattr(made, state), strict=True):
+            line = axes.lines[0].get_ydata()
+            expected = power_spectrum(x)[1][1:] if spectral else x
+            assert np.array_equal(line, expected[: len(line)])

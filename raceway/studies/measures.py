@@ -1,0 +1,64 @@
+"""Measures that the statements of the seed paper are judged by, on displacements of shape (time,) or (channel, time)."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.signal import find_peaks, hilbert
+
+FloatArray = NDArray[np.floating]
+Line = tuple[float, float, float]
+
+
+def decay(time: FloatArray, x: FloatArray) -> float:
+    """Largest distance from the settled mean at 0.05 to 0.1 s, over the largest before 0.05 s."""
+    away = np.abs(x - x[time > 0.5].mean())
+    return float(away[(time >= 0.05) & (time < 0.1)].max() / away[time < 0.05].max())
+
+
+def unrest(settled: FloatArray) -> float:
+    """Standard deviation over the mean, without sign."""
+    return float(settled.std() / abs(settled.mean()))
+
+
+def envelope_variation(x: FloatArray) -> float:
+    """Coefficient of variation of the envelope, which is zero for a steady sine."""
+    envelope = np.abs(hilbert(x - x.mean()))
+    return float(envelope.std() / envelope.mean())
+
+
+def asymmetry(x: FloatArray) -> float:
+    """Largest excursion from the mean to the one side over that to the other, the larger over the smaller."""
+    up, down = x.max() - x.mean(), x.mean() - x.min()
+    return float(max(up, down) / min(up, down))
+
+
+def mirrored(frequency: FloatArray, power: FloatArray, other: FloatArray) -> float:
+    """Correlation of the logarithms of two power spectra between 20 and 1000 Hz."""
+    both = (frequency >= 20) & (frequency <= 1000)
+    return float(np.corrcoef(np.log(power[both]), np.log(other[both]))[0, 1])
+
+
+def sharpest(frequency: FloatArray, power: FloatArray) -> float:
+    """Highest rise over the running median of 25 bins, of the bins within 30 dB of the maximum between 20 and 2000 Hz [dB]."""
+    level = 10 * np.log10(power[(frequency >= 20) & (frequency <= 2000)])
+    floor = np.median(np.lib.stride_tricks.sliding_window_view(np.pad(level, 12, mode="edge"), 25), axis=1)
+    return float((level - floor)[level > level.max() - 30].max())
+
+
+def highest(frequency: FloatArray, power: FloatArray, low: float, high: float) -> tuple[float, float]:
+    """Frequency [Hz] and power of the highest bin from ``low`` to ``high``."""
+    inside = np.flatnonzero((frequency >= low) & (frequency <= high))
+    best = inside[np.argmax(power[inside])]
+    return float(frequency[best]), float(power[best])
+
+
+def lines(frequency: FloatArray, power: FloatArray) -> list[Line]:
+    """Lines above 20 Hz and within 30 dB of the highest: frequency [Hz], level below the highest [dB], prominence [dB] of 10 and more."""
+    level = 10 * np.log10(power[frequency >= 20] + 1e-30)
+    peaks, found = find_peaks(level, height=level.max() - 30, prominence=10, wlen=61)
+    columns = (frequency[frequency >= 20][peaks], level[peaks] - level.max(), found["prominences"])
+    return [(float(f), float(below), float(rise)) for f, below, rise in zip(*columns, strict=True)]
+
+
+def clustered(found: list[Line], low: float, high: float) -> float:
+    """Number of lines from ``low`` to ``high`` that are within 20 dB of the highest line of the spectrum."""
+    return float(sum(low <= f <= high and below > -20 for f, below, _ in found))

@@ -1,0 +1,60 @@
+"""Figures 1 and 2 of the seed paper: they show the numbers of the presets, and the geometry of the bearing and of its crack."""
+
+import math
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_rgba
+from matplotlib.patches import Circle
+
+from features.report.pictures import VERMILION
+from raceway.studies.paper import PRESETS
+from raceway.studies.schematics import draw_crack, draw_model, draw_schematics
+
+
+def words(figure) -> str:
+    return "\n".join(text.get_text() for axes in figure.axes for text in axes.texts)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_the_model_is_drawn_with_the_constants_of_the_preset(name):
+    preset, shown = PRESETS[name], words(draw_model(PRESETS[name]))
+    assert "$m_1$ = 5.5 kg" in shown
+    assert f"$m_2$ = {preset.housing_mass:.1f} kg" in shown
+    assert f"$c_{{1}}$ = {preset.ring_damping:.0f} N s/m" in shown
+    assert f"$c_{{2y}}$ = {preset.support_damping_y:.0f} N s/m" in shown
+    assert f"preload {-1e6 * preset.half_clearance:.1f} µm" in shown
+
+
+def cracks(axes) -> np.ndarray:
+    """Outline of the crack, shape (axis, point)."""
+    (line,) = [
+        line for line in axes.lines if to_rgba(line.get_color()) == to_rgba(VERMILION) and line.get_linewidth() == 2
+    ]
+    return np.array(line.get_data())
+
+
+def test_the_crack_is_drawn_where_it_is_as_wide_and_as_deep_as_it_is():
+    for axes, position in zip(draw_crack().axes, (15, 90), strict=True):
+        x, y = cracks(axes)
+        radii, angles = np.hypot(x, y), np.degrees(np.arctan2(y, x)) - position
+        assert (radii.min(), radii.max()) == pytest.approx((14.5, 15.5))
+        assert np.abs(angles).max() == pytest.approx(10, abs=0.3)
+        assert np.abs(angles[radii < 15]).max() == pytest.approx(10, abs=0.3)
+
+
+def test_a_ball_touches_both_races_beside_the_crack_and_only_the_floor_on_it():
+    passage = draw_crack().axes[1]
+    balls = [patch for patch in passage.patches if isinstance(patch, Circle) and patch.get_fill()]
+    before, on, after = sorted(balls, key=lambda ball: ball.center[0])
+    for ball in (before, after):
+        assert math.hypot(*ball.center) - ball.radius == pytest.approx(15.5)
+        assert math.hypot(*ball.center) + ball.radius == pytest.approx(23.5)
+    assert math.hypot(*on.center) - on.radius == pytest.approx(14.5)
+    assert math.hypot(*on.center) + on.radius == pytest.approx(22.5)
+
+
+def test_the_first_two_figures_carry_their_numbers():
+    drawn = draw_schematics(PRESETS["paper"])
+    assert [name for name, _ in drawn] == ["figure1", "figure2"]
+    assert [figure.get_suptitle().split(".")[0] for _, figure in drawn] == ["Figure 1", "Figure 2"]
