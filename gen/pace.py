@@ -19,7 +19,8 @@ from gen.measurement.measure import measure
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
-from gen.simulation.simulate import simulate
+from gen.simulation.batches import filled_lanes
+from gen.simulation.simulate import integrations, simulate
 
 LARGEST_SAMPLE = 30e6  # steps of all lanes, about 2 s
 REPEATS = 2  # the first run also loads the kernels from the cache
@@ -68,7 +69,7 @@ def measured_pace(scenarios: list[Scenario], recipe: Recipe, steps: int) -> Pace
     except _NotCompiledError:
         return None
     integration, rest = (min(times) for times in zip(*runs, strict=True))
-    return Pace(integration / (LANES * steps), rest / len(scenarios))
+    return Pace(integration / (filled_lanes(integrations(scenarios, recipe)) * steps), rest / len(scenarios))
 
 
 def _timed(scenarios: list[Scenario], recipe: Recipe) -> tuple[float, float]:

@@ -20,6 +20,7 @@ from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.batches import Group, filled_lanes, group_of
 from gen.simulation.outline import outlined_input
+from gen.simulation.simulate import integrations
 from gen.simulation.steps import checked_places, steps_per_sample
 from gen.simulation.timeline import timeline
 
@@ -151,9 +152,8 @@ def _lane_steps(scenarios: list[Scenario], groups: Groups, recipe: Recipe) -> in
     of_place = {place: group for group, places in groups.items() for place in places}
     in_order = {place: of_place[place] for place in sorted(of_place)}
     checked = Counter(in_order[place] for place in checked_places(scenarios, recipe, in_order))
-    return sum(
-        group.steps * (filled_lanes(len(places)) + 2 * filled_lanes(checked[group])) for group, places in groups.items()
-    )
+    needed = {group: integrations((scenarios[place] for place in places), recipe) for group, places in groups.items()}
+    return sum(group.steps * (filled_lanes(needed[group]) + 2 * filled_lanes(checked[group])) for group in groups)
 
 
 def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:

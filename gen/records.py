@@ -15,7 +15,7 @@ from gen.scenarios import Scenario, draw_scenarios, with_level
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import Response, simulate
 
-FAULT_TRIES = 6  # faults drawn for a specimen until one can be seen in all of its records
+FAULT_TRIES = 12  # faults drawn for a specimen until one can be seen in all of its records
 
 
 @dataclass(frozen=True)
@@ -40,14 +40,13 @@ def made_records(recipe: Recipe, numbers: range, report: Callable[[int], None] =
         redrawn = _with_hits(_redrawn(again, recipe, tries), recipe, tries)
         _replace(made, _made(redrawn, recipe, LEVEL_TRIES), [one.record.number - whole.start for one in redrawn])
         again = _unseen(made, tries)
-    for place, seen in enumerate(made.measured.detectable):
+    advice = "raise level.faulty_db" if recipe.level.kind == "snr" else "lower level.background_m_s2"
+    for place in _unseen_places(made):
         scenario = made.measured.scenarios[place]
-        if scenario.specimen.fault != "healthy" and not seen:
-            sentence = (
-                f"record {scenario.record.number}: no {scenario.specimen.fault} fault of {FAULT_TRIES} that were drawn can be seen in it; "
-                f"raise level.faulty_db, or choose corpus.undetected: keep."
-            )
-            made.response.failures.setdefault(place, sentence)
+        made.response.failures[place] = (
+            f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen in it; "
+            f"{advice}, or choose corpus.undetected: keep."
+        )
     return _rows(made, range(numbers.start - whole.start, numbers.stop - whole.start))
 
 
@@ -89,15 +88,17 @@ def _with_hits(scenarios: list[Scenario], recipe: Recipe, tries: dict[int, int])
 
 def _unseen(made: Records, tries: dict[int, int]) -> list[int]:
     """Numbers of the specimens that have a record whose fault cannot be seen, and may have another fault."""
-    unseen = set()
-    for place, scenario in enumerate(made.measured.scenarios):
-        if (
-            scenario.specimen.fault != "healthy"
-            and not made.measured.detectable[place]
-            and place not in made.response.failures
-        ):
-            unseen.add(scenario.specimen.number)
+    unseen = {made.measured.scenarios[place].specimen.number for place in _unseen_places(made)}
     return sorted(number for number in unseen if tries.get(number, 0) < FAULT_TRIES - 1)
+
+
+def _unseen_places(made: Records) -> list[int]:
+    """Places of the records that were made and whose fault cannot be seen."""
+    return [
+        place
+        for place, (scenario, seen) in enumerate(zip(made.measured.scenarios, made.measured.detectable, strict=True))
+        if scenario.specimen.fault != "healthy" and not seen and place not in made.response.failures
+    ]
 
 
 def _replace(made: Records, by: Records, places: list[int]) -> None:

@@ -29,8 +29,40 @@ TOLERANCE = 0.01  # of a fault order, beyond one line of the spectrum: slip and 
 _LEAST_SAMPLES = 16  # of a band
 
 
+class Spectra(NamedTuple):
+    """Spectra of the parts of a record, and the lines that are searched; every spectrum has the shape (channel, frequency)."""
+
+    fault: NDArray[np.complexfloating]
+    bearing: NDArray[np.complexfloating]
+    """With the fault."""
+    background: NDArray[np.complexfloating]
+    n: int
+    """Samples of the record."""
+    angles: FloatArray | None
+    """Angle of the shaft at each sample, None if the speed is nearly constant [rad]."""
+    cycles: tuple[tuple[int, int], ...]
+    """Ranges of cycles per record, first and last, in which a line of the fault may lie."""
+
+    @property
+    def bands(self) -> list[tuple[int, int]]:
+        """First frequency of each band and the one after its last: all frequencies, then their quarters."""
+        half = self.n // 2
+        every = [(1, half), *((max(1, half * k // BANDS), half * (k + 1) // BANDS) for k in range(BANDS))]
+        return [(low, high) for low, high in every if high - low >= _LEAST_SAMPLES]
+
+    def searched(self, band: tuple[int, int]) -> list[int]:
+        """Cycles per record at which the squared envelope of a band is searched."""
+        highest = (band[1] - band[0]) // 2
+        return sorted({cycle for first, last in self.cycles for cycle in range(first, min(last, highest) + 1)})
+
+    @property
+    def chance(self) -> float:
+        """Logarithm of the number of searched lines, in all bands together, over the probability of a false alarm."""
+        return math.log(max(sum(len(self.searched(band)) for band in self.bands), 1) / FALSE_ALARM)
+
+
 class Bands(NamedTuple):
-    """Parts of a record in each band of each channel, before the gains; every array but the last has shape (channel, band)."""
+    """Parts of a record in some bands of each channel, before the gains; every array but the last has shape (channel, band)."""
 
     lines: FloatArray
     """Largest line of the fault's squared envelope at the orders of its class."""
@@ -43,7 +75,7 @@ class Bands(NamedTuple):
     """Line over power at which noise gives a false alarm, shape (band,)."""
 
 
-def judged_bands(
+def spectra_of(
     fault: Float32Array,
     healthy: Float32Array,
     background: Float32Array,
@@ -51,8 +83,8 @@ def judged_bands(
     angles: FloatArray,
     *,
     steady: bool,
-) -> Bands:
-    """Lines and powers in each band of one record.
+) -> Spectra:
+    """Spectra of one record.
 
     Parameters
     ----------
@@ -67,23 +99,14 @@ def judged_bands(
     """
     n = fault.shape[1]
     of_fault, of_healthy, of_background = rfft(np.stack([fault, healthy, background]))
-    of_bearing = of_fault + of_healthy
-    edges = [(1, n // 2), *((max(1, n // 2 * k // BANDS), n // 2 * (k + 1) // BANDS) for k in range(BANDS))]
-    edges = [(low, high) for low, high in edges if high - low >= _LEAST_SAMPLES]
-    columns = [
-        (_power(of_bearing[:, low:high]), _power(of_background[:, low:high]),
-         np.sum((of_bearing[:, low:high] * np.conj(of_background[:, low:high])).real, axis=1, dtype=np.float64))
-        for low, high in edges
-    ]  # fmt: skip
-    bearing, noise, cross = (np.stack(column, axis=1) * (4 / n**2) for column in zip(*columns, strict=True))
-    found = [_largest_line(of_fault[:, low:high] * (2 / n), orders, angles, steady=steady) for low, high in edges]
-    looks = max(sum(count for _, count in found), 1)
-    thresholds = [math.sqrt(math.log(looks / FALSE_ALARM) / (high - low)) for low, high in edges]
-    return Bands(np.stack([line for line, _ in found], axis=1), bearing, noise, cross, np.array(thresholds))
-
-
-def _power(spectrum: NDArray[np.complexfloating]) -> FloatArray:
-    return np.sum(spectrum.real**2 + spectrum.imag**2, axis=1, dtype=np.float64)
+    turns = (angles[-1] - angles[0]) / (2 * math.pi) * n / (n - 1)
+    middles = [multiple * order * turns for order in orders for multiple in range(1, HARMONICS + 1)]
+    reaches = [1 + TOLERANCE * middle for middle in middles]
+    cycles = tuple(
+        (max(1, math.ceil(middle - reach)), math.floor(middle + reach))
+        for middle, reach in zip(middles, reaches, strict=True)
+    )
+    return Spectra(of_fault, of_fault + of_healthy, of_background, n, None if steady else angles, cycles)
 
 
 def is_detectable(bands: Bands, gains: Gains) -> bool:
@@ -93,26 +116,51 @@ def is_detectable(bands: Bands, gains: Gains) -> bool:
     return bool(np.any(b * b * bands.lines > bands.thresholds * whole))
 
 
-def _largest_line(
-    spectrum: NDArray[np.complexfloating], orders: tuple[float, ...], angles: FloatArray, *, steady: bool
-) -> tuple[FloatArray, int]:
-    """Largest line of the squared envelope of a band at the orders and their multiples, shape (channel,), and the number searched."""
+class Judge:
+    """Tells for any gains whether the fault of a record can be seen; bands beyond the first are searched when one needs them."""
+
+    def __init__(self, spectra: Spectra) -> None:
+        self._spectra = spectra
+        self._found: list[Bands] = []
+
+    def sees(self, gains: Gains) -> bool:
+        """Whether the fault can be seen in some band."""
+        every = self._spectra.bands
+        for place, bands in enumerate((every[:1], every[1:])):
+            if place == len(self._found) and bands:
+                self._found.append(judged_bands(self._spectra, bands))
+            if place < len(self._found) and is_detectable(self._found[place], gains):
+                return True
+        return False
+
+
+def judged_bands(spectra: Spectra, bands: list[tuple[int, int]]) -> Bands:
+    """Lines and powers of one record in some of its bands."""
+    scale, rows = 2 / spectra.n, []
+    for low, high in bands:
+        bearing, background = spectra.bearing[:, low:high], spectra.background[:, low:high]
+        cross = np.sum((bearing * np.conj(background)).real, axis=1, dtype=np.float64)
+        line = _largest_line(spectra.fault[:, low:high] * scale, spectra, (low, high))
+        rows.append([line, *(scale**2 * power for power in (_power(bearing), _power(background), cross))])
+    lines, of_bearing, of_background, crosses = (np.stack(column, axis=1) for column in zip(*rows, strict=True))
+    thresholds = np.array([math.sqrt(spectra.chance / (high - low)) for low, high in bands])
+    return Bands(lines, of_bearing, of_background, crosses, thresholds)
+
+
+def _power(spectrum: NDArray[np.complexfloating]) -> FloatArray:
+    return np.asarray(np.sum(spectrum.real**2 + spectrum.imag**2, axis=1, dtype=np.float64))
+
+
+def _largest_line(spectrum: NDArray[np.complexfloating], of: Spectra, band: tuple[int, int]) -> FloatArray:
+    """Largest searched line of the squared envelope of a band, shape (channel,)."""
+    searched = of.searched(band)
+    if not searched:
+        return np.zeros(len(spectrum))
     signal = ifft(spectrum, norm="forward")
     envelope = signal.real**2 + signal.imag**2
     count = envelope.shape[1]
-    if not steady:
-        at = np.interp(np.arange(count) * (len(angles) / count), np.arange(len(angles)), angles)
+    if of.angles is not None:
+        at = np.interp(np.arange(count) * (of.n / count), np.arange(of.n), of.angles)
         even = np.linspace(at[0], at[-1], count)
         envelope = np.stack([np.interp(even, at, row) for row in envelope])
-    lines = np.abs(rfft(envelope)) / count
-    turns = (angles[-1] - angles[0]) / (2 * math.pi) * (len(angles) / (len(angles) - 1))
-    places: set[int] = set()
-    for order in orders:
-        for multiple in range(1, HARMONICS + 1):
-            middle = multiple * order * turns
-            reach = 1 + TOLERANCE * middle
-            places.update(range(max(1, math.ceil(middle - reach)), math.floor(middle + reach) + 1))
-    searched = [place for place in sorted(places) if place < lines.shape[1]]
-    if not searched:
-        return np.zeros(len(lines)), 0
-    return lines[:, searched].max(axis=1).astype(np.float64), len(searched)
+    return np.max(np.abs(rfft(envelope))[:, searched], axis=1).astype(np.float64) / count

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
-from gen.measurement.judging import Bands, is_detectable, judged_bands
+from gen.measurement.judging import Judge, spectra_of
 from gen.measurement.levels import (
     Gains,
     bearing_over_background,
@@ -164,12 +164,12 @@ def _parts(
     """The parts of some records, of which ``first`` is the place of the first one in ``twins``."""
     count, n_channels, _ = acceleration.shape
     faulty = [row for row in range(count) if twins is not None and scenarios[row].specimen.fault != "healthy"]
-    healthy, added = acceleration, np.empty((0, *acceleration.shape[1:]), np.float32)
+    healthy, difference = acceleration, np.empty((0, *acceleration.shape[1:]), np.float32)
     if twins is not None and faulty:
         healthy = acceleration.copy()
         healthy[faulty] = twins.acceleration[first : first + count][faulty]
-        added = acceleration[faulty] - healthy[faulty]
-    both = _through_paths(np.concatenate([healthy, added]), [*filters, *(filters[row] for row in faulty)])
+        difference = acceleration[faulty] - healthy[faulty]
+    both = _through_paths(np.concatenate([healthy, difference]), [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
     angles = [shaft_angles(scenario, axis) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
@@ -180,9 +180,9 @@ def _parts(
         fault = both[count + faulty.index(row)] if row in faulty else NO_SIGNAL
         one = fault, both[row], background[row]
         products = Products(*mix(*one, impulses[row], angles[row], lines[row], axis.kept.start, axis.kept.stop))
-        kept = [some[..., axis.kept] if some.size else some for some in one]
+        added, bearing, noise = (some[..., axis.kept] if some.size else some for some in one)
         orders = twins.orders[first + row] if twins is not None else ()
-        parts.append(Part(*kept, products, angles[row][axis.kept], orders))
+        parts.append(Part(added, bearing, noise, products, angles[row][axis.kept], orders))
     return parts
 
 
@@ -196,22 +196,23 @@ def _mixed(part: Part, gains: Gains) -> Float32Array:
 
 def _levelled(part: Part, scenario: Scenario, recipe: Recipe, rounding: float, tries: int) -> Levelled:
     """Level of a record: the drawn one, or if its fault cannot be seen the first of some more draws at which it can."""
-    bands = None
+    judge = None
     if part.orders and part.fault.size and math.isfinite(sum(part.products)):
         steady = scenario.record.speed_profile is None
-        bands = judged_bands(part.fault, part.healthy, part.background, part.orders, part.angles, steady=steady)
+        of_record = spectra_of(part.fault, part.healthy, part.background, part.orders, part.angles, steady=steady)
+        judge = Judge(of_record)
     found = []
     for attempt in range(tries if recipe.level.kind == "snr" and part.fault.size else 1):
         tried = with_level(scenario, recipe, attempt) if attempt else scenario
         gains = gains_of(tried, part.products)
-        found.append(Levelled(tried, gains, *_seen(part, bands, tried, gains, rounding)))
+        found.append(Levelled(tried, gains, *_seen(part, judge, tried, gains, rounding)))
         if found[-1].detectable:
             return found[-1]
     return found[0]
 
 
 def _seen(
-    part: Part, bands: Bands | None, scenario: Scenario, gains: Gains, rounding: float
+    part: Part, judge: Judge | None, scenario: Scenario, gains: Gains, rounding: float
 ) -> tuple[float, float, int]:
     """Level of the fault over the rest [dB], its share of the power [1], and whether it can be seen: 1, 0 or ``UNJUDGED``."""
     if scenario.specimen.fault == "healthy":
@@ -219,8 +220,8 @@ def _seen(
     if not part.fault.size:
         return math.nan, math.nan, UNJUDGED
     level, share = fault_over_rest(part.products, gains, rounding)
-    if bands is not None:
-        return level, share, int(is_detectable(bands, gains))
+    if judge is not None:
+        return level, share, int(judge.sees(gains))
     rise = mean_square(part.products, gains) >= SIGNIFICANT_RISE**2 * mean_square(part.products, gains, fault=False)
     return level, share, int(rise)
 

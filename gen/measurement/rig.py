@@ -159,7 +159,7 @@ def along(
     ``backward`` [rad]; ``flatness`` is the ratio of their lengths: 0 for a circle, 1 for a straight line. Each has shape (line,). See
     A. Muszynska, Rotordynamics, CRC Press, 2005.
     """
-    turned = np.exp(-1j * directions)[:, None]
+    turned: NDArray[np.complex128] = np.exp(-1j * directions)[:, None]
     return np.exp(1j * forward) * turned + flatness * np.exp(1j * backward) * np.conj(turned)
 
 

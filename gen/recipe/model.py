@@ -150,6 +150,11 @@ class Recipe(Section):
             raise ValueError(
                 "corpus.specimens_per_rig: 1 is not enough for healthy and faulty bearings on every rig; use at least 2."
             )
+        if self.corpus.undetected == "redraw" and self.corpus.records_per_specimen > self.corpus.records_per_part:
+            raise ValueError(
+                f"corpus.undetected: redraw judges all {self.corpus.records_per_specimen} records of a specimen together, and a part has "
+                f"{self.corpus.records_per_part}; raise records_per_part, or choose keep."
+            )
         if self.corpus.split.validation + self.corpus.split.test >= 1:
             raise ValueError("corpus.split: validation and test leave nothing to train on; make their sum less than 1.")
         if self.machine.resonator is None and any("sensor" in channel.body for channel in self.recording.channels):

@@ -315,7 +315,8 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
         None if profile is None else _draw_profile(draws, profile, recipe.recording.duration_s)
         for profile in (recipe.operation.speed_profile, recipe.operation.load_profile)
     ]
-    return Operation(number, conditions, snr, rms, *profiles)
+    speed_profile, load_profile = profiles
+    return Operation(number, conditions, snr, rms, speed_profile, load_profile)
 
 
 def _draw_profile(draws: Draws, profile: ProfileSection, duration: float) -> Profile:

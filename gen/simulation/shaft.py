@@ -38,13 +38,13 @@ def shaft_angles(scenario: Scenario, timeline: Timeline) -> FloatArray:
     return start.shaft + turned[timeline.dropped :]
 
 
-def _wander(start: Start, times: FloatArray) -> FloatArray:
+def _wander(start: Start, times: NDArray[np.floating]) -> FloatArray:
     """Speed wander of unit rms at evenly spaced ``times`` since the kernel started [s], shape (time,) [1]."""
     rates, phases = _speed_terms(start)
     return math.sqrt(2 / SPEED_TERMS) * cosine_sum(times, rates, phases)
 
 
-def _integrated_wander(start: Start, times: FloatArray) -> FloatArray:
+def _integrated_wander(start: Start, times: NDArray[np.floating]) -> FloatArray:
     """Integral of the speed wander of unit rms from the start of the kernel to ``times``, shape (time,) [s]."""
     rates, phases = _speed_terms(start)
     sines = cosine_sum(times, rates, phases - math.pi / 2, 1 / rates)

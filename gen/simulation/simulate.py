@@ -1,6 +1,6 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -101,6 +101,12 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
             if place not in failures:
                 twins.acceleration[place] = made.response[row]
     return Response(acceleration, oversampling, phases, failures, inputs, truth, twins)
+
+
+def integrations(scenarios: Iterable[Scenario], recipe: Recipe) -> int:
+    """Number of integrations that records need: one, or two for a record that is also simulated without its fault."""
+    twice = recipe.corpus.truth == "full"
+    return sum(2 if twice and scenario.specimen.fault != "healthy" else 1 for scenario in scenarios)
 
 
 def _healthy_inputs(

@@ -69,8 +69,8 @@ class WidestSpall(NamedTuple):
 
 def truths_of(scenarios: Sequence[Scenario], timeline: Timeline, inputs: Sequence[KernelInput | None]) -> list[Truth]:
     """Truth of each scenario; its kernel input is None if no such machine is possible."""
-    spalled = [place for place, given in enumerate(inputs) if given is not None and given.spalls]
-    zones = dict(zip(spalled, load_zones([inputs[place] for place in spalled]), strict=True))
+    spalled = {place: given for place, given in enumerate(inputs) if given is not None and given.spalls}
+    zones = dict(zip(spalled, load_zones(list(spalled.values())), strict=True))
     return [
         _truth_of(scenario, timeline, given, zones.get(place))
         for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True))

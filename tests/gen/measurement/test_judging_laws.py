@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gen.measurement.judging import FALSE_ALARM, is_detectable, judged_bands
+from gen.measurement.judging import FALSE_ALARM, Judge, is_detectable, judged_bands, spectra_of
 from gen.measurement.levels import Gains
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
@@ -26,8 +26,7 @@ def ringing(order, frequency=3000.0, angles=ANGLES):
 
 
 def judged(fault, rest, orders=(ORDER,), angles=ANGLES, *, steady=True, bearing=1.0):
-    bands = judged_bands(fault, np.zeros_like(fault), rest, orders, angles, steady=steady)
-    return is_detectable(bands, Gains(bearing, 1.0))
+    return Judge(spectra_of(fault, np.zeros_like(fault), rest, orders, angles, steady=steady)).sees(Gains(bearing, 1.0))
 
 
 def test_noise_in_place_of_a_fault_is_called_a_fault_as_rarely_as_stated():
@@ -57,10 +56,11 @@ def test_one_loud_channel_does_not_hide_a_fault_that_another_shows():
 def test_a_fault_that_is_loud_in_one_band_is_seen_behind_noise_in_another():
     time = np.arange(N) / FS
     hum = 30 * np.sin(2 * np.pi * 700 * time)[None].astype(np.float32)
-    bands = judged_bands(ringing(ORDER), np.zeros_like(hum), hum, (ORDER,), ANGLES, steady=True)
-    assert is_detectable(bands, Gains(1.0, 1.0))
-    assert not is_detectable(bands._replace(**{name: getattr(bands, name)[:, :1] for name in ("lines", "bearing", "background", "cross")},
-                                            thresholds=bands.thresholds[:1]), Gains(1.0, 1.0))  # fmt: skip
+    spectra = spectra_of(ringing(ORDER), np.zeros_like(hum), hum, (ORDER,), ANGLES, steady=True)
+    whole, *quarters = spectra.bands
+    assert not is_detectable(judged_bands(spectra, [whole]), Gains(1.0, 1.0))
+    assert is_detectable(judged_bands(spectra, quarters), Gains(1.0, 1.0))
+    assert Judge(spectra).sees(Gains(1.0, 1.0))
 
 
 def test_a_fault_is_seen_in_a_run_up_by_the_angle_of_the_shaft():
