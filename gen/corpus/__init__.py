@@ -1,22 +1,24 @@
 """The corpus format: a folder of records that any netCDF-4 tool reads as one file.
 
-========== =====================================================
-module     responsibility
-========== =====================================================
-codecs     codecs of stored signals
-schema     dimensions, variables, units and roles
-simulated  further variables of simulated corpora
-hdf5       lock of the HDF5 library, refusal of links to other files
-layout     allowed shapes, types and attributes in a file
-files      atomic writing, hashes
-signals    records that cannot be used
-part       one netCDF-4 file of records
-manifest   files of a corpus with size and hash
-reading    lazy reading, with a few files open at a time
-index      ``corpus.nc`` over the parts; opening a corpus
-validation all checks of a corpus
-card       data card of a corpus, page about the format
-========== =====================================================
+=========== =====================================================
+module      responsibility
+=========== =====================================================
+codecs      codecs of stored signals
+schema      dimensions, variables, units and roles
+simulated   further variables of simulated corpora
+hdf5        lock of the HDF5 library, refusal of links to other files
+layout      allowed shapes, types and attributes in a file
+files       atomic writing, hashes
+signals     records that cannot be used
+part        one netCDF-4 file of records
+manifest    files of a corpus with size and hash
+reading     lazy reading, with a few files open at a time
+index       ``corpus.nc`` over the parts; opening a corpus
+validation  all checks of a corpus
+recoverable labels that can be recovered from the signals
+card        data card of a corpus
+description page about the format
+=========== =====================================================
 """
 
 from typing import TYPE_CHECKING
@@ -24,8 +26,9 @@ from typing import TYPE_CHECKING
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gen.corpus.card import data_card, format_page
+    from gen.corpus.card import data_card
     from gen.corpus.codecs import CODECS, Codec
+    from gen.corpus.description import format_page
     from gen.corpus.files import (
         check_name,
         plain_file,
@@ -104,7 +107,8 @@ __all__ = [
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "gen.corpus.card": ("data_card", "format_page"),
+        "gen.corpus.card": ("data_card",),
+        "gen.corpus.description": ("format_page",),
         "gen.corpus.codecs": ("CODECS", "Codec"),
         "gen.corpus.files": (
             "check_name", "plain_file", "remove_left_behind", "sha256", "temporary_beside", "whole_or_not_at_all", "write_durably",

@@ -1,11 +1,11 @@
-"""Pages in Markdown: the data card of a corpus, and the description of the format."""
+"""Data card of a corpus: a page in Markdown on its records, its faults and its labels."""
 
 import numpy as np
 import xarray as xr
 
-from gen.corpus.schema import FAULTS, FORMAT, SCHEMA, SIGNAL, SPLITS, Variable
-from gen.corpus.signals import CLIPPED_SHARE, SignalCounts, described
-from gen.corpus.simulated import SIMULATED
+from gen.corpus.recoverable import NUMBERS, recoveries
+from gen.corpus.schema import FAULTS, SIGNAL, SPLITS
+from gen.corpus.signals import SignalCounts, described
 
 
 def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
@@ -36,6 +36,8 @@ def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
             lines.append(
                 f"| {name} | {of_class.sum()} | " + " | ".join(str(count) for count in (*units, *parts)) + " |"
             )
+    if "detectable" in corpus:
+        lines += ["", *_visible_faults(corpus), *_recoverable_labels(corpus)]
     lines += ["", "| variable | unit | role | meaning |", "|---|---|---|---|"]
     for name, variable in corpus.variables.items():
         if name != SIGNAL and variable.dims == ("record",):
@@ -44,64 +46,43 @@ def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
     return "\n".join([*lines, "", "Open it with `gen.open_corpus(folder)` or any netCDF-4 reader on `corpus.nc`.", ""])
 
 
-_FORMAT = f"""# The corpus format, version {FORMAT}
-
-A corpus is a folder:
-
-| file | content |
-|---|---|
-| `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: any netCDF-4 reader sees one file |
-| `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
-| `manifest.json` | whether the corpus is complete; `signals`; bytes and SHA-256 of `corpus.nc` and of each part; recipe hash, versions |
-| `recipe.yaml` | the recipe, if the corpus was simulated |
-| `README.md` | the data card |
-
-HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds
-the number of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it
-reads, refuses a missing or altered file, and reads the signal from the parts. `raceway validate` checks everything.
-Further checks of a corpus from strangers: [security.md](security.md).
-
-`signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
-a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
-`dead` if all samples of a channel are zero, `constant` if they all have one other value, `not_finite` if a sample
-is missing or not a number.
-
-The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
-and netCDF4 apply when they read, or 32-bit floating point. Text is stored as fixed-length characters. Every other
-variable has one value per record, and a `role`:
-
-- `operating`: known to an analyst on site; features may use it,
-- `label`: the target of a classifier,
-- `latent`: known to the simulator alone,
-- `provenance`: origin of the record.
-
-Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
-`long_name` and a `role`:
-
-"""
+def _visible_faults(corpus: xr.Dataset) -> list[str]:
+    """Paragraph on the faults that can be seen in their records, and on those that were drawn again."""
+    detectable = corpus["detectable"].values[corpus["fault"].values != FAULTS.index("healthy")]
+    if not detectable.size:
+        return []
+    if (detectable == 2).all():
+        return ["What the faults add to the records is not known: `corpus.truth` of the recipe is `none`."]
+    tries, specimens = corpus["fault_tries"].values, corpus["specimen"].values
+    redrawn = np.unique(specimens[tries > 0]).size
+    levels = int((corpus["level_tries"].values > 0).sum())
+    seen = (
+        f"Of {detectable.size} records labelled with a fault, the fault can be seen in {(detectable == 1).sum()} (`detectable`): its line "
+        f"in the squared envelope of some band would be a false alarm of noise with a probability below one in a thousand."
+    )
+    again = f"the fault of {redrawn} specimens, the level of {levels} records"
+    return [f"{seen} Drawn again because the fault could not be seen: {again}."]
 
 
-_SIMULATED = """
-A corpus that `raceway generate` made also has these; `draws` holds every drawn value of the record, by the names of
-the recipe's keys:
-
-"""
-
-
-def format_page() -> str:
-    """Markdown page about the format; its tables are the schemas of all and of simulated corpora."""
-    return _FORMAT + _table(SCHEMA) + _SIMULATED + _table(SIMULATED)
-
-
-def _table(variables: tuple[Variable, ...]) -> str:
-    rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
-    for variable in variables:
-        flags = (
-            f" ({', '.join(f'{code} {name}' for code, name in enumerate(variable.flags))})" if variable.flags else ""
-        )
-        cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
-        rows.append(f"| {' | '.join(cells)} |")
-    return "\n".join(rows) + "\n"
+def _recoverable_labels(corpus: xr.Dataset) -> list[str]:
+    """Table of the rank correlations of labels with simple numbers of the records."""
+    found = recoveries(corpus)
+    if not found:
+        return []
+    rows = [f"| `{row.label}` | {row.fault} | {row.number} | {row.correlation:+.2f} | {row.items} |" for row in found]
+    meaning = (
+        f"Which labels can be recovered from the signals? The table has the closest of {', '.join(NUMBERS)} to each label, by Spearman's "
+        f"rank correlation over specimens, or over records where the label changes from record to record. Chance alone reaches "
+        f"2 / sqrt(count); a label with less than that cannot be recovered from these numbers."
+    )
+    return [
+        "",
+        meaning,
+        "",
+        "| label | fault | closest number | rank correlation | count |",
+        "|---|---|---|---:|---:|",
+        *rows,
+    ]
 
 
 def plain_text(text: object) -> str:

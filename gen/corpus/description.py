@@ -1,0 +1,64 @@
+"""Page in Markdown about the format, with tables generated from its schema."""
+
+from gen.corpus.schema import FORMAT, SCHEMA, SIGNAL, Variable
+from gen.corpus.signals import CLIPPED_SHARE
+from gen.corpus.simulated import SIMULATED
+
+_FORMAT = f"""# The corpus format, version {FORMAT}
+
+A corpus is a folder:
+
+| file | content |
+|---|---|
+| `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: any netCDF-4 reader sees one file |
+| `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
+| `manifest.json` | whether the corpus is complete; `signals`; bytes and SHA-256 of `corpus.nc` and of each part; recipe hash, versions |
+| `recipe.yaml` | the recipe, if the corpus was simulated |
+| `README.md` | the data card |
+
+HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds
+the number of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it
+reads, refuses a missing or altered file, and reads the signal from the parts. `raceway validate` checks everything.
+Further checks of a corpus from strangers: [security.md](security.md).
+
+`signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
+a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
+`dead` if all samples of a channel are zero, `constant` if they all have one other value, `not_finite` if a sample
+is missing or not a number.
+
+The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
+and netCDF4 apply when they read, or 32-bit floating point. Text is stored as fixed-length characters. Every other
+variable has one value per record, and a `role`:
+
+- `operating`: known to an analyst on site; features may use it,
+- `label`: the target of a classifier,
+- `latent`: known to the simulator alone,
+- `provenance`: origin of the record.
+
+Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
+`long_name` and a `role`:
+
+"""
+
+
+_SIMULATED = """
+A corpus that `raceway generate` made also has these; `draws` holds every drawn value of the record, by the names of
+the recipe's keys:
+
+"""
+
+
+def format_page() -> str:
+    """Markdown page about the format; its tables are the schemas of all and of simulated corpora."""
+    return _FORMAT + _table(SCHEMA) + _SIMULATED + _table(SIMULATED)
+
+
+def _table(variables: tuple[Variable, ...]) -> str:
+    rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
+    for variable in variables:
+        flags = (
+            f" ({', '.join(f'{code} {name}' for code, name in enumerate(variable.flags))})" if variable.flags else ""
+        )
+        cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
+        rows.append(f"| {' | '.join(cells)} |")
+    return "\n".join(rows) + "\n"
