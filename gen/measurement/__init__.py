@@ -1,10 +1,12 @@
 """Accelerations of the bodies in, records as a data-acquisition card stores them out.
 
-======= ======================================================================
-module  responsibility
-======= ======================================================================
-rig     transfer paths and machine background of a rig
-mixing  bearing and background of a record put together, compiled
-measure path, modulation, background, level and converter, record by record
-======= ======================================================================
+============= ======================================================================
+module        responsibility
+============= ======================================================================
+rig           transfer paths and machine background of a rig
+gear          vibration of a gear mesh
+mixing        bearing and background of a record put together, compiled
+sensor_faults faults of the measuring chain, from the mount to the data transfer
+measure       path, modulation, background, level and converter, record by record
+============= ======================================================================
 """

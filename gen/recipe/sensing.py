@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, StrictInt
 
 from gen.recipe.distributions import Distribution, Number, within
+from gen.recipe.gear import GearMesh
 from gen.recipe.section import Name, Probability, Section, Weight
 
 MAX_OVERSAMPLING = 96
@@ -181,6 +182,8 @@ class BackgroundSection(Section):
     """Impulses at random times; none if left out."""
     knocks: Knocks | None = None
     """Impulses locked to the shaft; none if left out."""
+    gear_mesh: GearMesh | None = None
+    """Lines of a gear on the shaft; none if left out."""
 
 
 class PhysicalLevel(Section):

@@ -44,6 +44,7 @@ from gen.scenarios.model import (
     Tone,
     stream,
 )
+from gen.scenarios.sensor_faults import draw_gear, draw_record_sensor_faults, draw_rig_sensor_faults
 from gen.units import decibel_to_ratio, percent_to_share
 
 STEEPEST_CONTACT = math.radians(45)
@@ -119,7 +120,7 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
         body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
         channels.append(Pickup(body, draws.section(channel)["angle"]))
     path = _draw_path(draws, recipe.path)
-    background = _draw_background(recipe, draws)
+    background = replace(_draw_background(recipe, draws), gear=draw_gear(recipe, number))
     own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
     oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)
     if oil is not None and oil["viscosity_100"] >= oil["viscosity_40"]:
@@ -140,6 +141,7 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
         background_rms=level.get("background", 1.0),
         lubricant=oil,
         footprint=recipe.contact.footprint == "hertz",
+        sensor_faults=draw_rig_sensor_faults(recipe, number),
     )
 
 
@@ -281,7 +283,8 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
         None if profile is None else _draw_profile(draws, profile, recipe.recording.duration_s)
         for profile in (recipe.operation.speed_profile, recipe.operation.load_profile)
     ]
-    return Operation(number, conditions, snr, rms, *profiles)
+    sensor_faults = draw_record_sensor_faults(recipe, rig, specimen.number, number)
+    return Operation(number, conditions, snr, rms, *profiles, sensor_faults=sensor_faults)
 
 
 def _draw_profile(draws: Draws, profile: ProfileSection, duration: float) -> Profile:
