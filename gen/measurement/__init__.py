@@ -6,6 +6,7 @@ module        responsibility
 rig           transfer paths and machine background of a rig
 gear          vibration of a gear mesh
 mixing        bearing and background of a record put together, compiled
+rattle        a sensor that lifts off its mount and strikes the machine, compiled
 sensor_faults faults of the measuring chain, from the mount to the data transfer
 measure       path, modulation, background, level and converter, record by record
 ============= ======================================================================

@@ -1,7 +1,7 @@
 """Vibration of a gear mesh: multiples of the mesh frequency with sidebands of both gears.
 
-The mesh turns with the shaft, so it is computed from the shaft angle. A gear that runs out of true changes the amplitude of the mesh and its
-phase once per turn; so does the mate at its own rate [1]_::
+The mesh turns with the shaft, so it is computed from the shaft angle. A gear that runs out of true changes amplitude and phase of the mesh
+once per turn, and its mate changes the amplitude at its own rate [1]_::
 
     mesh  = teeth * angle + phase_modulation * cos(angle - lead_point)
     x     = (1 + shaft_modulation * cos(angle - high_point) + mate_modulation * cos(mate)) * sum_k a_k cos(k * mesh + phase_k)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.signal import lfilter
 
+from gen.measurement.rattle import rattling
 from gen.measurement.rig import base_excited
 from gen.scenarios import Mode, Purpose, Scenario
 from gen.scenarios.model import Drawn
@@ -102,11 +103,6 @@ def disturbed(signal: FloatArray, scenario: Scenario, fs: float) -> tuple[FloatA
 def loosely_mounted(signal: FloatArray, mounts: tuple[Drawn | None, ...], fs: float) -> tuple[FloatArray, int]:
     """Signal of sensors that resonate and rattle on loose mounts, and the number of impacts.
 
-    A sensor on a compliant mount is a mass that is excited through its base. Where it would be pulled back harder than it is held, it lifts
-    off, moves with the holding acceleration alone, and strikes the machine where its path crosses the one that it would have taken. There the
-    impact gives it back the velocity that it lacks, through the resonance of the mount. A second flight within the response to an
-    impact is left out.
-
     Parameters
     ----------
     signal : array, shape (channel, time)
@@ -118,13 +114,16 @@ def loosely_mounted(signal: FloatArray, mounts: tuple[Drawn | None, ...], fs: fl
     """
     loose, impacts = signal.copy(), 0
     for channel, mount in enumerate(mounts):
-        if mount is None:
-            continue
-        held = through_mount(signal[channel], mount, fs)
-        flight, velocities = flights(held, mount["holding"], fs)
-        impacts += int(np.count_nonzero(velocities))
-        loose[channel] = np.where(flight, -mount["holding"], held) + through_mount(fs * velocities, mount, fs)
+        if mount is not None:
+            held = through_mount(signal[channel], mount, fs)
+            loose[channel], count = rattling(held, mount["frequency"], mount["damping"], mount["holding"], fs)
+            impacts += count
     return loose, impacts
+
+
+def compile_rattle() -> None:
+    """Compile the rattling of loose sensors, or fetch it from numba's cache on disk."""
+    rattling(np.zeros(2), 1000.0, 0.1, 1.0, 10_000.0)
 
 
 def through_mount(signal: FloatArray, mount: Drawn, fs: float) -> FloatArray:
@@ -140,31 +139,6 @@ def through_mount(signal: FloatArray, mount: Drawn, fs: float) -> FloatArray:
     transmitted = base_excited((Mode(mount["frequency"], mount["damping"], 1.0),), frequency)
     spectrum = rfft(np.concatenate([lead, signal]), n) * transmitted
     return irfft(spectrum, n)[len(lead) : len(lead) + len(signal)]
-
-
-def flights(held: FloatArray, holding: float, fs: float) -> tuple[NDArray[np.bool_], FloatArray]:
-    """Samples in which a sensor is off the machine, and its impact velocities at the samples where it strikes [m/s], shape (time,) each.
-
-    ``held`` is the acceleration that the sensor would have without lifting off, ``holding`` that with which it is pulled back [m s-2].
-    A flight that the end of the record cuts short has no impact.
-    """
-    flight, velocities = np.zeros(len(held), bool), np.zeros(len(held))
-    lifting = np.flatnonzero(held < -holding)
-    landed = 0
-    while (place := np.searchsorted(lifting, landed)) < len(lifting):
-        first = int(lifting[place])
-        # relative motion of sensor and machine since the lift-off; a flight rarely takes more than 64 samples
-        for size in (64, 1024, len(held)):
-            away = np.cumsum(-holding - held[first : first + size], dtype=float) / fs
-            closed = np.flatnonzero(np.cumsum(away) <= 0)
-            if len(closed) or first + size >= len(held):
-                break
-        landed = first + int(closed[0]) if len(closed) else len(held)
-        flight[first : landed + 1] = True
-        if landed < len(held):
-            velocities[landed] = -away[landed - first]
-        landed += 1
-    return flight, velocities
 
 
 def drift(drawn: Drawn, shape: tuple[int, ...], fs: float, rng: np.random.Generator) -> FloatArray:
@@ -231,9 +205,10 @@ def saturated(signal: FloatArray, drawn: Drawn, fs: float) -> tuple[FloatArray, 
 
 
 def with_gaps(signal: FloatArray, drawn: Drawn, fs: float, rng: np.random.Generator) -> tuple[FloatArray, int]:
-    """Signal whose gaps are filled with the last sample before them or with 0, shape (channel, time), and the number of times without a sample.
+    """Signal with gaps, shape (channel, time), and the number of times without a sample of their own.
 
-    The first sample is never lost. Where gaps overlap, the later one is filled from what the earlier one left.
+    A gap is filled with the last sample before it or with 0. The first sample is never lost. Where gaps overlap, the later one
+    is filled from what the earlier one left.
     """
     length = signal.shape[1]
     size = min(max(round(drawn["gap"] * fs), 1), length - 1)

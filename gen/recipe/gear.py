@@ -22,4 +22,4 @@ class GearMesh(Section):
     mate_modulation: Distribution = within(0, 1, default=0.0)
     """Depth of the amplitude modulation once per turn of the mating gear."""
     phase_deg: Distribution = within(0, 180, default=0.0)
-    """Peak of the phase modulation of the mesh once per turn of the shaft, in degrees of the mesh cycle; n times this at the nth multiple."""
+    """Peak of the phase modulation once per turn of the shaft, in degrees of the mesh cycle; n times this at the nth multiple."""

@@ -13,7 +13,7 @@ class LooseMount(Section):
 
     probability: Probability
     """Share of the sensors that are mounted loosely; drawn per rig for each channel."""
-    frequency_hz: Distribution = within(50, 50_000)
+    frequency_hz: Distribution = within(50, 20_000)
     """Resonance of the sensor on its mount: the looser the mount, the lower it is."""
     damping_percent: Distribution = within(0.1, 50)
     """Damping ratio of that resonance."""

@@ -44,9 +44,7 @@ def test_sensor_faults_and_gears_move_no_other_drawn_value(recipe_with, sampling
 @pytest.mark.parametrize("name", SENSOR_FAULTS)
 def test_a_sensor_fault_that_is_left_out_moves_no_other(recipe_with, name):
     rest = {key: section for key, section in rarely(SENSOR_FAULTS, 0.5).items() if key != name}
-    for one, other in zip(
-        drawn(recipe_with, rarely(SENSOR_FAULTS, 0.5)), drawn(recipe_with, rest), strict=True
-    ):
+    for one, other in zip(drawn(recipe_with, rarely(SENSOR_FAULTS, 0.5)), drawn(recipe_with, rest), strict=True):
         whole, left = faults_of(one), faults_of(other)
         assert not any(left[name] or ())
         assert {key: whole[key] for key in rest} == {key: left[key] for key in rest}
@@ -72,7 +70,9 @@ def test_faults_of_installations_come_by_rig_and_faults_that_come_and_go_by_reco
     size = {"corpus.rigs": 200, "corpus.specimens_per_rig": 2, "corpus.records_per_specimen": 1}
     scenarios = drawn(recipe_with, rarely(SENSOR_FAULTS, 0.3), **size)
     rigs = {scenario.rig.number: scenario.rig.sensor_faults for scenario in scenarios}
-    counts = Counter(name for scenario in scenarios for name in OF_RECORDS if getattr(scenario.record.sensor_faults, name))
+    counts = Counter(
+        name for scenario in scenarios for name in OF_RECORDS if getattr(scenario.record.sensor_faults, name)
+    )
     for name in OF_RECORDS:
         assert counts[name] / len(scenarios) == pytest.approx(0.3, abs=0.1)  # 4 sigma of 400 records
     for present in (
@@ -86,7 +86,9 @@ def test_faults_of_installations_come_by_rig_and_faults_that_come_and_go_by_reco
 
 def test_each_channel_has_a_mount_of_its_own(recipe_with):
     channels = [{"name": name, "body": "sensor"} for name in "abc"]
-    sections = {"loose_mount": {**SENSOR_FAULTS["loose_mount"], "frequency_hz": {"kind": "uniform", "low": 500, "high": 900}}}
+    sections = {
+        "loose_mount": {**SENSOR_FAULTS["loose_mount"], "frequency_hz": {"kind": "uniform", "low": 500, "high": 900}}
+    }
     for scenario in drawn(recipe_with, sections, **{"recording.channels": channels}):
         mounts = scenario.rig.sensor_faults.loose_mounts
         assert len({mount["frequency"] for mount in mounts}) == 3
