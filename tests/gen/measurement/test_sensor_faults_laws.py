@@ -303,3 +303,24 @@ def test_sensor_faults_of_a_faulty_record_and_of_its_twin_are_the_same(dirty):
         one, other = disturbed(signal, scenario, FS), disturbed(signal, scenario.without_fault(), FS)
         np.testing.assert_array_equal(one[0], other[0])
         assert one[1] == other[1]
+
+
+def test_flags_count_what_is_in_the_record(recipe_with):
+    """Channels on loose mounts are those that change, bursts that do not occur are not counted, and a baseline below 0 counts as well."""
+    sections = {
+        "loose_mount": {**SENSOR_FAULTS["loose_mount"], "probability": 0.5},
+        "drift": {**SENSOR_FAULTS["drift"], "settling_m_s2": -30},
+        "emi_bursts": {**SENSOR_FAULTS["emi_bursts"], "rate_hz": 5},
+    }
+    recipe = recipe_with({"sensor_faults": sections, "recording.channels": [{"name": name} for name in "ab"]})
+    signal, silence, seen = hiss(), np.zeros((2, 1200)), set()
+    for scenario in draw_scenarios(recipe):
+        found, flags = disturbed(signal, only(scenario, "loose_mount"), FS)
+        assert flags.loose_mount == np.count_nonzero((found != signal).any(axis=1))
+        found, flags = disturbed(silence, only(scenario, "drift"), FS)
+        assert flags.drift == np.abs(found).max() > 10
+        found, flags = disturbed(silence, only(scenario, "emi_bursts"), FS)
+        assert (flags.emi_bursts > 0) == found.any()
+        seen.add(flags.emi_bursts)
+    assert 0 in seen
+    assert len(seen) > 1
