@@ -44,8 +44,6 @@ def gear_mesh(gear: Gear, angles: FloatArray, rng: np.random.Generator) -> Float
     turn = np.exp(1j * (gear.teeth * angles + wobble))
     total, power = np.zeros(len(angles)), np.ones(len(angles), complex)
     for multiple, line in enumerate(gear.lines, start=1):
-        if multiple * rate.min() >= 1:
-            break
         power *= turn
         amplitude = math.sqrt(2) * line["level"] * np.exp(1j * line["phase"])
         total += (amplitude * power).real * np.clip((1 - multiple * rate) / (1 - FLAT), 0.0, 1.0)
