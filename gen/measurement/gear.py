@@ -17,6 +17,7 @@ import math
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.fft import irfft, rfft
 
 from gen.scenarios import Gear
 
@@ -50,3 +51,26 @@ def gear_mesh(gear: Gear, angles: FloatArray, rng: np.random.Generator) -> Float
     modulation = 1 + gear.shaft_modulation * np.cos(angles - gear.high_point)
     modulation += gear.mate_modulation * np.cos(angles * (gear.teeth / gear.mate_teeth) + start)
     return total * modulation
+
+
+def gear_in_channels(
+    gear: Gear, angles: FloatArray, paths: NDArray[np.complexfloating], n: int, rng: np.random.Generator
+) -> NDArray[np.float32]:
+    """Vibration of a gear mesh behind the transfer path of each channel, shape (channel, time) [1].
+
+    Its rms over all channels is that ahead of the paths. The convolution is circular, as that of the bearing: what it wraps around falls
+    into the lead ahead of the record.
+
+    Parameters
+    ----------
+    gear, angles, rng
+        As for :func:`gear_mesh`.
+    paths : array, shape (channel, frequency)
+        Transfer function of each path [1].
+    n : int
+        Samples of the Fourier transform that the paths are given for; at least as many as ``angles`` has.
+    """
+    mesh = gear_mesh(gear, angles, rng).astype(np.float32)
+    behind = irfft(rfft(mesh, n) * paths, n)[:, : len(mesh)]
+    power = np.mean(np.square(behind), dtype=float)
+    return behind * np.float32(math.sqrt(np.mean(np.square(mesh), dtype=float) / power) if power > 0 else 0.0)

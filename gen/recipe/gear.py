@@ -16,7 +16,8 @@ class GearMesh(Section):
     count: Distribution = within(1, 16)
     """Number of multiples of the mesh frequency, rounded to a whole number; those beyond half the sample rate are left out."""
     level_db: Distribution = within(-80, 40)
-    """Rms of such a line without its sidebands, relative to the rms of the background noise; drawn for each."""
+    """Rms of such a line without sidebands and ahead of the paths, relative to that of the background noise; drawn for each. All lines
+    together have the same rms ahead of the paths and behind them."""
     shaft_modulation: Distribution = within(0, 1, default=0.0)
     """Depth of the amplitude modulation once per turn of the shaft: a gear that runs out of true."""
     mate_modulation: Distribution = within(0, 1, default=0.0)

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.measurement.gear import gear_mesh
+from gen.measurement.gear import gear_in_channels, gear_mesh
 from gen.scenarios import Gear
 
 law = settings(deadline=None, max_examples=25)
@@ -107,3 +107,20 @@ def test_a_multiple_fades_out_where_a_run_up_takes_it_past_half_the_sample_rate(
     assert np.abs(found[60 * rate > 6001]).max() == 0.0
     low = found[60 * rate < 4700]
     assert math.sqrt(np.mean(low**2)) == pytest.approx(1.0, rel=0.01)
+
+
+def test_a_mesh_passes_through_the_path_of_each_channel_and_keeps_its_rms():
+    """500 Hz in one channel and 1000 Hz in the other: only their paths part the lines of the mesh."""
+    frequency = np.fft.rfftfreq(N, 1 / FS)
+    paths = np.stack([frequency < 750, 2.0 * ((frequency > 750) & (frequency < 1250))]).astype(np.complex64)
+    gear = gear_with(shaft_modulation=0.5)
+    found = gear_in_channels(gear, STEADY, paths, N, np.random.default_rng(0))
+    assert (found.dtype, found.shape) == (np.float32, (2, N))
+    assert np.mean(found.astype(float) ** 2) == pytest.approx(np.mean(mesh(gear) ** 2), rel=1e-5)
+    assert amplitude(found[1], 40) / amplitude(found[0], 20) == pytest.approx(2 * 0.5, rel=1e-4)
+    assert amplitude(found[1], 41) / amplitude(found[1], 40) == pytest.approx(0.25, rel=1e-4)
+    assert max(amplitude(found[0], 40), amplitude(found[1], 20), amplitude(found[1], 60)) < 1e-5
+
+
+def test_a_path_that_suppresses_the_mesh_leaves_silence():
+    assert not gear_in_channels(gear_with(), STEADY, np.zeros((2, N // 2 + 1)), N, np.random.default_rng(0)).any()
