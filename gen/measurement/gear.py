@@ -55,8 +55,8 @@ def gear_mesh(gear: Gear, angles: FloatArray, rng: np.random.Generator) -> Float
 
 def gear_in_channels(
     gear: Gear, angles: FloatArray, paths: NDArray[np.complexfloating], n: int, rng: np.random.Generator
-) -> NDArray[np.float32]:
-    """Vibration of a gear mesh behind the transfer path of each channel, shape (channel, time) [1].
+) -> NDArray[np.floating]:
+    """Vibration of a gear mesh behind the transfer path of each channel, shape (channel, time), in single precision [1].
 
     Its rms over all channels is that ahead of the paths. The convolution is circular, as that of the bearing: what it wraps around falls
     into the lead ahead of the record.
