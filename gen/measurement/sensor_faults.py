@@ -67,10 +67,10 @@ def disturbed(signal: FloatArray, scenario: Scenario, fs: float) -> tuple[FloatA
     Returns
     -------
     array, shape (channel, time), of the type of ``signal``
-        The ``signal`` itself if the scenario has no sensor fault.
+        The ``signal`` itself if the scenario has no sensor fault, or if the record diverged: then it is left out of the corpus.
     """
     rig, record, flags = scenario.rig.sensor_faults, scenario.record.sensor_faults, SensorFlags()
-    if rig is None and record is None:
+    if (rig is None and record is None) or not np.isfinite(signal).all():
         return signal, flags
     given = signal
     # a stream for each fault, so that none moves the random times of another

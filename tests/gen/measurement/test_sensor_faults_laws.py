@@ -324,3 +324,12 @@ def test_flags_count_what_is_in_the_record(recipe_with):
         seen.add(flags.emi_bursts)
     assert 0 in seen
     assert len(seen) > 1
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_a_record_that_diverged_is_passed_on_without_a_warning(dirty, value):
+    signal = hiss()
+    signal[:, 600:] = value
+    found, flags = disturbed(signal, dirty[0], FS)
+    assert found is signal
+    assert flags == SensorFlags()
