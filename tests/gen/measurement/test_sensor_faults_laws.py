@@ -312,16 +312,19 @@ def test_flags_count_what_is_in_the_record(recipe_with):
         "drift": {**SENSOR_FAULTS["drift"], "settling_m_s2": -30},
         "emi_bursts": {**SENSOR_FAULTS["emi_bursts"], "rate_hz": 5},
     }
-    recipe = recipe_with({"sensor_faults": sections, "recording.channels": [{"name": name} for name in "ab"]})
-    signal, silence, seen = hiss(), np.zeros((2, 1200)), set()
+    channels = [{"name": name} for name in "ab"]
+    recipe = recipe_with({"sensor_faults": sections, "recording.channels": channels, "corpus.rigs": 12})
+    signal, silence, seen, loose = hiss(), np.zeros((2, 1200)), set(), set()
     for scenario in draw_scenarios(recipe):
         found, flags = disturbed(signal, only(scenario, "loose_mount"), FS)
         assert flags.loose_mount == np.count_nonzero((found != signal).any(axis=1))
+        loose.add(flags.loose_mount)
         found, flags = disturbed(silence, only(scenario, "drift"), FS)
         assert flags.drift == np.abs(found).max() > 10
         found, flags = disturbed(silence, only(scenario, "emi_bursts"), FS)
         assert (flags.emi_bursts > 0) == found.any()
         seen.add(flags.emi_bursts)
+    assert loose == {0, 1, 2}
     assert 0 in seen
     assert len(seen) > 1
 
