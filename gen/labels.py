@@ -1,5 +1,6 @@
 """Variables stored with each record: operating conditions, labels and the truth of the simulation, copied from where they are known."""
 
+from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
@@ -9,6 +10,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, FAULTS, SIMULATED, SPLITS, make_dataset
 from gen.measurement.measure import Measured
+from gen.measurement.sensor_faults import SensorFlags
 from gen.physics.bearing import orders
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, scenario_texts
@@ -30,6 +32,7 @@ def part_dataset(
         else:
             rows.append({**_drawn(scenario, recipe), **truth._asdict()})
     columns: dict[str, Any] = {name: [row[name] for row in rows] for name in rows[0]}
+    columns |= sensor_flag_columns(measured.sensor_flags)
     columns |= {
         "clipped": measured.clipped,
         "snr": measured.snr,
@@ -56,6 +59,11 @@ def part_dataset(
     )
 
 
+def sensor_flag_columns(flags: Sequence[SensorFlags]) -> dict[str, list[Any]]:
+    """Variables of the corpus that say which sensor faults were found in each record, one list of shape (record,) each."""
+    return {name: [getattr(found, name) for found in flags] for name in SensorFlags._fields}
+
+
 def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
     """Variables of one record that are copied from its scenario."""
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
@@ -79,6 +87,7 @@ def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         "recording": record.number,
         "split": SPLITS.index(specimen.split),
         "source": f"{recipe.name}/{record.number}",
+        "gear_mesh": 0 if rig.background.gear is None else rig.background.gear.teeth,
         "diametral_clearance": specimen.properties["diametral_clearance"],
         "gain": rig.gain if recipe.level.kind == "physical" else np.nan,
         "background_rms": rig.background_rms if recipe.level.kind == "physical" else np.nan,

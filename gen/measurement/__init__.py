@@ -1,13 +1,16 @@
 """Accelerations of the bodies in, records as a data-acquisition card stores them out.
 
-========== ===================================================================
-module     responsibility
-========== ===================================================================
-rig        transfer paths and machine background of a rig
-mixing     bearing and background of a record put together, compiled
-background noise, lines and impulses of the machine in one record
-levels     gains of bearing and background
-judging    whether the fault of a record can be seen in it
-measure    path, modulation, background, level and converter, record by record
-========== ===================================================================
+============= ======================================================================
+module        responsibility
+============= ======================================================================
+rig           transfer paths and machine background of a rig
+gear          vibration of a gear mesh
+mixing        bearing and background of a record put together, compiled
+background    noise, lines and impulses of the machine in one record
+levels        gains of bearing and background
+judging       whether the fault of a record can be seen in it
+rattle        a sensor that lifts off its mount and strikes the machine, compiled
+sensor_faults faults of the measuring chain, from the mount to the data transfer
+measure       path, modulation, background, level and converter, record by record
+============= ======================================================================
 """

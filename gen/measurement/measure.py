@@ -1,7 +1,7 @@
 """From the motion of the bodies to the samples that a data-acquisition card stores.
 
-response -> transfer path -> modulation by the shaft -> machine background -> level -> converter. Healthy and faulty records are measured
-alike: path and background belong to the rig, and their random streams do not depend on the fault. Where the same record without its fault
+response -> transfer path -> modulation by the shaft -> machine background -> level -> sensor faults -> converter. Healthy and faulty
+records are measured alike: path and background belong to the rig, and their random streams do not depend on the fault. Where the same record without its fault
 is known, the two are filtered and modulated side by side, so what the fault adds is known at every stage. All of it is in single
 precision. Its error is 1e-7 of the largest value of a record: a three-hundredth of a count of the converter at full scale.
 """
@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
+from gen.measurement.gear import gear_in_channels
 from gen.measurement.judging import Judge, spectra_of
 from gen.measurement.levels import (
     Gains,
@@ -26,6 +27,7 @@ from gen.measurement.levels import (
 )
 from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
+from gen.measurement.sensor_faults import SensorFlags, compile_rattle, disturbed
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, Scenario, with_level
 from gen.simulation.shaft import shaft_angles
@@ -63,6 +65,8 @@ class Measured:
     """1 if the fault can be seen in the record, 0 if not or if there is none, ``UNJUDGED`` if it was not judged, shape (record,)."""
     scenarios: list[Scenario]
     """The scenarios as measured: with the level that was taken, if several were tried."""
+    sensor_flags: list[SensorFlags]
+    """Sensor faults in each record, shape (record,)."""
 
 
 def measure(
@@ -95,7 +99,7 @@ def measure(
     converter = recording.converter
     counts_per_unit = None if converter.kind == "float32" else LARGEST_COUNT / converter.full_scale_m_s2
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
-    clipped, taken = np.zeros(shape[0], np.int32), list(scenarios)
+    clipped, taken, flags = np.zeros(shape[0], np.int32), list(scenarios), [SensorFlags()] * shape[0]
     snr, fault_snr, fault_share = np.full((3, shape[0]), np.nan)
     detectable = np.empty(shape[0], np.int8)
     # rms of an error that is uniform within half a count
@@ -106,7 +110,7 @@ def measure(
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
         for row, part in enumerate(_parts(acceleration[some], scenarios[some], filters, axis, twins, first), first):
             found = _levelled(part, scenarios[row], recipe, rounding, level_tries)
-            mixed = _mixed(part, found.gains)
+            mixed, flags[row] = disturbed(_mixed(part, found.gains), found.scenario, axis.fs)
             if counts_per_unit is not None:
                 np.rint(np.multiply(mixed, np.float32(counts_per_unit), out=mixed), out=mixed)
                 clipped[row] = np.count_nonzero(np.abs(mixed) > LARGEST_COUNT)
@@ -118,7 +122,7 @@ def measure(
             fault_snr[row], fault_share[row] = found.fault_snr, found.fault_share
             if signal[row].any():
                 snr[row] = bearing_over_background(part.products, found.gains, rounding)
-    return Measured(signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken)
+    return Measured(signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, flags)
 
 
 class Part(NamedTuple):
@@ -151,6 +155,8 @@ def compile_mixing(scenario: Scenario, recipe: Recipe) -> None:
     """Compile the mixing of records, or fetch it from numba's cache on disk."""
     silence = np.zeros((1, len(recipe.recording.channels), timeline(recipe).returned), np.float32)
     measure(silence, [scenario], recipe)
+    if recipe.sensor_faults.loose_mount is not None:
+        compile_rattle()
 
 
 def _parts(
@@ -175,6 +181,11 @@ def _parts(
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
     background = noise_of(filters, n_channels, rngs)
     impulses = impulses_of(filters, angles, rngs)
+    for row, scenario in enumerate(scenarios):
+        gear, found = scenario.rig.background.gear, filters[row]
+        if gear is not None:
+            mesh = gear_in_channels(gear, angles[row], found.paths, found.n, scenario.rng(Purpose.GEAR_PHASE))
+            impulses[row] = impulses[row] + mesh if impulses[row].size else mesh
     parts = []
     for row in range(count):
         fault = both[count + faulty.index(row)] if row in faulty else NO_SIGNAL

@@ -8,7 +8,9 @@ section       base of all sections: bounds, unknown keys, meanings
 machine       bearing, machine, lubricant, specimen
 faults        spalls, worn races, broken cages, several at once
 operation     speed and load with their profiles, slip, temperature
+gear          gear mesh in the background
 sensing       sensors, path, background, level, converter
+sensor_faults faults of mount, cable, amplifier and data transfer
 loads         loads that no bearing of the recipe can carry
 model         the recipe as a whole
 keys          every key with unit, range, default and meaning

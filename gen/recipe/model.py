@@ -16,6 +16,7 @@ from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing
 from gen.recipe.operation import OperationSection, Steps, Table
 from gen.recipe.section import Count, Name, Section
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
+from gen.recipe.sensor_faults import SensorFaultsSection, sensor_fault_problem
 
 # memory of a record beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace
 _SAMPLES_OF_A_RECORD, _SAMPLES_OF_A_NUMBER = 4000, 12
@@ -87,6 +88,8 @@ class Recipe(Section):
     """Vibration of the machine without the bearing."""
     level: Annotated[PhysicalLevel | SnrLevel, Field(discriminator="kind")] = PhysicalLevel()
     """Level of bearing signal and background."""
+    sensor_faults: SensorFaultsSection = SensorFaultsSection()
+    """Faults of mount, cable, amplifier and data transfer; none if left out."""
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
 
@@ -176,6 +179,11 @@ class Recipe(Section):
         beyond = load_problem(self.bearing, self.specimen, self.operation)
         if beyond is not None:
             raise ValueError(beyond)
+        converter = self.recording.converter
+        full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
+        impossible = sensor_fault_problem(self.sensor_faults, full_scale, self.recording.duration_s)
+        if impossible is not None:
+            raise ValueError(impossible)
         if "temperature_celsius" in self.operation.model_fields_set and self.contact.lubricant is None:
             raise ValueError(
                 "operation.temperature_celsius: has no effect without oil; give contact.lubricant, or leave it out."

@@ -5,6 +5,7 @@ from typing import Annotated, Any, Literal
 from pydantic import AfterValidator, BeforeValidator, Field, StrictInt
 
 from gen.recipe.distributions import Distribution, Number, within
+from gen.recipe.gear import GearMesh
 from gen.recipe.section import Name, Probability, Section, Weight
 
 MAX_OVERSAMPLING = 96
@@ -185,6 +186,8 @@ class BackgroundSection(Section):
     """Impulses locked to the shaft; none if left out."""
     coherence: Distribution = within(0, 1, default=0.0)
     """Magnitude-squared coherence of the noise between two channels: 0 for independent noise, 1 for the same."""
+    gear_mesh: GearMesh | None = None
+    """Lines of a gear on the shaft; none if left out."""
 
 
 class PhysicalLevel(Section):

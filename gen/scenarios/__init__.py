@@ -1,26 +1,30 @@
 """Scenarios: rigs, specimens and records with every value drawn; the simulation draws only the random processes in time.
 
-====== =================================================================
-module responsibility
-====== =================================================================
-model  dataclasses of rig, specimen and record; random streams
-draws  draw values from the distributions of a recipe section
-faults choose the fault class of each specimen and draw its damage
-draw   draw rigs, specimens and records
-stored write a scenario as the JSON text that a corpus stores, and read it
-====== =================================================================
+============= =================================================================
+module        responsibility
+============= =================================================================
+model         dataclasses of rig, specimen and record; random streams
+draws         draw values from the distributions of a recipe section
+faults        choose the fault class of each specimen and draw its damage
+sensor_faults draw the faults of the measuring chain, and the gear of a rig
+draw          draw rigs, specimens and records
+stored        write a scenario as the JSON text that a corpus stores, and read it
+============= =================================================================
 """
 
 from gen.scenarios.draw import draw_scenarios, with_level
 from gen.scenarios.faults import fault_of_each_specimen, first_specimens
 from gen.scenarios.model import (
     Background,
+    Gear,
     Mode,
     Operation,
     Path,
     Pickup,
     Purpose,
+    RecordSensorFaults,
     Rig,
+    RigSensorFaults,
     Scenario,
     ShaftModulation,
     Spall,
@@ -33,12 +37,15 @@ from gen.scenarios.stored import read_scenario, scenario_texts
 
 __all__ = [
     "Background",
+    "Gear",
     "Mode",
     "Operation",
     "Path",
     "Pickup",
     "Purpose",
+    "RecordSensorFaults",
     "Rig",
+    "RigSensorFaults",
     "Scenario",
     "ShaftModulation",
     "Spall",

@@ -45,6 +45,7 @@ from gen.scenarios.model import (
     Tone,
     stream,
 )
+from gen.scenarios.sensor_faults import draw_gear, draw_record_sensor_faults, draw_rig_sensor_faults
 from gen.units import decibel_to_ratio, percent_to_share
 
 STEEPEST_CONTACT = math.radians(45)
@@ -130,7 +131,7 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
         body = tuple(channel.body)[weighted_index(tuple(channel.body.values()), draws.u())]
         channels.append(Pickup(body, draws.section(channel)["angle"]))
     path = _draw_path(draws, recipe.path)
-    background = _draw_background(recipe, draws)
+    background = replace(_draw_background(recipe, draws), gear=draw_gear(recipe, number))
     own_paths = tuple(None if c.path is None else _draw_path(draws, c.path) for c in recipe.recording.channels)
     oil = None if recipe.contact.lubricant is None else draws.section(recipe.contact.lubricant)
     if oil is not None and oil["viscosity_100"] >= oil["viscosity_40"]:
@@ -156,6 +157,7 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
         background_rms=level.get("background", 1.0),
         lubricant=oil,
         footprint=recipe.contact.footprint == "hertz",
+        sensor_faults=draw_rig_sensor_faults(recipe, number),
     )
 
 
@@ -316,7 +318,8 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
         for profile in (recipe.operation.speed_profile, recipe.operation.load_profile)
     ]
     speed_profile, load_profile = profiles
-    return Operation(number, conditions, snr, rms, speed_profile, load_profile)
+    sensor_faults = draw_record_sensor_faults(recipe, rig, specimen.number, number)
+    return Operation(number, conditions, snr, rms, speed_profile, load_profile, sensor_faults=sensor_faults)
 
 
 def _draw_profile(draws: Draws, profile: ProfileSection, duration: float) -> Profile:

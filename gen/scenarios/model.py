@@ -35,6 +35,11 @@ class Purpose(IntEnum):
     KNOCKS = 13
     PHASES = 14
     LEVEL = 15
+    RIG_SENSOR_FAULTS = 20
+    RECORD_SENSOR_FAULTS = 21
+    SENSOR_NOISE = 22
+    GEAR = 23
+    GEAR_PHASE = 24
 
 
 @dataclass(frozen=True)
@@ -120,6 +125,54 @@ class Path:
 
 
 @dataclass(frozen=True)
+class Gear:
+    """A gear on the shaft and its mate."""
+
+    teeth: int
+    mate_teeth: int
+    lines: tuple[Drawn, ...]
+    """Of each multiple of the mesh frequency: rms over that of the noise [1], and phase at shaft angle 0 [rad]."""
+    shaft_modulation: float
+    """Depth of the amplitude modulation once per turn of the shaft [1]."""
+    mate_modulation: float
+    """Depth of the amplitude modulation once per turn of the mate [1]."""
+    phase_modulation: float
+    """Peak of the phase modulation of the mesh once per turn of the shaft [rad]."""
+    high_point: float
+    """Shaft angle of the largest amplitude [rad]."""
+    lead_point: float
+    """Shaft angle at which the mesh is ahead by the peak of the phase modulation [rad]."""
+
+
+@dataclass(frozen=True)
+class RigSensorFaults:
+    """Faults of the measuring chain that last as long as a rig; None for a fault that it does not have."""
+
+    loose_mounts: tuple[Drawn | None, ...]
+    """Frequency [Hz], damping [1] and holding acceleration [m s-2] of the mount of each channel; None for a firm one."""
+    saturation: Drawn | None
+    """Limit [m s-2], knee [1] and recovery [s] of the amplifier."""
+    mains_hum: Drawn | None
+    """Frequency [Hz], rms [m s-2], count of odd multiples and level of the third [dB]."""
+
+
+@dataclass(frozen=True)
+class RecordSensorFaults:
+    """Faults of the measuring chain of one record; None for a fault that it does not have."""
+
+    drift: Drawn | None
+    """Rms [m s-2] and corner [Hz] of the wander, settling [m s-2] and its time constant [s]."""
+    dropped_samples: Drawn | None
+    """Count, length [s] and held share of the gaps."""
+    gain_steps: tuple[Drawn, ...]
+    """Place in the record [share of its length] and factor of the gain [1] of each step."""
+    emi_bursts: Drawn | None
+    """Rate [Hz], frequency [Hz], decay [s] and peak [m s-2]."""
+    mains_deviation: float
+    """Deviation of the mains from its nominal frequency [1]."""
+
+
+@dataclass(frozen=True)
 class Background:
     """Vibration of the machine without the bearing; levels are relative to the rms of its noise."""
 
@@ -137,6 +190,7 @@ class Background:
     """Magnitude-squared coherence of the noise between two channels [1]."""
     growth: float = 0.0
     """The harmonics grow with the speed of a course to this power [1]."""
+    gear: Gear | None = None
 
 
 @dataclass(frozen=True)
@@ -159,6 +213,7 @@ class Rig:
     lubricant: Drawn | None = None
     footprint: bool = False
     """True for contacts of Hertzian width, False for point contacts."""
+    sensor_faults: RigSensorFaults | None = None
 
 
 @dataclass(frozen=True)
@@ -194,6 +249,7 @@ class Operation:
     load_profile: Profile | None = None
     level_try: int = 0
     """Number of levels that were drawn before this one and at which the fault could not be seen."""
+    sensor_faults: RecordSensorFaults | None = None
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ from raceway.console.progress import compilation_noticed
 def gallery(output: Path, as_json: bool) -> None:
     """Draw one page of simulated signals.
 
-    The page has the seed paper's figures beside its statements, the envelope spectrum of every kind of fault (recipe every_fault), and
-    run-ups as waterfalls with the shaft orders drawn in (recipe run_up).
+    The page has the seed paper's figures beside its statements, the envelope spectrum of every kind of fault (recipe every_fault), run-ups
+    as waterfalls with the shaft orders drawn in (recipe run_up), and every fault of the measuring chain (recipe dirty_sensors).
 
       raceway gallery -o gallery
     """

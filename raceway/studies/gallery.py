@@ -1,6 +1,6 @@
 """The gallery: one page of pictures of simulated signals.
 
-It shows the seed paper's figures beside its statements, every kind of fault, and run-ups.
+It shows the seed paper's figures beside its statements, every kind of fault, run-ups, and faults of the measuring chain.
 """
 
 from collections.abc import Iterator
@@ -21,6 +21,7 @@ from gen.scenarios import Specimen, read_scenario
 from raceway.console.progress import progress
 from raceway.studies.paper import FIGURES, PRESETS, draw_figures, run
 from raceway.studies.schematics import draw_schematics
+from raceway.studies.sensor_faults import write_sensor_fault_pictures
 from raceway.studies.statements import Finding, findings, span
 
 _STATES = {"healthy": "H", "cracked": "C"}  # state of the bearing, and first letter of the paper's statements about it
@@ -54,7 +55,7 @@ class Section(NamedTuple):
 def write_gallery(output: Path) -> tuple[Path, list[Path]]:
     """Write the page, its pictures and the two corpora that they show into a folder; returns the page and the pictures."""
     output.mkdir(parents=True, exist_ok=True)
-    sections = [*_paper(output), _every_fault(output), _run_up(output)]
+    sections = [*_paper(output), _every_fault(output), _run_up(output), _sensor_faults(output)]
     page = output / "index.html"
     write_text_durably(_PAGE.format(sections="\n".join(map(_html, sections))), page)
     return page, [output / name for section in sections for name in section.pictures]
@@ -155,6 +156,14 @@ def _run_up(output: Path) -> Section:
         write_durably(picture(figure, "png"), output / names[-1])
     text = "From 600 to 3000 rpm in nine seconds. Broken lines: orders of the shaft at its speed at that time."
     return Section("Run-ups", text, names)
+
+
+def _sensor_faults(output: Path) -> Section:
+    """Every sensor fault, and a gear, beside the record without it."""
+    text = (
+        "Records of recipe dirty_sensors with one fault of the measuring chain each, and with the gear of the machine."
+    )
+    return Section("Sensor faults and a gear", text, write_sensor_fault_pictures(output))
 
 
 def _marked(shown: Shown) -> dict[str, float]:

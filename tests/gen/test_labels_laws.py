@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from gen.corpus import FAULTS, SPLITS
-from gen.labels import part_dataset
+from gen.labels import part_dataset, sensor_flag_columns
 from gen.measurement.measure import measure
+from gen.measurement.sensor_faults import SensorFlags
 from gen.scenarios import draw_scenarios, read_scenario
 from gen.simulation.timeline import timeline
 from tests.responses import response_of
@@ -206,3 +207,16 @@ def test_a_record_knows_its_place(recipe_with):
     assert [FAULTS[code] for code in found["fault"].values] == [scenario.specimen.fault for scenario in scenarios]
     for scenario, text in zip(scenarios, found["draws"].values, strict=True):
         assert read_scenario(text) == scenario
+
+
+def test_a_gear_is_labelled_by_its_teeth(labels_with):
+    gear = {"probability": 1, "teeth": 23, "mate_teeth": 47, "count": 2, "level_db": 0}
+    assert labels_with({"background.gear_mesh": gear})["gear_mesh"].values.tolist() == [23] * 24
+    assert labels_with({})["gear_mesh"].values.tolist() == [0] * 24
+
+
+def test_every_sensor_flag_becomes_a_variable_and_is_0_without_sensor_faults(labels_with):
+    found, names = labels_with({}), SensorFlags._fields
+    assert all((found[name].values == 0).all() for name in names)
+    columns = sensor_flag_columns([SensorFlags(), SensorFlags(*range(1, len(names) + 1))])
+    assert columns == {name: [0, value] for value, name in enumerate(names, start=1)}

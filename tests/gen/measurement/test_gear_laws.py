@@ -1,0 +1,126 @@
+"""Laws of a gear mesh: where its lines and sidebands are, how high, and that it turns with the shaft."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.measurement.gear import gear_in_channels, gear_mesh
+from gen.scenarios import Gear
+
+law = settings(deadline=None, max_examples=25)
+FS, RATE, N = 12_000.0, 25.0, 24_000  # two seconds: 50 turns of the shaft
+BIN = N / FS  # bins per Hz
+STEADY = 2 * np.pi * RATE / FS * np.arange(N)
+
+
+def gear_with(**changes):
+    lines = tuple({"level": level, "phase": phase} for level, phase in ((1.0, 0.3), (0.5, 1.0), (0.25, 2.0)))
+    given = {
+        "teeth": 20, "mate_teeth": 40, "lines": lines, "shaft_modulation": 0.0, "mate_modulation": 0.0, "phase_modulation": 0.0,
+        "high_point": 0.0, "lead_point": 0.0,
+    }  # fmt: skip
+    return Gear(**given | changes)
+
+
+def amplitude(signal, order):
+    """Amplitude of the line at an order of the shaft; the record has whole numbers of its periods."""
+    return 2 / N * abs(np.fft.rfft(signal)[round(order * RATE * BIN)])
+
+
+def mesh(gear, angles=STEADY, seed=0):
+    return gear_mesh(gear, angles, np.random.default_rng(seed))
+
+
+def test_the_lines_of_a_true_gear_are_at_multiples_of_its_teeth_and_nowhere_else():
+    found = mesh(gear_with())
+    spectrum = 2 / N * np.abs(np.fft.rfft(found))
+    for multiple, level in ((1, 1.0), (2, 0.5), (3, 0.25)):
+        assert spectrum[round(20 * multiple * RATE * BIN)] == pytest.approx(math.sqrt(2) * level)
+    assert np.count_nonzero(spectrum > 1e-9) == 3
+
+
+@law
+@given(st.floats(0.05, 1), st.floats(0.05, 1), st.floats(0, 6))
+def test_amplitude_modulation_gives_equal_sidebands_of_half_its_depth(depth, of_mate, point):
+    found = mesh(gear_with(shaft_modulation=depth, mate_modulation=of_mate, high_point=point))
+    for multiple, level in ((1, 1.0), (2, 0.5), (3, 0.25)):
+        carrier = math.sqrt(2) * level
+        for side in (-1, 1):
+            assert amplitude(found, 20 * multiple + side) == pytest.approx(carrier * depth / 2)
+            assert amplitude(found, 20 * multiple + side * 0.5) == pytest.approx(carrier * of_mate / 2)
+
+
+@law
+@given(st.floats(0.1, 1), st.floats(0.05, 0.4), st.floats(0, 6), st.floats(0.3, 1.2))
+def test_phase_modulation_as_well_makes_the_sidebands_unequal(depth, phase, point, apart):
+    """To first order the sidebands of amplitude are +a/2, +a/2 and those of phase ip/2, ip/2, turned by the angles of both."""
+    given = gear_with(shaft_modulation=depth, phase_modulation=phase, high_point=point, lead_point=point + apart)
+    found = mesh(given)
+    lower, upper = (amplitude(found, 20 + side) for side in (-1, 1))
+    assert abs(upper - lower) > 0.05 * depth * phase * math.sin(apart)
+    alone = mesh(gear_with(phase_modulation=phase, lead_point=point))
+    assert amplitude(alone, 19) == pytest.approx(amplitude(alone, 21), rel=1e-6)
+
+
+@law
+@given(st.integers(0, 2**32 - 1))
+def test_the_mesh_is_a_function_of_the_true_angle_of_the_shaft(seed):
+    """On a shaft of changing speed, compared with the equation in plain cosines."""
+    rng = np.random.default_rng(seed)
+    gear = gear_with(
+        shaft_modulation=rng.random(), mate_modulation=rng.random(), phase_modulation=rng.random(),
+        high_point=6 * rng.random(), lead_point=6 * rng.random(), mate_teeth=int(rng.integers(10, 90)),
+    )  # fmt: skip
+    angles = 5 * rng.random() + np.cumsum(2 * np.pi / FS * (RATE + 10 * np.sin(np.linspace(0, 6, N) + rng.random())))
+    start = 2 * math.pi * np.random.default_rng(3).random()
+    turned = gear.teeth * angles + gear.phase_modulation * np.cos(angles - gear.lead_point)
+    lines = enumerate(gear.lines, start=1)
+    expected = sum(math.sqrt(2) * line["level"] * np.cos(k * turned + line["phase"]) for k, line in lines)
+    expected *= (
+        1
+        + gear.shaft_modulation * np.cos(angles - gear.high_point)
+        + gear.mate_modulation * np.cos(angles * gear.teeth / gear.mate_teeth + start)
+    )
+    np.testing.assert_allclose(mesh(gear, angles, seed=3), expected, atol=1e-8)
+
+
+def test_only_the_mate_stands_differently_in_another_record():
+    assert np.array_equal(mesh(gear_with(shaft_modulation=0.5), seed=1), mesh(gear_with(shaft_modulation=0.5), seed=2))
+    one, other = (mesh(gear_with(mate_modulation=0.5), seed=seed) for seed in (1, 2))
+    assert not np.allclose(one, other)
+    assert amplitude(one, 20.5) == pytest.approx(amplitude(other, 20.5))
+
+
+def test_no_multiple_of_the_mesh_aliases():
+    """160 teeth at 25 Hz mesh at 4 kHz; 8 and 12 kHz are beyond half the sample rate."""
+    spectrum = 2 / N * np.abs(np.fft.rfft(mesh(gear_with(teeth=160))))
+    assert np.flatnonzero(spectrum > 1e-9).tolist() == [round(4000 * BIN)]
+    assert not mesh(gear_with(teeth=480)).any()
+
+
+def test_a_multiple_fades_out_where_a_run_up_takes_it_past_half_the_sample_rate():
+    rate = np.linspace(10, 120, N)
+    found = mesh(gear_with(teeth=60, lines=({"level": 1.0, "phase": 0.0},)), np.cumsum(2 * np.pi / FS * rate))
+    assert np.abs(found[60 * rate > 6001]).max() == 0.0
+    low = found[60 * rate < 4700]
+    assert math.sqrt(np.mean(low**2)) == pytest.approx(1.0, rel=0.01)
+
+
+def test_a_mesh_passes_through_the_path_of_each_channel_and_keeps_its_rms():
+    """500 Hz in one channel and 1000 Hz in the other: only their paths part the lines of the mesh."""
+    frequency = np.fft.rfftfreq(N, 1 / FS)
+    paths = np.stack([frequency < 750, 2.0 * ((frequency > 750) & (frequency < 1250))]).astype(np.complex64)
+    gear = gear_with(shaft_modulation=0.5)
+    found = gear_in_channels(gear, STEADY, paths, N, np.random.default_rng(0))
+    assert (found.dtype, found.shape) == (np.float32, (2, N))
+    assert np.mean(found.astype(float) ** 2) == pytest.approx(np.mean(mesh(gear) ** 2), rel=1e-5)
+    assert amplitude(found[1], 40) / amplitude(found[0], 20) == pytest.approx(2 * 0.5, rel=1e-4)
+    assert amplitude(found[1], 41) / amplitude(found[1], 40) == pytest.approx(0.25, rel=1e-4)
+    assert max(amplitude(found[0], 40), amplitude(found[1], 20), amplitude(found[1], 60)) < 1e-5
+
+
+def test_a_path_that_suppresses_the_mesh_leaves_silence():
+    assert not gear_in_channels(gear_with(), STEADY, np.zeros((2, N // 2 + 1)), N, np.random.default_rng(0)).any()
