@@ -42,7 +42,7 @@ if TYPE_CHECKING:
     from gen.corpus import open_corpus, validate_corpus
     from gen.generation import generate
     from gen.recipe import read_recipe
-    from gen.replaying import replay, stored_scenario
+    from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
     from gen.simulation.simulate import simulate
 
@@ -57,6 +57,7 @@ __all__ = [
     "open_corpus",
     "read_recipe",
     "replay",
+    "shaft_angles",
     "simulate",
     "stored_scenario",
     "validate_corpus",
@@ -68,7 +69,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.corpus": ("open_corpus", "validate_corpus"),
         "gen.generation": ("generate",),
         "gen.recipe": ("read_recipe",),
-        "gen.replaying": ("replay", "stored_scenario"),
+        "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
         "gen.simulation.simulate": ("simulate",),
     },

@@ -1,10 +1,11 @@
-"""Simulate a record of a generated corpus again and compare it with the stored record; read the scenario stored with a record."""
+"""What a generated corpus knows of its records: each can be simulated again, and has its scenario and the true angle of its shaft."""
 
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, SIGNAL, open_corpus, read_manifest
 from gen.errors import CorpusError
@@ -12,6 +13,8 @@ from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.records import made_again
 from gen.scenarios import Scenario, read_scenario
+from gen.simulation.shaft import shaft_angles as angles_of
+from gen.simulation.timeline import timeline
 
 
 def corpus_recipe(directory: Path) -> Recipe:
@@ -85,6 +88,21 @@ def stored_scenario(directory: Path | str, record: int) -> Scenario:
         return read_scenario(text)
     except CorpusError as error:
         raise CorpusError(f"{directory}: record {record}: {error}") from None
+
+
+def shaft_angles(directory: Path | str, record: int) -> NDArray[np.float64]:
+    """Angle of the shaft at every sample of a record of a generated corpus, shape (elapsed_time,) [rad].
+
+    It is the true angle, by which bearing, unbalance and background turn: for order tracking and synchronous averages.
+
+    Raises
+    ------
+    CorpusError
+        If there is no such record, or the corpus was not generated.
+    """
+    recipe, scenario = corpus_recipe(Path(directory)), stored_scenario(directory, record)
+    axis = timeline(recipe)
+    return angles_of(scenario, axis)[axis.kept]
 
 
 def _check_record(directory: Path, corpus: xr.Dataset, record: int) -> None:

@@ -1,9 +1,9 @@
 """From the motion of the bodies to the samples that a data-acquisition card stores.
 
 response -> transfer path -> modulation by the shaft -> machine background -> level -> sensor faults -> converter. Healthy and faulty
-records are measured alike: path and background belong to the rig, and their random streams do not depend on the fault. Where the same record without its fault
-is known, the two are filtered and modulated side by side, so what the fault adds is known at every stage. All of it is in single
-precision. Its error is 1e-7 of the largest value of a record: a three-hundredth of a count of the converter at full scale.
+records are measured alike: path and background belong to the rig, and their random streams do not depend on the fault. Where the same
+record without its fault is known, the two are filtered and modulated side by side, so what the fault adds is known at every stage. All of
+it is in single precision. Its error is 1e-7 of the largest value of a record: a three-hundredth of a count of the converter at full scale.
 """
 
 import math

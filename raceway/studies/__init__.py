@@ -8,6 +8,7 @@ schematics    figures 1 and 2 of the seed paper: the model, the cracked bearing
 measures      measures on displacements and spectra
 experiments   the one constant with which a statement of the paper holds
 statements    the statements of the seed paper, measured
+orbits        picture of two crossed sensors on one machine
 sensor_faults pictures of every sensor fault and of a gear mesh
 gallery       a page of pictures: the seed paper, every fault, run-ups, sensor faults
 timing        speed of this machine, stage by stage

@@ -19,6 +19,7 @@ from gen.corpus import FAULTS, write_durably, write_text_durably
 from gen.physics.profile import share_at
 from gen.scenarios import Specimen, read_scenario
 from raceway.console.progress import progress
+from raceway.studies.orbits import draw_orbits
 from raceway.studies.paper import FIGURES, PRESETS, draw_figures, run
 from raceway.studies.schematics import draw_schematics
 from raceway.studies.sensor_faults import write_sensor_fault_pictures
@@ -55,7 +56,7 @@ class Section(NamedTuple):
 def write_gallery(output: Path) -> tuple[Path, list[Path]]:
     """Write the page, its pictures and the two corpora that they show into a folder; returns the page and the pictures."""
     output.mkdir(parents=True, exist_ok=True)
-    sections = [*_paper(output), _every_fault(output), _run_up(output), _sensor_faults(output)]
+    sections = [*_paper(output), _every_fault(output), _run_up(output), _orbits(output), _sensor_faults(output)]
     page = output / "index.html"
     write_text_durably(_PAGE.format(sections="\n".join(map(_html, sections))), page)
     return page, [output / name for section in sections for name in section.pictures]
@@ -156,6 +157,15 @@ def _run_up(output: Path) -> Section:
         write_durably(picture(figure, "png"), output / names[-1])
     text = "From 600 to 3000 rpm in nine seconds. Broken lines: orders of the shaft at its speed at that time."
     return Section("Run-ups", text, names)
+
+
+def _orbits(output: Path) -> Section:
+    write_durably(picture(draw_orbits(), "png"), output / "orbits.png")
+    text = (
+        "Each harmonic of the shaft moves the machine along an ellipse, so two crossed sensors have a phase of their own at each. Averaged "
+        "over the turns of the true shaft angle, although the speed wanders by 1 %. A part of the noise is common to both."
+    )
+    return Section("Two sensors on one machine", text, ["orbits.png"])
 
 
 def _sensor_faults(output: Path) -> Section:

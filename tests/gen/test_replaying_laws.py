@@ -2,9 +2,10 @@
 
 import shutil
 
+import numpy as np
 import pytest
 
-from gen import draw_scenarios, open_corpus, stored_scenario
+from gen import draw_scenarios, open_corpus, shaft_angles, stored_scenario
 from gen.errors import CorpusError
 from gen.replaying import corpus_recipe
 from tests import corpora
@@ -42,3 +43,18 @@ def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
     corpora.write_corpus(tmp_path / "corpus")
     with pytest.raises(CorpusError, match="has no variable draws, so it was not generated and stores no scenarios"):
         stored_scenario(tmp_path / "corpus", 0)
+
+
+def test_the_angle_of_the_shaft_turns_at_the_true_rate_of_the_record(tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        rates, time = corpus["true_shaft_rate"].values, corpus["elapsed_time"].values
+    for record in (0, 17):
+        angles = shaft_angles(tiny_corpus, record)
+        assert angles.shape == time.shape
+        assert np.polyfit(time, angles / (2 * np.pi), 1)[0] == pytest.approx(rates[record], rel=2e-3)
+
+
+def test_a_corpus_that_was_not_generated_has_no_angle_of_the_shaft(tmp_path):
+    corpora.write_corpus(tmp_path / "corpus")
+    with pytest.raises(CorpusError, match="was not generated"):
+        shaft_angles(tmp_path / "corpus", 0)

@@ -6,7 +6,9 @@ def test_the_gallery_shows_the_paper_every_fault_and_the_run_ups(tmp_path, told)
     page = (tmp_path / "gallery" / "index.html").read_text()
     names = [path.rpartition("/")[2] for path in found["pictures"]]
     assert names[:6] == [f"figure{number}.png" for number in (1, 2, 3, 5, 4, 6)]  # system, healthy, cracked
-    assert {"envelopes.png", "run-up-inner.png", "run-up-ball.png", "sensor-loose-mount.png"} <= set(names)
+    assert {"envelopes.png", "run-up-inner.png", "run-up-ball.png", "orbits.png", "sensor-loose-mount.png"} <= set(
+        names
+    )
     for name in names:
         assert f'src="{name}"' in page
         assert (tmp_path / "gallery" / name).read_bytes().startswith(b"\x89PNG")
