@@ -160,7 +160,7 @@ def _measured(
     fs: float,
 ) -> FloatArray:
     """Measures of a block, shape (window, measure); NaN for windows that are not finite or constant."""
-    x = read_windows(corpus, record, start, round(np.floor(common.window * fs * (1 + 1e-9))))
+    x = read_windows(corpus, record, start, window_length(common, fs))
     values = np.full((len(x), len(NAMES)), np.nan)
     usable = np.flatnonzero(np.isfinite(x).all(axis=1) & (np.ptp(x, axis=1) > 0))
     if usable.size:
@@ -171,8 +171,32 @@ def _measured(
     return values
 
 
+def window_length(common: Common, fs: float) -> int:
+    """Samples of a window at a sample rate [Hz]; the last sample is not lost to rounding."""
+    return int(common.window * fs * (1 + 1e-9))
+
+
 def read_windows(corpus: xr.Dataset, record: np.ndarray, start: np.ndarray, length: int) -> FloatArray:
     """Accelerations of the first channel [m s-2], shape (window, time)."""
     rows, place = np.unique(record, return_inverse=True)
     signal = corpus[SIGNAL].isel(record=rows, channel=0).values
     return np.stack([signal[row, first : first + length] for row, first in zip(place, start, strict=True)]).astype(float)
+
+
+def typical_window(windows: Windows, fault: str, measure: str, common: Common) -> tuple[int, FloatArray, dict[str, float]]:
+    """The window with the median of a measure in its class: number of its record, band-limited signal, and conditions.
+
+    The signal has the shape (time,); the conditions are its exact sample rate, ``sample_rate``, its ``shaft_rate`` [Hz] and
+    its fault orders.
+    """
+    column = windows.values[:, NAMES.index(measure)]
+    places = np.flatnonzero((windows.fault == FAULTS.index(fault)) & np.isfinite(column))
+    place = places[np.argsort(column[places], kind="stable")[len(places) // 2]]
+    record, start = windows.record[place : place + 1], windows.start[place : place + 1]
+    with open_corpus(windows.folder, check="size") as corpus:
+        of_record = corpus.isel(record=int(record[0]))
+        known = {key: float(of_record[key]) for key in ("sample_rate", "shaft_rate", *Orders._fields)}
+        fs = known["sample_rate"]
+        x = read_windows(corpus, record, start, window_length(common, fs))
+    limited = band_limited(x, fs, common.rate, common.top)[0]
+    return int(record[0]), limited, known | {"sample_rate": limited.size * fs / x.shape[-1]}

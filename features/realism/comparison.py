@@ -20,7 +20,7 @@ FEWEST = 10  # windows of a class, below which a set is not compared in it
 SHARES = (0.05, 0.5, 0.95)
 TOP = 5000.0  # Hz: above it the healthy recordings of CWRU are attenuated
 
-Table = dict[str, dict[str, float]]
+Table = dict[str, dict[str, float | None]]
 
 
 @dataclass(frozen=True)
@@ -30,7 +30,8 @@ class Comparison:
     Attributes
     ----------
     auc
-        By class and measure: probability that a real window has a higher value than a synthetic one.
+        By class and measure: probability that a real window has a higher value than a synthetic one; None where one
+        side has too few values.
     quantiles
         By class, measure and set ("synthetic", "real" pooled, and each real set): 5, 50 and 95 %.
     yardstick
@@ -133,13 +134,13 @@ def contrasted(synthetic: Windows, real: tuple[Windows, ...], common: Common) ->
         samples = {name: values for name, values in samples.items() if len(values) >= FEWEST}
         columns = {m.name: {name: _finite(v[:, NAMES.index(m.name)]) for name, v in samples.items()}
                    for m in MEASURES if m.belongs_to(fault)}  # fmt: skip
-        found.auc[fault] = {name: _auc(sets, [synthetic.name]) for name, sets in columns.items()}
+        found.auc[fault] = {name: _auc(sets, synthetic.name) for name, sets in columns.items()}
         found.quantiles[fault] = {name: _quantiles(sets, synthetic.name) for name, sets in columns.items()}
         found.counts[fault] = {name: {key: len(v) for key, v in sets.items()} for name, sets in columns.items()}
         others = [w.name for w in real if w.name in samples]
         for held in others if len(others) > 1 else []:
             of_real = {name: {key: sets[key] for key in others} for name, sets in columns.items()}
-            table = {name: _auc(sets, [held]) for name, sets in of_real.items()}
+            table = {name: _auc(sets, held) for name, sets in of_real.items()}
             found.yardstick.setdefault(held, {})[fault] = table
     return found
 
@@ -177,11 +178,11 @@ def pooled(sets: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     return np.concatenate(enough), np.concatenate([np.full(len(values), 1 / len(values)) for values in enough])
 
 
-def _auc(sets: dict[str, FloatArray], below: Sequence[str]) -> float:
-    """Of the sets named by ``below`` against all others; NaN if either side has too few values."""
-    low, low_weights = pooled([values for name, values in sets.items() if name in below])
-    high, high_weights = pooled([values for name, values in sets.items() if name not in below])
-    return auc(low, high, low_weights, high_weights) if len(low) and len(high) else float("nan")
+def _auc(sets: dict[str, FloatArray], below: str) -> float | None:
+    """AUC of the other sets above the set ``below``; None if either side has too few values."""
+    low, low_weights = pooled([values for name, values in sets.items() if name == below])
+    high, high_weights = pooled([values for name, values in sets.items() if name != below])
+    return auc(low, high, low_weights, high_weights) if len(low) and len(high) else None
 
 
 def _quantiles(sets: dict[str, FloatArray], synthetic: str) -> dict[str, list[float]]:
