@@ -12,10 +12,10 @@ import numpy as np
 from scipy.fft import irfft
 
 from features.faults import CLASSES
-from features.indicators import BROAD, FLOOR_WIDTH, WHITENING_WIDTH, Orders, log_level
+from features.indicators import BROAD, FLOOR_WIDTH, Orders, log_level
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted
-from features.signal.lines import LINE_TOLERANCE, single_lines
+from features.signal.lines import single_lines
 from features.signal.modulation import cyclostationarity, highest_place, phase_wander, sideband_ratio
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.shape import SHAPE_NAMES, envelope_shape, highest_spectral_kurtosis, time_statistics
@@ -25,6 +25,7 @@ LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their
 UPPER_BAND = 3500.0  # Hz
 ROLLED_OFF = 0.85  # share of the energy below the roll-off
 KURTOSIS_BANDS = (4, 8, 16)
+WHITENING_WIDTH = 300.0  # Hz, wider than the spacing of fault lines: a narrower one raises the noise between them
 SEARCHED = 0.025  # relative, of a line: labelled speeds, nominal orders and slip are off by up to 2 %
 CLEAR_DB = 14.0  # level of a clear line over the median floor: five times as high
 HALF_WIDTH = 0.45  # of the distance between a line and its nearest sidebands
@@ -91,9 +92,7 @@ def band_limited(x: FloatArray, fs: float, rate: float, top: float) -> FloatArra
     return np.asarray(irfft(coefficients, n=round(rate * seconds), axis=-1, norm="forward"))
 
 
-def measured(
-    x: FloatArray, fs: float, top: float, shaft_rate: FloatArray, orders: Orders, fault: str
-) -> FloatArray:
+def measured(x: FloatArray, fs: float, top: float, shaft_rate: FloatArray, orders: Orders, fault: str) -> FloatArray:
     """Measures of windows of one class, in the order of `NAMES`, shape (window, measure).
 
     Parameters
@@ -198,7 +197,9 @@ def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: 
     clear = level > CLEAR_DB
     spacing = (orders.ftf if fault == "ball" else 1.0) * shaft_rate
     sides = line[:, None] + np.outer(spacing / envelope.step, (-1, 1))
-    read = DB_PER_NEPER * single_lines(envelope.level, np.column_stack([orders.ftf * shaft_rate / envelope.step, sides]))
+    read = DB_PER_NEPER * single_lines(
+        envelope.level, np.column_stack([orders.ftf * shaft_rate / envelope.step, sides])
+    )
     ratio = sideband_ratio(envelope.spectrum, line, spacing / envelope.step, SIDEBAND_REACH)
     frequency = line * envelope.step
     wander = phase_wander(np.sqrt(envelope.power), envelope.rate, frequency, HALF_WIDTH * spacing)

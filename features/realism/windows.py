@@ -4,7 +4,6 @@ All corpora are cut into windows of one length, and brought to one band and samp
 blocks, so that memory does not grow with the signals of a corpus.
 """
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
 
@@ -64,7 +63,7 @@ def common_ground(folders: list[Path], top: float, window: float | None) -> Comm
     """
     lengths, rates = [], []
     for folder in folders:
-        with open_corpus(folder, check="size") as corpus:
+        with open_corpus(folder) as corpus:
             fs = float(corpus["sample_rate"].values.min())
             lengths.append(corpus.sizes["elapsed_time"] / fs)
         rates.append(fs)
@@ -85,12 +84,10 @@ def common_ground(folders: list[Path], top: float, window: float | None) -> Comm
     return common
 
 
-def measured_windows(
-    folder: Path, name: str, common: Common, most: int, report: Callable[[int], None] = lambda _: None
-) -> Windows:
+def measured_windows(folder: Path, name: str, common: Common, most: int) -> Windows:
     """Measure at most ``most`` windows of each class of a corpus, spread evenly over its rigs and specimens.
 
-    ``report`` is called with the number of windows of each block that is done. Windows without a finite, varying signal are left out.
+    Windows without a finite, varying signal are left out.
 
     Raises
     ------
@@ -98,16 +95,22 @@ def measured_windows(
         If the corpus cannot be read, or none of its records has a shaft rate and fault orders.
     """
     with open_corpus(folder, check="size") as corpus:
-        columns = {key: corpus[key].values for key in ("fault", "rig", "specimen", "sample_rate", "shaft_rate", *Orders._fields)}
-        known = np.all([np.isfinite(columns[key]) & (columns[key] > 0) for key in ("shaft_rate", *Orders._fields)], axis=0)
+        columns = {
+            key: corpus[key].values
+            for key in ("fault", "rig", "specimen", "sample_rate", "shaft_rate", *Orders._fields)
+        }
+        known = np.all(
+            [np.isfinite(columns[key]) & (columns[key] > 0) for key in ("shaft_rate", *Orders._fields)], axis=0
+        )
         if not known.any():
-            message = f"{folder}: no record has a shaft rate and fault orders above 0, which are needed to find its lines."
+            message = (
+                f"{folder}: no record has a shaft rate and fault orders above 0, which are needed to find its lines."
+            )
             raise CorpusError(message)
         record, start = _chosen(columns, known, corpus.sizes["elapsed_time"], common.window, most)
         values = np.full((len(record), len(NAMES)), np.nan)
         for fault, fs, block in _blocks(columns, record):
             values[block] = _measured(corpus, columns, common, record[block], start[block], fault, fs)
-            report(len(block))
     usable = np.isfinite(values).any(axis=1)
     return Windows(name, folder, record[usable], start[usable], columns["fault"][record][usable], values[usable])
 
@@ -120,22 +123,25 @@ def _chosen(
     counts = np.where(known, samples // lengths, 0)
     record = np.repeat(np.arange(len(known)), counts)
     number = np.arange(len(record)) - np.repeat(np.cumsum(counts) - counts, counts)
-    rank = _ranks(np.stack([columns[key][record] for key in ("fault", "rig", "specimen")]))
+    order = np.random.default_rng(0).permutation(len(record))
+    rank = _ranks(np.stack([columns[key][record] for key in ("fault", "rig", "specimen")]), order)
     keep = np.zeros(len(record), dtype=bool)
     for fault in np.unique(columns["fault"]):
-        of_class = np.flatnonzero(columns["fault"][record] == fault)
+        of_class = order[columns["fault"][record[order]] == fault]
         keep[of_class[np.argsort(rank[of_class], kind="stable")[:most]]] = True
     return record[keep], (number * lengths[record])[keep]
 
 
-def _ranks(groups: np.ndarray) -> np.ndarray:
-    """Place of each window among those of its specimen, in a random order that is always the same, shape (window,)."""
+def _ranks(groups: np.ndarray, order: np.ndarray) -> np.ndarray:
+    """Place of each window among those of its group when all are taken in an order, shape (window,).
+
+    ``groups`` has the shape (key, window); windows of a group have equal keys.
+    """
     _, group = np.unique(groups, axis=1, return_inverse=True)
-    shuffled = np.random.default_rng(0).permutation(len(group))
-    sorted_places = shuffled[np.argsort(group[shuffled], kind="stable")]
+    by_group = order[np.argsort(group[order], kind="stable")]
     sizes = np.bincount(group)
     rank = np.empty(len(group), dtype=int)
-    rank[sorted_places] = np.arange(len(group)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    rank[by_group] = np.arange(len(group)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
     return rank
 
 
@@ -180,10 +186,14 @@ def read_windows(corpus: xr.Dataset, record: np.ndarray, start: np.ndarray, leng
     """Accelerations of the first channel [m s-2], shape (window, time)."""
     rows, place = np.unique(record, return_inverse=True)
     signal = corpus[SIGNAL].isel(record=rows, channel=0).values
-    return np.stack([signal[row, first : first + length] for row, first in zip(place, start, strict=True)]).astype(float)
+    return np.stack([signal[row, first : first + length] for row, first in zip(place, start, strict=True)]).astype(
+        float
+    )
 
 
-def typical_window(windows: Windows, fault: str, measure: str, common: Common) -> tuple[int, FloatArray, dict[str, float]]:
+def typical_window(
+    windows: Windows, fault: str, measure: str, common: Common
+) -> tuple[int, FloatArray, dict[str, float]]:
     """The window with the median of a measure in its class: number of its record, band-limited signal, and conditions.
 
     The signal has the shape (time,); the conditions are its exact sample rate, ``sample_rate``, its ``shaft_rate`` [Hz] and

@@ -93,7 +93,7 @@ def _part(comparison: Comparison, fault: str) -> ClassPart:
         colour=CLASSES[fault].colour,
         counts=[(windows.name, len(_of_class(windows, fault))) for windows in sets],
         rows=[_row(comparison, fault, measure) for measure in measures],
-        sides=picture(draw_sides(shown), "svg"),
+        sides=picture(draw_sides(shown, comparison.common.top), "svg"),
         distributions=picture(draw_distributions(values, list(letters.values())), "svg"),
     )
 

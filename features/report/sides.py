@@ -37,10 +37,16 @@ DISTRIBUTION_COLUMNS = 3
 
 
 @rc_context(STYLE)
-def draw_sides(records: Sequence[Shown]) -> Figure:
-    """Waveform over its rms, power spectral density, and envelope spectrum of one record of each set, set beside set."""
+def draw_sides(records: Sequence[Shown], top: float) -> Figure:
+    """Waveform over its rms, power spectral density, and envelope spectrum of one record of each set, set beside set.
+
+    ``top`` is the end of the axis of the density [Hz].
+    """
     figure = Figure(figsize=(COLUMN * len(records), 5.0), layout="constrained")
-    panels = figure.subplots(3, len(records), squeeze=False, sharex="row", sharey="row")
+    panels = figure.subplots(3, len(records), squeeze=False)
+    for row in panels[:2]:
+        for axes in row[1:]:
+            axes.sharey(row[0])
     for column, shown in enumerate(records):
         waveform, density, envelope = panels[:, column]
         _draw_turns(waveform, shown)
@@ -49,7 +55,7 @@ def draw_sides(records: Sequence[Shown]) -> Figure:
         share = power[0] / power[0].sum()
         level = 10 * np.log10(np.maximum(share, 10 ** (FAINTEST_DB / 10)))
         density.plot(frequencies / 1e3, level, color=INK, linewidth=0.8)
-        density.set(xlabel="frequency [kHz]")
+        density.set(xlabel="frequency [kHz]", xlim=(0, top / 1e3))
         _draw_envelope(envelope, shown)
     panels[0, 0].set_ylabel("acceleration / rms")
     panels[1, 0].set_ylabel("share of the energy [dB]")
@@ -66,7 +72,7 @@ def _draw_turns(axes: Axes, shown: Shown) -> None:
     x = shown.signal[: max(2, round(TURNS / shown.shaft_rate * shown.fs))]
     turns, values = thinned(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
     axes.plot(turns, values, color=INK, linewidth=0.5)
-    axes.set(xlabel="revolution of the shaft", xlim=(0, TURNS))
+    axes.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
 
 
 def _draw_envelope(axes: Axes, shown: Shown) -> None:

@@ -11,10 +11,11 @@ phase wanders with them [1]_, and the line is smeared. The degree of cyclostatio
 
 import numpy as np
 from scipy.fft import fft, fftfreq, ifft
+from scipy.signal.windows import tukey
 
 from features.signal.rows import FloatArray
 
-LEFT_OUT = 0.1  # of a record at each end, where a filtered line depends on the other end
+TAPERED = 0.5  # fraction of a record that is tapered, half of it at each end
 
 
 def highest_place(level: FloatArray, places: FloatArray, tolerance: float) -> np.ndarray:
@@ -41,9 +42,10 @@ def highest_place(level: FloatArray, places: FloatArray, tolerance: float) -> np
 def phase_wander(envelope: FloatArray, fs: float, frequency: FloatArray, half_width: FloatArray) -> FloatArray:
     """Rms deviation of the phase of a line from that of a constant frequency [rad], shape (record,).
 
-    The envelope is filtered to the frequencies within ``half_width`` of the line. The phase of this analytic signal is
-    unwrapped and compared with its best straight line over time. Squares are weighted with the power of the line, so
-    that the phase counts little while the line fades. A tenth of the record is left out at each end.
+    The envelope is tapered, so that neighbouring lines do not leak, and filtered to the frequencies within
+    ``half_width`` of the line. The phase of this analytic signal is unwrapped and compared with its best straight line
+    over time. Squares are weighted with the power of the filtered line, so that the phase counts little while the line
+    fades and at the ends of the record.
 
     Parameters
     ----------
@@ -55,11 +57,11 @@ def phase_wander(envelope: FloatArray, fs: float, frequency: FloatArray, half_wi
         Of the line [Hz], shapes (record,).
     """
     n = envelope.shape[-1]
-    coefficients = np.asarray(fft(envelope - envelope.mean(axis=-1, keepdims=True), axis=-1), dtype=complex)
+    tapered = (envelope - envelope.mean(axis=-1, keepdims=True)) * tukey(n, TAPERED)
+    coefficients = np.asarray(fft(tapered, axis=-1), dtype=complex)
     beside = np.abs(fftfreq(n, 1 / fs) - frequency[:, None]) > half_width[:, None]
     coefficients[beside] = 0.0
-    edge = round(LEFT_OUT * n)
-    line = np.asarray(ifft(coefficients, axis=-1))[:, edge : n - edge]
+    line = np.asarray(ifft(coefficients, axis=-1))
     return _wander(np.unwrap(np.angle(line), axis=-1), np.abs(line) ** 2)
 
 
@@ -121,6 +123,7 @@ def cyclostationarity(power: FloatArray, fs: float, frequency: FloatArray, harmo
     turn = np.exp(-2j * np.pi * frequency[:, None] * time)
     window = np.hanning(power.shape[-1])
     weighted = (power - mean[:, None]) * (window / window.sum())
-    return sum(
-        (np.abs((weighted * turn**k).sum(axis=-1)) ** 2 for k in range(1, harmonics + 1)), np.zeros(len(power))
-    ) / mean**2
+    return (
+        sum((np.abs((weighted * turn**k).sum(axis=-1)) ** 2 for k in range(1, harmonics + 1)), np.zeros(len(power)))
+        / mean**2
+    )

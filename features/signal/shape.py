@@ -9,6 +9,8 @@ signal is most impulsive [2]_.
        Process.* 20 (2006) 282-307.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
 from features.signal.demodulation import ZERO_PADDING, analytic_band
@@ -99,7 +101,7 @@ def highest_spectral_kurtosis(coefficients: ComplexArray, levels: tuple[int, ...
     """
     n = coefficients.shape[-1]
     cuts = [np.linspace(0, n, level + 1).round().astype(int) for level in levels]
-    bands = [(low, high) for edges in cuts for low, high in zip(edges[:-1], edges[1:], strict=True)]
+    bands = [(low, high) for edges in cuts for low, high in pairwise(edges)]
     return np.max([_band_kurtosis(coefficients, int(low), int(high)) for low, high in bands], axis=0)
 
 
