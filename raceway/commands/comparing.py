@@ -47,10 +47,11 @@ def _folders(context: click.Context, parameter: click.Parameter, paths: tuple[Pa
 def compare(
     synthetic: Path, real: tuple[Path, ...], output: Path, top: float, window: float | None, records: int, as_json: bool
 ) -> None:
-    """Compare synthetic records in SYN with real ones, class by class.
+    """Compare synthetic records with real ones.
 
-    Every REAL is a corpus of real recordings (raceway import). The AUC of a measure is the probability that a real record has a higher
-    value than a synthetic one: 0.5 if they are alike. With two or more REAL, each is also compared with the others: the yardstick.
+    Each class of the corpus SYN is compared with the same class of the others, in 15 measures of the signal. Every REAL is a corpus of
+    real recordings (raceway import). The AUC of a measure is the probability that a real record has a higher value than a synthetic
+    one: 0.5 if they are alike. With two or more REAL, each is also compared with the others: the yardstick.
 
       raceway compare corpus cwru mfpt -o realism
     """
