@@ -8,6 +8,7 @@ from features.faults import CLASSES
 from features.indicators import Orders
 from features.realism.measures import MEASURES, NAMES, band_limited, measured
 from gen.corpus import FAULTS
+from tests.paths import ROOT
 from tests.pulses import LINES, ORDERS, pulse_train
 
 FS, DURATION, SHAFT, TOP = 24_000.0, 0.5, 29.0, 5000.0
@@ -121,3 +122,10 @@ def test_a_shaft_harmonic_raises_the_tonality():
     noise = np.random.default_rng(0).standard_normal(round(FS * DURATION))
     tone = np.sin(2 * np.pi * 12 * SHAFT * np.arange(noise.size) / FS)
     assert measures_of(noise + 3 * tone, "healthy")["tonality"] > measures_of(noise, "healthy")["tonality"] + 0.5
+
+
+def test_the_page_lists_every_measure_with_its_unit_meaning_and_classes():
+    page = (ROOT / "docs" / "realism.md").read_text(encoding="utf-8")
+    for measure in MEASURES:
+        classes = f" ({', '.join(measure.classes)})" if measure.classes else ""
+        assert f"| `{measure.name}` | {measure.unit} | {measure.meaning}{classes} |" in page
