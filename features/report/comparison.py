@@ -87,7 +87,8 @@ def _part(comparison: Comparison, fault: str) -> ClassPart:
         f"{measure.name} [{measure.unit}]": {letters[w.name]: _column(w, fault, measure.name) for w in sets}
         for measure in measures
     }
-    shown = [_shown(windows, fault, letters[windows.name], comparison) for windows in sets]
+    numbers = {name: number for number, name in enumerate(letters)}
+    shown = {numbers[w.name]: _shown(w, fault, letters[w.name], comparison) for w in sets}
     return ClassPart(
         fault=fault,
         colour=CLASSES[fault].colour,

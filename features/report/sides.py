@@ -37,20 +37,20 @@ DISTRIBUTION_COLUMNS = 3
 
 
 @rc_context(STYLE)
-def draw_sides(records: Sequence[Shown], top: float) -> Figure:
+def draw_sides(records: Mapping[int, Shown], top: float) -> Figure:
     """Waveform over its rms, power spectral density, and envelope spectrum of one record of each set, set beside set.
 
-    ``top`` is the end of the axis of the density [Hz].
+    The records are given by the number of their set, which sets the colour; ``top`` is the end of the axis of the density [Hz].
     """
     figure = Figure(figsize=(COLUMN * len(records), 5.0), layout="constrained")
     panels = figure.subplots(3, len(records), squeeze=False)
     for row in panels[:2]:
         for axes in row[1:]:
             axes.sharey(row[0])
-    for column, shown in enumerate(records):
+    for column, (number, shown) in enumerate(records.items()):
         waveform, density, envelope = panels[:, column]
         _draw_turns(waveform, shown)
-        waveform.set_title(shown.title, color=_colour(column), fontweight="bold")
+        waveform.set_title(shown.title, color=_colour(number), fontweight="bold")
         frequencies, power = psd(shown.signal[None], shown.fs, SEGMENT)
         share = power[0] / power[0].sum()
         level = 10 * np.log10(np.maximum(share, 10 ** (FAINTEST_DB / 10)))
