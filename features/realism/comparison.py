@@ -114,9 +114,10 @@ def compare(
 
 
 def _names(folders: Sequence[Path]) -> list[str]:
-    """Name of each real set: its folder, or its whole path if two folders have the same name."""
+    """Name of each real set: its folder, or its whole path if that is not unique or a name of the results."""
     short = [folder.resolve().name for folder in folders]
-    return short if len(set(short)) == len(short) and "synthetic" not in short else [str(folder) for folder in folders]
+    clear = len({*short, "synthetic", "real"}) == len(short) + 2
+    return short if clear else [str(folder) for folder in folders]
 
 
 def contrasted(synthetic: Windows, real: tuple[Windows, ...], common: Common) -> Comparison:

@@ -85,6 +85,11 @@ def test_the_plain_result_names_every_measure_with_its_unit(found):
     assert (plain["window_s"], plain["sample_rate_hz"], plain["top_hz"]) == (0.4, 12_000.0, 5000.0)
 
 
+def test_a_set_whose_folder_has_no_name_of_its_own_is_named_by_its_path(dark, tmp_path):
+    real = write_pulses(tmp_path / "real", classes=("outer",))
+    assert set(compare(dark, [real]).quantiles["outer"]["kurtosis"]) == {"synthetic", "real", str(real)}
+
+
 def test_at_most_so_many_windows_are_taken_evenly_from_all_specimens(tmp_path):
     specimen = np.repeat(np.arange(4), 12)
     folder = write_pulses(tmp_path / "set", classes=("outer",), records=48, specimen=specimen, rig=specimen // 2)
