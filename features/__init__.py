@@ -14,6 +14,7 @@ transformer the feature vector as a scikit-learn transformer
 table       corpus -> feature table (record, feature), part by part
 table_files feature tables on disk
 baselines   classifiers on a feature table, scored by specimen or rig beside their controls
+realism     synthetic records against real ones: AUC of measures, class by class
 report      figures of records, corpora and scores, and one page with all of them
 =========== =================================================================================
 """

@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 import click
 
-from raceway.commands import corpora, gallery, importing, learning, reproduce
+from raceway.commands import comparing, corpora, gallery, importing, learning, reproduce
 from raceway.console.ending import NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 
@@ -97,6 +97,7 @@ for command in (
     learning.train,
     learning.evaluate,
     learning.benchmark,
+    comparing.compare,
     learning.bench,
     reproduce.reproduce,
     gallery.gallery,

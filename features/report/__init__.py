@@ -1,11 +1,13 @@
-"""Pictures of records and of scores, and one page of a corpus and its benchmark.
+"""Pictures of records and of scores, one page of a corpus and its benchmark, and one of a comparison.
 
-========= =====================================================================
-module    responsibility
-========= =====================================================================
-pictures  drawings of one record, of the contents of a corpus, and of scores
-envelopes drawings of several envelope spectra: a grid, and a waterfall
-examples  records of a corpus as pictures
-page      a corpus and its benchmark on one page
-========= =====================================================================
+========== ======================================================================
+module     responsibility
+========== ======================================================================
+pictures   drawings of one record, of the contents of a corpus, and of scores
+envelopes  drawings of several envelope spectra: a grid, and a waterfall
+sides      drawings of several sets side by side: examples, and distributions
+examples   records of a corpus as pictures
+page       a corpus and its benchmark on one page
+comparison a synthetic corpus and real ones on one page
+========== ======================================================================
 """

@@ -68,28 +68,39 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
     """
     corpus, output = Path(corpus), Path(output)
     with open_corpus(corpus) as opened:
-        page = _template().render(
+        page = template("report.html.jinja").render(
             **_content(opened),
             examples=draw_examples(opened),
             **_scores(results),
             facts=_facts(read_manifest(corpus), results),
         )
-    try:
-        output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        message = f"{output}: this folder cannot be created ({error.strerror}); choose another one."
-        raise CorpusError(message) from error
+    make_folder(output)
     write_results(results, output / "results.json")
     write_text_durably(page, output / "report.html")
     return output / "report.html"
 
 
-def _template() -> jinja2.Template:
+def template(name: str) -> jinja2.Template:
+    """Template of this package; its filter ``image`` makes an address of a picture in SVG."""
+    folder = files("features.report")
     environment = jinja2.Environment(
-        autoescape=True, undefined=jinja2.StrictUndefined, trim_blocks=True, lstrip_blocks=True
+        loader=jinja2.FunctionLoader(lambda wanted: folder.joinpath(wanted).read_text(encoding="utf-8")),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
     )
     environment.filters["image"] = lambda svg: f"data:image/svg+xml;base64,{base64.b64encode(svg).decode()}"
-    return environment.from_string(files("features.report").joinpath("report.html.jinja").read_text(encoding="utf-8"))
+    return environment.get_template(name)
+
+
+def make_folder(output: Path) -> None:
+    """Create the folder of a page if it does not exist; CorpusError if the disk refuses."""
+    try:
+        output.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"{output}: this folder cannot be created ({error.strerror}); choose another one."
+        raise CorpusError(message) from error
 
 
 def _content(corpus: xr.Dataset) -> dict[str, Any]:

@@ -5,6 +5,7 @@ module    responsibility
 ========= =====================================================================
 corpora   commands that make corpora and look at them
 importing commands that convert real recordings into the format
+comparing synthetic records against real ones
 learning  commands from a corpus to features, models and a report
 reproduce the seed paper run again
 gallery   a page of pictures of simulated signals

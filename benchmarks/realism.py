@@ -1,0 +1,167 @@
+"""Compare ``domain_randomised`` with recordings of three real machines: AUC by class and measure, yardstick and targets.
+
+``python -m benchmarks.realism REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them;
+without it, the folder that the environment variable ``RACEWAY_REAL`` names. ``--against CORPUS`` compares another corpus too, such as one
+of an earlier recipe, and prints its values first. docs/realism.md explains the measures and targets.
+"""
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from ruamel.yaml import YAML
+
+from features.realism import Comparison, compare
+from features.realism.measures import MEASURES
+from gen import generate
+from gen.importers import import_cwru, import_generic, import_mfpt
+from gen.importers.matlab import read_matlab
+
+UESTC_CLASSES = {"N": "healthy", "I": "inner", "O": "outer", "B": "ball"}
+UESTC_VOLTS_PER_M_S2 = 0.01022
+UESTC_BEARING = {
+    "designation": "UC204",
+    "n_balls": 8,
+    "pitch_diameter_mm": 33.5,
+    "ball_diameter_mm": 7.938,
+    "contact_angle_deg": 0,
+}
+UESTC_SPEED_ERROR_PERCENT = {
+    "I_800": -2.9,
+    "I_1000": -1.9,
+    "I_1200": -1.9,
+    "I_1400": -0.2,
+    "O_800": -2.7,
+    "O_1000": -0.2,
+    "O_1200": 4.4,
+    "O_1400": 6.1,
+}
+"""True speed over the labelled one, less 100 %, measured on the first three harmonics of the line of the fault."""
+
+RACES = ("inner", "outer")
+COLOUR = ("energy_above_3500_hz", "roll_off", "centroid")
+TARGETS = (
+    ("colour and roll-off", COLOUR, ("healthy", *RACES, "ball"), 0.0, 0.70),
+    ("impulsiveness of races", ("kurtosis", "crest_factor", "spectral_kurtosis"), RACES, 0.0, 0.70),
+    ("line width of races", ("line_width",), RACES, 0.30, 0.70),
+    ("cage line of balls", ("cage_line",), ("ball",), 0.35, 1.0),
+)
+"""Name, measures, classes, and lowest and highest AUC that is wanted."""
+
+
+def import_uestc(source: Path, folder: Path) -> Path:
+    """Bring the recordings of UESTC into a corpus: parts of a recording joined, volts converted, speeds corrected."""
+    scratch = folder / "uestc-joined"
+    scratch.mkdir(parents=True)
+    files = []
+    for recording in sorted(path for path in (source / "Data").iterdir() if path.is_dir()):
+        parts = [np.asarray(read_matlab(path, "Data")).ravel() for path in sorted(recording.glob("*.mat"))]
+        np.save(scratch / f"{recording.name}.npy", np.concatenate(parts) / UESTC_VOLTS_PER_M_S2)
+        letter, rpm = recording.name.split("_")
+        true = float(rpm) * (1 + UESTC_SPEED_ERROR_PERCENT.get(recording.name, 0.0) / 100)
+        fault = UESTC_CLASSES[letter]
+        files.append({"path": f"{recording.name}.npy", "fault": fault, "specimen": fault, "shaft_rpm": true})
+    mapping = {"title": "UESTC", "bearing": UESTC_BEARING, "unit": "m/s2", "sample_rate_hz": 20000, "files": files}
+    YAML().dump(mapping, scratch / "mapping.yaml")
+    return import_generic(scratch / "mapping.yaml", folder / "uestc").directory
+
+
+def real_corpora(real: Path, folder: Path) -> list[Path]:
+    """Import the sets that are in ``real``."""
+    found = []
+    if (real / "cwru").is_dir():
+        found.append(import_cwru(real / "cwru", folder / "cwru").directory)
+    if (real / "mfpt").is_dir():
+        found.append(import_mfpt(real / "mfpt", folder / "mfpt").directory)
+    if (real / "uestc").is_dir():
+        found.append(import_uestc(real / "uestc", folder))
+    return found
+
+
+def table(found: Comparison, before: Comparison | None = None) -> Iterator[str]:
+    """Markdown table of AUCs: each cell has the value before, the value, and in brackets the range of the real sets."""
+    classes = list(found.auc)
+    yield f"| measure | unit | {' | '.join(classes)} |"
+    yield "|---|---|" + "---:|" * len(classes)
+    for measure in MEASURES:
+        cells = [_cell(found, before, fault, measure.name) for fault in classes]
+        yield f"| {measure.name} | {measure.unit} | {' | '.join(cells)} |"
+
+
+def _cell(found: Comparison, before: Comparison | None, fault: str, measure: str) -> str:
+    value = found.auc[fault].get(measure)
+    if value is None:
+        return ""
+    earlier = None if before is None else before.auc.get(fault, {}).get(measure)
+    held = [
+        table[fault][measure] for table in found.yardstick.values() if table.get(fault, {}).get(measure) is not None
+    ]
+    spread = f" ({min(held):.2f}-{max(held):.2f})" if held else ""
+    return f"{'' if earlier is None else f'{earlier:.2f} → '}{value:.2f}{spread}"
+
+
+def medians(found: Comparison) -> Iterator[str]:
+    """Markdown table of the medians of the synthetic, the pooled real, and each real set, with the numbers of windows."""
+    sets = ["synthetic", "real", *(windows.name for windows in found.real)]
+    yield f"| class | measure | {' | '.join(sets)} | windows |"
+    yield "|---|---|" + "---:|" * len(sets) + "---|"
+    for fault, measures in found.quantiles.items():
+        for name, quantiles in measures.items():
+            cells = [f"{quantiles[key][1]:.3g}" if key in quantiles else "" for key in sets]
+            counts = ", ".join(str(found.counts[fault][name].get(key, 0)) for key in sets if key != "real")
+            yield f"| {fault} | {name} | {' | '.join(cells)} | {counts} |"
+
+
+def verdicts(found: Comparison) -> Iterator[str]:
+    """One sentence per target: the range that is wanted, and the values outside it."""
+    for what, measures, classes, lowest, highest in TARGETS:
+        values = {
+            f"{measure} of {fault}": value
+            for fault in classes
+            for measure in measures
+            if (value := found.auc.get(fault, {}).get(measure)) is not None
+        }
+        missed = [f"{name} {value:.2f}" for name, value in values.items() if not lowest <= value <= highest]
+        state = f"missed by {', '.join(missed)}" if missed else "met" if values else "not measured"
+        yield f"{what}: AUC of {lowest:.2f} to {highest:.2f} wanted; {state}."
+
+
+def main() -> None:
+    """Print the tables and the targets."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.realism", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("real", type=Path, nargs="?", default=os.environ.get("RACEWAY_REAL"))
+    parser.add_argument("--records", type=int, default=1500, help="records to generate")
+    parser.add_argument("--seed", type=int, help="replaces the seed of the recipe")
+    parser.add_argument("--recipe", default="domain_randomised")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--against", type=Path, metavar="CORPUS", help="another corpus, whose values are printed first")
+    parser.add_argument("--json", type=Path, help="also write every number to this file")
+    options = parser.parse_args()
+    if options.real is None:
+        parser.error("give the folder that holds cwru, mfpt and uestc, or name it in RACEWAY_REAL.")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        real = real_corpora(options.real, folder)
+        if not real:
+            parser.error(f"{options.real}: holds none of cwru, mfpt and uestc; give the folder that holds them.")
+        made = folder / "synthetic"
+        generate(options.recipe, made, workers=options.workers, records=options.records, seed=options.seed)
+        print("generated", file=sys.stderr, flush=True)
+        found = compare(made, real)
+        before = None if options.against is None else compare(options.against, real)
+    print("\n".join(table(found, before)), end="\n\n")
+    print("\n".join(medians(found)), end="\n\n")
+    print("\n".join(verdicts(found)))
+    if options.json:
+        options.json.write_text(json.dumps(found.plain(), indent=1), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,212 @@
+"""Windows of corpora: which are compared, and how they are read.
+
+All corpora are cut into windows of one length, and brought to one band and sample rate. Windows are read and measured in
+blocks, so that memory does not grow with the signals of a corpus.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from features.indicators import Orders
+from features.realism.measures import NAMES, band_limited, measured
+from features.signal.rows import FloatArray
+from gen.corpus import FAULTS, SIGNAL, open_corpus
+from gen.errors import CorpusError
+
+BLOCK = 32  # windows read and measured together
+SHORTEST = 0.05  # s
+
+
+class Common(NamedTuple):
+    """What all corpora are brought to: length of a window [s], sample rate [Hz] and upper edge of the band [Hz]."""
+
+    window: float
+    rate: float
+    top: float
+
+
+class Windows(NamedTuple):
+    """Measured windows of one corpus.
+
+    Attributes
+    ----------
+    name
+        Of the corpus.
+    folder
+        Of the corpus.
+    record, start
+        Record that each window was cut from, and its first sample, shapes (window,).
+    fault
+        Code of the class, shape (window,).
+    values
+        Measures, shape (window, measure).
+    """
+
+    name: str
+    folder: Path
+    record: np.ndarray
+    start: np.ndarray
+    fault: np.ndarray
+    values: FloatArray
+
+
+def common_ground(folders: list[Path], top: float, window: float | None) -> Common:
+    """Shortest record (or ``window``, if that is shorter), lowest sample rate, and the upper edge of the band.
+
+    Raises
+    ------
+    CorpusError
+        If a corpus cannot be read, its sample rate is too low for ``top``, or its records are shorter than ``window``.
+    """
+    lengths, rates = [], []
+    for folder in folders:
+        with open_corpus(folder) as corpus:
+            fs = float(corpus["sample_rate"].values.min())
+            lengths.append(corpus.sizes["elapsed_time"] / fs)
+        rates.append(fs)
+        if not fs >= 2 * top:
+            message = (
+                f"{folder}: its sample rate of {fs:g} Hz shows nothing above {fs / 2:g} Hz, and records are compared up "
+                f"to {top:g} Hz; choose an upper frequency of at most {fs / 2:g} Hz."
+            )
+            raise CorpusError(message)
+        if window is not None and lengths[-1] < window * (1 - 1e-9):
+            message = f"{folder}: its records are {lengths[-1]:g} s long, shorter than the window of {window:g} s; choose a shorter one."
+            raise CorpusError(message)
+    common = Common(min(lengths) if window is None else window, min(rates), top)
+    if common.window < SHORTEST:
+        folder = folders[int(np.argmin(lengths))]
+        message = f"{folder}: its records are {min(lengths):g} s long; envelopes need at least {SHORTEST:g} s."
+        raise CorpusError(message)
+    return common
+
+
+def measured_windows(folder: Path, name: str, common: Common, most: int) -> Windows:
+    """Measure at most ``most`` windows of each class of a corpus, spread evenly over its rigs and specimens.
+
+    Windows without a finite, varying signal are left out.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus cannot be read, or none of its records has a shaft rate and fault orders.
+    """
+    with open_corpus(folder, check="size") as corpus:
+        columns = {
+            key: corpus[key].values
+            for key in ("fault", "rig", "specimen", "sample_rate", "shaft_rate", *Orders._fields)
+        }
+        known = np.all(
+            [np.isfinite(columns[key]) & (columns[key] > 0) for key in ("shaft_rate", *Orders._fields)], axis=0
+        )
+        if not known.any():
+            message = (
+                f"{folder}: no record has a shaft rate and fault orders above 0, which are needed to find its lines."
+            )
+            raise CorpusError(message)
+        record, start = _chosen(columns, known, corpus.sizes["elapsed_time"], common.window, most)
+        values = np.full((len(record), len(NAMES)), np.nan)
+        for fault, fs, block in _blocks(columns, record):
+            values[block] = _measured(corpus, columns, common, record[block], start[block], fault, fs)
+    usable = np.isfinite(values).any(axis=1)
+    return Windows(name, folder, record[usable], start[usable], columns["fault"][record][usable], values[usable])
+
+
+def _chosen(
+    columns: dict[str, np.ndarray], known: np.ndarray, samples: int, window: float, most: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Record and first sample of the windows to measure, in the order of the corpus, shapes (window,)."""
+    lengths = np.floor(window * columns["sample_rate"] * (1 + 1e-9)).astype(int)
+    counts = np.where(known, samples // lengths, 0)
+    record = np.repeat(np.arange(len(known)), counts)
+    number = np.arange(len(record)) - np.repeat(np.cumsum(counts) - counts, counts)
+    order = np.random.default_rng(0).permutation(len(record))
+    rank = _ranks(np.stack([columns[key][record] for key in ("fault", "rig", "specimen")]), order)
+    keep = np.zeros(len(record), dtype=bool)
+    for fault in np.unique(columns["fault"]):
+        of_class = order[columns["fault"][record[order]] == fault]
+        keep[of_class[np.argsort(rank[of_class], kind="stable")[:most]]] = True
+    return record[keep], (number * lengths[record])[keep]
+
+
+def _ranks(groups: np.ndarray, order: np.ndarray) -> np.ndarray:
+    """Place of each window among those of its group when all are taken in an order, shape (window,).
+
+    ``groups`` has the shape (key, window); windows of a group have equal keys.
+    """
+    _, group = np.unique(groups, axis=1, return_inverse=True)
+    by_group = order[np.argsort(group[order], kind="stable")]
+    sizes = np.bincount(group)
+    rank = np.empty(len(group), dtype=int)
+    rank[by_group] = np.arange(len(group)) - np.repeat(np.cumsum(sizes) - sizes, sizes)
+    return rank
+
+
+def _blocks(columns: dict[str, np.ndarray], record: np.ndarray) -> list[tuple[str, float, np.ndarray]]:
+    """Class, sample rate and places of windows that are measured together."""
+    fault, fs = columns["fault"][record], columns["sample_rate"][record]
+    found = []
+    for code in np.unique(fault):
+        for rate in np.unique(fs[fault == code]):
+            places = np.flatnonzero((fault == code) & (fs == rate))
+            found += [(FAULTS[code], float(rate), places[i : i + BLOCK]) for i in range(0, len(places), BLOCK)]
+    return found
+
+
+def _measured(
+    corpus: xr.Dataset,
+    columns: dict[str, np.ndarray],
+    common: Common,
+    record: np.ndarray,
+    start: np.ndarray,
+    fault: str,
+    fs: float,
+) -> FloatArray:
+    """Measures of a block, shape (window, measure); NaN for windows that are not finite or constant."""
+    x = read_windows(corpus, record, start, window_length(common, fs))
+    values = np.full((len(x), len(NAMES)), np.nan)
+    usable = np.flatnonzero(np.isfinite(x).all(axis=1) & (np.ptp(x, axis=1) > 0))
+    if usable.size:
+        limited = band_limited(x[usable], fs, common.rate, common.top)
+        exact = limited.shape[-1] * fs / x.shape[-1]
+        orders = Orders(*(columns[key][record[usable]] for key in Orders._fields))
+        values[usable] = measured(limited, exact, common.top, columns["shaft_rate"][record[usable]], orders, fault)
+    return values
+
+
+def window_length(common: Common, fs: float) -> int:
+    """Samples of a window at a sample rate [Hz]; the last sample is not lost to rounding."""
+    return int(common.window * fs * (1 + 1e-9))
+
+
+def read_windows(corpus: xr.Dataset, record: np.ndarray, start: np.ndarray, length: int) -> FloatArray:
+    """Accelerations of the first channel [m s-2], shape (window, time)."""
+    rows, place = np.unique(record, return_inverse=True)
+    signal = corpus[SIGNAL].isel(record=rows, channel=0).values
+    return np.stack([signal[row, first : first + length] for row, first in zip(place, start, strict=True)]).astype(
+        float
+    )
+
+
+def typical_window(
+    windows: Windows, fault: str, measure: str, common: Common
+) -> tuple[int, FloatArray, dict[str, float]]:
+    """The window with the median of a measure in its class: number of its record, band-limited signal, and conditions.
+
+    The signal has the shape (time,); the conditions are its exact sample rate, ``sample_rate``, its ``shaft_rate`` [Hz] and
+    its fault orders.
+    """
+    column = windows.values[:, NAMES.index(measure)]
+    places = np.flatnonzero((windows.fault == FAULTS.index(fault)) & np.isfinite(column))
+    place = places[np.argsort(column[places], kind="stable")[len(places) // 2]]
+    record, start = windows.record[place : place + 1], windows.start[place : place + 1]
+    with open_corpus(windows.folder, check="size") as corpus:
+        of_record = corpus.isel(record=int(record[0]))
+        known = {key: float(of_record[key]) for key in ("sample_rate", "shaft_rate", *Orders._fields)}
+        fs = known["sample_rate"]
+        x = read_windows(corpus, record, start, window_length(common, fs))
+    limited = band_limited(x, fs, common.rate, common.top)[0]
+    return int(record[0]), limited, known | {"sample_rate": limited.size * fs / x.shape[-1]}

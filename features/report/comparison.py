@@ -1,0 +1,129 @@
+"""A synthetic corpus and real ones on one self-contained page: AUC, quantiles and pictures of each class.
+
+``Comparison -> tables, an example of each class from each set, distributions`` into one HTML file, beside a JSON file
+with all numbers. Names of folders are escaped by the page and not drawn.
+"""
+
+import json
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from features.faults import CLASSES
+from features.indicators import Orders
+from features.realism.comparison import SHARES, Comparison
+from features.realism.measures import MEASURES, NAMES, Measure
+from features.realism.windows import Windows, typical_window
+from features.report.page import make_folder, template
+from features.report.pictures import Shown, picture
+from features.report.sides import draw_distributions, draw_sides
+from features.signal.rows import FloatArray
+from gen.corpus import FAULTS, write_text_durably
+
+TYPICAL = "kurtosis"  # an example has the median of this measure, which every class has
+
+
+class Row(NamedTuple):
+    """Row of the table of a class: a measure, its AUC, that of each real set against the others, and its quantiles."""
+
+    measure: Measure
+    auc: str
+    yardstick: list[str]
+    synthetic: list[str]
+    real: list[str]
+
+
+class ClassPart(NamedTuple):
+    """Part of the page about one class."""
+
+    fault: str
+    colour: str
+    counts: list[tuple[str, int]]
+    rows: list[Row]
+    sides: bytes
+    distributions: bytes
+
+
+def write_comparison(comparison: Comparison, output: Path | str) -> Path:
+    """Write ``report.html`` and ``comparison.json`` into a folder, which is created if it does not exist.
+
+    Returns
+    -------
+    The path of the page.
+
+    Raises
+    ------
+    CorpusError
+        If a corpus has changed since it was measured, or the disk refuses.
+    """
+    output = Path(output)
+    page = template("comparison.html.jinja").render(
+        comparison=comparison,
+        measures=MEASURES,
+        shares=[f"{100 * share:g} %" for share in SHARES],
+        letters=_letters(comparison),
+        yardsticks=list(comparison.yardstick),
+        classes=[_part(comparison, fault) for fault in comparison.auc],
+        typical=TYPICAL,
+    )
+    make_folder(output)
+    write_text_durably(json.dumps(comparison.plain(), indent=1, allow_nan=False) + "\n", output / "comparison.json")
+    write_text_durably(page, output / "report.html")
+    return output / "report.html"
+
+
+def _letters(comparison: Comparison) -> dict[str, str]:
+    """Name of each set in pictures, which show no text of a corpus: real 1, real 2, ..."""
+    real = {windows.name: f"real {number}" for number, windows in enumerate(comparison.real, start=1)}
+    return {comparison.synthetic.name: "synthetic"} | real
+
+
+def _part(comparison: Comparison, fault: str) -> ClassPart:
+    letters = _letters(comparison)
+    sets = [windows for windows in (comparison.synthetic, *comparison.real) if _of_class(windows, fault).size]
+    measures = [measure for measure in MEASURES if measure.name in comparison.auc[fault]]
+    values = {
+        f"{measure.name} [{measure.unit}]": {letters[w.name]: _column(w, fault, measure.name) for w in sets}
+        for measure in measures
+    }
+    numbers = {name: number for number, name in enumerate(letters)}
+    shown = {numbers[w.name]: _shown(w, fault, letters[w.name], comparison) for w in sets}
+    return ClassPart(
+        fault=fault,
+        colour=CLASSES[fault].colour,
+        counts=[(windows.name, len(_of_class(windows, fault))) for windows in sets],
+        rows=[_row(comparison, fault, measure) for measure in measures],
+        sides=picture(draw_sides(shown, comparison.common.top), "svg"),
+        distributions=picture(draw_distributions(values, list(letters.values())), "svg"),
+    )
+
+
+def _of_class(windows: Windows, fault: str) -> np.ndarray:
+    return np.flatnonzero(windows.fault == FAULTS.index(fault))
+
+
+def _column(windows: Windows, fault: str, measure: str) -> FloatArray:
+    values = windows.values[_of_class(windows, fault), NAMES.index(measure)]
+    return values[np.isfinite(values)]
+
+
+def _shown(windows: Windows, fault: str, title: str, comparison: Comparison) -> Shown:
+    record, signal, known = typical_window(windows, fault, TYPICAL, comparison.common)
+    orders = Orders(*(np.asarray(known[name]) for name in Orders._fields))
+    return Shown(f"{title}, record {record}", signal, known["sample_rate"], known["shaft_rate"], orders, fault)
+
+
+def _row(comparison: Comparison, fault: str, measure: Measure) -> Row:
+    found = comparison.quantiles[fault][measure.name]
+    held = [table.get(fault, {}).get(measure.name) for table in comparison.yardstick.values()]
+    return Row(
+        measure,
+        _two_digits(comparison.auc[fault][measure.name]),
+        [_two_digits(value) for value in held],
+        *([f"{value:.3g}" for value in found.get(name, [])] for name in (comparison.synthetic.name, "real")),
+    )
+
+
+def _two_digits(value: float | None) -> str:
+    return "" if value is None else f"{value:.2f}"

@@ -1,0 +1,79 @@
+"""Command that compares synthetic records with real ones."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from raceway.console import show
+from raceway.console.options import A_PATH, corpus_folder, folder_option, json_option
+from raceway.console.progress import progress
+
+if TYPE_CHECKING:
+    from features.realism import Comparison
+
+
+def _folders(context: click.Context, parameter: click.Parameter, paths: tuple[Path, ...]) -> tuple[Path | None, ...]:
+    return tuple(corpus_folder(context, parameter, path) for path in paths)
+
+
+@click.command()
+@click.argument("synthetic", metavar="SYN", type=A_PATH, callback=corpus_folder)
+@click.argument("real", metavar="REAL...", type=A_PATH, nargs=-1, required=True, callback=_folders)
+@folder_option("OUTDIR", "Folder for report.html and comparison.json.")
+@click.option(
+    "--top",
+    type=click.FloatRange(min=1000.0),
+    default=5000.0,
+    show_default=True,
+    metavar="HZ",
+    help="Upper edge of the compared band.",
+)
+@click.option(
+    "--window",
+    type=click.FloatRange(min=0.05),
+    metavar="S",
+    help="Length that records are cut to [s]; by default that of the shortest.",
+)
+@click.option(
+    "--records",
+    type=click.IntRange(min=10),
+    default=500,
+    show_default=True,
+    metavar="N",
+    help="Largest number of windows of each class and corpus.",
+)
+@json_option
+def compare(
+    synthetic: Path, real: tuple[Path, ...], output: Path, top: float, window: float | None, records: int, as_json: bool
+) -> None:
+    """Compare synthetic records with real ones.
+
+    Each class of the corpus SYN is compared with the same class of the others, in 15 measures of the signal. Every REAL is a corpus of
+    real recordings (raceway import). The AUC of a measure is the probability that a real record has a higher value than a synthetic
+    one: 0.5 if they are alike. With two or more REAL, each is also compared with the others: the yardstick.
+
+      raceway compare corpus cwru mfpt -o realism
+    """
+    from features.realism import compare as run
+    from features.report.comparison import write_comparison
+
+    with progress("measuring", "corpora") as report:
+        found = run(synthetic, real, top=top, window=window, records=records, progress=report)
+    page = write_comparison(found, output)
+    if as_json:
+        show.as_json(found.plain() | {"report": page})
+        return
+    _show(found)
+    show.text("", f"{page}: quantiles, yardstick and pictures.")
+
+
+def _show(found: "Comparison") -> None:
+    show.text("AUC of real against synthetic records; 0.5: alike, 1: all real values are higher:", "")
+    names = list(dict.fromkeys(name for table in found.auc.values() for name in table))
+    rows = [[name, *(_cell(table.get(name)) for table in found.auc.values())] for name in names]
+    show.table(("measure", *found.auc), rows)
+
+
+def _cell(value: float | None) -> str:
+    return "" if value is None else f"{value:.2f}"

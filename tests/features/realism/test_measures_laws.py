@@ -1,0 +1,131 @@
+"""Laws of the measures: gain, sample rate, and the property that each is named after."""
+
+import numpy as np
+import pytest
+from scipy.signal import resample_poly
+
+from features.faults import CLASSES
+from features.indicators import Orders
+from features.realism.measures import MEASURES, NAMES, band_limited, measured
+from gen.corpus import FAULTS
+from tests.paths import ROOT
+from tests.pulses import LINES, ORDERS, pulse_train
+
+FS, DURATION, SHAFT, TOP = 24_000.0, 0.5, 29.0, 5000.0
+ONE = Orders(*(np.array([ORDERS[name]]) for name in Orders._fields))
+
+
+def measures_of(signal, fault, fs=FS):
+    x = band_limited(signal[None], fs, 12_000.0, TOP)
+    values = measured(x, x.shape[-1] * fs / signal.size, TOP, np.array([SHAFT]), ONE, fault)
+    return dict(zip(NAMES, values[0], strict=True))
+
+
+def signal_of(fault, seed=0, **kinds):
+    line = LINES[fault]
+    rate = None if line is None else line * SHAFT
+    return pulse_train(FS, DURATION, rate, kinds.pop("ringing", 3000.0), np.random.default_rng(seed), **kinds)
+
+
+@pytest.mark.parametrize("fault", LINES)
+def test_a_gain_changes_no_measure(fault):
+    signal = signal_of(fault)
+    first, second = measures_of(signal, fault), measures_of(1000 * signal, fault)
+    assert first == pytest.approx(second, rel=1e-3, nan_ok=True)
+
+
+@pytest.mark.parametrize("fault", LINES)
+def test_the_sample_rate_of_a_recording_hardly_matters_below_the_top(fault):
+    signal = signal_of(fault)
+    slower = resample_poly(signal, 2, 3)
+    first, second = measures_of(signal, fault), measures_of(slower, fault, FS * 2 / 3)
+    assert first == pytest.approx(second, rel=0.1, abs=0.1, nan_ok=True)
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_a_class_has_its_measures_and_no_others(fault):
+    found = measures_of(signal_of(fault if fault in LINES else "healthy"), fault)
+    for measure in MEASURES:
+        if not measure.belongs_to(fault):
+            assert np.isnan(found[measure.name])
+    assert np.isfinite(found["kurtosis"])
+    assert all(name in CLASSES for measure in MEASURES for name in measure.classes)
+
+
+def test_a_higher_resonance_raises_the_measures_of_colour():
+    low, high = (measures_of(signal_of("outer", ringing=ringing), "outer") for ringing in (1500.0, 4200.0))
+    for name in ("energy_above_3500_hz", "roll_off", "centroid"):
+        assert high[name] > low[name]
+    assert high["energy_above_3500_hz"] < 0
+
+
+def test_shorter_pulses_are_more_impulsive():
+    long, short = (measures_of(signal_of("outer", decay=decay), "outer") for decay in (150.0, 1500.0))
+    for name in ("kurtosis", "crest_factor", "spectral_kurtosis"):
+        assert short[name] > 1.2 * long[name]
+
+
+def test_pulses_of_one_sign_are_skewed_and_their_sign_does_not_matter():
+    pulses = np.zeros(round(FS * DURATION))
+    pulses[:: round(FS / (3.6 * SHAFT))] = 1.0
+    one_sided = np.convolve(pulses, np.hanning(9))[: pulses.size]
+    up, down = (measures_of(sign * one_sided, "outer") for sign in (1, -1))
+    assert up["skewness"] > 1
+    assert up["skewness"] == pytest.approx(down["skewness"], rel=1e-3)
+    assert measures_of(signal_of("outer"), "outer")["skewness"] < 0.3
+
+
+@pytest.mark.parametrize("fault", ["inner", "outer"])
+def test_pulses_that_wander_have_a_wider_line(fault):
+    widths = [
+        np.mean(
+            [measures_of(signal_of(fault, seed, noise=0.02, wander=wander), fault)["line_width"] for seed in range(5)]
+        )
+        for wander in (0.0, 0.01, 0.03)
+    ]
+    assert widths[0] < 0.05
+    assert widths[0] < 0.7 * widths[1] < 0.5 * widths[2]
+
+
+def test_the_width_of_a_line_that_does_not_stand_out_is_unknown():
+    noise = np.random.default_rng(0).standard_normal(round(FS * DURATION))
+    found = measures_of(noise, "outer")
+    assert found["line_level"] < 14
+    assert np.isnan([found["line_width"], found["shaft_sidebands"]]).all()
+
+
+def modulated(fault, order, depth):
+    signal = signal_of(fault, noise=0.02)
+    time = np.arange(signal.size) / FS
+    return measures_of(signal * (1 + depth * np.cos(2 * np.pi * order * SHAFT * time)), fault)
+
+
+def test_a_load_that_turns_with_the_shaft_raises_the_shaft_sidebands():
+    weak, strong = (modulated("inner", 1.0, depth)["shaft_sidebands"] for depth in (0.2, 0.8))
+    assert strong > weak + 6
+    assert weak == pytest.approx(20 * np.log10(0.1), abs=3)
+
+
+def test_a_ball_that_strikes_more_strongly_once_per_turn_of_the_cage_has_cage_lines():
+    plain, deep = (modulated("ball", ORDERS["ftf"], depth) for depth in (0.0, 0.8))
+    assert deep["cage_line"] > plain["cage_line"] + 10
+    assert deep["cage_sidebands"] > plain["cage_sidebands"] + 10
+
+
+def test_louder_noise_makes_a_fault_less_cyclostationary():
+    clear, hidden = (measures_of(signal_of("ball", noise=noise), "ball") for noise in (0.05, 1.0))
+    assert clear["cyclostationarity"] > 10 * hidden["cyclostationarity"]
+    assert clear["line_level"] > hidden["line_level"]
+
+
+def test_a_shaft_harmonic_raises_the_tonality():
+    noise = np.random.default_rng(0).standard_normal(round(FS * DURATION))
+    tone = np.sin(2 * np.pi * 12 * SHAFT * np.arange(noise.size) / FS)
+    assert measures_of(noise + 3 * tone, "healthy")["tonality"] > measures_of(noise, "healthy")["tonality"] + 0.5
+
+
+def test_the_page_lists_every_measure_with_its_unit_meaning_and_classes():
+    page = (ROOT / "docs" / "realism.md").read_text(encoding="utf-8")
+    for measure in MEASURES:
+        classes = f" ({', '.join(measure.classes)})" if measure.classes else ""
+        assert f"| `{measure.name}` | {measure.unit} | {measure.meaning}{classes} |" in page

@@ -1,0 +1,38 @@
+"""Laws of roll-off, centroid and tonality."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from features.signal.colour import centroid, roll_off, tonality
+from features.signal.spectra import psd
+
+law = settings(deadline=None, max_examples=20)
+FREQUENCIES = np.arange(1001) * 4.0
+
+
+@law
+@given(st.floats(0.05, 0.95), st.floats(1e-6, 1e6))
+def test_a_flat_density_rolls_off_at_the_share_of_its_width_whatever_its_gain(share, gain):
+    flat = np.full((1, 1001), gain)
+    assert roll_off(flat, FREQUENCIES, share)[0] == pytest.approx(share * 4004 - 2, abs=4)
+    assert centroid(flat, FREQUENCIES)[0] == pytest.approx(2000)
+
+
+def test_a_single_bin_has_its_roll_off_and_centroid_at_its_frequency():
+    density = np.zeros((1, 1001))
+    density[0, 300] = 1.0
+    assert abs(roll_off(density, FREQUENCIES, 0.85)[0] - 1200) <= 2
+    assert centroid(density, FREQUENCIES)[0] == 1200
+
+
+@law
+@given(st.integers(0, 2**32 - 1), st.floats(0.2, 5.0))
+def test_tonality_is_the_share_of_tones_in_the_energy(seed, amplitude):
+    fs, n = 8000.0, 8000
+    noise = np.random.default_rng(seed).standard_normal(n)
+    tone = amplitude * np.sin(2 * np.pi * 1230.0 * np.arange(n) / fs)
+    frequencies, density = psd((noise + tone)[None], fs, 1.0)
+    share = amplitude**2 / 2 / (amplitude**2 / 2 + 1)
+    assert tonality(density, frequencies)[0] == pytest.approx(share, abs=0.06)
