@@ -72,6 +72,8 @@ def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         "rig": rig.number,
         "specimen": specimen.number,
         "recording": record.number,
+        "pair": record.pair,
+        "rung": record.rung,
         "split": SPLITS.index(specimen.split),
         "source": f"{recipe.name}/{record.number}",
         "diametral_clearance": specimen.properties["diametral_clearance"],

@@ -25,6 +25,8 @@ SIMULATED = (
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),
     Variable("operating_clearance", "f8", "m", "latent", "diametral clearance in operation: warm, oiled, under axial load"),
     Variable("clipped", "i4", "1", "latent", "samples at the limits of the converter"),
+    Variable("pair", "i4", "1", "provenance", "number of the group of records that differ in their fault's severity alone, -1 without"),
+    Variable("rung", "i4", "1", "provenance", "place of the severity in corpus.rungs of the recipe, -1 outside a group"),
     Variable("oversampling", "i4", "1", "provenance", "integration steps per sample"),
     Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
     Variable("step_error", "f8", "1", "provenance", "relative rms change of the bodies' motion at half the step, NaN if not tried"),

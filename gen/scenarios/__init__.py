@@ -1,18 +1,20 @@
 """Scenarios: rigs, specimens and records with every value drawn; the simulation draws only the random processes in time.
 
-====== =================================================================
-module responsibility
-====== =================================================================
-model  dataclasses of rig, specimen and record; random streams
-draws  draw values from the distributions of a recipe section
-faults choose the fault class of each specimen and draw its damage
-draw   draw rigs, specimens and records
-stored write a scenario as the JSON text that a corpus stores, and read it
-====== =================================================================
+========= ===================================================================
+module    responsibility
+========= ===================================================================
+model     dataclasses of rig, specimen and record; random streams
+draws     draw values from the distributions of a recipe section
+classes   choose the fault class of each specimen
+faults    draw the damage of a specimen
+operating draw the operating conditions of a record
+draw      draw rigs, specimens and records
+stored    write a scenario as the JSON text that a corpus stores, and read it
+========= ===================================================================
 """
 
+from gen.scenarios.classes import fault_of_each_specimen, first_records, first_specimens
 from gen.scenarios.draw import draw_scenarios
-from gen.scenarios.faults import fault_of_each_specimen, first_specimens
 from gen.scenarios.model import (
     Background,
     Mode,
@@ -47,6 +49,7 @@ __all__ = [
     "Wear",
     "draw_scenarios",
     "fault_of_each_specimen",
+    "first_records",
     "first_specimens",
     "read_scenario",
     "scenario_texts",

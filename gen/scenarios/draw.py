@@ -8,30 +8,36 @@ fault stream depends on the fault: a record with its fault and the same record w
 import functools
 import math
 import warnings
+from collections.abc import Callable
 from dataclasses import replace
 from itertools import pairwise
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
 from gen.errors import RecipeError
-from gen.physics.bearing import Bearing
+from gen.physics.bearing import Bearing, free_contact_angle
 from gen.physics.profile import Profile
 from gen.recipe import (
+    FREE_ANGLE,
     CatalogueBearing,
     Modes,
     PathSection,
     ProfileSection,
     Recipe,
+    Section,
     fault_class,
+    quantities,
 )
 from gen.recipe.distributions import weighted_index
+from gen.scenarios.classes import fault_of_each_specimen
 from gen.scenarios.draws import Draws
-from gen.scenarios.faults import damaged, fault_of_each_specimen
+from gen.scenarios.faults import damaged
 from gen.scenarios.model import (
     Background,
+    Drawn,
     Mode,
     Operation,
     Path,
@@ -44,7 +50,8 @@ from gen.scenarios.model import (
     Tone,
     stream,
 )
-from gen.units import decibel_to_ratio, percent_to_share
+from gen.scenarios.operating import Common, Operating, common_numbers, draw_conditions, operating_of
+from gen.units import decibel_to_ratio, percent_to_share, split_unit
 
 STEEPEST_CONTACT = math.radians(45)
 _DIMENSIONS = 64  # quasi-random values of an item; its further values are pseudo-random
@@ -63,26 +70,30 @@ def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> l
         If a drawn bearing cannot exist or a drawn spall does not fit it.
     """
     stop = recipe.n_records if stop is None else min(stop, recipe.n_records)
-    per_specimen = recipe.corpus.records_per_specimen
+    per_specimen = recipe.corpus.records_of_a_specimen
     per_rig = recipe.corpus.specimens_per_rig
     first_specimen, last_specimen = first // per_specimen, (stop - 1) // per_specimen
     first_rig, last_rig = first_specimen // per_rig, last_specimen // per_rig
-    rig_points = _points(recipe, Purpose.RIG, first_rig, last_rig + 1)
-    rigs = {number: _draw_rig(recipe, number, point) for number, point in rig_points.items()}
+    rig_draws = {
+        number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number)
+        for number, point in _points(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
+    }
+    rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
-    specimens = {
-        number: _draw_specimen(recipe, rigs[number // per_rig], number, point, classes[number // per_rig])
+    specimen_draws = {
+        number: Draws(stream(recipe.seed, number // per_rig, number, 0, Purpose.SPECIMEN), point, number)
         for number, point in _points(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
     }
-    return [
-        Scenario(
-            recipe.seed,
-            rigs[number // per_specimen // per_rig],
-            specimens[number // per_specimen],
-            _draw_record(recipe, specimens[number // per_specimen], number, point),
-        )
-        for number, point in _points(recipe, Purpose.RECORD, first, stop).items()
-    ]
+    specimens = {
+        number: _draw_specimen(recipe, rigs[number // per_rig], number, draws, classes[number // per_rig])
+        for number, draws in specimen_draws.items()
+    }
+    sources = {
+        number: _source(recipe, rigs[number // per_rig], specimen, rig_draws[number // per_rig], specimen_draws[number])
+        for number, specimen in specimens.items()
+    }
+    points = _record_points(recipe, first, stop)
+    return [_draw_record(recipe, sources[number // per_specimen], number, points) for number in range(first, stop)]
 
 
 def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
@@ -105,13 +116,13 @@ def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, 
     return dict(zip(range(first, stop), points, strict=True))
 
 
-def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
-    draws = Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number)
+def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     machine = draws.section(recipe.machine)
     # ISO 21940-11 defines the balance grade at the highest speed of the machine
-    highest_rate = recipe.operation.shaft_rpm.support()[1] / 60
+    highest_rate = max(operation.shaft_rpm.support()[1] for operation in recipe.operations.values()) / 60
     machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
-    resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator)
+    known = _known(recipe.machine, machine)
+    resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator, known)
     bearing = _draw_bearing(recipe, draws, number)
     level = draws.section(recipe.level)
     channels = []
@@ -218,13 +229,9 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     )
 
 
-def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str]) -> Specimen:
-    draws = Draws(
-        stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN),
-        point,
-        number,
-    )
-    properties = draws.section(recipe.specimen)
+def _draw_specimen(recipe: Recipe, rig: Rig, number: int, draws: Draws, classes: list[str]) -> Specimen:
+    known = _known_of_rig(recipe, rig)
+    properties = draws.section(recipe.specimen, {**known, FREE_ANGLE: functools.partial(_free_angle, rig.bearing)})
     bearing = replace(
         rig.bearing,
         contact_angle=rig.bearing.contact_angle + properties["contact_angle"],
@@ -239,12 +246,31 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, point: NDArray[np.floa
     position = number % recipe.corpus.specimens_per_rig
     fault = classes[position]
     draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
-    wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
-    entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
-    specimen = Specimen(
-        number, bearing, properties, fault, spalls=(), axis={}, split=_draw_split(recipe, rig.number, position)
-    )
-    return damaged(draws, entry, specimen)
+    wanted = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) == fault]
+    entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), draws.u())]
+    split = _draw_split(recipe, rig.number, position)
+    specimen = Specimen(number, bearing, properties, fault, spalls=(), axis={}, split=split, entry=entry)
+    return damaged(draws, recipe.faults[entry], specimen, {**known, **_known(recipe.specimen, properties)})
+
+
+def _known(section: Section, drawn: Drawn) -> dict[str, Any]:
+    """Drawn values of a section by the keys of the recipe [SI]."""
+    return {key: drawn[split_unit(key)[0]] for key in quantities(section)}
+
+
+def _known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, Any]:
+    """Quantities of a rig that those of its specimens and records can be a share of [SI]."""
+    dimensions = {"pitch_diameter_mm": rig.bearing.pitch_diameter, "ball_diameter_mm": rig.bearing.ball_diameter}
+    return {**_known(recipe.machine, rig.machine), **dimensions}
+
+
+def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:
+    """Free contact angle of a bearing with the clearance and the grooves of a specimen [rad]; 0 if its drawing has a contact angle."""
+    if bearing.contact_angle != 0:
+        return 0.0
+    inner, outer = value("inner_conformity"), value("outer_conformity")
+    grooved = replace(bearing, inner_conformity=inner, outer_conformity=outer)
+    return free_contact_angle(grooved, value("diametral_clearance_um"))
 
 
 def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
@@ -267,24 +293,81 @@ def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
     return stream(seed, rig, 0, 0, Purpose.SPLIT).permutation(count)
 
 
-def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray[np.float64]) -> Operation:
-    rig = specimen.number // recipe.corpus.specimens_per_rig
-    draws = Draws(stream(recipe.seed, rig, specimen.number, number, Purpose.RECORD), point, number)
-    conditions = draws.section(recipe.operation)
-    level = recipe.level
+class _Source(NamedTuple):
+    """What the records of one specimen are drawn from."""
+
+    rig: Rig
+    rungs: tuple[Specimen, ...]
+    """The specimen at every rung, or the specimen alone."""
+    operating: Operating
+    commons: dict[Any, Common]
+    known: dict[str, Any]
+
+
+def _source(recipe: Recipe, rig: Rig, specimen: Specimen, of_rig: Draws, of_specimen: Draws) -> _Source:
+    rungs = recipe.corpus.rungs if recipe.corpus.rungs is not None and specimen.fault != "healthy" else (1.0,)
+    return _Source(
+        rig,
+        tuple(specimen.at_severity(share) for share in rungs),
+        operating_of(recipe, specimen.entry),
+        {
+            "rig": common_numbers(
+                recipe, stream(recipe.seed, rig.number, 0, 0, Purpose.RIG_OPERATION), of_rig.combination.number
+            ),
+            "specimen": common_numbers(
+                recipe,
+                stream(recipe.seed, rig.number, specimen.number, 0, Purpose.SPECIMEN_OPERATION),
+                of_specimen.combination.number,
+            ),
+        },
+        {**_known_of_rig(recipe, rig), **_known(recipe.specimen, specimen.properties)},
+    )
+
+
+def _record_points(recipe: Recipe, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
+    """Quasi-random points of the groups of ``n_rungs`` records that hold the records ``first`` to ``stop``, by number.
+
+    A faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
+    points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
+    """
+    rungs = recipe.corpus.n_rungs
+    groups = recipe.corpus.n_records // rungs
+    points: dict[int, NDArray[np.float64]] = {}
+    for place in range(rungs):
+        points |= _points(recipe, Purpose.RECORD, place * groups + first // rungs, place * groups - (-stop // rungs))
+    return points
+
+
+def _draw_record(recipe: Recipe, source: _Source, number: int, points: dict[int, NDArray[np.float64]]) -> Scenario:
+    group, rung = divmod(number, recipe.corpus.n_rungs)
+    in_group = len(source.rungs) > 1
+    item = group if in_group else rung * (recipe.corpus.n_records // recipe.corpus.n_rungs) + group
+    specimen = source.rungs[rung if in_group else 0]
+    first = number - rung if in_group else number
+    place = recipe.seed, source.rig.number, specimen.number, first
+    draws = Draws(stream(*place, Purpose.RECORD), points[item], item)
+    conditions = draw_conditions(source.operating, draws, source.commons, source.known)
+    entry, level = recipe.faults[specimen.entry], recipe.level
     snr = rms = None
     if level.kind == "snr":
-        u = draws.u()
-        snr = (level.healthy_db if specimen.fault == "healthy" else level.faulty_db).draw(u)
-        rms = draws.value(level.rms_m_s2)
-    profiles = [
-        None if profile is None else _draw_profile(draws, profile, recipe.recording.duration_s)
-        for profile in (recipe.operation.speed_profile, recipe.operation.load_profile)
-    ]
-    return Operation(number, conditions, snr, rms, *profiles)
+        changed = {} if entry.level is None else entry.level.given()
+        u, key = draws.u(), "healthy_db" if fault_class(entry) == "healthy" else "faulty_db"
+        snr = changed.get(key, getattr(level, key)).draw(u)
+        rms = draws.value(changed.get("rms_m_s2", level.rms_m_s2))
+    duration, changed = recipe.recording.duration_s, {} if entry.operation is None else entry.operation.given()
+    profiles = []
+    for key, purpose in (("speed_profile", Purpose.SPEED_PROFILE), ("load_profile", Purpose.LOAD_PROFILE)):
+        profile = _draw_profile(draws, getattr(recipe.operation, key), duration)
+        if key in changed:
+            profile = _draw_profile(Draws(stream(*place, purpose), np.empty(0), item), changed[key], duration)
+        profiles.append(profile)
+    labels = {"pair": group, "rung": rung} if in_group else {}
+    return Scenario(recipe.seed, source.rig, specimen, Operation(number, conditions, snr, rms, *profiles, **labels))
 
 
-def _draw_profile(draws: Draws, profile: ProfileSection, duration: float) -> Profile:
+def _draw_profile(draws: Draws, profile: ProfileSection | None, duration: float) -> Profile | None:
+    if profile is None:
+        return None
     if profile.kind == "table":
         return Profile(profile.times_s, tuple(map(percent_to_share, profile.percent)))
     if profile.kind == "steps":

@@ -1,0 +1,86 @@
+"""Draw the operating conditions of a record: values of the record, values of its rig or specimen with scatter, and shares of others.
+
+Every quantity takes one number from the stream of the record and one from those of its specimen and its rig, whether it needs them or
+not. So to draw one quantity per rig, to make it a share, or to change it for one fault moves no other.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from gen.recipe import Recipe, Section, quantities
+from gen.scenarios.draws import Combination, Draws, Known, in_si
+from gen.scenarios.model import Drawn
+
+Level = Literal["rig", "specimen", "record"]
+Distributions = Mapping[str, Any]
+
+
+class Operating(NamedTuple):
+    """Distributions of the operating quantities, by key: those of ``operation``, and those that one entry of ``faults`` changes."""
+
+    section: Section
+    usual: Distributions
+    changes: Distributions
+
+    @property
+    def wanted(self) -> Distributions:
+        """Distribution that every quantity is drawn from."""
+        return {**self.usual, **self.changes}
+
+
+class Common(NamedTuple):
+    """Random numbers that all records of a rig, or of a specimen, have in common: one for each operating quantity."""
+
+    numbers: Mapping[str, float]
+    combination: int
+    """Number that the grids of this level begin with."""
+
+
+def operating_of(recipe: Recipe, entry: int) -> Operating:
+    """Distributions of the operating quantities of the specimens with one entry of ``faults``."""
+    usual, changes = quantities(recipe.operation), recipe.faults[entry].operation
+    return Operating(recipe.operation, usual, {} if changes is None else quantities(changes))
+
+
+def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> Common:
+    """Draw the numbers that all records of a rig or a specimen have in common from a stream of that rig or specimen."""
+    return Common({key: float(rng.random()) for key in quantities(recipe.operation)}, combination)
+
+
+def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, Common], known: Known) -> Drawn:
+    """Operating conditions of a record [SI], by the key without its unit.
+
+    Raises
+    ------
+    RecipeError
+        If a share is outside the range of its key.
+    """
+    wanted = operating.wanted
+    u = {key: draws.u() for key in wanted}
+    found = _values(operating, "record", u, draws.combination)
+    for level in {_level_of(distribution) for distribution in wanted.values()} - {"record"}:
+        common = commons[level]
+        for key, value in _values(operating, level, common.numbers, Combination(common.combination)).items():
+            found[key] = wanted[key].at_scatter(value, u[key])
+    return in_si(operating.section, wanted, {key: found[key] for key in wanted}, known)
+
+
+def _values(
+    operating: Operating, level: Level, numbers: Mapping[str, float], combination: Combination
+) -> dict[str, float]:
+    """Values of the quantities that are drawn at a level, in the units of their keys.
+
+    The grids of ``operation`` take their combination before those of the changes, so that a change moves no other quantity.
+    """
+    found: dict[str, float] = {}
+    for distributions in (operating.usual, operating.changes):
+        for key, distribution in distributions.items():
+            if _level_of(distribution) == level:
+                found[key] = combination.value(distribution, numbers[key])
+    return {key: value for key, value in found.items() if _level_of(operating.wanted[key]) == level}
+
+
+def _level_of(distribution: Any) -> Level:
+    return distribution.per or "record"
