@@ -17,9 +17,9 @@ class _Weighted(Section):
     weight: Weight = 1.0
     """Share of the records with this fault, relative to the other entries of `faults`, whatever `corpus.specimens_per_rig` is."""
     operation: OperationChanges | None = None
-    """Keys of `operation` that replace those of the recipe for this entry. Beware: its class can then be told by speed or load alone."""
+    """Keys of `operation` that replace those of the recipe for this entry. Beware: speed or load alone may then tell its class."""
     level: LevelChanges | None = None
-    """Keys of `level` that replace those of the recipe for this entry, with `level.kind: snr`. Beware: its level can then tell the class."""
+    """Keys of `level` that replace those of the recipe for this entry, with `level.kind: snr`. Beware: they too may tell its class."""
 
 
 class Healthy(_Weighted):

@@ -171,20 +171,22 @@ def _is_rounding(end: float, bounds: dict[str, Any]) -> bool:
 def _name_problem(recipe: "Recipe", scope: _Scope, key: str, named: str) -> str | None:
     """Error sentence if a quantity cannot be a share of the one that it names, else None."""
     own = quantities(scope.section)
-    unit = unit_suffix(key)
+    unit, at = unit_suffix(key), f"{scope.place}.{key}.share_of"
     if key in _COUNTS or unit in _WITHOUT_SHARES:
-        return f"{scope.place}.{key}.share_of: a {'count' if key in _COUNTS else 'value in ' + UNITS[unit].symbol} has no share; give it a range."
+        found = "count" if key in _COUNTS else f"value in {UNITS[unit].symbol}"
+        return f"{at}: a {found} has no share; give it a range of its own."
     allowed = [
         name for name in (*own, *scope.above) if name not in _COUNTS and name != key and _kind(name) == _kind(key)
     ]
     if named in allowed or named == key:
         return None
-    at = f"{scope.place}.{key}.share_of"
     advice = f"allowed are {', '.join(allowed)}" if allowed else "give the quantity a range of its own"
     if named in own or named in scope.above:
         return f"{at}: {named} is of another kind than {key}; {advice}."
     if named in quantities(recipe.operation) or named in quantities(recipe.specimen):
         return f"{at}: {named} is drawn after {key}, not with it or before it; {advice}."
+    if named in (FREE_ANGLE, BALL_SPACING, *BEARING_QUANTITIES):
+        return f"{at}: {named} is not known here; {advice}."
     near = difflib.get_close_matches(named, allowed, 1)
     return f"{at}: there is no quantity {named!r}; " + (f"did you mean {near[0]}?" if near else f"{advice}.")
 
@@ -199,8 +201,10 @@ def _loop(scope: _Scope, key: str) -> str | None:
     own, chain = quantities(scope.section), [key]
     while (named := own[chain[-1]].share_of) in own:
         if named == key:
-            of = " of ".join([*chain[1:], key])
-            return f"{scope.place}.{key}.share_of: is a share of {of}, a loop; give one of them a range of its own."
+            round_trip = ", which is a share of ".join([*chain[1:], key])
+            return (
+                f"{scope.place}.{key}.share_of: {key} is a share of {round_trip}; give one of them a range of its own."
+            )
         if named in chain:
             return None  # a loop that the key is not part of
         chain.append(named)

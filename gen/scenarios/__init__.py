@@ -4,11 +4,13 @@
 module    responsibility
 ========= ===================================================================
 model     dataclasses of rig, specimen and record; random streams
+points    quasi-random points
 draws     draw values from the distributions of a recipe section
 classes   choose the fault class of each specimen
 faults    draw the damage of a specimen
-operating draw the operating conditions of a record
-draw      draw rigs, specimens and records
+operating operating conditions: per rig, specimen or record, shares, changes
+records   records of a specimen, with rungs of severity
+draw      draw rigs and specimens, and with them all records
 stored    write a scenario as the JSON text that a corpus stores, and read it
 ========= ===================================================================
 """

@@ -29,9 +29,11 @@ def class_shares(recipe: Recipe) -> dict[str, float]:
         weights[fault_class(entry)] += entry.weight
     total, corpus = sum(weights.values()), recipe.corpus
     if corpus.rungs is not None and corpus.rungs[0] == 0:
-        # a faulty specimen has one record in n_rungs before its damage
-        weights["healthy"] -= (total - weights["healthy"]) / (corpus.n_rungs - 1)
-        total = sum(weights.values())
+        # the specimens of a fault also have one healthy record for every n_rungs - 1 with their fault
+        for kind in set(weights) - {"healthy"}:
+            before_damage = weights[kind] / (corpus.n_rungs - 1)
+            weights[kind] += before_damage
+            weights["healthy"] -= before_damage
     return {kind: weight / total for kind, weight in weights.items() if weight > _ROUNDING * total}
 
 

@@ -7,11 +7,9 @@ fault stream depends on the fault: a record with its fault and the same record w
 
 import functools
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import replace
-from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,27 +17,21 @@ from numpy.typing import NDArray
 from gen.corpus import SPLITS
 from gen.errors import RecipeError
 from gen.physics.bearing import Bearing, free_contact_angle
-from gen.physics.profile import Profile
 from gen.recipe import (
     FREE_ANGLE,
     CatalogueBearing,
     Modes,
     PathSection,
-    ProfileSection,
     Recipe,
-    Section,
     fault_class,
-    quantities,
 )
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.classes import fault_of_each_specimen
-from gen.scenarios.draws import Draws
+from gen.scenarios.draws import Draws, known_of, known_of_rig
 from gen.scenarios.faults import damaged
 from gen.scenarios.model import (
     Background,
-    Drawn,
     Mode,
-    Operation,
     Path,
     Pickup,
     Purpose,
@@ -50,13 +42,11 @@ from gen.scenarios.model import (
     Tone,
     stream,
 )
-from gen.scenarios.operating import Common, Operating, common_numbers, draw_conditions, operating_of
-from gen.units import decibel_to_ratio, percent_to_share, split_unit
+from gen.scenarios.points import points_of
+from gen.scenarios.records import draw_record, record_points, source_of
+from gen.units import decibel_to_ratio, percent_to_share
 
 STEEPEST_CONTACT = math.radians(45)
-_DIMENSIONS = 64  # quasi-random values of an item; its further values are pseudo-random
-# Each level has its own dimensions: with common ones the first values of a specimen and of its only record were correlated (r up to 1).
-_FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
 
 
 def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> list[Scenario]:
@@ -75,45 +65,29 @@ def draw_scenarios(recipe: Recipe, first: int = 0, stop: int | None = None) -> l
     first_specimen, last_specimen = first // per_specimen, (stop - 1) // per_specimen
     first_rig, last_rig = first_specimen // per_rig, last_specimen // per_rig
     rig_draws = {
-        number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number)
-        for number, point in _points(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
+        number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number, f"rig {number}")
+        for number, point in points_of(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
     }
     rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
     specimen_draws = {
-        number: Draws(stream(recipe.seed, number // per_rig, number, 0, Purpose.SPECIMEN), point, number)
-        for number, point in _points(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
+        number: Draws(
+            stream(recipe.seed, number // per_rig, number, 0, Purpose.SPECIMEN), point, number, f"specimen {number}"
+        )
+        for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
     }
     specimens = {
         number: _draw_specimen(recipe, rigs[number // per_rig], number, draws, classes[number // per_rig])
         for number, draws in specimen_draws.items()
     }
     sources = {
-        number: _source(recipe, rigs[number // per_rig], specimen, rig_draws[number // per_rig], specimen_draws[number])
+        number: source_of(
+            recipe, rigs[number // per_rig], specimen, rig_draws[number // per_rig], specimen_draws[number]
+        )
         for number, specimen in specimens.items()
     }
-    points = _record_points(recipe, first, stop)
-    return [_draw_record(recipe, sources[number // per_specimen], number, points) for number in range(first, stop)]
-
-
-def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
-    """Quasi-random points of the items ``first`` to ``stop`` of a level, by number; empty points if sampling is random."""
-    if recipe.corpus.sampling == "random":
-        return {number: np.empty(0) for number in range(first, stop)}
-    from scipy.stats import qmc  # the import takes half a second, and few recipes need it
-
-    engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
-    rng = stream(recipe.seed, 0, 0, 0, Purpose.SAMPLING)
-    engine = engine_type(_FIRST_DIMENSION[level] + _DIMENSIONS, scramble=True, rng=rng)
-    if isinstance(engine, qmc.Halton):
-        engine.num_generated = first  # Halton.fast_forward computes all points before it
-    elif first > 0:  # Sobol.fast_forward(0) overflows in scipy
-        engine.fast_forward(first)
-    with warnings.catch_warnings():
-        # a range of the sequence is not balanced, the whole sequence is
-        warnings.filterwarnings("ignore", "The balance properties", UserWarning)
-        points = engine.random(stop - first)[:, _FIRST_DIMENSION[level] :]
-    return dict(zip(range(first, stop), points, strict=True))
+    points = record_points(recipe, first, stop)
+    return [draw_record(recipe, sources[number // per_specimen], number, points) for number in range(first, stop)]
 
 
 def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
@@ -121,7 +95,7 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     # ISO 21940-11 defines the balance grade at the highest speed of the machine
     highest_rate = max(operation.shaft_rpm.support()[1] for operation in recipe.operations.values()) / 60
     machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
-    known = _known(recipe.machine, machine)
+    known = known_of(recipe.machine, machine)
     resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator, known)
     bearing = _draw_bearing(recipe, draws, number)
     level = draws.section(recipe.level)
@@ -230,7 +204,7 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
 
 
 def _draw_specimen(recipe: Recipe, rig: Rig, number: int, draws: Draws, classes: list[str]) -> Specimen:
-    known = _known_of_rig(recipe, rig)
+    known = known_of_rig(recipe, rig)
     properties = draws.section(recipe.specimen, {**known, FREE_ANGLE: functools.partial(_free_angle, rig.bearing)})
     bearing = replace(
         rig.bearing,
@@ -245,23 +219,12 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, draws: Draws, classes:
         )
     position = number % recipe.corpus.specimens_per_rig
     fault = classes[position]
-    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number)
+    draws = Draws(stream(recipe.seed, rig.number, number, 0, Purpose.FAULT), np.empty(0), number, f"specimen {number}")
     wanted = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) == fault]
     entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), draws.u())]
     split = _draw_split(recipe, rig.number, position)
     specimen = Specimen(number, bearing, properties, fault, spalls=(), axis={}, split=split, entry=entry)
-    return damaged(draws, recipe.faults[entry], specimen, {**known, **_known(recipe.specimen, properties)})
-
-
-def _known(section: Section, drawn: Drawn) -> dict[str, Any]:
-    """Drawn values of a section by the keys of the recipe [SI]."""
-    return {key: drawn[split_unit(key)[0]] for key in quantities(section)}
-
-
-def _known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, Any]:
-    """Quantities of a rig that those of its specimens and records can be a share of [SI]."""
-    dimensions = {"pitch_diameter_mm": rig.bearing.pitch_diameter, "ball_diameter_mm": rig.bearing.ball_diameter}
-    return {**_known(recipe.machine, rig.machine), **dimensions}
+    return damaged(draws, recipe.faults[entry], specimen, {**known, **known_of(recipe.specimen, properties)})
 
 
 def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:
@@ -291,92 +254,3 @@ def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
 def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
     """Random order of the rigs, or of the specimens of a rig, for the split."""
     return stream(seed, rig, 0, 0, Purpose.SPLIT).permutation(count)
-
-
-class _Source(NamedTuple):
-    """What the records of one specimen are drawn from."""
-
-    rig: Rig
-    rungs: tuple[Specimen, ...]
-    """The specimen at every rung, or the specimen alone."""
-    operating: Operating
-    commons: dict[Any, Common]
-    known: dict[str, Any]
-
-
-def _source(recipe: Recipe, rig: Rig, specimen: Specimen, of_rig: Draws, of_specimen: Draws) -> _Source:
-    rungs = recipe.corpus.rungs if recipe.corpus.rungs is not None and specimen.fault != "healthy" else (1.0,)
-    return _Source(
-        rig,
-        tuple(specimen.at_severity(share) for share in rungs),
-        operating_of(recipe, specimen.entry),
-        {
-            "rig": common_numbers(
-                recipe, stream(recipe.seed, rig.number, 0, 0, Purpose.RIG_OPERATION), of_rig.combination.number
-            ),
-            "specimen": common_numbers(
-                recipe,
-                stream(recipe.seed, rig.number, specimen.number, 0, Purpose.SPECIMEN_OPERATION),
-                of_specimen.combination.number,
-            ),
-        },
-        {**_known_of_rig(recipe, rig), **_known(recipe.specimen, specimen.properties)},
-    )
-
-
-def _record_points(recipe: Recipe, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
-    """Quasi-random points of the groups of ``n_rungs`` records that hold the records ``first`` to ``stop``, by number.
-
-    A faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
-    points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
-    """
-    rungs = recipe.corpus.n_rungs
-    groups = recipe.corpus.n_records // rungs
-    points: dict[int, NDArray[np.float64]] = {}
-    for place in range(rungs):
-        points |= _points(recipe, Purpose.RECORD, place * groups + first // rungs, place * groups - (-stop // rungs))
-    return points
-
-
-def _draw_record(recipe: Recipe, source: _Source, number: int, points: dict[int, NDArray[np.float64]]) -> Scenario:
-    group, rung = divmod(number, recipe.corpus.n_rungs)
-    in_group = len(source.rungs) > 1
-    item = group if in_group else rung * (recipe.corpus.n_records // recipe.corpus.n_rungs) + group
-    specimen = source.rungs[rung if in_group else 0]
-    first = number - rung if in_group else number
-    place = recipe.seed, source.rig.number, specimen.number, first
-    draws = Draws(stream(*place, Purpose.RECORD), points[item], item)
-    conditions = draw_conditions(source.operating, draws, source.commons, source.known)
-    entry, level = recipe.faults[specimen.entry], recipe.level
-    snr = rms = None
-    if level.kind == "snr":
-        changed = {} if entry.level is None else entry.level.given()
-        u, key = draws.u(), "healthy_db" if fault_class(entry) == "healthy" else "faulty_db"
-        snr = changed.get(key, getattr(level, key)).draw(u)
-        rms = draws.value(changed.get("rms_m_s2", level.rms_m_s2))
-    duration, changed = recipe.recording.duration_s, {} if entry.operation is None else entry.operation.given()
-    profiles = []
-    for key, purpose in (("speed_profile", Purpose.SPEED_PROFILE), ("load_profile", Purpose.LOAD_PROFILE)):
-        profile = _draw_profile(draws, getattr(recipe.operation, key), duration)
-        if key in changed:
-            profile = _draw_profile(Draws(stream(*place, purpose), np.empty(0), item), changed[key], duration)
-        profiles.append(profile)
-    labels = {"pair": group, "rung": rung} if in_group else {}
-    return Scenario(recipe.seed, source.rig, specimen, Operation(number, conditions, snr, rms, *profiles, **labels))
-
-
-def _draw_profile(draws: Draws, profile: ProfileSection | None, duration: float) -> Profile | None:
-    if profile is None:
-        return None
-    if profile.kind == "table":
-        return Profile(profile.times_s, tuple(map(percent_to_share, profile.percent)))
-    if profile.kind == "steps":
-        levels = tuple(map(percent_to_share, profile.levels_percent))
-        changes = [duration * change / len(levels) for change in range(1, len(levels))]
-        times = [time + side * profile.step_s / 2 for time in changes for side in (-1, 1)]
-        shares = [level for pair in pairwise(levels) for level in pair]
-        return Profile(tuple(times), tuple(shares), smooth=True)
-    drawn = draws.section(profile)
-    if profile.kind == "ramp":
-        return Profile((0.0, duration), (drawn["from"], drawn["to"]))
-    return Profile((drawn["start"], drawn["start"] + drawn["lasting"]), (drawn["from"], drawn["to"]), smooth=True)

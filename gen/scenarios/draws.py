@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.errors import RecipeError
-from gen.recipe import Section, quantities
+from gen.recipe import Recipe, Section, quantities
 from gen.recipe.distributions import Grid, interval, is_within
-from gen.scenarios.model import Drawn
+from gen.scenarios.model import Drawn, Rig
 from gen.units import split_unit
 
 Derived = Callable[[Callable[[str], float]], float]
@@ -44,10 +44,11 @@ class Draws:
     """Source of the values of one rig, specimen or record.
 
     The first values come from the coordinates of a quasi-random ``point``, further ones from ``rng``. A grid takes its value by the
-    ``number`` of the item; several grids enumerate all combinations.
+    ``number`` of the item; several grids enumerate all combinations. Errors name the ``item``, such as ``specimen 3``.
     """
 
-    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], number: int) -> None:
+    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], number: int, item: str) -> None:
+        self.item = item
         self._rng = rng
         self._point = list(point[::-1])
         self.combination = Combination(number)
@@ -70,15 +71,19 @@ class Draws:
         """
         found = {key: distribution for key, distribution in quantities(section).items() if keys is None or key in keys}
         numbers = {key: self.value(distribution) for key, distribution in found.items()}
-        return in_si(section, found, numbers, known or {})
+        return in_si(section, found, numbers, known or {}, self.item)
 
     def is_present(self, section: Any) -> bool:
         """True with the probability that a section gives."""
         return self.u() < section.probability
 
 
-def in_si(section: Section, distributions: Mapping[str, Any], numbers: Mapping[str, float], known: Known) -> Drawn:
-    """Drawn ``numbers`` of a section in SI units, by the key without its unit; shares are multiplied by what they are a share of.
+def in_si(
+    section: Section, distributions: Mapping[str, Any], numbers: Mapping[str, float], known: Known, item: str
+) -> Drawn:
+    """Drawn ``numbers`` of a section of an ``item`` in SI units, by the key without its unit.
+
+    Each share is multiplied by the quantity that it is a share of, of the section or ``known``.
 
     Raises
     ------
@@ -94,7 +99,7 @@ def in_si(section: Section, distributions: Mapping[str, Any], numbers: Mapping[s
         if named is None:
             return numbers[key] * _unit_of(key)[1]
         found = numbers[key] * value(named)
-        _check_share(section, key, found, f"{numbers[key]:.4g} of {named}")
+        _check_share(section, key, found, f"{item}: {key}: a share of {numbers[key]:.4g} of {named}")
         return found
 
     return {_unit_of(key)[0]: value(key) for key in numbers}
@@ -105,5 +110,16 @@ def _check_share(section: Section, key: str, value: float, share: str) -> None:
     found = value / _unit_of(key)[1]
     if not any(is_within(found * rounding, bounds) for rounding in (1, 1 - 1e-9, 1 + 1e-9)):
         raise RecipeError(
-            f"{key}: a share of {share} gives {found:.4g}, which is not in {interval(bounds)}; change the range of the share."
+            f"{share} gives {found:.4g}, which is not in {interval(bounds)}; change the range of the share."
         )
+
+
+def known_of(section: Section, drawn: Drawn) -> dict[str, float]:
+    """Drawn values of a section by the keys of the recipe [SI]."""
+    return {key: drawn[split_unit(key)[0]] for key in quantities(section)}
+
+
+def known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, float]:
+    """Quantities of a rig that those of its specimens and records can be a share of [SI]."""
+    dimensions = {"pitch_diameter_mm": rig.bearing.pitch_diameter, "ball_diameter_mm": rig.bearing.ball_diameter}
+    return {**known_of(recipe.machine, rig.machine), **dimensions}

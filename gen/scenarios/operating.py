@@ -60,11 +60,13 @@ def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, 
     wanted = operating.wanted
     u = {key: draws.u() for key in wanted}
     found = _values(operating, "record", u, draws.combination)
-    for level in {_level_of(distribution) for distribution in wanted.values()} - {"record"}:
-        common = commons[level]
+    levels = {_level_of(distribution) for distribution in wanted.values()}
+    for level, common in commons.items():
+        if level not in levels:
+            continue
         for key, value in _values(operating, level, common.numbers, Combination(common.combination)).items():
             found[key] = wanted[key].at_scatter(value, u[key])
-    return in_si(operating.section, wanted, {key: found[key] for key in wanted}, known)
+    return in_si(operating.section, wanted, {key: found[key] for key in wanted}, known, draws.item)
 
 
 def _values(
@@ -72,13 +74,17 @@ def _values(
 ) -> dict[str, float]:
     """Values of the quantities that are drawn at a level, in the units of their keys.
 
-    The grids of ``operation`` take their combination before those of the changes, so that a change moves no other quantity.
+    The grids of ``operation`` take their combination first and those of the changes go on from there, so that a change moves no other
+    quantity; for the same reason ``combination`` is left as ``operation`` leaves it.
     """
     found: dict[str, float] = {}
-    for distributions in (operating.usual, operating.changes):
-        for key, distribution in distributions.items():
-            if _level_of(distribution) == level:
-                found[key] = combination.value(distribution, numbers[key])
+    for key, distribution in operating.usual.items():
+        if _level_of(distribution) == level:
+            found[key] = combination.value(distribution, numbers[key])
+    further = Combination(combination.number)
+    for key, distribution in operating.changes.items():
+        if _level_of(distribution) == level:
+            found[key] = further.value(distribution, numbers[key])
     return {key: value for key, value in found.items() if _level_of(operating.wanted[key]) == level}
 
 
