@@ -41,17 +41,16 @@ class CorpusSection(Section):
     rigs: Count
     """Number of machines; each has its own draws of bearing, machine, path and background."""
     specimens_per_rig: Count
-    """Number of physical bearings that each rig carries in turn. Every rig has healthy and faulty ones if, by the weights of `faults`, it
-    has at least one of each on average; whatever the number is, the classes have the shares of their weights, in the long run exactly."""
+    """Number of physical bearings that each rig carries in turn. Whatever it is, the classes have the shares of their weights: exactly on
+    average, and within a few specimens from the first rigs on. A rig has healthy and faulty ones if it is due at least one of each."""
     records_per_specimen: Count
     """Number of records of each physical bearing, each with its own operating conditions; with `rungs`, at each rung."""
     rungs: Annotated[tuple[Annotated[Number, Field(ge=0, le=1)], ...], Field(min_length=2, max_length=100)] | None = (
         None
     )
-    """Shares of the drawn severity at which each record of a faulty specimen is repeated, in rising order. All else stays the same: rig,
-    specimen, conditions, motion and noise. 0 is the bearing before the damage, so `[0, 1]` gives counterfactual pairs and
-    `[0, 0.25, 0.5, 1]` ladders. A healthy specimen gets as many records, each with conditions of its own. The severity is the width and
-    depth of every spall, the rms of wear, and the pitch error and knock of a cage."""
+    """Shares of the drawn severity, in rising order, at which each record of a faulty specimen is repeated with all else the same; 0 is
+    the bearing before the damage. `[0, 1]` gives counterfactual pairs, `[0, 0.25, 0.5, 1]` severity ladders. A healthy specimen gets as
+    many records, each with conditions of its own."""
     records_per_part: Annotated[StrictInt, Field(ge=1, le=100_000)] = 256
     """Number of records in one file of the corpus. A part is simulated as a whole, so it sets the memory that is needed."""
     sampling: Literal["random", "sobol", "halton"] = "random"

@@ -301,8 +301,10 @@ def test_a_broken_recipe_gets_one_sentence(tmp_path, whole, broken, sentence):
         ),
         (
             f"[{{kind: healthy, weight: 0.5}}, {OUTER}]",
-            "corpus.rungs: rung 0 makes at least 50 % of all records healthy, and the weights of faults ask for 33.3 %; "
-            "give kind: healthy a weight of 1 or more, or leave out rung 0.",
+            (
+                "corpus.rungs: rung 0 makes at least 50 % of all records healthy, and the weights of faults ask for 33.3 %; "
+                "give kind: healthy a weight of 1 or more, or leave out rung 0."
+            ),
         ),
     ],
 )
