@@ -50,8 +50,8 @@ A quantity can name those of its own section and those of a level above it, if b
 
 `pitch_diameter_mm` and `ball_diameter_mm` are those of the bearing of the rig. `free_contact_angle_deg` is the contact
 angle of a ball bearing whose rings are pushed apart along the axis without force: `cos(angle) = 1 - clearance / (2 A)`
-with `A = (inner + outer conformity - 1) * ball diameter`. It is 0 without clearance, for rollers, and for a bearing with
-a contact angle on its drawing. `ball_spacing_mm` is the arc on the damaged race from one ball to the next.
+with `A = (inner + outer conformity - 1) * ball diameter`. It is 0 without clearance, for rollers, and for a bearing
+with a contact angle on its drawing. `ball_spacing_mm` is the arc on the damaged race from one ball to the next.
 
 **`per`** (in `operation` alone) draws one value for a rig or a specimen instead of one for each record, and
 **`scatter_percent`** lets its records deviate from it. A machine with one speed, held within 2 %:
@@ -67,10 +67,10 @@ the load instead of the fault.
 
 ## Pairs and ladders
 
-With `corpus.rungs` every record of a faulty specimen is repeated at each of these shares of its severity. The records of
-a group are neighbours, share the label `pair` and differ in `rung`, the place in the list; both are -1 for the records of
-healthy specimens. A record at rung 0 has the class `healthy`. All records of a group are of one specimen, so no split
-divides them.
+With `corpus.rungs` every record of a faulty specimen is repeated at each of these shares of its severity. The records
+of a group are neighbours, share the label `pair` and differ in `rung`, the place in the list; both are -1 for the
+records of healthy specimens. A record at rung 0 has the class `healthy`. All records of a group are of one specimen, so
+no split divides them.
 
 The weights of `faults` are shares of the records: as rung 0 gives healthy records already, there are fewer healthy
 specimens. The severity is the width and depth of every spall, the rms of wear, and the pitch error and knock of a cage.

@@ -116,7 +116,7 @@ def _check_share(section: Section, key: str, value: float, share: str) -> None:
 
 def known_of(section: Section, drawn: Drawn) -> dict[str, float]:
     """Drawn values of a section by the keys of the recipe [SI]."""
-    return {key: drawn[split_unit(key)[0]] for key in quantities(section)}
+    return {key: drawn[_unit_of(key)[0]] for key in quantities(section)}
 
 
 def known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, float]:

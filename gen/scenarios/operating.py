@@ -18,16 +18,17 @@ Distributions = Mapping[str, Any]
 
 
 class Operating(NamedTuple):
-    """Distributions of the operating quantities, by key: those of ``operation``, and those that one entry of ``faults`` changes."""
+    """Distributions of the operating quantities of a specimen, by key."""
 
     section: Section
     usual: Distributions
+    """Those of ``operation``."""
     changes: Distributions
-
-    @property
-    def wanted(self) -> Distributions:
-        """Distribution that every quantity is drawn from."""
-        return {**self.usual, **self.changes}
+    """Those that the entry of its fault replaces."""
+    wanted: Distributions
+    """Those that it has: the usual ones with the changes."""
+    levels: Mapping[str, Level]
+    """Level at which each quantity is drawn."""
 
 
 class Common(NamedTuple):
@@ -38,10 +39,13 @@ class Common(NamedTuple):
     """Number that the grids of this level begin with."""
 
 
-def operating_of(recipe: Recipe, entry: int) -> Operating:
-    """Distributions of the operating quantities of the specimens with one entry of ``faults``."""
-    usual, changes = quantities(recipe.operation), recipe.faults[entry].operation
-    return Operating(recipe.operation, usual, {} if changes is None else quantities(changes))
+def operating_of(recipe: Recipe, number: int) -> Operating:
+    """Distributions of the operating quantities of the specimens with the entry ``number`` of ``faults``."""
+    usual, entry = quantities(recipe.operation), recipe.faults[number].operation
+    changes = {} if entry is None else quantities(entry)
+    wanted = {**usual, **changes}
+    levels = {key: _level_of(distribution) for key, distribution in wanted.items()}
+    return Operating(recipe.operation, usual, changes, wanted, levels)
 
 
 def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> Common:
@@ -52,6 +56,8 @@ def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -
 def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, Common], known: Known) -> Drawn:
     """Operating conditions of a record [SI], by the key without its unit.
 
+    ``commons`` has the numbers of rig and specimen, if some quantity is drawn at that level.
+
     Raises
     ------
     RecipeError
@@ -60,10 +66,7 @@ def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, 
     wanted = operating.wanted
     u = {key: draws.u() for key in wanted}
     found = _values(operating, "record", u, draws.combination)
-    levels = {_level_of(distribution) for distribution in wanted.values()}
     for level, common in commons.items():
-        if level not in levels:
-            continue
         for key, value in _values(operating, level, common.numbers, Combination(common.combination)).items():
             found[key] = wanted[key].at_scatter(value, u[key])
     return in_si(operating.section, wanted, {key: found[key] for key in wanted}, known, draws.item)
@@ -85,7 +88,7 @@ def _values(
     for key, distribution in operating.changes.items():
         if _level_of(distribution) == level:
             found[key] = further.value(distribution, numbers[key])
-    return {key: value for key, value in found.items() if _level_of(operating.wanted[key]) == level}
+    return {key: value for key, value in found.items() if operating.levels[key] == level}
 
 
 def _level_of(distribution: Any) -> Level:

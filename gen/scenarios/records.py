@@ -24,8 +24,8 @@ class Source(NamedTuple):
     rungs: tuple[Specimen, ...]
     """The specimen at every rung; the specimen alone if its records are in no groups."""
     operating: Operating
-    rig_numbers: Common
-    specimen_numbers: Common
+    commons: dict[Level, Common]
+    """Numbers of rig and specimen, for the levels at which some operating quantity is drawn."""
     known: Known
     """Quantities of rig and specimen."""
 
@@ -33,16 +33,16 @@ class Source(NamedTuple):
 def source_of(recipe: Recipe, rig: Rig, specimen: Specimen, of_rig: Draws, of_specimen: Draws) -> Source:
     """Origin of the records of a specimen; its operating grids go on with the combinations of ``of_rig`` and ``of_specimen``."""
     rungs = recipe.corpus.rungs if recipe.corpus.rungs is not None and specimen.fault != "healthy" else (1.0,)
-    rig_stream = stream(recipe.seed, rig.number, 0, 0, Purpose.RIG_OPERATION)
-    specimen_stream = stream(recipe.seed, rig.number, specimen.number, 0, Purpose.SPECIMEN_OPERATION)
-    return Source(
-        rig,
-        tuple(specimen.at_severity(share) for share in rungs),
-        operating_of(recipe, specimen.entry),
-        common_numbers(recipe, rig_stream, of_rig.combination.number),
-        common_numbers(recipe, specimen_stream, of_specimen.combination.number),
-        {**known_of_rig(recipe, rig), **known_of(recipe.specimen, specimen.properties)},
-    )
+    operating = operating_of(recipe, specimen.entry)
+    commons: dict[Level, Common] = {}
+    if "rig" in operating.levels.values():
+        rng = stream(recipe.seed, rig.number, 0, 0, Purpose.RIG_OPERATION)
+        commons["rig"] = common_numbers(recipe, rng, of_rig.combination.number)
+    if "specimen" in operating.levels.values():
+        rng = stream(recipe.seed, rig.number, specimen.number, 0, Purpose.SPECIMEN_OPERATION)
+        commons["specimen"] = common_numbers(recipe, rng, of_specimen.combination.number)
+    known = {**known_of_rig(recipe, rig), **known_of(recipe.specimen, specimen.properties)}
+    return Source(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
 
 
 def record_points(recipe: Recipe, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
@@ -76,8 +76,7 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
     specimen, first = source.rungs[max(rung, 0)], number - max(rung, 0)
     streams = functools.partial(stream, recipe.seed, source.rig.number, specimen.number, first)
     draws = Draws(streams(Purpose.RECORD), points[item], item, f"record {number}")
-    commons: dict[Level, Common] = {"rig": source.rig_numbers, "specimen": source.specimen_numbers}
-    conditions = draw_conditions(source.operating, draws, commons, source.known)
+    conditions = draw_conditions(source.operating, draws, source.commons, source.known)
     entry = recipe.faults[specimen.entry]
     snr, rms = _draw_level(draws, recipe, entry)
     changes = {} if entry.operation is None else entry.operation.given()
