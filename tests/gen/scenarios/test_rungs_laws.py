@@ -10,11 +10,13 @@ import xarray as xr
 from features.baselines.splits import grouped_splits
 from gen.corpus import FAULTS, open_corpus
 from gen.generation import generate
+from gen.measurement.measure import measure
 from gen.part_task import record_numbers
 from gen.plan import plan
 from gen.replaying import replay, stored_scenario
 from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
 from gen.simulation.inputs import kernel_input
+from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 from tests.recipes import EVERY_FAULT
 
@@ -75,6 +77,17 @@ def test_a_pair_without_its_fault_is_the_record_at_rung_0_to_the_last_bit(recipe
         for field in ("frequencies", "phases", "schedule"):
             np.testing.assert_array_equal(getattr(one, field), getattr(other, field))
         np.testing.assert_array_equal(one.waviness.races, other.waviness.races)
+
+
+def test_the_signals_of_a_pair_differ_by_the_fault_and_not_by_the_background(recipe_with):
+    """Before the damage the signal is, to the last bit, that of the same record without its fault."""
+    changes = {"corpus.rungs": (0, 1), "faults": [{"kind": "healthy", "weight": 2}, {"kind": "outer", "width_mm": 0.5}]}
+    recipe = recipe_with(changes | {"recording.converter": {"kind": "float32"}})
+    before, after = next(iter(groups_of(draw_scenarios(recipe)).values()))
+    scenarios = [before, after, after.without_fault()]
+    signals = measure(simulate(scenarios, recipe).acceleration, scenarios, recipe).signal
+    np.testing.assert_array_equal(signals[0], signals[2])
+    assert not np.array_equal(signals[0], signals[1])
 
 
 def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
@@ -166,6 +179,9 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     healthy = found["fault"].values == 0
     assert (healthy == (~in_pair | (found["rung"].values == 0))).all()
     assert planned.classes == {"healthy": healthy.sum(), "inner": (~healthy).sum()}
+    card = (made.directory / "README.md").read_text(encoding="utf-8")
+    assert f"\n{in_pair.sum() // 3} groups of records (`pair`) differ in the severity" in card
+    assert f"\n| healthy | {healthy.sum()} | " in card
     for record in (int(np.flatnonzero(in_pair)[0]), int(np.flatnonzero(in_pair)[-1])):
         again = replay(made.directory, record)
         assert again.identical
