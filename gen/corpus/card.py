@@ -38,11 +38,8 @@ def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
             )
     pairs = np.unique(corpus["pair"].values) if "pair" in corpus else np.array([])
     if (pairs >= 0).any():
-        lines += [
-            "",
-            f"{(pairs >= 0).sum()} groups of records (`pair`) differ in the severity of their fault alone (`rung`); "
-            f"a specimen counts as healthy too if it was recorded before its damage.",
-        ]
+        groups = f"{(pairs >= 0).sum()} groups of records (`pair`) differ in the severity of their fault alone (`rung`)"
+        lines += ["", f"{groups}; a specimen recorded before its damage counts as healthy too."]
     lines += ["", "| variable | unit | role | meaning |", "|---|---|---|---|"]
     for name, variable in corpus.variables.items():
         if name != SIGNAL and variable.dims == ("record",):

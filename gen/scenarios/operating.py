@@ -44,7 +44,7 @@ def operating_of(recipe: Recipe, number: int) -> Operating:
     usual, entry = quantities(recipe.operation), recipe.faults[number].operation
     changes = {} if entry is None else quantities(entry)
     wanted = {**usual, **changes}
-    levels = {key: _level_of(distribution) for key, distribution in wanted.items()}
+    levels: dict[str, Level] = {key: _level_of(distribution) for key, distribution in wanted.items()}
     return Operating(recipe.operation, usual, changes, wanted, levels)
 
 
