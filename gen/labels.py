@@ -85,6 +85,8 @@ def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         "rig": rig.number,
         "specimen": specimen.number,
         "recording": record.number,
+        "pair": record.pair,
+        "rung": record.rung,
         "split": SPLITS.index(specimen.split),
         "source": f"{recipe.name}/{record.number}",
         "gear_mesh": 0 if rig.background.gear is None else rig.background.gear.teeth,

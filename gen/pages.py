@@ -15,11 +15,67 @@ from gen.recipe.distributions import DISTRIBUTIONS
 from gen.recipe.keys import Key, recipe_keys
 from gen.recipe.reading import recipe_purpose, recipe_schema, shipped_recipes
 
+_COMMON = {"kind", "share_of", "per", "scatter_percent"}  # keys of every distribution
+
 _HEAD = """# Recipes
 
 A recipe is a YAML file. `raceway plan RECIPE` reports what it makes, `raceway generate RECIPE -o DIR` makes it, and
 `raceway recipes --keys PREFIX` prints the keys of this page. Keys end in their unit. Where the allowed value is a
 range alone, such as `[0, 10]`, the value is a number or a distribution:
+"""
+
+_DRAWING = """Three more keys belong to every distribution.
+
+**`share_of`** makes the drawn number a share of another quantity, named by its key; 1 is all of it, and units are
+converted. Here the axial load is 40 to 100 % of the radial load of the same record, the contact angle is the one that
+clearance and grooves of the specimen allow, and a spall is 5 to 30 % as wide as the arc from ball to ball:
+
+    operation:
+      load_n: {kind: loguniform, low: 60, high: 2000}
+      axial_load_n: {share_of: load_n, kind: uniform, low: 0.4, high: 1}
+    specimen:
+      contact_angle_deg: {share_of: free_contact_angle_deg, kind: constant, value: 1}
+    faults:
+      - {kind: outer, width_mm: {share_of: ball_spacing_mm, kind: uniform, low: 0.05, high: 0.3}}
+
+A quantity can name those of its own section and those of a level above it, if both are of the same kind of unit:
+
+| section | can name quantities of |
+|---|---|
+| `machine`, `bearing`, `contact.lubricant` | itself |
+| `machine.resonator` | itself, `machine` |
+| `specimen` | itself, `machine`, `pitch_diameter_mm`, `ball_diameter_mm`, `free_contact_angle_deg` |
+| an entry of `faults` | itself, `specimen`, `machine`, `pitch_diameter_mm`, `ball_diameter_mm`; a spall on a race also `ball_spacing_mm` |
+| `operation` | itself, `specimen`, `machine`, `pitch_diameter_mm`, `ball_diameter_mm` |
+
+`pitch_diameter_mm` and `ball_diameter_mm` are those of the bearing of the rig. `free_contact_angle_deg` is the contact
+angle of a ball bearing whose rings are pushed apart along the axis without force: `cos(angle) = 1 - clearance / (2 A)`
+with `A = (inner + outer conformity - 1) * ball diameter`. It is 0 without clearance, for rollers, and for a bearing
+with a contact angle on its drawing. `ball_spacing_mm` is the arc on the damaged race from one ball to the next.
+
+**`per`** (in `operation` alone) draws one value for a rig or a specimen instead of one for each record, and
+**`scatter_percent`** lets its records deviate from it. A machine with one speed, held within 2 %:
+
+    operation:
+      shaft_rpm: {kind: uniform, low: 900, high: 1800, per: rig, scatter_percent: 2}
+
+The common value is pseudo-random with every `corpus.sampling`; a grid counts the rigs or specimens.
+
+None of these keys moves another value: each quantity keeps its own random numbers. The same holds for the conditions of
+one fault, such as `{kind: outer, width_mm: 1, operation: {load_n: 500}}`. Use these with care: a classifier can learn
+the load instead of the fault.
+
+## Pairs and ladders
+
+With `corpus.rungs` every record of a faulty specimen is repeated at each of these shares of its severity. The records
+of a group are neighbours, share the label `pair` and differ in `rung`, the place in the list; both are -1 for the
+records of healthy specimens. A record at rung 0 has the class `healthy`. All records of a group are of one specimen, so
+no split divides them.
+
+The weights of `faults` are shares of the records: as rung 0 gives healthy records already, there are fewer healthy
+specimens. The severity is the width and depth of every spall, the rms of wear, and the pitch error and knock of a cage.
+With `level.kind: snr` the records of a group have the same drawn level; for a level that grows with the fault use
+`level.kind: physical`.
 """
 
 _KEYS = """A key belongs to the values of `kind` in its row, or to all if the row has none. A bracket includes the end of a
@@ -31,10 +87,10 @@ def readme() -> str:
     """Markdown page: the shipped recipes, the distributions, and every key with unit, range, default and meaning."""
     lines = [_HEAD, "| distribution | keys | values |", "|---|---|---|"]
     for distribution in DISTRIBUTIONS:
-        keys = ", ".join(f"`{name}`" for name in distribution.model_fields if name != "kind")
+        keys = ", ".join(f"`{name}`" for name in distribution.model_fields if name not in _COMMON)
         kind = get_args(distribution.model_fields["kind"].annotation)[0]
         lines.append(f"| `{kind}` | {keys} | {(distribution.__doc__ or '').splitlines()[0]} |")
-    lines += ["", "## Shipped recipes", "", "| name | purpose |", "|---|---|"]
+    lines += ["", _DRAWING, "## Shipped recipes", "", "| name | purpose |", "|---|---|"]
     lines += [f"| `{name}` | {recipe_purpose(path)} |" for name, path in shipped_recipes().items()]
     lines += ["", "## Keys", "", _KEYS]
     keys = recipe_keys()

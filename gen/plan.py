@@ -90,7 +90,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     groups = [_groups(part, checked, failures) for part in parts]
     if len(failures) == n_drawn:
         raise SimulationError(failures[0])
-    recording, specimens = checked.recording, math.ceil(checked.n_records / checked.corpus.records_per_specimen)
+    recording, specimens = checked.recording, math.ceil(checked.n_records / checked.corpus.records_of_a_specimen)
     seconds = _seconds_per_record(list(zip(parts, groups, strict=True)), checked)
     return Plan(
         recipe=checked.name,
@@ -166,8 +166,10 @@ def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
 
 def most_drawn(recipe: Recipe) -> int:
     """Largest number of records that a plan draws."""
-    operation = recipe.operation
-    dear = operation.axial_load_n.support()[1] > 0 or operation.load_wander_percent.support()[1] > 0
+    dear = any(
+        operation.axial_load_n.support()[1] > 0 or operation.load_wander_percent.support()[1] > 0
+        for operation in recipe.operations.values()
+    )
     return MOST_DRAWN_DEAR if dear else MOST_DRAWN
 
 

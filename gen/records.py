@@ -28,10 +28,13 @@ class Records:
 
 def made_records(recipe: Recipe, numbers: range, report: Callable[[int], None] = lambda _: None) -> Records:
     """Make the records with the given numbers; ``report`` is called with the number of simulated records."""
-    if recipe.corpus.undetected != "redraw" or recipe.corpus.truth == "none":
-        return _made(draw_scenarios(recipe, numbers.start, numbers.stop), recipe, 1, report)
-    per = recipe.corpus.records_per_specimen
-    whole = range(numbers.start // per * per, min(-(-numbers.stop // per) * per, recipe.n_records))
+    redraws = recipe.corpus.undetected == "redraw" and recipe.corpus.truth == "full"
+    # all records of a specimen are judged together, and those of a group have one level
+    unit = recipe.corpus.records_of_a_specimen if redraws else recipe.corpus.n_rungs
+    whole = range(numbers.start // unit * unit, min(-(-numbers.stop // unit) * unit, recipe.n_records))
+    if not redraws:
+        made = _made(draw_scenarios(recipe, whole.start, whole.stop), recipe, 1, report)
+        return _rows(made, range(numbers.start - whole.start, numbers.stop - whole.start))
     tries: dict[int, int] = {}
     scenarios = _with_hits(draw_scenarios(recipe, whole.start, whole.stop), recipe, tries)
     made = _made(scenarios, recipe, LEVEL_TRIES, report)
@@ -52,9 +55,11 @@ def made_records(recipe: Recipe, numbers: range, report: Callable[[int], None] =
 
 def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> Records:
     """Make one record again, with the fault and the level that were taken when it was made first."""
-    specimen = number // recipe.corpus.records_per_specimen
-    drawn = draw_scenarios(recipe, number, number + 1, fault_tries={specimen: fault_try})
-    return _made([with_level(scenario, recipe, level_try) for scenario in drawn], recipe, 1)
+    n_rungs = recipe.corpus.n_rungs
+    first, tries = number // n_rungs * n_rungs, {number // recipe.corpus.records_of_a_specimen: fault_try}
+    group = draw_scenarios(recipe, first, first + n_rungs, fault_tries=tries)
+    made = _made([with_level(scenario, recipe, level_try) for scenario in group], recipe, 1)
+    return _rows(made, range(number - first, number - first + 1))
 
 
 def _made(
@@ -67,7 +72,7 @@ def _made(
 
 def _redrawn(specimens: Iterable[int], recipe: Recipe, tries: dict[int, int]) -> list[Scenario]:
     """Scenarios of all records of some specimens with their next fault, which ``tries`` counts."""
-    per, found = recipe.corpus.records_per_specimen, []
+    per, found = recipe.corpus.records_of_a_specimen, []
     for number in specimens:
         tries[number] = tries.get(number, 0) + 1
         found += draw_scenarios(recipe, number * per, (number + 1) * per, fault_tries=tries)
@@ -93,11 +98,15 @@ def _unseen(made: Records, tries: dict[int, int]) -> list[int]:
 
 
 def _unseen_places(made: Records) -> list[int]:
-    """Places of the records that were made and whose fault cannot be seen."""
+    """Places of the records that were made and whose fault cannot be seen; of a group, that of the largest severity alone is looked at."""
+    scenarios, detectable = made.measured.scenarios, made.measured.detectable
     return [
         place
-        for place, (scenario, seen) in enumerate(zip(made.measured.scenarios, made.measured.detectable, strict=True))
-        if scenario.specimen.fault != "healthy" and not seen and place not in made.response.failures
+        for place, scenario in enumerate(scenarios)
+        if scenario.specimen.fault != "healthy"
+        and not detectable[place]
+        and place not in made.response.failures
+        and (place + 1 == len(scenarios) or scenarios[place + 1].record.rung <= scenario.record.rung)
     ]
 
 

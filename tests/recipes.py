@@ -20,7 +20,7 @@ EVERY_FAULT = [
 
 # every record, healthy or faulty, has waviness, jitter, a schedule, oil, play and a resonance: all share one kernel
 EVERYTHING = {
-    "corpus": {"rigs": 1, "specimens_per_rig": 14, "records_per_specimen": 2, "records_per_part": 14},
+    "corpus": {"rigs": 1, "specimens_per_rig": 16, "records_per_specimen": 2, "records_per_part": 16},
     "recording.channels": [{"name": "fan_end", "body": "sensor", "path": {"direct": 0.1}}],
     "machine.bow_n": 30,
     "machine.misalignment_n": 20,

@@ -6,7 +6,17 @@ import pytest
 
 from tests.paths import ROOT
 
-TASKS = ("fault class", "feature group", "channel", "importer", "codec", "baseline", "bearing", "label")
+TASKS = (
+    "fault class",
+    "feature group",
+    "channel",
+    "importer",
+    "codec",
+    "baseline",
+    "bearing",
+    "label",
+    "quantity for shares",
+)
 PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
 FILE = re.compile(r"^(\d+)\. `([\w/.]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
 

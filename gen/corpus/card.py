@@ -36,6 +36,10 @@ def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
             lines.append(
                 f"| {name} | {of_class.sum()} | " + " | ".join(str(count) for count in (*units, *parts)) + " |"
             )
+    pairs = np.unique(corpus["pair"].values) if "pair" in corpus else np.array([])
+    if (pairs >= 0).any():
+        groups = f"{(pairs >= 0).sum()} groups of records (`pair`) differ in the severity of their fault alone (`rung`)"
+        lines += ["", f"{groups}; a specimen recorded before its damage counts as healthy too."]
     if "detectable" in corpus:
         lines += ["", *_visible_faults(corpus), *_recoverable_labels(corpus)]
     lines += ["", "| variable | unit | role | meaning |", "|---|---|---|---|"]

@@ -40,6 +40,8 @@ SIMULATED = (
     Variable("dropped_samples", "i4", "1", "latent", "times at which all channels have a filling and no sample"),
     Variable("gain_steps", "i4", "1", "latent", "sudden changes of the gain within the record"),
     Variable("emi_bursts", "i4", "1", "latent", "induced bursts that start within the record"),
+    Variable("pair", "i4", "1", "provenance", "number of the group of records that differ in their fault's severity alone, -1 without"),
+    Variable("rung", "i4", "1", "provenance", "place of the severity in corpus.rungs of the recipe, -1 outside a group"),
     Variable("oversampling", "i4", "1", "provenance", "integration steps per sample"),
     Variable("step_phase", "f8", "rad", "provenance", "bound of the fastest angular frequency of the record times the step"),
     Variable("step_error", "f8", "1", "provenance", "relative rms change of the bodies' motion at half the step, NaN if not tried"),

@@ -105,11 +105,16 @@ def measure(
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
     several = max(1, _ROWS // shape[1])
-    for first in range(0, shape[0], several):
+    levels: dict[int, Levelled] = {}  # of the groups; backwards, because the last of a group has the largest severity
+    for first in reversed(range(0, shape[0], several)):
         some = slice(first, first + several)
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
-        for row, part in enumerate(_parts(acceleration[some], scenarios[some], filters, axis, twins, first), first):
-            found = _levelled(part, scenarios[row], recipe, rounding, level_tries)
+        parts = _parts(acceleration[some], scenarios[some], filters, axis, twins, first)
+        for row, part in reversed(list(enumerate(parts, first))):
+            pair = scenarios[row].record.pair
+            found = _levelled(part, scenarios[row], recipe, rounding, level_tries, levels.get(pair))
+            if pair >= 0:
+                levels.setdefault(pair, found)
             mixed, flags[row] = disturbed(_mixed(part, found.gains), found.scenario, axis.fs)
             if counts_per_unit is not None:
                 np.rint(np.multiply(mixed, np.float32(counts_per_unit), out=mixed), out=mixed)
@@ -205,13 +210,21 @@ def _mixed(part: Part, gains: Gains) -> Float32Array:
     return mixed
 
 
-def _levelled(part: Part, scenario: Scenario, recipe: Recipe, rounding: float, tries: int) -> Levelled:
-    """Level of a record: the drawn one, or if its fault cannot be seen the first of some more draws at which it can."""
+def _levelled(
+    part: Part, scenario: Scenario, recipe: Recipe, rounding: float, tries: int, of_group: Levelled | None
+) -> Levelled:
+    """Level of a record: the drawn one, or if its fault cannot be seen the first of some more draws at which it can.
+
+    A record of a group has the gains ``of_group``, those of its largest severity, so that all that differs is the fault.
+    """
     judge = None
     if part.orders and part.fault.size and math.isfinite(sum(part.products)):
         steady = scenario.record.speed_profile is None
         of_record = spectra_of(part.fault, part.healthy, part.background, part.orders, part.angles, steady=steady)
         judge = Judge(of_record)
+    if of_group is not None:
+        taken = with_level(scenario, recipe, of_group.scenario.record.level_try)
+        return Levelled(taken, of_group.gains, *_seen(part, judge, taken, of_group.gains, rounding))
     found = []
     for attempt in range(tries if recipe.level.kind == "snr" and part.fault.size else 1):
         tried = with_level(scenario, recipe, attempt) if attempt else scenario

@@ -4,7 +4,10 @@ With the outer ring fixed and pure rolling, the cage turns at ``(1 - gamma) / 2`
 ``gamma = ball_diameter * cos(contact_angle) / pitch_diameter``. The other fault frequencies are the rates at which balls pass a point of
 a race, and the rate at which a ball spins [1]_.
 
+The balls of a ball bearing with clearance touch both races at the free contact angle when the rings are pushed apart along the axis [2]_.
+
 .. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics - A tutorial", Mech. Syst. Signal Process. 25 (2011) 485-520.
+.. [2] T. A. Harris, *Rolling Bearing Analysis*, 4th ed., Wiley, 2001, ch. 2, free contact angle.
 """
 
 import math
@@ -87,3 +90,27 @@ def slipping_orders(bearing: Bearing, slip: float) -> Orders:
     rolling = orders(bearing)
     ftf = rolling.ftf * (1 - slip)
     return Orders(ftf, bearing.n_balls * ftf, bearing.n_balls * (1 - ftf), rolling.bsf)
+
+
+def free_contact_angle(bearing: Bearing, diametral_clearance: float) -> float:
+    """Contact angle of a ball bearing whose rings are pushed apart along the axis without force [rad].
+
+    ``cos(angle) = 1 - clearance / (2 A)``, where ``A = (inner + outer conformity - 1) * ball diameter`` is the distance between the centres
+    of curvature of the two grooves. 0 for a bearing without clearance and for rollers.
+
+    >>> round(math.degrees(free_contact_angle(Bearing("6205", 9, 39.04e-3, 7.94e-3), 10e-6)), 1)
+    10.2
+    """
+    if diametral_clearance <= 0 or bearing.rolling_element == "roller":
+        return 0.0
+    apart = (bearing.inner_conformity + bearing.outer_conformity - 1) * bearing.ball_diameter
+    return math.acos(max(1 - diametral_clearance / (2 * apart), 0.0))
+
+
+def ball_spacing(bearing: Bearing, site: Literal["inner", "outer"]) -> float:
+    """Arc on a race from one ball to the next [m].
+
+    >>> round(1e3 * ball_spacing(Bearing("6205", 9, 39.04e-3, 7.94e-3), "outer"), 1)
+    16.4
+    """
+    return 2 * math.pi * bearing.radius(site) / bearing.n_balls

@@ -11,7 +11,10 @@ operation     speed and load with their profiles, slip, temperature
 gear          gear mesh in the background
 sensing       sensors, path, background, level, converter
 sensor_faults faults of mount, cable, amplifier and data transfer
+changes       keys of operation and level that one fault replaces
+shares        quantities that are a share of another
 loads         loads that no bearing of the recipe can carry
+checks        keys that contradict each other, weights that cannot be met
 model         the recipe as a whole
 keys          every key with unit, range, default and meaning
 sentences     error sentences for broken recipes
@@ -35,8 +38,11 @@ from gen.recipe.operation import ProfileSection
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
 from gen.recipe.section import Section
 from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
+from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, quantities
 
 __all__ = [
+    "BALL_SPACING",
+    "FREE_ANGLE",
     "MAX_OVERSAMPLING",
     "BallFault",
     "CageFault",
@@ -54,6 +60,7 @@ __all__ = [
     "Section",
     "fault_class",
     "find_recipe",
+    "quantities",
     "read_recipe",
     "recipe_hash",
     "recipe_purpose",

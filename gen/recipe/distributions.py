@@ -1,7 +1,8 @@
 """Distributions that a recipe can name: each checks its keys and turns a number between 0 and 1 into a value.
 
 Values are drawn with the inverse distribution function. So random and quasi-random points are treated alike, and every distribution takes
-one number: to change the distribution of one key does not move the values of the others.
+one number: to change the distribution of one key does not move the values of the others. With ``share_of`` the value is a share of another
+quantity: :mod:`gen.recipe.shares` says which quantities can be named, and :mod:`gen.scenarios.draws` multiplies when all are drawn.
 """
 
 import math
@@ -9,21 +10,60 @@ import reprlib
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PrivateAttr, StringConstraints, model_validator
 
 Number = Annotated[float, Field(strict=True)]
+Support = tuple[float, float]
+"""Smallest and largest value."""
 
 
 class _Distribution(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
 
+    share_of: Annotated[str, StringConstraints(min_length=1, max_length=60)] | None = None
+    """Key of another quantity: the drawn number is then a share of the value of that quantity, and 1 is all of it."""
+    per: Literal["rig", "specimen", "record"] | None = None
+    """What has one value in common; in `operation` alone, where each record has its own if this is left out."""
+    scatter_percent: Annotated[Number, Field(ge=0, lt=100)] = 0.0
+    """Largest deviation of a record from the value of its rig or specimen, to both sides and uniformly distributed."""
+
+    _product: Support | None = PrivateAttr(default=None)
+    _product_is_known: bool = PrivateAttr(default=True)
+
+    @model_validator(mode="after")
+    def _scattered_about_something(self) -> Self:
+        if self.scatter_percent > 0 and self.per not in ("rig", "specimen"):
+            raise ValueError("scatter_percent: needs a value to scatter about; give per: rig or per: specimen.")
+        return self
+
     def draw(self, u: float) -> float:
         """Value at the quantile ``u`` in [0, 1)."""
         raise NotImplementedError
 
-    def support(self) -> tuple[float, float]:
-        """Smallest and largest value that can be drawn."""
+    def support(self) -> Support:
+        """Smallest and largest value of the quantity, with its scatter; of a share the product, once the whole recipe is read."""
+        return self.own_support() if self._product is None else self._product
+
+    def own_support(self) -> Support:
+        """Smallest and largest number of the distribution itself, with its scatter: of a share, the share."""
+        low, high = self._ends()
+        away = self.scatter_percent / 100
+        return low - away * abs(low), high + away * abs(high)
+
+    def _ends(self) -> Support:
         raise NotImplementedError
+
+    def known_support(self) -> Support | None:
+        """Smallest and largest value of the quantity; None for a share of a quantity that is known only when it is drawn."""
+        return self.support() if self._product_is_known else None
+
+    def set_product(self, product: Support | None, bounds: Support) -> None:
+        """Support of the product of a share and its quantity; the ``bounds`` of its field if it is not known."""
+        self._product, self._product_is_known = product or bounds, product is not None
+
+    def at_scatter(self, value: float, u: float) -> float:
+        """Value of a record that scatters about ``value`` of its rig or specimen, at the quantile ``u``."""
+        return value * (1 + self.scatter_percent / 100 * (2 * u - 1)) if self.scatter_percent > 0 else value
 
 
 class Constant(_Distribution):
@@ -38,7 +78,7 @@ class Constant(_Distribution):
         """Return the value."""
         return self.value
 
-    def support(self) -> tuple[float, float]:
+    def _ends(self) -> Support:
         """Return the value, twice."""
         return self.value, self.value
 
@@ -55,7 +95,7 @@ class _Interval(_Distribution):
             raise ValueError(f"low {self.low} is above high {self.high}; swap them.")
         return self
 
-    def support(self) -> tuple[float, float]:
+    def _ends(self) -> Support:
         """Return the ends of the interval."""
         return self.low, self.high
 
@@ -139,7 +179,7 @@ class Choice(_Distribution):
         """
         return self.values[weighted_index(self.weights or (1.0,) * len(self.values), u)]
 
-    def support(self) -> tuple[float, float]:
+    def _ends(self) -> Support:
         """Return the smallest and the largest value."""
         return min(self.values), max(self.values)
 
@@ -156,7 +196,7 @@ class Grid(_Distribution):
         """Value at the quantile ``u``; used when no item number is known."""
         return self.values[weighted_index((1.0,) * len(self.values), u)]
 
-    def support(self) -> tuple[float, float]:
+    def _ends(self) -> Support:
         """Return the smallest and the largest value."""
         return min(self.values), max(self.values)
 
@@ -208,8 +248,18 @@ def interval(bounds: dict[str, Any]) -> str:
 
 
 def check_bounds(distribution: Any, bounds: dict[str, Any]) -> Any:
-    """Return ``distribution`` if all its values lie within the ``bounds`` of its field, else raise ValueError."""
+    """Return ``distribution`` if all its values lie within the ``bounds`` of its field, else raise ValueError.
+
+    The values of a share are checked when the whole recipe is read.
+    """
+    if distribution is None or distribution.share_of is not None:
+        return distribution
     for end in distribution.support():
-        if not bounds["low"] <= end <= bounds["high"] or (bounds["open_low"] and end == bounds["low"]):
+        if not is_within(end, bounds):
             raise ValueError(f"{end:g} is not in {interval(bounds)}.")
     return distribution
+
+
+def is_within(value: float, bounds: dict[str, Any]) -> bool:
+    """True if a value lies within the bounds of a field."""
+    return bounds["low"] <= value <= bounds["high"] and not (bounds["open_low"] and value == bounds["low"])

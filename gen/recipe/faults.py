@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, StrictInt, model_validator
 
 from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
+from gen.recipe.changes import LevelChanges, OperationChanges
 from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Section, Weight
 
@@ -14,7 +15,11 @@ Trace = Annotated[tuple[Annotated[Number, Field(ge=0, le=5000)], ...], Field(min
 
 class _Weighted(Section):
     weight: Weight = 1.0
-    """Share of the specimens with this fault, relative to the other entries of `faults`."""
+    """Share of the records with this fault, relative to the other entries of `faults`, whatever `corpus.specimens_per_rig` is."""
+    operation: OperationChanges | None = None
+    """Keys of `operation` that replace those of the recipe for this entry. Beware: speed or load alone may then tell its class."""
+    level: LevelChanges | None = None
+    """Keys of `level` that replace those of the recipe for this entry, with `level.kind: snr`. Beware: they too may tell its class."""
 
 
 class Healthy(_Weighted):
@@ -111,9 +116,11 @@ class CompoundFault(_Weighted):
             raise ValueError(
                 f"parts: {', '.join(kinds)} are not all different; several spalls of one part need no compound."
             )
-        weighted = [part.kind for part in self.parts if "weight" in part.model_fields_set]
-        if weighted:
-            raise ValueError(f"parts: a weight of {', '.join(weighted)} alone does nothing; give the compound one.")
+        for key in _Weighted.model_fields:
+            parts = [part.kind for part in self.parts if key in part.model_fields_set]
+            if parts:
+                named = f"{'an' if key[0] in 'aeiou' else 'a'} {key} of {', '.join(parts)}"
+                raise ValueError(f"parts: {named} alone does nothing; give the compound one.")
         return self
 
 

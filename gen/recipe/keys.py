@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
 from gen.errors import RecipeError
+from gen.recipe.changes import Changes
 from gen.recipe.distributions import DISTRIBUTIONS, interval
 from gen.recipe.model import Recipe
 from gen.recipe.section import Section
@@ -82,8 +83,9 @@ def _kinds(model: type[BaseModel]) -> tuple[str, ...]:
 
 
 def _sections_of(field: FieldInfo) -> list[type[Section]]:
-    """Sections that the value of a field can be, or can be made of."""
-    return [model for model in dict.fromkeys(_models(field.annotation)) if issubclass(model, Section)]
+    """Sections that the value of a field can be, or can be made of; not those with keys that are listed elsewhere."""
+    found = [model for model in dict.fromkeys(_models(field.annotation)) if issubclass(model, Section)]
+    return [model for model in found if not issubclass(model, Changes)]
 
 
 def _merged(keys: list[Key]) -> list[Key]:
@@ -112,6 +114,8 @@ def _allowed(field: FieldInfo) -> str:
     if isinstance(field.json_schema_extra, dict):
         return interval(field.json_schema_extra)
     sections = _sections_of(field)
+    if not sections and any(issubclass(model, Changes) for model in _models(field.annotation)):
+        return "section"
     if not sections:
         return _plain(field.annotation, field.metadata)
     kinds = ", ".join(kind for section in sections for kind in _kinds(section))

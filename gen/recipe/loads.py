@@ -11,9 +11,12 @@ from gen.units import percent_to_share, to_si
 
 
 def load_problem(
-    bearing: CatalogueBearing | GeometryBearing, specimen: SpecimenSection, operation: OperationSection
+    bearing: CatalogueBearing | GeometryBearing, specimen: SpecimenSection, operation: OperationSection, place: str
 ) -> str | None:
-    """Error sentence if every load that can be drawn is too high for every bearing that can be drawn, else None."""
+    """Error sentence if every load that can be drawn is too high for every bearing that can be drawn, else None.
+
+    ``place`` is the path of ``operation`` in the recipe.
+    """
     strongest = max(_strongest(bearing), key=static_rating)
     limit = static_rating(strongest) / LEAST_SAFETY
     # the steepest contact angle takes the largest axial load
@@ -25,7 +28,7 @@ def load_problem(
     for key, load in (("load_n", radial), ("axial_load_n", equivalent_load(radial, axial, to_si(steepest, "deg")))):
         if load > limit:
             return (
-                f"operation.{key}: gives an equivalent static load of at least {load:.4g} N, and {limit:.4g} N, {1 / LEAST_SAFETY:g} times "
+                f"{place}.{key}: gives an equivalent static load of at least {load:.4g} N, and {limit:.4g} N, {1 / LEAST_SAFETY:g} times "
                 f"the static rating of bearing {strongest.designation}, is the limit; lower the load or use a larger bearing."
             )
     return None

@@ -144,7 +144,7 @@ class MachineSection(Section):
     contact_damping_n_s_m: Distribution = within(0, 1e4, default=0.0)
     """Damper in each loaded contact, in addition to that of the oil film; it acts on the approach speed of the rings."""
     balance_mm_s: Distribution = within(0, 100, default=1.0)
-    """Balance grade G of the rotor (ISO 21940-11) at the highest `operation.shaft_rpm`; unbalance gives a line at 1x shaft rate."""
+    """Balance grade G of the rotor (ISO 21940-11) at the highest `shaft_rpm` of `operation` and `faults`; it gives a line at 1x."""
     load_angle_deg: Distribution = within(-360, 360, default=-90.0)
     """Direction of the radial load, counter-clockwise from the horizontal; -90 is down. The load zone lies there."""
     bow_n: Distribution = within(0, 1e6, default=0.0)

@@ -1,22 +1,25 @@
 """The recipe: a frozen model of the YAML file that a corpus is made from.
 
 Keys end in their unit; most numbers can be distributions. Each section is drawn at one level: per rig, per specimen or per record.
+Whether a recipe as a whole can be made is checked in :mod:`gen.recipe.checks`.
 """
 
+from itertools import pairwise
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictInt, StringConstraints, model_validator
 
 from gen.corpus import Codec
 from gen.limits import check_limit
+from gen.recipe.checks import recipe_problem
 from gen.recipe.distributions import Number
-from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
-from gen.recipe.loads import load_problem
+from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault
 from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing, MachineSection, SpecimenSection
-from gen.recipe.operation import OperationSection, Steps, Table
+from gen.recipe.operation import OperationSection, Table
 from gen.recipe.section import Count, Name, Section
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
-from gen.recipe.sensor_faults import SensorFaultsSection, sensor_fault_problem
+from gen.recipe.sensor_faults import SensorFaultsSection
+from gen.recipe.shares import changed_operation, with_products
 
 # memory of a record beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace
 _SAMPLES_OF_A_RECORD, _SAMPLES_OF_A_NUMBER = 4000, 12
@@ -39,9 +42,16 @@ class CorpusSection(Section):
     rigs: Count
     """Number of machines; each has its own draws of bearing, machine, path and background."""
     specimens_per_rig: Count
-    """Number of physical bearings that each rig carries in turn; at least 2 for a recipe with several classes."""
+    """Number of physical bearings that each rig carries in turn. Whatever it is, the classes have the shares of their weights: exactly on
+    average, and within a few specimens from the first rigs on. A rig has healthy and faulty ones if it is due at least one of each."""
     records_per_specimen: Count
-    """Number of records of each physical bearing, each with its own operating conditions."""
+    """Number of records of each physical bearing, each with its own operating conditions; with `rungs`, at each rung."""
+    rungs: Annotated[tuple[Annotated[Number, Field(ge=0, le=1)], ...], Field(min_length=2, max_length=100)] | None = (
+        None
+    )
+    """Shares of the drawn severity, in rising order, at which each record of a faulty specimen is repeated with all else the same; 0 is
+    the bearing before the damage. `[0, 1]` gives counterfactual pairs, `[0, 0.25, 0.5, 1]` severity ladders. A healthy specimen gets as
+    many records, each with conditions of its own."""
     records_per_part: Annotated[StrictInt, Field(ge=1, le=100_000)] = 256
     """Number of records in one file of the corpus. A part is simulated as a whole, so it sets the memory that is needed."""
     sampling: Literal["random", "sobol", "halton"] = "random"
@@ -55,6 +65,28 @@ class CorpusSection(Section):
     fault of its specimen. `healthy`: it is labelled healthy. With `truth: none` all records keep their labels."""
     codec: Codec = "zlib"
     """Compression of the signal: `zlib` can be read everywhere, `zstd` needs a plugin for h5py and ncdump, `none` stores it as it is."""
+
+    @property
+    def n_rungs(self) -> int:
+        """Number of records with the same conditions; 1 without rungs."""
+        return 1 if self.rungs is None else len(self.rungs)
+
+    @property
+    def records_of_a_specimen(self) -> int:
+        """Number of all records of a specimen, of every rung."""
+        return self.records_per_specimen * self.n_rungs
+
+    @property
+    def n_records(self) -> int:
+        """Number of records of all rigs."""
+        return self.rigs * self.specimens_per_rig * self.records_of_a_specimen
+
+    @model_validator(mode="after")
+    def _rising(self) -> Self:
+        for before, after in pairwise(self.rungs or ()):
+            if after <= before:
+                raise ValueError(f"rungs: {after:g} after {before:g} does not rise; sort them, each once.")
+        return self
 
 
 class Recipe(Section):
@@ -105,9 +137,21 @@ class Recipe(Section):
     @property
     def n_records(self) -> int:
         """Number of records of the corpus."""
-        corpus = self.corpus
-        whole = corpus.rigs * corpus.specimens_per_rig * corpus.records_per_specimen
+        whole = self.corpus.n_records
         return whole if self.records is None else min(whole, self.records)
+
+    def operation_of(self, entry: int) -> OperationSection:
+        """Operating conditions of the records of one entry of ``faults``."""
+        return changed_operation(self, entry)
+
+    @property
+    def operations(self) -> dict[str, OperationSection]:
+        """Operating conditions by their place in the recipe: those of ``operation``, and those of every fault with changes of its own."""
+        found = {"operation": self.operation}
+        for number, entry in enumerate(self.faults):
+            if entry.operation is not None:
+                found[f"faults[{number}].operation"] = with_products(self, self.operation_of(number))
+        return found
 
     @property
     def n_parts(self) -> int:
@@ -118,10 +162,9 @@ class Recipe(Section):
     def _within_limits(self) -> Self:
         """Check counts and sizes before anything is drawn; the limits keep the memory of a part to a few gigabytes."""
         corpus, recording = self.corpus, self.recording
-        whole = corpus.rigs * corpus.specimens_per_rig * corpus.records_per_specimen
         # checked even if records: ends the corpus early, because the splits are drawn over all of its rigs
-        place = "corpus: rigs * specimens_per_rig * records_per_specimen"
-        check_limit("records", whole, f"{place} are", ValueError)
+        place = "corpus: rigs * specimens_per_rig * records_per_specimen" + (" * rungs" if corpus.rungs else "")
+        check_limit("records", corpus.n_records, f"{place} are", ValueError)
         check_limit("rig_specimens", corpus.specimens_per_rig, "corpus.specimens_per_rig: asks for", ValueError)
         seconds = recording.settle_s + recording.duration_s
         samples = round(seconds * recording.sample_rate_hz) * len(recording.channels)
@@ -135,74 +178,21 @@ class Recipe(Section):
 
     def _numbers_of_a_record(self) -> int:
         """Count of the numbers of profiles and traces that each record holds."""
-        profiles = (self.operation.speed_profile, self.operation.load_profile)
-        tables = sum(2 * len(profile.times_s) for profile in profiles if isinstance(profile, Table))
+        tables = [0]
+        for entry in range(len(self.faults)):
+            operation = self.operation_of(entry)
+            profiles = (operation.speed_profile, operation.load_profile)
+            tables.append(sum(2 * len(profile.times_s) for profile in profiles if isinstance(profile, Table)))
         traces = [0]
         for fault in self.faults:
             parts = fault.parts if isinstance(fault, CompoundFault) else (fault,)
             spalled = [part for part in parts if isinstance(part, RaceFault | BallFault)]
             traces.append(sum(round(part.n_spalls.support()[1]) * len(part.trace_um or ()) for part in spalled))
-        return tables + max(traces)
+        return max(tables) + max(traces)
 
     @model_validator(mode="after")
     def _can_be_made(self) -> Self:
-        kinds = {fault_class(fault) for fault in self.faults if fault.weight > 0}
-        if not kinds:
-            raise ValueError("faults all have weight 0; give at least one a weight above 0.")
-        if len(kinds) > 1 and self.corpus.specimens_per_rig < 2:
-            raise ValueError(
-                "corpus.specimens_per_rig: 1 is not enough for healthy and faulty bearings on every rig; use at least 2."
-            )
-        if self.corpus.undetected == "redraw" and self.corpus.records_per_specimen > self.corpus.records_per_part:
-            raise ValueError(
-                f"corpus.undetected: redraw judges all {self.corpus.records_per_specimen} records of a specimen together, and a part has "
-                f"{self.corpus.records_per_part}; raise records_per_part, or choose keep."
-            )
-        if self.corpus.split.validation + self.corpus.split.test >= 1:
-            raise ValueError("corpus.split: validation and test leave nothing to train on; make their sum less than 1.")
-        if self.machine.resonator is None and any("sensor" in channel.body for channel in self.recording.channels):
-            raise ValueError("recording.channels: body sensor needs machine.resonator; give one, or use body: housing.")
-        for place, path in [
-            ("path", self.path),
-            *((f"recording.channels[{n}].path", c.path) for n, c in enumerate(self.recording.channels)),
-        ]:
-            if path is not None and path.silent():
-                raise ValueError(
-                    f"{place}.direct: 0 without modes transmits nothing; give modes or a direct part above 0."
-                )
-        if self.n_samples < 16:
-            raise ValueError(f"recording.duration_s: {self.n_samples} samples are too few; use at least 16.")
-        if self.operation.axial_load_n.support()[1] > 0 and not self._slanted():
-            raise ValueError(
-                "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
-            )
-        beyond = load_problem(self.bearing, self.specimen, self.operation)
-        if beyond is not None:
-            raise ValueError(beyond)
-        converter = self.recording.converter
-        full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
-        impossible = sensor_fault_problem(self.sensor_faults, full_scale, self.recording.duration_s)
-        if impossible is not None:
-            raise ValueError(impossible)
-        if "temperature_celsius" in self.operation.model_fields_set and self.contact.lubricant is None:
-            raise ValueError(
-                "operation.temperature_celsius: has no effect without oil; give contact.lubricant, or leave it out."
-            )
-        for key, profile in (("speed", self.operation.speed_profile), ("load", self.operation.load_profile)):
-            if isinstance(profile, Steps) and profile.step_s * len(profile.levels_percent) > self.recording.duration_s:
-                raise ValueError(
-                    f"operation.{key}_profile.step_s: {profile.step_s:g} s is longer than a level; keep it below "
-                    f"{self.recording.duration_s / len(profile.levels_percent):.3g}."
-                )
-        if len({channel.name for channel in self.recording.channels}) < len(self.recording.channels):
-            raise ValueError("recording.channels: two channels have the same name; give each its own.")
+        problem = recipe_problem(self)
+        if problem is not None:
+            raise ValueError(problem)
         return self
-
-    def _slanted(self) -> bool:
-        """Whether some bearing has a contact angle."""
-        angles = {0.0, *self.specimen.contact_angle_deg.support()}
-        if isinstance(self.bearing, CatalogueBearing):
-            angles |= {self.bearing.bearing(designation).contact_angle for designation in self.bearing.designations}
-        else:
-            angles |= set(self.bearing.contact_angle_deg.support())
-        return angles != {0.0}

@@ -4,16 +4,20 @@
 module        responsibility
 ============= =================================================================
 model         dataclasses of rig, specimen and record; random streams
+points        quasi-random points
 draws         draw values from the distributions of a recipe section
-faults        choose the fault class of each specimen and draw its damage
+classes       choose the fault class of each specimen
+faults        draw the damage of a specimen
 sensor_faults draw the faults of the measuring chain, and the gear of a rig
-draw          draw rigs, specimens and records
+operating     operating conditions: per rig, specimen or record, shares, changes
+records       records of a specimen, with rungs of severity
+draw          draw rigs and specimens, and with them all records
 stored        write a scenario as the JSON text that a corpus stores, and read it
 ============= =================================================================
 """
 
-from gen.scenarios.draw import draw_scenarios, with_level
-from gen.scenarios.faults import fault_of_each_specimen, first_specimens
+from gen.scenarios.classes import fault_of_each_specimen, first_records, first_specimens
+from gen.scenarios.draw import draw_scenarios
 from gen.scenarios.model import (
     Background,
     Gear,
@@ -33,6 +37,7 @@ from gen.scenarios.model import (
     Wear,
     stream,
 )
+from gen.scenarios.records import with_level
 from gen.scenarios.stored import read_scenario, scenario_texts
 
 __all__ = [
@@ -54,6 +59,7 @@ __all__ = [
     "Wear",
     "draw_scenarios",
     "fault_of_each_specimen",
+    "first_records",
     "first_specimens",
     "read_scenario",
     "scenario_texts",

@@ -7,10 +7,8 @@ fault stream depends on the fault: a record with its fault and the same record w
 
 import functools
 import math
-import warnings
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -18,23 +16,22 @@ from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
 from gen.errors import RecipeError
-from gen.physics.bearing import Bearing
-from gen.physics.profile import Profile
+from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import (
+    FREE_ANGLE,
     CatalogueBearing,
     Modes,
     PathSection,
-    ProfileSection,
     Recipe,
     fault_class,
 )
 from gen.recipe.distributions import weighted_index
-from gen.scenarios.draws import Draws
-from gen.scenarios.faults import damaged, fault_of_each_specimen
+from gen.scenarios.classes import fault_of_each_specimen
+from gen.scenarios.draws import Draws, known_of, known_of_rig
+from gen.scenarios.faults import damaged
 from gen.scenarios.model import (
     Background,
     Mode,
-    Operation,
     Path,
     Pickup,
     Purpose,
@@ -45,13 +42,12 @@ from gen.scenarios.model import (
     Tone,
     stream,
 )
-from gen.scenarios.sensor_faults import draw_gear, draw_record_sensor_faults, draw_rig_sensor_faults
+from gen.scenarios.points import points_of
+from gen.scenarios.records import draw_record, record_points, source_of
+from gen.scenarios.sensor_faults import draw_gear, draw_rig_sensor_faults
 from gen.units import decibel_to_ratio, percent_to_share
 
 STEEPEST_CONTACT = math.radians(45)
-_DIMENSIONS = 64  # quasi-random values of an item; its further values are pseudo-random
-# Each level has its own dimensions: with common ones the first values of a specimen and of its only record were correlated (r up to 1).
-_FIRST_DIMENSION = {Purpose.RECORD: 0, Purpose.SPECIMEN: _DIMENSIONS, Purpose.RIG: 2 * _DIMENSIONS}
 
 
 def draw_scenarios(
@@ -68,62 +64,50 @@ def draw_scenarios(
         If a drawn bearing cannot exist or a drawn spall does not fit it.
     """
     stop = recipe.n_records if stop is None else min(stop, recipe.n_records)
-    per_specimen = recipe.corpus.records_per_specimen
+    per_specimen = recipe.corpus.records_of_a_specimen
     per_rig = recipe.corpus.specimens_per_rig
     first_specimen, last_specimen = first // per_specimen, (stop - 1) // per_specimen
     first_rig, last_rig = first_specimen // per_rig, last_specimen // per_rig
-    rig_points = _points(recipe, Purpose.RIG, first_rig, last_rig + 1)
-    rigs = {number: _draw_rig(recipe, number, point) for number, point in rig_points.items()}
+    rig_draws = {
+        number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number, f"rig {number}")
+        for number, point in points_of(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
+    }
+    rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
+    specimen_draws = {
+        number: Draws(
+            stream(recipe.seed, number // per_rig, number, 0, Purpose.SPECIMEN), point, number, f"specimen {number}"
+        )
+        for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
+    }
     specimens = {
         number: _draw_specimen(
             recipe,
             rigs[number // per_rig],
             number,
-            point,
+            draws,
             classes[number // per_rig],
             (fault_tries or {}).get(number, 0),
         )
-        for number, point in _points(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items()
+        for number, draws in specimen_draws.items()
     }
-    return [
-        Scenario(
-            recipe.seed,
-            rigs[number // per_specimen // per_rig],
-            specimens[number // per_specimen],
-            _draw_record(recipe, specimens[number // per_specimen], number, point),
+    sources = {
+        number: source_of(
+            recipe, rigs[number // per_rig], specimen, rig_draws[number // per_rig], specimen_draws[number]
         )
-        for number, point in _points(recipe, Purpose.RECORD, first, stop).items()
-    ]
+        for number, specimen in specimens.items()
+    }
+    points = record_points(recipe, first, stop)
+    return [draw_record(recipe, sources[number // per_specimen], number, points) for number in range(first, stop)]
 
 
-def _points(recipe: Recipe, level: Purpose, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
-    """Quasi-random points of the items ``first`` to ``stop`` of a level, by number; empty points if sampling is random."""
-    if recipe.corpus.sampling == "random":
-        return {number: np.empty(0) for number in range(first, stop)}
-    from scipy.stats import qmc  # the import takes half a second, and few recipes need it
-
-    engine_type = {"sobol": qmc.Sobol, "halton": qmc.Halton}[recipe.corpus.sampling]
-    rng = stream(recipe.seed, 0, 0, 0, Purpose.SAMPLING)
-    engine = engine_type(_FIRST_DIMENSION[level] + _DIMENSIONS, scramble=True, rng=rng)
-    if isinstance(engine, qmc.Halton):
-        engine.num_generated = first  # Halton.fast_forward computes all points before it
-    elif first > 0:  # Sobol.fast_forward(0) overflows in scipy
-        engine.fast_forward(first)
-    with warnings.catch_warnings():
-        # a range of the sequence is not balanced, the whole sequence is
-        warnings.filterwarnings("ignore", "The balance properties", UserWarning)
-        points = engine.random(stop - first)[:, _FIRST_DIMENSION[level] :]
-    return dict(zip(range(first, stop), points, strict=True))
-
-
-def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
-    draws = Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number)
+def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     machine = draws.section(recipe.machine)
     # ISO 21940-11 defines the balance grade at the highest speed of the machine
-    highest_rate = recipe.operation.shaft_rpm.support()[1] / 60
+    highest_rate = max(operation.shaft_rpm.support()[1] for operation in recipe.operations.values()) / 60
     machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
-    resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator)
+    known = known_of(recipe.machine, machine)
+    resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator, known)
     bearing = _draw_bearing(recipe, draws, number)
     level = draws.section(recipe.level)
     channels = []
@@ -236,24 +220,9 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     )
 
 
-def with_level(scenario: Scenario, recipe: Recipe, level_try: int) -> Scenario:
-    """The same record with the level of a later try; the first one is drawn with the record."""
-    if level_try == 0 or recipe.level.kind != "snr":
-        return scenario
-    u = float(scenario.rng(Purpose.LEVEL).random(level_try)[-1])
-    wanted = recipe.level.healthy_db if scenario.specimen.fault == "healthy" else recipe.level.faulty_db
-    return replace(scenario, record=replace(scenario.record, snr=wanted.draw(u), level_try=level_try))
-
-
-def _draw_specimen(
-    recipe: Recipe, rig: Rig, number: int, point: NDArray[np.float64], classes: list[str], fault_try: int
-) -> Specimen:
-    draws = Draws(
-        stream(recipe.seed, rig.number, number, 0, Purpose.SPECIMEN),
-        point,
-        number,
-    )
-    properties = draws.section(recipe.specimen)
+def _draw_specimen(recipe: Recipe, rig: Rig, number: int, draws: Draws, classes: list[str], fault_try: int) -> Specimen:
+    known = known_of_rig(recipe, rig)
+    properties = draws.section(recipe.specimen, {**known, FREE_ANGLE: functools.partial(_free_angle, rig.bearing)})
     bearing = replace(
         rig.bearing,
         contact_angle=rig.bearing.contact_angle + properties["contact_angle"],
@@ -267,20 +236,25 @@ def _draw_specimen(
         )
     position = number % recipe.corpus.specimens_per_rig
     fault = classes[position]
-    draws = Draws(stream(recipe.seed, rig.number, number, fault_try, Purpose.FAULT), np.empty(0), number)
-    wanted = [entry for entry in recipe.faults if fault_class(entry) == fault]
-    entry = wanted[weighted_index(tuple(entry.weight for entry in wanted), draws.u())]
-    specimen = Specimen(
-        number,
-        bearing,
-        properties,
-        fault,
-        spalls=(),
-        axis={},
-        split=_draw_split(recipe, rig.number, position),
-        fault_try=fault_try,
+    draws = Draws(
+        stream(recipe.seed, rig.number, number, fault_try, Purpose.FAULT), np.empty(0), number, f"specimen {number}"
     )
-    return damaged(draws, entry, specimen)
+    wanted = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) == fault]
+    entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), draws.u())]
+    split = _draw_split(recipe, rig.number, position)
+    specimen = Specimen(
+        number, bearing, properties, fault, spalls=(), axis={}, split=split, fault_try=fault_try, entry=entry
+    )
+    return damaged(draws, recipe.faults[entry], specimen, {**known, **known_of(recipe.specimen, properties)})
+
+
+def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:
+    """Free contact angle of a bearing with the clearance and the grooves of a specimen [rad]; 0 if its drawing has a contact angle."""
+    if bearing.contact_angle != 0:
+        return 0.0
+    inner, outer = value("inner_conformity"), value("outer_conformity")
+    grooved = replace(bearing, inner_conformity=inner, outer_conformity=outer)
+    return free_contact_angle(grooved, value("diametral_clearance_um"))
 
 
 def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
@@ -301,37 +275,3 @@ def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
 def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
     """Random order of the rigs, or of the specimens of a rig, for the split."""
     return stream(seed, rig, 0, 0, Purpose.SPLIT).permutation(count)
-
-
-def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray[np.float64]) -> Operation:
-    rig = specimen.number // recipe.corpus.specimens_per_rig
-    draws = Draws(stream(recipe.seed, rig, specimen.number, number, Purpose.RECORD), point, number)
-    conditions = draws.section(recipe.operation)
-    level = recipe.level
-    snr = rms = None
-    if level.kind == "snr":
-        u = draws.u()
-        snr = (level.healthy_db if specimen.fault == "healthy" else level.faulty_db).draw(u)
-        rms = draws.value(level.rms_m_s2)
-    profiles = [
-        None if profile is None else _draw_profile(draws, profile, recipe.recording.duration_s)
-        for profile in (recipe.operation.speed_profile, recipe.operation.load_profile)
-    ]
-    speed_profile, load_profile = profiles
-    sensor_faults = draw_record_sensor_faults(recipe, rig, specimen.number, number)
-    return Operation(number, conditions, snr, rms, speed_profile, load_profile, sensor_faults=sensor_faults)
-
-
-def _draw_profile(draws: Draws, profile: ProfileSection, duration: float) -> Profile:
-    if profile.kind == "table":
-        return Profile(profile.times_s, tuple(map(percent_to_share, profile.percent)))
-    if profile.kind == "steps":
-        levels = tuple(map(percent_to_share, profile.levels_percent))
-        changes = [duration * change / len(levels) for change in range(1, len(levels))]
-        times = [time + side * profile.step_s / 2 for time in changes for side in (-1, 1)]
-        shares = [level for pair in pairwise(levels) for level in pair]
-        return Profile(tuple(times), tuple(shares), smooth=True)
-    drawn = draws.section(profile)
-    if profile.kind == "ramp":
-        return Profile((0.0, duration), (drawn["from"], drawn["to"]))
-    return Profile((drawn["start"], drawn["start"] + drawn["lasting"]), (drawn["from"], drawn["to"]), smooth=True)

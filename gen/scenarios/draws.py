@@ -1,53 +1,125 @@
-"""Draw the values of one rig, specimen or record, one after the other."""
+"""Draw the values of one rig, specimen or record, one after the other.
+
+A quantity that is a share of another takes its random number in its turn, like any other; the product is taken when all quantities of the
+section are drawn.
+"""
 
 import functools
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BaseModel
 
-from gen.recipe import Section
-from gen.recipe.distributions import Grid
-from gen.scenarios.model import Drawn
+from gen.errors import RecipeError
+from gen.recipe import Recipe, Section, quantities
+from gen.recipe.distributions import Grid, interval, is_within
+from gen.scenarios.model import Drawn, Rig
 from gen.units import split_unit
 
+Derived = Callable[[Callable[[str], float]], float]
+"""Value of a derived quantity, from a function that gives the values of the section by key [SI]."""
+Known = Mapping[str, float | Derived]
+"""Quantities by key [SI] that those of a section can be a share of, beside each other."""
+
 _unit_of = functools.cache(split_unit)
+
+
+class Combination:
+    """Place of an item in the combinations of the grids of its level: the first grid takes the fastest part of ``number``."""
+
+    def __init__(self, number: int) -> None:
+        self.number = number
+        """Of the combinations of the grids to come."""
+
+    def value(self, distribution: Any, u: float) -> float:
+        """Value of a distribution at the quantile ``u``, in the unit of its key; of a grid, the next one of the combination."""
+        if isinstance(distribution, Grid):
+            self.number, position = divmod(self.number, len(distribution.values))
+            return float(distribution.values[position])
+        return distribution.draw(u)
 
 
 class Draws:
     """Source of the values of one rig, specimen or record.
 
     The first values come from the coordinates of a quasi-random ``point``, further ones from ``rng``. A grid takes its value by the
-    ``number`` of the item; several grids enumerate all combinations.
+    ``number`` of the item; several grids enumerate all combinations. Errors name the ``item``, such as ``specimen 3``.
     """
 
-    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], number: int) -> None:
+    def __init__(self, rng: np.random.Generator, point: NDArray[np.float64], number: int, item: str) -> None:
+        self.item = item
         self._rng = rng
         self._point = list(point[::-1])
-        self._combination = number
+        self.combination = Combination(number)
 
     def u(self) -> float:
         """Next number in [0, 1)."""
         return float(self._point.pop()) if self._point else float(self._rng.random())
 
     def value(self, distribution: Any) -> float:
-        """Next value of a distribution, in the unit of the recipe key."""
-        u = self.u()
-        if isinstance(distribution, Grid):
-            self._combination, position = divmod(self._combination, len(distribution.values))
-            return float(distribution.values[position])
-        return distribution.draw(u)
+        """Next value of a distribution, in the unit of the recipe key; of a share, the share."""
+        return self.combination.value(distribution, self.u())
 
-    def section(self, section: Section) -> Drawn:
-        """One value of every distribution of a section, in SI units, by the key without its unit."""
-        drawn: Drawn = {}
-        for key, distribution in section:
-            if isinstance(distribution, BaseModel) and hasattr(distribution, "draw"):
-                name, factor = _unit_of(key)
-                drawn[name] = self.value(distribution) * factor
-        return drawn
+    def section(self, section: Section, known: Known | None = None, keys: Collection[str] | None = None) -> Drawn:
+        """One value of every distribution of a section, or of some ``keys`` of it, in SI units, by the key without its unit.
+
+        Raises
+        ------
+        RecipeError
+            If a share of a ``known`` quantity is outside the range of its key.
+        """
+        found = {key: distribution for key, distribution in quantities(section).items() if keys is None or key in keys}
+        numbers = {key: self.value(distribution) for key, distribution in found.items()}
+        return in_si(section, found, numbers, known or {}, self.item)
 
     def is_present(self, section: Any) -> bool:
         """True with the probability that a section gives."""
         return self.u() < section.probability
+
+
+def in_si(
+    section: Section, distributions: Mapping[str, Any], numbers: Mapping[str, float], known: Known, item: str
+) -> Drawn:
+    """Drawn ``numbers`` of a section of an ``item`` in SI units, by the key without its unit.
+
+    Each share is multiplied by the quantity that it is a share of, of the section or ``known``.
+
+    Raises
+    ------
+    RecipeError
+        If the value of a share is outside the range of its key.
+    """
+
+    def value(key: str) -> float:
+        if key not in numbers:
+            whole = known[key]
+            return whole(value) if callable(whole) else whole
+        named = distributions[key].share_of
+        if named is None:
+            return numbers[key] * _unit_of(key)[1]
+        found = numbers[key] * value(named)
+        _check_share(section, key, found, f"{item}: {key}: a share of {numbers[key]:.4g} of {named}")
+        return found
+
+    return {_unit_of(key)[0]: value(key) for key in numbers}
+
+
+def _check_share(section: Section, key: str, value: float, share: str) -> None:
+    bounds: Any = type(section).model_fields[key].json_schema_extra
+    found = value / _unit_of(key)[1]
+    if not any(is_within(found * rounding, bounds) for rounding in (1, 1 - 1e-9, 1 + 1e-9)):
+        raise RecipeError(
+            f"{share} gives {found:.4g}, which is not in {interval(bounds)}; change the range of the share."
+        )
+
+
+def known_of(section: Section, drawn: Drawn) -> dict[str, float]:
+    """Drawn values of a section by the keys of the recipe [SI]."""
+    return {key: drawn[_unit_of(key)[0]] for key in quantities(section)}
+
+
+def known_of_rig(recipe: Recipe, rig: Rig) -> dict[str, float]:
+    """Quantities of a rig that those of its specimens and records can be a share of [SI]."""
+    dimensions = {"pitch_diameter_mm": rig.bearing.pitch_diameter, "ball_diameter_mm": rig.bearing.ball_diameter}
+    return {**known_of(recipe.machine, rig.machine), **dimensions}

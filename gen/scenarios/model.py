@@ -40,6 +40,10 @@ class Purpose(IntEnum):
     SENSOR_NOISE = 22
     GEAR = 23
     GEAR_PHASE = 24
+    RIG_OPERATION = 30
+    SPECIMEN_OPERATION = 31
+    SPEED_PROFILE = 32
+    LOAD_PROFILE = 33
 
 
 @dataclass(frozen=True)
@@ -60,6 +64,11 @@ class Spall:
     """Depths of a measured surface from edge to edge, evenly spaced [m]."""
     roughness: float = 0.0
     """Rms roughness of the floor [m]."""
+
+    def at_severity(self, share: float) -> "Spall":
+        """The same spall with a share of its width and depth; the roughness of its floor stays."""
+        trace = tuple(share * depth for depth in self.trace)
+        return replace(self, width=share * self.width, depth=share * self.depth, trace=trace)
 
 
 @dataclass(frozen=True)
@@ -233,6 +242,21 @@ class Specimen:
     wear: Wear | None = None
     fault_try: int = 0
     """Number of faults that were drawn before this one and could not be seen."""
+    entry: int = 0
+    """Place of the fault in ``faults`` of the recipe."""
+
+    def at_severity(self, share: float) -> "Specimen":
+        """The same bearing with a share of its damage: of width and depth of spalls, of wear, and of pitch error and knock of a cage.
+
+        0 is the bearing before it was damaged.
+        """
+        if share == 1:
+            return self
+        if share == 0:
+            return replace(self, fault="healthy", spalls=(), axis={}, cage={}, wear=None)
+        wear = None if self.wear is None else replace(self.wear, waviness=share * self.wear.waviness)
+        cage = {key: share * value for key, value in self.cage.items()}
+        return replace(self, spalls=tuple(spall.at_severity(share) for spall in self.spalls), cage=cage, wear=wear)
 
 
 @dataclass(frozen=True)
@@ -250,6 +274,15 @@ class Operation:
     level_try: int = 0
     """Number of levels that were drawn before this one and at which the fault could not be seen."""
     sensor_faults: RecordSensorFaults | None = None
+    pair: int = -1
+    """Number of the group of records that differ in the severity of their fault alone; -1 if the record is in no group."""
+    rung: int = -1
+    """Place of the severity in ``corpus.rungs``; -1 if the record is in no group."""
+
+    @property
+    def stream_number(self) -> int:
+        """Number of the record in its random streams: all records of a group have the streams of the first."""
+        return self.number - max(self.rung, 0)
 
 
 @dataclass(frozen=True)
@@ -263,11 +296,11 @@ class Scenario:
 
     def rng(self, purpose: Purpose) -> np.random.Generator:
         """Random stream of this record for one purpose."""
-        return stream(self.seed, self.rig.number, self.specimen.number, self.record.number, purpose)
+        return stream(self.seed, self.rig.number, self.specimen.number, self.record.stream_number, purpose)
 
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""
-        return replace(self, specimen=replace(self.specimen, fault="healthy", spalls=(), axis={}, cage={}, wear=None))
+        return replace(self, specimen=self.specimen.at_severity(0))
 
 
 def stream(seed: int, rig: int, specimen: int, record: int, purpose: Purpose) -> np.random.Generator:

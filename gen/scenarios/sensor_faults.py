@@ -43,7 +43,7 @@ def draw_record_sensor_faults(recipe: Recipe, rig: int, specimen: int, record: i
     )
     deviation = 0.0
     if wanted.mains_hum is not None:
-        draws = Draws(mains, np.empty(0), record)
+        draws = Draws(mains, np.empty(0), record, f"record {record}")
         deviation = to_si(draws.value(wanted.mains_hum.deviation_percent), "percent")
     return RecordSensorFaults(
         drift=_if_present(wanted.drift, drift, record),
@@ -59,7 +59,7 @@ def draw_gear(recipe: Recipe, rig: int) -> Gear | None:
     wanted = recipe.background.gear_mesh
     if wanted is None:
         return None
-    draws = Draws(stream(recipe.seed, rig, 0, 0, Purpose.GEAR), np.empty(0), rig)
+    draws = Draws(stream(recipe.seed, rig, 0, 0, Purpose.GEAR), np.empty(0), rig, f"rig {rig}")
     if not draws.is_present(wanted):
         return None
     drawn = draws.section(wanted)
@@ -82,7 +82,7 @@ def _angle(draws: Draws) -> float:
 
 def _draw_gain_steps(recipe: Recipe, rng: np.random.Generator, record: int) -> tuple[Drawn, ...]:
     wanted = recipe.sensor_faults.gain_steps
-    draws = Draws(rng, np.empty(0), record)
+    draws = Draws(rng, np.empty(0), record, f"record {record}")
     if wanted is None or not draws.is_present(wanted):
         return ()
     steps = [
@@ -94,7 +94,7 @@ def _draw_gain_steps(recipe: Recipe, rng: np.random.Generator, record: int) -> t
 
 def _if_present(section: Section | None, rng: np.random.Generator, number: int) -> Drawn | None:
     """Values of a section with the probability that it gives; None otherwise."""
-    draws = Draws(rng, np.empty(0), number)
+    draws = Draws(rng, np.empty(0), number, "sensor_faults")
     return draws.section(section) if section is not None and draws.is_present(section) else None
 
 

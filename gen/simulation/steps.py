@@ -15,7 +15,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING, Recipe
-from gen.scenarios import Scenario, first_specimens
+from gen.scenarios import Scenario, first_records
 from gen.simulation.batches import Group
 
 FloatArray = NDArray[np.float64]
@@ -109,7 +109,7 @@ def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[in
     also ``CHECKED_SHARE`` of the records of so many parts; and records that fill the batches of these at no more cost.
     """
     corpus, begun = recipe.corpus, {scenario.record.number for scenario in scenarios}
-    new = {fault for fault, number in first_specimens(recipe).items() if number * corpus.records_per_specimen in begun}
+    new = {fault for fault, number in first_records(recipe).items() if number in begun}
     first: dict[str, int] = {}
     for place in groups:
         if scenarios[place].specimen.fault in new:

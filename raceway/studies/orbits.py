@@ -50,7 +50,7 @@ def draw_orbits() -> Figure:
         figure = Figure((WIDTH, 0.42 * WIDTH), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1, 1.5))
         _draw_paths(left, signal, angles)
-        frequency, found = coherence(*signal, axis.fs, nperseg=1024)
+        frequency, found = coherence(signal[0], signal[1], axis.fs, nperseg=1024)
         right.plot(frequency, found, color=INK, linewidth=0.7)
         right.axhline(COHERENCE, color=VERMILION, linewidth=1, label=f"noise as drawn, {COHERENCE}")
         right.set(xlabel="frequency [Hz]", ylabel="coherence of both channels", ylim=(0, 1.02), xlim=(0, axis.fs / 2))

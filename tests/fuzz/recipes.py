@@ -19,19 +19,25 @@ SMALL = """\
 name: small
 title: A small corpus
 seed: 3
-corpus: {rigs: 3, specimens_per_rig: 4, records_per_specimen: 2, records_per_part: 8, split: {by: specimen, test: 0.25}}
+corpus:
+  {rigs: 3, specimens_per_rig: 4, records_per_specimen: 2, records_per_part: 8, rungs: [0, 0.5, 1], split: {by: specimen, test: 0.25}}
 recording:
   sample_rate_hz: 12000
   duration_s: 0.1
   channels: [{name: sensor, body: {sensor: 1, housing: 2}}]
 bearing: {kind: catalogue, designations: ["6205"]}
-specimen: {diametral_clearance_um: {kind: uniform, low: -4, high: 12}}
+machine: {bow_n: {kind: uniform, low: 10, high: 20}}
+specimen:
+  diametral_clearance_um: {kind: uniform, low: -4, high: 12}
+  contact_angle_deg: {share_of: free_contact_angle_deg, kind: constant, value: 1}
 operation:
-  shaft_rpm: {kind: normal, mean: 1750, sd: 100, low: 1500, high: 2000}
+  shaft_rpm: {kind: normal, mean: 1750, sd: 100, low: 1500, high: 2000, per: rig, scatter_percent: 2}
+  load_n: &load {share_of: bow_n, kind: uniform, low: 2, high: 4}
+  slip_percent: {share_of: speed_wander_percent, kind: uniform, low: 0.5, high: 2}
   speed_profile: {kind: steps, levels_percent: [50, 100], step_s: 0.01}
 faults:
-  - {kind: healthy}
-  - &inner {kind: inner, width_mm: 0.5, angle_deg: {kind: choice, values: [0, 90], weights: [1, 3]}}
+  - {kind: healthy, weight: 4}
+  - &inner {kind: inner, width_mm: 0.5, angle_deg: {kind: choice, values: [0, 90], weights: [1, 3]}, operation: {load_n: *load}}
   - {<<: *inner, kind: outer}
   - {kind: compound, parts: [{kind: cage}, {kind: ball, width_mm: {kind: loguniform, low: 0.1, high: 1}}]}
 background: {tones: {probability: 0.5, count: 2, frequency_hz: 100, level_db: -10}}
@@ -51,7 +57,9 @@ FORMS = (
     "{{kind: uniform, low: {n}, high: {n}}}", "{{kind: loguniform, low: 1e-300, high: {n}}}", "{{kind: grid, values: [{n}, {half}]}}",
     "{{kind: normal, mean: {n}, sd: 1e-300, low: {half}, high: {twice}}}", "{{kind: normal, mean: 1e300, sd: 1e300, low: {n}, high: {n}}}",
     "{{kind: normal, mean: 0, sd: 1, low: {half}, high: {twice}}}", "{{kind: choice, values: [{n}, {half}], weights: [1e308, 1e308]}}",
-    "{{kind: choice, values: [{n}, {n}], weights: [5e-324, 0]}}", "{{kind: constant, value: {n}}}",
+    "{{kind: choice, values: [{n}, {n}], weights: [5e-324, 0]}}",
+    "{{kind: constant, value: {n}, share_of: load_n}}", "{{kind: uniform, low: {half}, high: {n}, per: rig, scatter_percent: 9}}",
+    "{{kind: constant, value: {n}}}",
 )  # fmt: skip
 NUMBER = re.compile(rb"(?<=[ \[])-?[0-9.]+(?=[,}\]\n])")
 WORD = re.compile(rb"[A-Za-z0-9_.\"'+-]+")

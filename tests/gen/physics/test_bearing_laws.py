@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.physics.bearing import orders, slipping_orders
+from gen.physics.bearing import ball_spacing, free_contact_angle, orders, slipping_orders
 from gen.physics.catalogue import CATALOGUE
 from tests.strategies import bearings
 
@@ -73,3 +73,22 @@ def test_a_bearing_of_the_catalogue_carries_its_own_name_and_room_for_its_balls(
     bearing = CATALOGUE[designation]
     assert bearing.designation == designation
     assert bearing.n_balls * bearing.ball_diameter < math.pi * bearing.pitch_diameter
+
+
+@law
+@given(bearings(), st.floats(0, 1e-4))
+def test_a_bearing_moved_along_its_axis_to_the_free_angle_closes_its_clearance(bearing, clearance):
+    """The centres of the grooves, apart by A less half the clearance in the radial direction, are then apart by A."""
+    apart = (bearing.inner_conformity + bearing.outer_conformity - 1) * bearing.ball_diameter
+    angle = free_contact_angle(bearing, clearance)
+    if angle < math.pi / 2:
+        assert apart * (1 - math.cos(angle)) == pytest.approx(clearance / 2, abs=1e-12)
+    assert free_contact_angle(bearing, -clearance) == 0
+    assert free_contact_angle(replace(bearing, rolling_element="roller", roller_length=0.01), clearance) == 0
+
+
+@law
+@given(bearings())
+def test_the_arcs_between_the_balls_make_a_whole_turn(bearing):
+    for site in ("inner", "outer"):
+        assert bearing.n_balls * ball_spacing(bearing, site) == pytest.approx(2 * math.pi * bearing.radius(site))

@@ -74,7 +74,6 @@ TABLE = [
     ("{name: sensor,", "{name: sensor, body: table,", "recording.channels[0].body.table: "),
     # keys that contradict each other
     ("weight: 1}\n  - {kind: outer,", "weight: 0}\n  - {kind: outer, weight: 0,", "faults all have weight 0; give at least one"),
-    ("specimens_per_rig: 4", "specimens_per_rig: 1", "corpus.specimens_per_rig: 1 is not enough for healthy and faulty bearings"),
     ("test: 0.25", "test: 0.6, validation: 0.4", "corpus.split: validation and test leave nothing to train on"),
     ("shaft_mass_kg: 5", "resonator: null", "recording.channels: body sensor needs machine.resonator; give one, or use body: housing."),
     ("duration_s: 0.1", "duration_s: 0.001", "recording.duration_s: 12 samples are too few; use at least 16."),
@@ -126,7 +125,7 @@ TABLE = [
     (OUTER, "{kind: distributed, site: inner, waviness_um: 0}", "faults[1].waviness_um: 0 is not in (0, 50]."),
     (OUTER, "{kind: distributed, site: inner, order: 61}", "faults[1].order: 61 is not allowed here; it must be less than or equal to 60."),
     (OUTER, "{kind: distributed, site: inner, order: 2.5}", "faults[1].order: 2.5 is not allowed here; it must be a whole number."),
-    (OUTER, "{kind: cage, width_mm: 1}", "faults[1].width_mm: no such key; allowed are kind, knock_n, pitch_error_deg, weight."),
+    (OUTER, "{kind: cage, width_mm: 1}", "faults[1].width_mm: no such key; allowed are kind, knock_n, level, operation, "),
     (OUTER, "{kind: compound}", "faults[1].parts: is missing; give it."),
     (OUTER, "{kind: compound, parts: []}", "faults[1].parts: is empty; give at least 2."),
     (OUTER, "{kind: compound, parts: [{kind: cage}]}", "faults[1].parts: 1 is too few; give at least 2."),
@@ -181,6 +180,72 @@ TABLE = [
      "contact.lubricant.density: no such key; did you mean density_kg_m3?"),
     ("machine: {shaft_mass_kg: 5}", "contact: {lubricant: {viscosity_100_mm2_s: 80}}",
      "rig 0: oil of 68 mm2/s at 40 C has no lower viscosity at 100 C; keep viscosity_100_mm2_s below viscosity_40_mm2_s."),
+    # shares
+    (RPM, RPM + ", load_n: {share_of: thrust, kind: uniform, low: 0, high: 1}",
+     "operation.load_n.share_of: there is no quantity 'thrust'; allowed are axial_load_n, bow_n, misalignment_n."),
+    (RPM, RPM + ", axial_load_n: {share_of: laod_n, kind: uniform, low: 0, high: 1}",
+     "operation.axial_load_n.share_of: there is no quantity 'laod_n'; did you mean load_n?"),
+    (RPM, RPM + ", load_n: {share_of: shaft_rpm, kind: uniform, low: 0, high: 1}",
+     "operation.load_n.share_of: shaft_rpm is of another kind than load_n; allowed are axial_load_n, bow_n, misalignment_n."),
+    (RPM, RPM + ", load_n: {share_of: load_n, kind: uniform, low: 0, high: 1}",
+     "operation.load_n.share_of: load_n is a share of load_n; give one of them a range of its own."),
+    (RPM, RPM + ", load_n: {share_of: axial_load_n, kind: constant, value: 1}, axial_load_n: {share_of: load_n, kind: constant, value: 1}",
+     "operation.load_n.share_of: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
+    (RPM, RPM + ", load_n: {share_of: bow_n, kind: constant, value: 1}",
+     "operation.load_n: as a share of bow_n it can be 0, which is not in [1, "),
+    (RPM, RPM + ", temperature_celsius: {share_of: load_n, kind: constant, value: 1}",
+     "operation.temperature_celsius.share_of: a value in degC has no share; give it a range of its own."),
+    (RPM, RPM + ", load_n: {share_of: 3, kind: constant, value: 1}", "operation.load_n.share_of: 3 is not allowed here; it must be text."),
+    ("shaft_mass_kg: 5", "bow_n: {share_of: load_n, kind: constant, value: 1}",
+     "machine.bow_n.share_of: load_n is drawn after bow_n, not with it or before it; allowed are misalignment_n."),
+    ("machine: {shaft_mass_kg: 5}", "specimen: {contact_angle_deg: {share_of: jitter_deg, kind: constant, value: 1}}",
+     "specimen.contact_angle_deg.share_of: jitter_deg is drawn after contact_angle_deg, not with it or before it; allowed are "),
+    ("machine: {shaft_mass_kg: 5}", "specimen: {contact_angle_deg: {share_of: free_contact_angle_deg, kind: constant, value: 5}}",
+     "specimen 0: contact_angle_deg: a share of 5 of free_contact_angle_deg gives 50.9, which is not in [0, 30]; change the range"),
+    ("machine: {shaft_mass_kg: 5}", "path: {direct: {share_of: load_n, kind: constant, value: 1}}",
+     "path.direct.share_of: there are shares in bearing, machine, machine.resonator, contact.lubricant, "),
+    (OUTER, "{kind: outer, width_mm: 1, n_spalls: {share_of: width_mm, kind: constant, value: 1}}",
+     "faults[1].n_spalls.share_of: a count has no share; give it a range of its own."),
+    (OUTER, "{kind: ball, width_mm: {share_of: ball_spacing_mm, kind: constant, value: 1}}",
+     "faults[1].width_mm.share_of: ball_spacing_mm is not known here; allowed are depth_um, roughness_um, "),
+    (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: outer, width_mm: {share_of: lod_n, kind: constant, value: 1}}]}",
+     "faults[1].parts[1].width_mm.share_of: there is no quantity 'lod_n'; allowed are depth_um, "),
+    # conditions per rig, and of one fault
+    (RPM, "{kind: uniform, low: 1500, high: 1800, per: machine}",
+     "operation.shaft_rpm.per: 'machine' is not allowed here; it must be 'rig', 'specimen' or 'record'."),
+    (RPM, "{kind: uniform, low: 1500, high: 1800, scatter_percent: 2}",
+     "operation.shaft_rpm.scatter_percent: needs a value to scatter about; give per: rig or per: specimen."),
+    (RPM, "{kind: uniform, low: 1, high: 1800, per: rig, scatter_percent: 2}", "operation.shaft_rpm: 0.98 is not in [1, 100000]."),
+    (RPM, "{kind: uniform, low: 1, high: 1800, per: rig, scatter_percent: 100}",
+     "operation.shaft_rpm.scatter_percent: 100 is not allowed here; it must be less than 100."),
+    ("shaft_mass_kg: 5", "shaft_mass_kg: {kind: constant, value: 5, per: rig}",
+     "machine.shaft_mass_kg.per: the level of a draw can be chosen for quantities of operation alone; leave it out."),
+    ("0.5}", "0.5, operation: {load_n: 0}}", "faults[1].operation.load_n: 0 is not in [1, 1e+07]."),
+    ("0.5}", "0.5, operation: {load: 3}}", "faults[1].operation.load: no such key; did you mean load_n?"),
+    ("0.5}", "0.5, operation: {load_n: heavy}}", "faults[1].operation.load_n: 'heavy' is neither a number nor a distribution;"),
+    ("0.5}", "0.5, operation: {load_n: null}}", "faults[1].operation.load_n: None is neither a number nor a distribution;"),
+    ("0.5}", "0.5, operation: 3}", "faults[1].operation: 3 is not allowed here; it must be a section with keys of its own."),
+    ("0.5}", "0.5, operation: {load_n: 1e6}}",
+     "faults[1].operation.load_n: gives an equivalent static load of at least 1e+06 N, and 1.58e+04 N"),
+    ("0.5}", "0.5, operation: {axial_load_n: 9}}",
+     "faults[1].operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg"),
+    ("0.5}", "0.5, operation: {temperature_celsius: 9}}", "faults[1].operation.temperature_celsius: has no effect without oil; "),
+    ("0.5}", "0.5, operation: {speed_profile: {kind: spline}}}",
+     "faults[1].operation.speed_profile.kind: 'spline' is not one of ramp, run_up, steps, table."),
+    ("0.5}", "0.5, operation: {load_n: {share_of: shaft_rpm, kind: constant, value: 1}}}",
+     "faults[1].operation.load_n.share_of: shaft_rpm is of another kind than load_n; allowed are "),
+    ("0.5}", "0.5, level: {faulty_db: 3}}",
+     "faults[1].level: works with level.kind: snr alone, because a physical level is that of the rig;"),
+    ("0.5}", "0.5, level: {gain: 3}}", "faults[1].level.gain: no such key; allowed are faulty_db, healthy_db, rms_m_s2."),
+    (OUTER, "{kind: compound, parts: [{kind: cage, operation: {load_n: 9}}, {kind: outer, width_mm: 1}]}",
+     "faults[1].parts: an operation of cage alone does nothing; give the compound one."),
+    # rungs
+    ("rigs: 2", "rigs: 2, rungs: [1]", "corpus.rungs: 1 is too few; give at least 2."),
+    ("rigs: 2", "rigs: 2, rungs: 2", "corpus.rungs: 2 is not allowed here; it must be a list."),
+    ("rigs: 2", "rigs: 2, rungs: [0, 1, 0.5]", "corpus.rungs: 0.5 after 1 does not rise; sort them, each once."),
+    ("rigs: 2", "rigs: 2, rungs: [0, 1, 1]", "corpus.rungs: 1 after 1 does not rise; sort them, each once."),
+    ("rigs: 2", "rigs: 2, rungs: [0, 1, 2]", "corpus.rungs[2]: 2 is not allowed here; it must be less than or equal to 1."),
+    ("rigs: 2", "rigs: 1000000, rungs: [0, 1]", "records_per_specimen * rungs are 16000000 records, and the limit"),
     # sensors
     ("angle_deg: 90", "body: {}", "recording.channels[0].body: no body has a weight above 0; give one, such as body: sensor."),
     ("angle_deg: 90", "body: {sensor: 0}", "recording.channels[0].body: no body has a weight above 0; give one, such as body: sensor."),
@@ -225,6 +290,27 @@ def test_a_broken_recipe_gets_one_sentence(tmp_path, whole, broken, sentence):
     assert sentence in said
     assert said.endswith((".", "?"))
     assert "\n" not in said
+
+
+@pytest.mark.parametrize(
+    ("faults", "sentence"),
+    [
+        (
+            "[{kind: healthy}]",
+            "corpus.rungs: no entry of faults with a weight above 0 has a severity; add a fault, or leave rungs out.",
+        ),
+        (
+            f"[{{kind: healthy, weight: 0.5}}, {OUTER}]",
+            (
+                "corpus.rungs: rung 0 makes at least 50 % of all records healthy, and the weights of faults ask for 33.3 %; "
+                "give kind: healthy a weight of 1 or more, or leave out rung 0."
+            ),
+        ),
+    ],
+)
+def test_rungs_that_the_faults_cannot_meet_are_refused(tmp_path, faults, sentence):
+    pairs = WHOLE[: WHOLE.index("faults:")].replace("rigs: 2", "rigs: 2, rungs: [0, 1]")
+    assert sentence_of(tmp_path, f"{pairs}faults: {faults}\n") == sentence
 
 
 def test_every_thing_that_is_wrong_gets_a_sentence_of_its_own(tmp_path):

@@ -60,7 +60,7 @@ def written(value, path=""):
         return {key for item in value for key in written(item, path)}
     if not isinstance(value, dict):
         return set()
-    drawn = {"kind", "low", "high", "value", "values", "weights", "mean", "sd"}
+    drawn = {key for found in DISTRIBUTIONS for key in found.model_fields}
     if (
         value.get("kind") in {found.model_fields["kind"].annotation.__args__[0] for found in DISTRIBUTIONS}
         and set(value) <= drawn

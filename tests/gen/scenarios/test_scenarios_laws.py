@@ -6,15 +6,12 @@ from itertools import product
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from gen.errors import RecipeError
-from gen.scenarios import Purpose, draw_scenarios, fault_of_each_specimen, scenario_texts, stream
+from gen.scenarios import Purpose, draw_scenarios, scenario_texts, stream
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
 
-law = settings(deadline=None, max_examples=25)
 SAMPLINGS = ("random", "sobol", "halton")
 FAULTY = ("inner", "outer", "ball")
 
@@ -37,45 +34,6 @@ def test_nothing_but_the_fault_knows_the_fault(recipe_with, only, sampling):
         assert one.specimen.properties == other.specimen.properties
         assert one.specimen.split == other.specimen.split
         assert one.record == other.record
-
-
-@law
-@given(
-    st.integers(0, 2**31),
-    st.integers(2, 9),
-    st.tuples(*[st.floats(0.05, 10)] * 4),
-    st.integers(0, 2),
-)
-def test_every_rig_has_healthy_and_faulty_specimens(recipe_with, seed, specimens, weights, absent):
-    shares = dict(zip(("healthy", *FAULTY), weights, strict=True)) | dict.fromkeys(FAULTY[:absent], 0.0)
-    recipe = recipe_with({"seed": seed, "corpus.specimens_per_rig": specimens, "faults": faults(**shares)})
-    for rig in range(5):
-        found = fault_of_each_specimen(recipe, rig)
-        assert len(found) == specimens
-        assert "healthy" in found
-        assert set(found) > {"healthy"}
-        assert not set(found) & set(FAULTY[:absent])
-
-
-@pytest.mark.parametrize(
-    ("specimens", "weights"),
-    [
-        (4, (1, 1, 1, 1)),
-        (5, (1, 1, 1, 1)),
-        (6, (3, 1, 1, 1)),
-        (5, (3, 1, 1, 0)),
-        (7, (2, 1, 1, 0.5)),
-        (8, (2, 1, 3, 1)),
-    ],
-)
-def test_classes_come_as_often_as_their_weights_say(recipe_with, specimens, weights):
-    shares = dict(zip(("healthy", *FAULTY), weights, strict=True))
-    recipe = recipe_with({"corpus.specimens_per_rig": specimens, "faults": faults(**shares)})
-    rigs = 4000
-    counts = Counter(fault for rig in range(rigs) for fault in fault_of_each_specimen(recipe, rig))
-    for kind, share in shares.items():
-        expected = specimens * share / sum(weights)
-        assert counts[kind] / rigs == pytest.approx(expected, abs=0.025)  # 3 sigma of a coin tossed 4000 times
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)

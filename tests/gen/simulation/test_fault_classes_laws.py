@@ -32,7 +32,7 @@ def recipe_file(write_recipe, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(recipe_file, tmp_path_factory):
-    """A corpus of 28 records in two parts, with every mechanism."""
+    """A corpus of 32 records in two parts, with every mechanism."""
     return generate(recipe_file, tmp_path_factory.mktemp("everything") / "corpus")
 
 

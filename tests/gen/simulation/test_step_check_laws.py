@@ -120,7 +120,7 @@ def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe
         seen.append(rig)
         return fault_of_each_specimen(recipe, rig)
 
-    monkeypatch.setattr("gen.scenarios.faults.fault_of_each_specimen", looked_at)
+    monkeypatch.setattr("gen.scenarios.classes.fault_of_each_specimen", looked_at)
     assert first_specimens(recipe_with({"corpus.rigs": 1000, "seed": 12345})).keys() == set(FAULTS[:4])
     assert seen == [0]
 

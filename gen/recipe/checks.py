@@ -1,0 +1,128 @@
+"""Refuse recipes that cannot be made as a whole: keys that contradict each other, weights that cannot be met."""
+
+from typing import TYPE_CHECKING
+
+from gen.recipe.faults import fault_class
+from gen.recipe.loads import load_problem
+from gen.recipe.machine import CatalogueBearing
+from gen.recipe.operation import OperationSection, Steps
+from gen.recipe.sensor_faults import sensor_fault_problem
+from gen.recipe.shares import share_problem
+
+if TYPE_CHECKING:
+    from gen.recipe.model import Recipe
+
+
+def recipe_problem(recipe: "Recipe") -> str | None:
+    """Error sentence about the first thing for which a recipe cannot be made, else None."""
+    return (
+        _faults_problem(recipe)
+        or _corpus_problem(recipe)
+        or _sensing_problem(recipe)
+        or _sensor_faults_problem(recipe)
+        or share_problem(recipe)
+        or next(filter(None, (_operation_problem(recipe, *item) for item in recipe.operations.items())), None)
+    )
+
+
+def _faults_problem(recipe: "Recipe") -> str | None:
+    weights = {"healthy": 0.0, "faulty": 0.0}
+    for entry in recipe.faults:
+        weights["healthy" if fault_class(entry) == "healthy" else "faulty"] += entry.weight
+    if sum(weights.values()) == 0:
+        return "faults all have weight 0; give at least one a weight above 0."
+    for number, entry in enumerate(recipe.faults):
+        if entry.level is not None and recipe.level.kind != "snr":
+            return (
+                f"faults[{number}].level: works with level.kind: snr alone, because a physical level is that of the rig; "
+                f"leave it out, or use level.kind: snr."
+            )
+    return _rungs_problem(recipe, **weights)
+
+
+def _rungs_problem(recipe: "Recipe", healthy: float, faulty: float) -> str | None:
+    """Error sentence if the rungs are of no fault, or give more healthy records than the weights allow, else None."""
+    rungs = recipe.corpus.rungs
+    if rungs is None:
+        return None
+    if faulty == 0:
+        return "corpus.rungs: no entry of faults with a weight above 0 has a severity; add a fault, or leave rungs out."
+    at_least = faulty / (len(rungs) - 1)
+    if rungs[0] == 0 and healthy < at_least * (1 - 1e-9):
+        return (
+            f"corpus.rungs: rung 0 makes at least {100 / len(rungs):.3g} % of all records healthy, and the weights of faults ask for "
+            f"{100 * healthy / (healthy + faulty):.3g} %; give kind: healthy a weight of {at_least:.6g} or more, or leave out rung 0."
+        )
+    return None
+
+
+def _corpus_problem(recipe: "Recipe") -> str | None:
+    corpus = recipe.corpus
+    if corpus.undetected == "redraw" and corpus.records_of_a_specimen > corpus.records_per_part:
+        return (
+            f"corpus.undetected: redraw judges all {corpus.records_of_a_specimen} records of a specimen together, and a part has "
+            f"{corpus.records_per_part}; raise records_per_part, or choose keep."
+        )
+    if recipe.n_records % corpus.n_rungs:
+        return (
+            f"records: {recipe.n_records} ends within a group of {corpus.n_rungs} records, one for each of corpus.rungs; "
+            f"use a multiple of {corpus.n_rungs}."
+        )
+    if corpus.split.validation + corpus.split.test >= 1:
+        return "corpus.split: validation and test leave nothing to train on; make their sum less than 1."
+    return None
+
+
+def _sensor_faults_problem(recipe: "Recipe") -> str | None:
+    converter = recipe.recording.converter
+    full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
+    return sensor_fault_problem(recipe.sensor_faults, full_scale, recipe.recording.duration_s)
+
+
+def _sensing_problem(recipe: "Recipe") -> str | None:
+    recording = recipe.recording
+    if recipe.machine.resonator is None and any("sensor" in channel.body for channel in recording.channels):
+        return "recording.channels: body sensor needs machine.resonator; give one, or use body: housing."
+    for place, path in [
+        ("path", recipe.path),
+        *((f"recording.channels[{n}].path", c.path) for n, c in enumerate(recording.channels)),
+    ]:
+        if path is not None and path.silent():
+            return f"{place}.direct: 0 without modes transmits nothing; give modes or a direct part above 0."
+    if recipe.n_samples < 16:
+        return f"recording.duration_s: {recipe.n_samples} samples are too few; use at least 16."
+    if len({channel.name for channel in recording.channels}) < len(recording.channels):
+        return "recording.channels: two channels have the same name; give each its own."
+    return None
+
+
+def _operation_problem(recipe: "Recipe", place: str, operation: OperationSection) -> str | None:
+    """Error sentence about the operating conditions at a place of the recipe: those of all records, or those of one fault."""
+    if operation.axial_load_n.support()[1] > 0 and not _slanted(recipe):
+        return (
+            f"{place}.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
+        )
+    beyond = load_problem(recipe.bearing, recipe.specimen, operation, place)
+    if beyond is not None:
+        return beyond
+    if "temperature_celsius" in operation.model_fields_set and recipe.contact.lubricant is None:
+        return f"{place}.temperature_celsius: has no effect without oil; give contact.lubricant, or leave it out."
+    duration = recipe.recording.duration_s
+    for key, profile in (("speed", operation.speed_profile), ("load", operation.load_profile)):
+        if isinstance(profile, Steps) and profile.step_s * len(profile.levels_percent) > duration:
+            return (
+                f"{place}.{key}_profile.step_s: {profile.step_s:g} s is longer than a level; keep it below "
+                f"{duration / len(profile.levels_percent):.3g}."
+            )
+    return None
+
+
+def _slanted(recipe: "Recipe") -> bool:
+    """Whether some bearing has a contact angle."""
+    bearing = recipe.bearing
+    angles = {0.0, *recipe.specimen.contact_angle_deg.support()}
+    if isinstance(bearing, CatalogueBearing):
+        angles |= {bearing.bearing(designation).contact_angle for designation in bearing.designations}
+    else:
+        angles |= set(bearing.contact_angle_deg.support())
+    return angles != {0.0}

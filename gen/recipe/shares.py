@@ -1,0 +1,236 @@
+"""Quantities that are a share of another quantity: which can be named where, and the range of their product.
+
+A quantity can be a share of one that is drawn before it or together with it: of its own section, or of a section of a level above
+(rig, then specimen, then record). Both must be of the same kind of unit. Every share keeps its own random number; the product is taken
+when all numbers are drawn, so that to make one quantity a share moves no other.
+"""
+
+import difflib
+from collections.abc import Iterator, Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from gen.recipe.distributions import DISTRIBUTIONS, Support, interval, is_within
+from gen.recipe.machine import CatalogueBearing
+from gen.recipe.operation import OperationSection
+from gen.recipe.section import Section
+from gen.units import UNITS, unit_suffix
+
+if TYPE_CHECKING:
+    from gen.recipe.model import Recipe
+
+BEARING_QUANTITIES = ("pitch_diameter_mm", "ball_diameter_mm")
+"""Dimensions of the bearing of the rig, for sections below it."""
+FREE_ANGLE, BALL_SPACING = "free_contact_angle_deg", "ball_spacing_mm"
+_COUNTS = ("n_balls", "n_spalls")
+_HAVE_SHARES = "bearing, machine, machine.resonator, contact.lubricant, specimen, operation and faults"
+# units that measure the same; every other unit is of a kind of its own, and a quantity without a unit is a ratio
+_KINDS = {"mm": "length", "um": "length", "nm": "length", "rpm": "rate", "hz": "rate", "percent": "ratio", "": "ratio"}
+_WITHOUT_SHARES = ("db", "celsius")
+
+
+class _Scope(NamedTuple):
+    """A section with quantities that can be shares, and what they can name beside its own."""
+
+    place: str
+    section: Section
+    above: Mapping[str, Support | None]
+    """Range of every quantity of the levels above, in the unit of its key; None if it is not known before it is drawn."""
+
+
+def quantities(section: Section) -> dict[str, Any]:
+    """Distribution of every quantity of a section, by key."""
+    return {key: value for key, value in section if isinstance(value, DISTRIBUTIONS)}
+
+
+def share_problem(recipe: "Recipe") -> str | None:
+    """Error sentence about the first share that cannot be, else None; gives every share of the recipe the range of its product."""
+    problem = _misplaced(recipe, {id(scope.section) for scope in _scopes(recipe)})
+    for scope in _scopes(recipe):
+        problem = problem or _scope_problem(recipe, scope)
+        if problem is None:
+            _set_products(scope, quantities(scope.section))
+    for number, entry in enumerate(recipe.faults):
+        if entry.operation is not None:
+            changed = _Scope(f"faults[{number}].operation", changed_operation(recipe, number), _above_records(recipe))
+            problem = problem or _scope_problem(recipe, changed)
+    return problem
+
+
+def changed_operation(recipe: "Recipe", entry: int) -> OperationSection:
+    """Operating conditions of the records of one entry of ``faults``."""
+    changes = recipe.faults[entry].operation
+    return recipe.operation if changes is None else recipe.operation.model_copy(update=changes.given())
+
+
+def with_products(recipe: "Recipe", operation: OperationSection) -> OperationSection:
+    """Operating conditions whose shares have the range of their product."""
+    scope = _Scope("operation", operation, _above_records(recipe))
+    found = {key: quantities(operation)[key].model_copy() for key in _products(scope)}
+    _set_products(scope, found)
+    return operation.model_copy(update=found)
+
+
+def _set_products(scope: _Scope, shares: Mapping[str, Any]) -> None:
+    for key, product in _products(scope).items():
+        bounds = _bounds(scope.section, key)
+        shares[key].set_product(product, (bounds["low"], bounds["high"]))
+
+
+def _bounds(section: Section, key: str) -> Any:
+    return type(section).model_fields[key].json_schema_extra
+
+
+def _scopes(recipe: "Recipe") -> Iterator[_Scope]:
+    """Sections with shares, in the order of drawing; the ranges of one are read after the one before it has its products."""
+    yield _Scope("machine", recipe.machine, {})
+    machine = _supports(recipe.machine)
+    if recipe.machine.resonator is not None:
+        yield _Scope("machine.resonator", recipe.machine.resonator, machine)
+    yield _Scope("bearing", recipe.bearing, {})
+    if recipe.contact.lubricant is not None:
+        yield _Scope("contact.lubricant", recipe.contact.lubricant, {})
+    rig = {**machine, **_bearing_supports(recipe)}
+    yield _Scope("specimen", recipe.specimen, {**rig, FREE_ANGLE: None})
+    for number, entry in enumerate(recipe.faults):
+        parts = getattr(entry, "parts", None)
+        for place, part in (
+            [(f"faults[{number}]", entry)] if parts is None else _numbered(f"faults[{number}].parts", parts)
+        ):
+            spacing = {BALL_SPACING: None} if part.kind in ("inner", "outer") else {}
+            yield _Scope(place, part, {**rig, **_supports(recipe.specimen), **spacing})
+    yield _Scope("operation", recipe.operation, _above_records(recipe))
+
+
+def _numbered(place: str, sections: tuple[Any, ...]) -> list[tuple[str, Any]]:
+    return [(f"{place}[{number}]", section) for number, section in enumerate(sections)]
+
+
+def _above_records(recipe: "Recipe") -> dict[str, Support | None]:
+    return {**_supports(recipe.machine), **_bearing_supports(recipe), **_supports(recipe.specimen)}
+
+
+def _supports(section: Section) -> dict[str, Support | None]:
+    """Range of every quantity of a section; None for a share whose product is not known."""
+    return {key: found.known_support() for key, found in quantities(section).items()}
+
+
+def _bearing_supports(recipe: "Recipe") -> dict[str, Support | None]:
+    bearing = recipe.bearing
+    if not isinstance(bearing, CatalogueBearing):
+        return {"pitch_diameter_mm": _supports(bearing)["pitch_diameter_mm"], "ball_diameter_mm": None}
+    found = [bearing.bearing(name) for name in bearing.designations]
+    pitches, balls = ([1e3 * getattr(one, key) for one in found] for key in ("pitch_diameter", "ball_diameter"))
+    return {"pitch_diameter_mm": (min(pitches), max(pitches)), "ball_diameter_mm": (min(balls), max(balls))}
+
+
+def _misplaced(recipe: "Recipe", with_shares: set[int]) -> str | None:
+    """Error sentence about a share, or a value per rig or specimen, in a section that has none."""
+    for place, section in _sections("", recipe):
+        operating = isinstance(section, OperationSection) or place.endswith("].operation")
+        for key, found in quantities(section).items():
+            at = f"{place}.{key}"
+            if found.share_of is not None and id(section) not in with_shares and not operating:
+                return f"{at}.share_of: there are shares in {_HAVE_SHARES} alone; give the quantity a range of its own."
+            if found.per is not None and not operating:
+                return f"{at}.per: the level of a draw can be chosen for quantities of operation alone; leave it out."
+    return None
+
+
+def _sections(place: str, section: Section) -> Iterator[tuple[str, Section]]:
+    """Every section of a recipe with its place."""
+    if place:
+        yield place, section
+    for key, value in section:
+        below = f"{place}.{key}" if place else key
+        if isinstance(value, Section):
+            yield from _sections(below, value)
+        for at, item in _numbered(below, value) if isinstance(value, tuple) else []:
+            if isinstance(item, Section):
+                yield from _sections(at, item)
+
+
+def _scope_problem(recipe: "Recipe", scope: _Scope) -> str | None:
+    own = quantities(scope.section)
+    for key, found in own.items():
+        if found.share_of is not None:
+            problem = _name_problem(recipe, scope, key, found.share_of) or _loop(scope, key)
+            if problem is not None:
+                return problem
+    for key, product in _products(scope).items():
+        bounds = _bounds(scope.section, key)
+        for end in product or ():
+            if not is_within(end, bounds) and not _is_rounding(end, bounds):
+                return f"{scope.place}.{key}: as a share of {own[key].share_of} it can be {end:g}, which is not in {interval(bounds)}."
+    return None
+
+
+def _is_rounding(end: float, bounds: dict[str, Any]) -> bool:
+    return is_within(end * (1 - 1e-12), bounds) or is_within(end * (1 + 1e-12), bounds)
+
+
+def _name_problem(recipe: "Recipe", scope: _Scope, key: str, named: str) -> str | None:
+    """Error sentence if a quantity cannot be a share of the one that it names, else None."""
+    own = quantities(scope.section)
+    unit, at = unit_suffix(key), f"{scope.place}.{key}.share_of"
+    if key in _COUNTS or unit in _WITHOUT_SHARES:
+        found = "count" if key in _COUNTS else f"value in {UNITS[unit].symbol}"
+        return f"{at}: a {found} has no share; give it a range of its own."
+    allowed = [
+        name for name in (*own, *scope.above) if name not in _COUNTS and name != key and _kind(name) == _kind(key)
+    ]
+    if named in allowed or named == key:
+        return None
+    advice = f"allowed are {', '.join(allowed)}" if allowed else "give the quantity a range of its own"
+    if named in own or named in scope.above:
+        return f"{at}: {named} is of another kind than {key}; {advice}."
+    if named in quantities(recipe.operation) or named in quantities(recipe.specimen):
+        return f"{at}: {named} is drawn after {key}, not with it or before it; {advice}."
+    if named in (FREE_ANGLE, BALL_SPACING, *BEARING_QUANTITIES):
+        return f"{at}: {named} is not known here; {advice}."
+    near = difflib.get_close_matches(named, allowed, 1)
+    return f"{at}: there is no quantity {named!r}; " + (f"did you mean {near[0]}?" if near else f"{advice}.")
+
+
+def _kind(key: str) -> str:
+    unit = unit_suffix(key)
+    return _KINDS.get(unit, unit)
+
+
+def _loop(scope: _Scope, key: str) -> str | None:
+    """Error sentence if a quantity is a share of itself, through others or not, else None."""
+    own, chain = quantities(scope.section), [key]
+    while (named := own[chain[-1]].share_of) in own:
+        if named == key:
+            round_trip = ", which is a share of ".join([*chain[1:], key])
+            return (
+                f"{scope.place}.{key}.share_of: {key} is a share of {round_trip}; give one of them a range of its own."
+            )
+        if named in chain:
+            return None  # a loop that the key is not part of
+        chain.append(named)
+    return None
+
+
+def _products(scope: _Scope) -> dict[str, Support | None]:
+    """Range of every share of a section, in the unit of its key; None if it is not known before it is drawn."""
+    own = quantities(scope.section)
+
+    def support(key: str) -> Support | None:
+        if key not in own:
+            return scope.above[key]
+        share, named = own[key].own_support(), own[key].share_of
+        if named is None:
+            return share
+        whole = support(named)
+        if whole is None:
+            return None
+        factor = _factor(named) / _factor(key)
+        ends = [part * end * factor for part in share for end in whole]
+        return min(ends), max(ends)
+
+    return {key: support(key) for key, found in own.items() if found.share_of is not None}
+
+
+def _factor(key: str) -> float:
+    unit = unit_suffix(key)
+    return UNITS[unit].factor if unit else 1.0

@@ -1,0 +1,95 @@
+"""Draw the operating conditions of a record: values of the record, values of its rig or specimen with scatter, and shares of others.
+
+Every quantity takes one number from the stream of the record and one from those of its specimen and its rig, whether it needs them or
+not. So to draw one quantity per rig, to make it a share, or to change it for one fault moves no other.
+"""
+
+from collections.abc import Mapping
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from gen.recipe import Recipe, Section, quantities
+from gen.scenarios.draws import Combination, Draws, Known, in_si
+from gen.scenarios.model import Drawn
+
+Level = Literal["rig", "specimen", "record"]
+Distributions = Mapping[str, Any]
+
+
+class Operating(NamedTuple):
+    """Distributions of the operating quantities of a specimen, by key."""
+
+    section: Section
+    usual: Distributions
+    """Those of ``operation``."""
+    changes: Distributions
+    """Those that the entry of its fault replaces."""
+    wanted: Distributions
+    """Those that it has: the usual ones with the changes."""
+    levels: Mapping[str, Level]
+    """Level at which each quantity is drawn."""
+
+
+class Common(NamedTuple):
+    """Random numbers that all records of a rig, or of a specimen, have in common: one for each operating quantity."""
+
+    numbers: Mapping[str, float]
+    combination: int
+    """Number that the grids of this level begin with."""
+
+
+def operating_of(recipe: Recipe, number: int) -> Operating:
+    """Distributions of the operating quantities of the specimens with the entry ``number`` of ``faults``."""
+    usual, entry = quantities(recipe.operation), recipe.faults[number].operation
+    changes = {} if entry is None else quantities(entry)
+    wanted = {**usual, **changes}
+    levels: dict[str, Level] = {key: _level_of(distribution) for key, distribution in wanted.items()}
+    return Operating(recipe.operation, usual, changes, wanted, levels)
+
+
+def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> Common:
+    """Draw the numbers that all records of a rig or a specimen have in common from a stream of that rig or specimen."""
+    return Common({key: float(rng.random()) for key in quantities(recipe.operation)}, combination)
+
+
+def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, Common], known: Known) -> Drawn:
+    """Operating conditions of a record [SI], by the key without its unit.
+
+    ``commons`` has the numbers of rig and specimen, if some quantity is drawn at that level.
+
+    Raises
+    ------
+    RecipeError
+        If a share is outside the range of its key.
+    """
+    wanted = operating.wanted
+    u = {key: draws.u() for key in wanted}
+    found = _values(operating, "record", u, draws.combination)
+    for level, common in commons.items():
+        for key, value in _values(operating, level, common.numbers, Combination(common.combination)).items():
+            found[key] = wanted[key].at_scatter(value, u[key])
+    return in_si(operating.section, wanted, {key: found[key] for key in wanted}, known, draws.item)
+
+
+def _values(
+    operating: Operating, level: Level, numbers: Mapping[str, float], combination: Combination
+) -> dict[str, float]:
+    """Values of the quantities that are drawn at a level, in the units of their keys.
+
+    The grids of ``operation`` take their combination first and those of the changes go on from there, so that a change moves no other
+    quantity; for the same reason ``combination`` is left as ``operation`` leaves it.
+    """
+    found: dict[str, float] = {}
+    for key, distribution in operating.usual.items():
+        if _level_of(distribution) == level:
+            found[key] = combination.value(distribution, numbers[key])
+    further = Combination(combination.number)
+    for key, distribution in operating.changes.items():
+        if _level_of(distribution) == level:
+            found[key] = further.value(distribution, numbers[key])
+    return {key: value for key, value in found.items() if operating.levels[key] == level}
+
+
+def _level_of(distribution: Any) -> Level:
+    return distribution.per or "record"

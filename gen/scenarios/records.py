@@ -1,0 +1,153 @@
+"""Draw the records of a specimen: operating conditions, level, profiles of speed and load, and rungs of severity."""
+
+import functools
+from collections.abc import Mapping
+from dataclasses import replace
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.physics.profile import Profile
+from gen.recipe import Fault, ProfileSection, Recipe, fault_class
+from gen.scenarios.draws import Combination, Draws, Known, known_of, known_of_rig
+from gen.scenarios.model import Operation, Purpose, Rig, Scenario, Specimen, stream
+from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions, operating_of
+from gen.scenarios.points import points_of
+from gen.scenarios.sensor_faults import draw_record_sensor_faults
+from gen.units import percent_to_share
+
+
+class Source(NamedTuple):
+    """Origin of the records of one specimen: its rig, itself at every rung, and the distributions of its conditions."""
+
+    rig: Rig
+    rungs: tuple[Specimen, ...]
+    """The specimen at every rung; the specimen alone if its records are in no groups."""
+    operating: Operating
+    commons: dict[Level, Common]
+    """Numbers of rig and specimen, for the levels at which some operating quantity is drawn."""
+    known: Known
+    """Quantities of rig and specimen."""
+
+
+def source_of(recipe: Recipe, rig: Rig, specimen: Specimen, of_rig: Draws, of_specimen: Draws) -> Source:
+    """Origin of the records of a specimen; its operating grids go on with the combinations of ``of_rig`` and ``of_specimen``."""
+    rungs = recipe.corpus.rungs if recipe.corpus.rungs is not None and specimen.fault != "healthy" else (1.0,)
+    operating = operating_of(recipe, specimen.entry)
+    commons: dict[Level, Common] = {}
+    if "rig" in operating.levels.values():
+        rng = stream(recipe.seed, rig.number, 0, 0, Purpose.RIG_OPERATION)
+        commons["rig"] = common_numbers(recipe, rng, of_rig.combination.number)
+    if "specimen" in operating.levels.values():
+        rng = stream(recipe.seed, rig.number, specimen.number, 0, Purpose.SPECIMEN_OPERATION)
+        commons["specimen"] = common_numbers(recipe, rng, of_specimen.combination.number)
+    known = {**known_of_rig(recipe, rig), **known_of(recipe.specimen, specimen.properties)}
+    return Source(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
+
+
+def record_points(recipe: Recipe, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
+    """Quasi-random points of the groups of ``n_rungs`` records that hold the records ``first`` to ``stop``, by number.
+
+    A faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
+    points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
+    """
+    rungs = recipe.corpus.n_rungs
+    groups = recipe.corpus.n_records // rungs
+    points: dict[int, NDArray[np.float64]] = {}
+    for place in range(rungs):
+        points |= points_of(recipe, Purpose.RECORD, place * groups + first // rungs, place * groups - (-stop // rungs))
+    return points
+
+
+def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int, NDArray[np.float64]]) -> Scenario:
+    """Draw one record of a specimen.
+
+    The records of a group have the streams of its first record, and the combination of grids and the quasi-random point of the group.
+
+    Raises
+    ------
+    RecipeError
+        If a share is outside the range of its key.
+    """
+    n_rungs = recipe.corpus.n_rungs
+    group, place = divmod(number, n_rungs)
+    rung = place if len(source.rungs) > 1 else -1
+    item = group if rung >= 0 else place * (recipe.corpus.n_records // n_rungs) + group
+    specimen, first = source.rungs[max(rung, 0)], number - max(rung, 0)
+    streams = functools.partial(stream, recipe.seed, source.rig.number, specimen.number, first)
+    draws = Draws(streams(Purpose.RECORD), points[item], item, f"record {number}")
+    conditions = draw_conditions(source.operating, draws, source.commons, source.known)
+    entry = recipe.faults[specimen.entry]
+    snr, rms = _draw_level(draws, recipe, entry)
+    changes = {} if entry.operation is None else entry.operation.given()
+    profiles: list[Profile | None] = []
+    for key, purpose in (("speed_profile", Purpose.SPEED_PROFILE), ("load_profile", Purpose.LOAD_PROFILE)):
+        profile = _draw_profile(draws, getattr(recipe.operation, key), recipe.recording.duration_s)
+        if key in changes:  # from a stream of its own, so that it moves no draw of the other profile
+            own = Draws(streams(purpose), np.empty(0), item, draws.item)
+            profile = _draw_profile(own, changes[key], recipe.recording.duration_s)
+        profiles.append(profile)
+    pair = group if rung >= 0 else -1
+    speed_profile, load_profile = profiles
+    sensor_faults = draw_record_sensor_faults(recipe, source.rig.number, specimen.number, first)
+    operation = Operation(
+        number,
+        conditions,
+        snr,
+        rms,
+        speed_profile,
+        load_profile,
+        sensor_faults=sensor_faults,
+        pair=pair,
+        rung=rung,
+    )
+    return Scenario(recipe.seed, source.rig, specimen, operation)
+
+
+def _draw_level(draws: Draws, recipe: Recipe, entry: Fault) -> tuple[float | None, float | None]:
+    """Signal-to-noise ratio [dB] and rms [m s-2] of a record; None if the level is that of the rig."""
+    level = recipe.level
+    if level.kind != "snr":
+        return None, None
+    changes = {} if entry.level is None else entry.level.given()
+    snr = _ratio(recipe, entry).draw(draws.u())
+    u = draws.u()
+    rms = draws.combination.value(level.rms_m_s2, u)
+    if "rms_m_s2" in changes:
+        rms = Combination(draws.combination.number).value(changes["rms_m_s2"], u)
+    return snr, rms
+
+
+def _ratio(recipe: Recipe, entry: Fault) -> Any:
+    """Distribution of the signal-to-noise ratio of the records with a fault [dB]."""
+    key = "healthy_db" if fault_class(entry) == "healthy" else "faulty_db"
+    changes = {} if entry.level is None else entry.level.given()
+    return changes.get(key, getattr(recipe.level, key))
+
+
+def with_level(scenario: Scenario, recipe: Recipe, level_try: int) -> Scenario:
+    """The same record with the level of a later try; the first one is drawn with the record."""
+    if level_try == 0 or recipe.level.kind != "snr":
+        return scenario
+    u = float(scenario.rng(Purpose.LEVEL).random(level_try)[-1])
+    snr = _ratio(recipe, recipe.faults[scenario.specimen.entry]).draw(u)
+    return replace(scenario, record=replace(scenario.record, snr=snr, level_try=level_try))
+
+
+def _draw_profile(draws: Draws, profile: ProfileSection | None, duration: float) -> Profile | None:
+    if profile is None:
+        return None
+    if profile.kind == "table":
+        return Profile(profile.times_s, tuple(map(percent_to_share, profile.percent)))
+    if profile.kind == "steps":
+        levels = tuple(map(percent_to_share, profile.levels_percent))
+        changes = [duration * change / len(levels) for change in range(1, len(levels))]
+        times = [time + side * profile.step_s / 2 for time in changes for side in (-1, 1)]
+        shares = [level for pair in pairwise(levels) for level in pair]
+        return Profile(tuple(times), tuple(shares), smooth=True)
+    drawn = draws.section(profile)
+    if profile.kind == "ramp":
+        return Profile((0.0, duration), (drawn["from"], drawn["to"]))
+    return Profile((drawn["start"], drawn["start"] + drawn["lasting"]), (drawn["from"], drawn["to"]), smooth=True)

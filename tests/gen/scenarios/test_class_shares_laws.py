@@ -1,0 +1,126 @@
+"""Laws of the class shares: the specimens of a corpus have the classes of the weights, whatever the number of specimens of a rig is."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.recipe import read_recipe
+from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_records, first_specimens
+from gen.scenarios.classes import class_shares
+
+law = settings(deadline=None, max_examples=25)
+CLASSES = ("healthy", "inner", "outer", "ball")
+seeds = st.integers(0, 2**31)
+weights_of_all = st.tuples(*[st.floats(0.05, 10)] * 4)
+
+
+def faults(weights):
+    widths = [{}] + [{"width_mm": 0.5}] * 3
+    return [
+        {"kind": kind, "weight": weight, **width} for kind, weight, width in zip(CLASSES, weights, widths, strict=True)
+    ]
+
+
+def counted(recipe, rigs):
+    """Number of specimens of each class on each rig, shape (rig, class)."""
+    found = [Counter(fault_of_each_specimen(recipe, rig)) for rig in range(rigs)]
+    return np.array([[counts[kind] for kind in CLASSES] for counts in found])
+
+
+@law
+@given(seeds, st.integers(1, 9), weights_of_all, st.integers(0, 3))
+def test_every_rig_has_of_each_kind_what_the_weights_give_it(recipe_with, seed, specimens, weights, absent):
+    weights = (*weights[: 4 - absent], *[0.0] * absent)
+    recipe = recipe_with({"seed": seed, "corpus.specimens_per_rig": specimens, "faults": faults(weights)})
+    counts = counted(recipe, 12)
+    expected = specimens * weights[0] / sum(weights)
+    assert (counts.sum(axis=1) == specimens).all()
+    assert (np.abs(counts[:, 0] - expected) < 1 + 1e-6).all()
+    if expected >= 1:
+        assert counts[:, 0].min() >= 1
+    if specimens - expected >= 1:
+        assert counts[:, 1:].sum(axis=1).min() >= 1
+    assert not counts[:, 4 - absent :].any()
+
+
+@law
+@given(seeds, st.integers(1, 9), weights_of_all)
+def test_over_the_rigs_the_classes_have_the_shares_of_their_weights(recipe_with, seed, specimens, weights):
+    recipe = recipe_with({"seed": seed, "corpus.specimens_per_rig": specimens, "faults": faults(weights)})
+    rigs, shares = 400, np.array(weights) / sum(weights)
+    excess = np.cumsum(counted(recipe, rigs), axis=0) - specimens * np.outer(np.arange(1, rigs + 1), shares)
+    assert np.abs(excess[:, 0]).max() < 5  # of up to 3600: the offsets are evenly spread from the first rig on
+    assert np.abs(excess).max() < 12
+
+
+@pytest.mark.parametrize("specimens", [1, 2, 3, 8])
+def test_over_the_seeds_the_classes_of_a_rig_have_the_shares_of_their_weights(recipe_with, specimens):
+    weights = (2, 1, 0.6, 0.4)
+    seeds_tried = 3000
+    recipes = (
+        recipe_with({"seed": seed, "corpus.specimens_per_rig": specimens, "faults": faults(weights)})
+        for seed in range(seeds_tried)
+    )
+    counts = sum(counted(recipe, 1)[0] for recipe in recipes)
+    np.testing.assert_allclose(counts / seeds_tried, specimens * np.array(weights) / 4, atol=0.04)  # 4 sigma
+
+
+@pytest.mark.parametrize("specimens", [1, 2, 3, 8])
+def test_the_shipped_training_recipe_has_equal_classes_whatever_its_specimens_per_rig(specimens):
+    recipe = read_recipe("domain_randomised")
+    corpus = recipe.corpus.model_copy(update={"specimens_per_rig": specimens, "rigs": 1000})
+    counts = counted(recipe.model_copy(update={"corpus": corpus}), 1000).sum(axis=0)
+    assert np.abs(counts - 250 * specimens).max() < 8
+
+
+def test_healthy_and_faulty_classes_meet_on_a_rig_in_every_combination(recipe_with):
+    recipe = recipe_with({"corpus.specimens_per_rig": 2})
+    pairs = Counter(tuple(sorted(fault_of_each_specimen(recipe, rig))) for rig in range(200))
+    assert set(pairs) == {
+        ("ball", "healthy"),
+        ("healthy", "inner"),
+        ("healthy", "outer"),
+        ("inner", "outer"),
+        ("ball", "inner"),
+        ("ball", "outer"),
+    }
+    assert min(pairs.values()) > 20
+
+
+@pytest.mark.parametrize("by", ["specimen", "rig"])
+def test_rigs_of_a_single_specimen_have_every_class_on_both_sides_of_the_split(recipe_with, by):
+    corpus = {"rigs": 300, "specimens_per_rig": 1, "records_per_specimen": 1, "split": {"by": by, "test": 0.25}}
+    sides = Counter((one.specimen.fault, one.specimen.split) for one in draw_scenarios(recipe_with({"corpus": corpus})))
+    for kind in CLASSES:
+        assert sides[kind, "test"] == pytest.approx(300 / 16, abs=12)
+        assert sides[kind, "train"] == pytest.approx(3 * 300 / 16, abs=12)
+
+
+@law
+@given(seeds, st.integers(1, 5), weights_of_all, st.sampled_from([(0, 1), (0, 0.25, 0.5, 1), (0.5, 1)]))
+def test_with_rungs_the_records_have_the_shares_of_the_weights(recipe_with, seed, specimens, weights, rungs):
+    weights = (weights[0] + sum(weights[1:]) / (len(rungs) - 1), *weights[1:])
+    recipe = recipe_with(
+        {"seed": seed, "corpus.specimens_per_rig": specimens, "corpus.rungs": rungs, "faults": faults(weights)}
+    )
+    of_specimens = class_shares(recipe)
+    of_records = {kind: share for kind, share in of_specimens.items() if kind != "healthy"}
+    before_damage = sum(of_records.values()) / len(rungs) if rungs[0] == 0 else 0
+    damaged = 1 - before_damage / sum(of_records.values())
+    for kind, weight in zip(CLASSES[1:], weights[1:], strict=True):
+        assert of_records[kind] * damaged == pytest.approx(weight / sum(weights))
+    assert of_specimens.get("healthy", 0) + before_damage == pytest.approx(weights[0] / sum(weights))
+
+
+@pytest.mark.parametrize("rungs", [None, (0, 1), (0.5, 1)])
+@pytest.mark.parametrize("specimens", [1, 2, 5])
+@pytest.mark.parametrize("records", [None, 21, 3, 2, 1])
+def test_the_first_record_of_each_class_is_the_first_one_drawn_with_it(recipe_with, specimens, records, rungs):
+    changes = {"corpus.specimens_per_rig": specimens, "records": records, "faults": faults((4, 1, 1, 1))}
+    recipe = recipe_with(changes | {"corpus.rungs": rungs})
+    drawn = [(one.specimen.fault, one.record.number) for one in draw_scenarios(recipe)]
+    assert first_records(recipe) == dict(reversed(drawn))
+    assert set(first_specimens(recipe)) >= set(first_records(recipe)) - {"healthy"}

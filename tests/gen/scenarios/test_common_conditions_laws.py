@@ -1,0 +1,195 @@
+"""Laws of conditions that a rig or a specimen has in common, and of conditions that one fault changes."""
+
+from itertools import product
+
+import numpy as np
+import pytest
+
+from gen.recipe import Recipe, recipe_hash
+from gen.scenarios import draw_scenarios
+from gen.units import split_unit
+from tests.gen.conftest import small_with
+
+SAMPLINGS = ("random", "sobol", "halton")
+
+
+def uniform(low, high, **more):
+    return {"kind": "uniform", "low": low, "high": high, **more}
+
+
+def of_each(scenarios, level, name):
+    """Values of an operating quantity of each rig or specimen."""
+    found = {}
+    for scenario in scenarios:
+        found.setdefault(getattr(scenario, level).number, []).append(scenario.record.conditions[name])
+    return [np.array(values) for values in found.values()]
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+@pytest.mark.parametrize("level", ["rig", "specimen"])
+@pytest.mark.parametrize("key", ["shaft_rpm", "load_n", "mean_slip_percent"])
+def test_a_rig_or_specimen_has_one_value(recipe_with, level, key, sampling):
+    name = split_unit(key)[0]
+    usual = recipe_with({f"operation.{key}": uniform(3, 9), "corpus.sampling": sampling})
+    common = recipe_with({f"operation.{key}": uniform(3, 9, per=level), "corpus.sampling": sampling})
+    values = of_each(draw_scenarios(common), level, name)
+    assert all(len(set(of_one)) == 1 for of_one in values)
+    assert len({of_one[0] for of_one in values}) == len(values)
+    for one, other in zip(draw_scenarios(common), draw_scenarios(usual), strict=True):
+        assert one.record.conditions | {name: other.record.conditions[name]} == other.record.conditions
+        assert (one.rig, one.specimen) == (other.rig, other.specimen)
+
+
+@pytest.mark.parametrize("level", ["rig", "specimen"])
+def test_records_scatter_about_the_value_of_their_rig_or_specimen(recipe_with, level):
+    changes = {"corpus.rigs": 20, "corpus.records_per_specimen": 50}
+    steady, scattered = (
+        of_each(
+            draw_scenarios(recipe_with(changes | {"operation.shaft_rpm": uniform(1500, 2000, per=level, **more)})),
+            level,
+            "shaft",
+        )
+        for more in ({}, {"scatter_percent": 2})
+    )
+    deviations = np.concatenate([found / value[0] - 1 for found, value in zip(scattered, steady, strict=True)])
+    assert np.abs(deviations).max() <= 0.02 * (1 + 1e-9)
+    assert np.abs(deviations).max() > 0.0195
+    assert deviations.std() == pytest.approx(0.02 / 3**0.5, rel=0.05)  # of a uniform distribution
+    assert deviations.mean() == pytest.approx(0, abs=1e-3)
+
+
+def test_the_scatter_widens_the_support(recipe_with):
+    recipe = recipe_with({"operation.shaft_rpm": uniform(1500, 2000, per="rig", scatter_percent=2)})
+    assert recipe.operation.shaft_rpm.support() == pytest.approx((1470, 2040))
+    slip = recipe_with({"operation.mean_slip_percent": uniform(-1, 1, per="rig", scatter_percent=10)})
+    assert slip.operation.mean_slip_percent.support() == pytest.approx((-1.1, 1.1))
+
+
+def test_a_common_value_is_a_share_of_the_quantity_of_each_record(recipe_with):
+    axial = uniform(0.1, 0.6, per="rig", share_of="load_n")
+    scenarios = draw_scenarios(recipe_with({"specimen.contact_angle_deg": 10, "operation.axial_load_n": axial}))
+    shares = {}
+    for scenario in scenarios:
+        conditions = scenario.record.conditions
+        shares.setdefault(scenario.rig.number, []).append(conditions["axial_load"] / conditions["load"])
+    for found in shares.values():
+        assert found == pytest.approx([found[0]] * len(found))
+
+
+def test_grids_of_a_rig_enumerate_all_combinations_with_those_of_its_machine(recipe_with):
+    changes = {
+        "corpus.rigs": 12,
+        "machine.shaft_mass_kg": {"kind": "grid", "values": [2, 3]},
+        "operation.shaft_rpm": {"kind": "grid", "values": [600, 900, 1200], "per": "rig"},
+        "operation.load_n": {"kind": "grid", "values": [100, 200], "per": "rig"},
+        "operation.slip_percent": {"kind": "grid", "values": [1, 2]},
+    }
+    scenarios = draw_scenarios(recipe_with(changes))
+    rigs = {}
+    for one in scenarios:
+        conditions = one.record.conditions
+        rigs[one.rig.number] = (one.rig.machine["shaft_mass"], round(60 * conditions["shaft"]), conditions["load"])
+    assert sorted(rigs.values()) == sorted(product([2, 3], [600, 900, 1200], [100, 200]))
+    slips = [100 * one.record.conditions["slip"] for one in scenarios]
+    assert slips == pytest.approx([1, 2] * (len(scenarios) // 2))
+
+
+def changed(**outer):
+    """Faults of the small recipe, with changes for those of the outer race."""
+    return [
+        {"kind": "healthy"},
+        {"kind": "inner", "width_mm": 0.5},
+        {"kind": "outer", "width_mm": 0.5, **outer},
+        {"kind": "ball", "width_mm": 0.5},
+    ]
+
+
+SNR = {"kind": "snr", "faulty_db": uniform(-5, 5), "healthy_db": 0, "rms_m_s2": uniform(1, 2)}
+GRIDS = {
+    "operation.slip_percent": {"kind": "grid", "values": [1, 2]},
+    "operation.jitter_deg": {"kind": "grid", "values": [0.1, 0.2, 0.3]},
+    "operation.speed_profile": {"kind": "ramp", "from_percent": uniform(50, 60), "to_percent": {"kind": "grid", "values": [90, 95, 99]}},
+    "operation.load_profile": {"kind": "ramp", "from_percent": uniform(50, 60), "to_percent": uniform(90, 99)},
+    "level": SNR,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+@pytest.mark.parametrize(
+    "value",
+    [7.0, uniform(5, 9), {"kind": "grid", "values": [5, 9]}, uniform(5, 9, per="rig", scatter_percent=1)],
+    ids=["number", "uniform", "grid", "per rig"],
+)
+@pytest.mark.parametrize("key", ["load_n", "slip_percent", "mean_slip_percent"])
+def test_a_change_is_of_its_fault_alone_and_moves_no_other_quantity(recipe_with, key, value, sampling):
+    usual, name = GRIDS | {"corpus.sampling": sampling}, split_unit(key)[0]
+    factor = split_unit(key)[1]
+    without = draw_scenarios(recipe_with(usual | {"faults": changed()}))
+    drawn = draw_scenarios(recipe_with(usual | {"faults": changed(operation={key: value})}))
+    for one, other in zip(drawn, without, strict=True):
+        if one.specimen.fault != "outer":
+            assert one == other
+            continue
+        assert (one.rig, one.specimen) == (other.rig, other.specimen)
+        assert one.record.conditions | {name: other.record.conditions[name]} == other.record.conditions
+        assert 4.9 * factor < one.record.conditions[name] < 9.1 * factor
+        assert (one.record.snr, one.record.rms) == (other.record.snr, other.record.rms)
+        assert (one.record.speed_profile, one.record.load_profile) == (
+            other.record.speed_profile,
+            other.record.load_profile,
+        )
+
+
+def test_a_changed_profile_moves_no_other_draw(recipe_with):
+    profile = {"kind": "run_up", "from_percent": uniform(20, 30), "to_percent": 100, "lasting_s": 0.1}
+    without = draw_scenarios(recipe_with(GRIDS | {"faults": changed()}))
+    drawn = draw_scenarios(recipe_with(GRIDS | {"faults": changed(operation={"speed_profile": profile})}))
+    none = draw_scenarios(recipe_with(GRIDS | {"faults": changed(operation={"speed_profile": None})}))
+    for one, steady, other in zip(drawn, none, without, strict=True):
+        if one.specimen.fault != "outer":
+            assert one == steady == other
+            continue
+        assert one.record.speed_profile.smooth
+        assert 0.2 < one.record.speed_profile.shares[0] < 0.3
+        assert steady.record.speed_profile is None
+        assert one.record.load_profile == steady.record.load_profile == other.record.load_profile
+        assert one.record.conditions == other.record.conditions
+
+
+def test_a_changed_level_is_of_its_fault_alone(recipe_with):
+    level = {"faulty_db": uniform(20, 30), "rms_m_s2": {"kind": "grid", "values": [7, 8]}}
+    without = draw_scenarios(recipe_with(GRIDS | {"faults": changed()}))
+    drawn = draw_scenarios(recipe_with(GRIDS | {"faults": changed(level=level)}))
+    for one, other in zip(drawn, without, strict=True):
+        if one.specimen.fault != "outer":
+            assert one == other
+            continue
+        assert 20 < one.record.snr < 30
+        assert (one.record.snr - 20) / 10 == pytest.approx((other.record.snr + 5) / 10)  # at the same quantile
+        assert one.record.rms in (7, 8)
+        assert one.record.conditions == other.record.conditions
+        assert one.record.speed_profile == other.record.speed_profile
+
+
+def test_the_balance_grade_holds_at_the_highest_speed_of_all_faults(recipe_with):
+    fast = draw_scenarios(recipe_with({"faults": changed(operation={"shaft_rpm": 4000})}), 0, 1)[0]
+    slow = draw_scenarios(recipe_with({"faults": changed()}), 0, 1)[0]
+    assert fast.rig.machine["unbalance"] == pytest.approx(slow.rig.machine["unbalance"] / 2)
+
+
+def test_a_specimen_knows_its_entry(recipe_with):
+    recipe = recipe_with({"faults": [*changed(), {"kind": "outer", "width_mm": 2, "operation": {"load_n": 77}}]})
+    for scenario in draw_scenarios(recipe):
+        entry = recipe.faults[scenario.specimen.entry]
+        assert scenario.specimen.fault == entry.kind
+        assert (scenario.record.conditions["load"] == 77) == (scenario.specimen.entry == 4)
+
+
+def test_equal_changes_and_no_changes_have_different_hashes():
+    recipes = [
+        Recipe.model_validate(small_with({"faults": changed(**more)}))
+        for more in ({}, {"operation": {"slip_percent": 1.0}})
+    ]
+    assert recipe_hash(recipes[0]) != recipe_hash(recipes[1])
+    assert recipes[1].model_dump()["faults"][2]["operation"].keys() == {"slip_percent"}
+    assert Recipe.model_validate(recipes[1].model_dump(exclude_unset=True)) == recipes[1]

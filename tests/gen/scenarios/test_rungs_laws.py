@@ -1,0 +1,189 @@
+"""Laws of pairs and ladders: the records of a group differ in the severity of their fault alone, and stay on one side of every split."""
+
+from collections import Counter
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from features.baselines.splits import grouped_splits
+from gen.corpus import FAULTS, open_corpus
+from gen.generation import generate
+from gen.measurement.measure import measure
+from gen.part_task import record_numbers
+from gen.plan import plan
+from gen.replaying import replay, stored_scenario
+from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
+from gen.simulation.inputs import kernel_input
+from gen.simulation.simulate import simulate
+from gen.simulation.timeline import timeline
+from tests.recipes import EVERY_FAULT
+
+RUNGS = (0, 0.25, 0.5, 1)
+MANY_HEALTHY = [{"kind": "healthy", "weight": 10}, *EVERY_FAULT[1:]]
+LADDERS = {"corpus.rungs": RUNGS, "corpus.rigs": 8, "corpus.records_per_specimen": 3, "faults": MANY_HEALTHY}
+SAMPLINGS = ("random", "sobol", "halton")
+
+
+def groups_of(scenarios):
+    """Scenarios of each pair, by its number."""
+    found = {}
+    for scenario in scenarios:
+        if scenario.record.pair >= 0:
+            found.setdefault(scenario.record.pair, []).append(scenario)
+    return found
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_the_records_of_a_group_differ_in_severity_alone(recipe_with, sampling):
+    recipe = recipe_with(LADDERS | {"corpus.sampling": sampling})
+    groups = groups_of(draw_scenarios(recipe))
+    assert len(groups) > 20
+    for group in groups.values():
+        last = group[-1]
+        assert [one.record.rung for one in group] == [0, 1, 2, 3]
+        for one in group:
+            unnumbered = replace(one.record, number=last.record.number, rung=last.record.rung)
+            assert (one.seed, one.rig, unnumbered) == (last.seed, last.rig, last.record)
+            assert one.specimen == last.specimen.at_severity(RUNGS[one.record.rung])
+            for purpose in (7, 8, 12, 13):  # motion, noise, load wander, knocks
+                assert one.rng(purpose).random() == last.rng(purpose).random()
+
+
+def test_a_rung_is_its_share_of_the_severity(recipe_with):
+    faults_seen = set()
+    for group in groups_of(draw_scenarios(recipe_with(LADDERS))).values():
+        whole = group[-1].specimen
+        faults_seen.add(whole.fault)
+        assert group[0] == replace(group[-1].without_fault(), record=group[0].record)
+        assert group[0].specimen.fault == "healthy"
+        for one, share in zip(group[1:], RUNGS[1:], strict=True):
+            assert one.specimen.fault == whole.fault
+            for spall, of_whole in zip(one.specimen.spalls, whole.spalls, strict=True):
+                assert (spall.width, spall.depth) == pytest.approx((share * of_whole.width, share * of_whole.depth))
+                assert max(spall.trace, default=spall.depth) == pytest.approx(spall.depth)
+            if whole.wear is not None:
+                assert one.specimen.wear.waviness == pytest.approx(share * whole.wear.waviness)
+            assert one.specimen.cage == pytest.approx({key: share * value for key, value in whole.cage.items()})
+    assert faults_seen == set(FAULTS) - {"healthy"}
+
+
+def test_a_pair_without_its_fault_is_the_record_at_rung_0_to_the_last_bit(recipe_with):
+    recipe = recipe_with({"corpus.rungs": (0, 1), "faults": MANY_HEALTHY})
+    for before, after in groups_of(draw_scenarios(recipe)).values():
+        one, other = (kernel_input(item, timeline(recipe)) for item in (before, after.without_fault()))
+        assert (one.machine, one.turning) == (other.machine, other.turning)
+        for field in ("frequencies", "phases", "schedule"):
+            np.testing.assert_array_equal(getattr(one, field), getattr(other, field))
+        np.testing.assert_array_equal(one.waviness.races, other.waviness.races)
+
+
+def test_the_signals_of_a_pair_differ_by_the_fault_and_not_by_the_background(recipe_with):
+    """Before the damage the signal is, to the last bit, that of the same record without its fault."""
+    changes = {"corpus.rungs": (0, 1), "faults": [{"kind": "healthy", "weight": 2}, {"kind": "outer", "width_mm": 0.5}]}
+    recipe = recipe_with(changes | {"recording.converter": {"kind": "float32"}})
+    before, after = next(iter(groups_of(draw_scenarios(recipe)).values()))
+    scenarios = [before, after, after.without_fault()]
+    signals = measure(simulate(scenarios, recipe).acceleration, scenarios, recipe).signal
+    np.testing.assert_array_equal(signals[0], signals[2])
+    assert not np.array_equal(signals[0], signals[1])
+
+
+def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
+    recipe = recipe_with(LADDERS)
+    scenarios = draw_scenarios(recipe)
+    assert recipe.n_records == len(scenarios) == 8 * 4 * 3 * 4
+    assert [one.record.number for one in scenarios] == list(range(len(scenarios)))
+    assert [one.specimen.number for one in scenarios] == [number // 12 for number in range(len(scenarios))]
+    for pair, group in groups_of(scenarios).items():
+        assert [one.record.number for one in group] == list(range(4 * pair, 4 * pair + 4))
+    healthy = [one for one in scenarios if one.record.pair < 0]
+    assert {one.specimen.fault for one in healthy} == {"healthy"}
+    assert {one.record.rung for one in healthy} == {-1}
+    speeds = Counter(one.record.conditions["shaft"] for one in healthy)
+    assert max(speeds.values()) == 1  # each record of a healthy specimen has conditions of its own
+    assert sum(len(record_numbers(recipe, part)) for part in range(recipe.n_parts)) == recipe.n_records
+
+
+def test_the_last_rung_of_a_ladder_is_the_record_without_rungs(recipe_with):
+    """The weights are such that the classes of the specimens are the same with rungs and without."""
+    without = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}]})
+    ladder = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}], "corpus.rungs": (0.5, 1)})
+    for one, other in zip(draw_scenarios(without), draw_scenarios(ladder)[1::2], strict=True):
+        assert (one.rig, one.specimen) == (other.rig, other.specimen)
+    assert all(one.record.pair == one.record.rung == -1 for one in draw_scenarios(without))
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_any_range_of_a_ladder_is_a_piece_of_the_whole(recipe_with, sampling):
+    recipe = recipe_with(LADDERS | {"corpus.sampling": sampling})
+    whole = draw_scenarios(recipe)
+    for first, stop in ((0, 1), (1, 2), (7, 12), (13, 39), (381, 384)):
+        assert draw_scenarios(recipe, first, stop) == whole[first:stop]
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_the_conditions_of_faulty_specimens_cover_their_ranges(recipe_with, sampling):
+    """A sequence of which faulty specimens took every second point would leave half of the range of their speeds empty."""
+    recipe = recipe_with(
+        {"corpus.rungs": (0, 1), "corpus.rigs": 32, "corpus.sampling": sampling, "faults": MANY_HEALTHY}
+    )
+    drawn = draw_scenarios(recipe)
+    for groups in ([one for one in drawn if one.record.pair >= 0], [one for one in drawn if one.record.pair < 0]):
+        quantiles = [(60 * one.record.conditions["shaft"] - 1500) / 500 for one in groups]
+        assert set(np.digitize(quantiles, np.arange(1, 8) / 8)) == set(range(8))
+
+
+def test_grids_run_through_all_their_values_on_faulty_specimens(recipe_with):
+    speeds = [600, 900]
+    changes = {"corpus.rungs": (0, 1), "corpus.records_per_specimen": 1, "faults": MANY_HEALTHY}
+    recipe = recipe_with(changes | {"operation.shaft_rpm": {"kind": "grid", "values": speeds}})
+    groups = groups_of(draw_scenarios(recipe)).values()
+    assert {round(60 * group[0].record.conditions["shaft"]) for group in groups} == set(speeds)
+
+
+@pytest.mark.parametrize("by", ["specimen", "rig"])
+def test_the_rungs_of_a_pair_are_on_one_side_of_every_split(recipe_with, by):
+    recipe = recipe_with(LADDERS | {"corpus.split": {"by": by, "test": 0.25, "validation": 0.25}})
+    scenarios = draw_scenarios(recipe)
+    for group in groups_of(scenarios).values():
+        assert len({one.specimen.split for one in group}) == 1
+    fault = np.array([FAULTS.index(one.specimen.fault) for one in scenarios])
+    unit = np.array([getattr(one, by).number for one in scenarios])
+    pair = np.array([one.record.pair for one in scenarios])
+    for train, test in grouped_splits(fault, unit, 3, 0):
+        assert not set(pair[train][pair[train] >= 0]) & set(pair[test])
+
+
+def test_the_text_of_a_rung_gives_its_scenario_back(recipe_with):
+    scenarios = draw_scenarios(recipe_with(LADDERS))
+    assert [read_scenario(text) for text in scenario_texts(scenarios)] == scenarios
+
+
+def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_path):
+    changes = {
+        "corpus": {"rigs": 1, "specimens_per_rig": 4, "records_per_specimen": 1, "rungs": [0, 0.5, 1], "records_per_part": 4},
+        "faults": [{"kind": "healthy"}, {"kind": "inner", "width_mm": 0.5}],
+    }  # fmt: skip
+    path = write_recipe(tmp_path / "r.yaml", changes)
+    planned = plan(path)
+    made = generate(path, tmp_path / "c")
+    assert (made.records, planned.records, planned.specimens, planned.parts) == (12, 12, 4, 3)
+    with open_corpus(made.directory) as corpus:
+        found = corpus[["fault", "pair", "rung", "specimen", "recording"]].load()
+    assert found["recording"].values.tolist() == list(range(12))
+    in_pair = found["pair"].values >= 0
+    assert (found["pair"].values[in_pair] == np.arange(12)[in_pair] // 3).all()
+    assert (found["rung"].values[in_pair] == np.arange(12)[in_pair] % 3).all()
+    healthy = found["fault"].values == 0
+    assert (healthy == (~in_pair | (found["rung"].values == 0))).all()
+    assert planned.classes == {"healthy": healthy.sum(), "inner": (~healthy).sum()}
+    card = (made.directory / "README.md").read_text(encoding="utf-8")
+    assert f"\n{in_pair.sum() // 3} groups of records (`pair`) differ in the severity" in card
+    assert f"\n| healthy | {healthy.sum()} | " in card
+    for record in (int(np.flatnonzero(in_pair)[0]), int(np.flatnonzero(in_pair)[-1])):
+        again = replay(made.directory, record)
+        assert again.identical
+        assert stored_scenario(made.directory, record).record.rung == int(found["rung"][record])
+        xr.testing.assert_equal(again.dataset["pair"][0], found["pair"][record])

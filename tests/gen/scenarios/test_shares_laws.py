@@ -1,0 +1,222 @@
+"""Laws of shares: a quantity that is a share of another is that share of its value, and no other quantity moves."""
+
+import math
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.physics.bearing import ball_spacing
+from gen.physics.catalogue import CATALOGUE
+from gen.recipe.distributions import DISTRIBUTIONS
+from gen.recipe.machine import MachineSection
+from gen.recipe.operation import OperationSection
+from gen.recipe.shares import quantities
+from gen.scenarios import draw_scenarios
+from gen.units import split_unit
+
+law = settings(deadline=None, max_examples=25)
+SAMPLINGS = ("random", "sobol", "halton")
+SLANTED = {"specimen.contact_angle_deg": 10}
+
+
+def uniform(low, high, **more):
+    return {"kind": "uniform", "low": low, "high": high, **more}
+
+
+def share(of, low, high):
+    return uniform(low, high, share_of=of)
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_an_axial_load_is_its_share_of_the_radial_load_of_the_same_record(recipe_with, sampling):
+    axial = {"operation.axial_load_n": share("load_n", 0.1, 0.6), "corpus.sampling": sampling}
+    numbers = {"operation.axial_load_n": uniform(0.1, 0.6), "corpus.sampling": sampling}
+    drawn, own = (draw_scenarios(recipe_with(SLANTED | changes)) for changes in (axial, numbers))
+    for one, other in zip(drawn, own, strict=True):
+        expected = other.record.conditions["axial_load"] * one.record.conditions["load"]
+        assert one.record.conditions["axial_load"] == pytest.approx(expected)
+
+
+@pytest.mark.parametrize(
+    ("key", "named"),
+    [
+        ("load_n", "bow_n"),
+        ("shaft_rpm", "support_frequency_hz"),
+        ("slip_percent", "mean_slip_percent"),
+        ("axial_load_n", "load_n"),
+    ],
+)
+def test_to_make_a_quantity_a_share_moves_no_other(recipe_with, key, named):
+    profile = {"kind": "ramp", "from_percent": uniform(50, 60), "to_percent": 99}
+    usual = SLANTED | {"machine.bow_n": 1000.0, "operation.speed_profile": profile}
+    without = draw_scenarios(recipe_with(usual))
+    drawn = draw_scenarios(recipe_with(usual | {f"operation.{key}": share(named, 0.05, 0.06)}))
+    name = split_unit(key)[0]
+    for one, other in zip(drawn, without, strict=True):
+        conditions = one.record.conditions | {name: other.record.conditions[name]}
+        assert conditions == other.record.conditions
+        assert one.record.conditions[name] != other.record.conditions[name]
+        assert one.record.speed_profile == other.record.speed_profile
+        unbalance = {"unbalance": other.rig.machine["unbalance"]}  # follows the highest speed of the recipe
+        assert one.rig.machine | unbalance == other.rig.machine
+        assert (one.specimen, one.rig.path, one.rig.background) == (
+            other.specimen,
+            other.rig.path,
+            other.rig.background,
+        )
+
+
+def test_a_share_can_name_quantities_of_every_level_above(recipe_with):
+    recipe = recipe_with(
+        SLANTED
+        | {
+            "machine.bow_n": uniform(10, 20),
+            "machine.misalignment_n": share("bow_n", 0.5, 0.5),
+            "machine.resonator.mass_kg": share("shaft_mass_kg", 0.02, 0.02),
+            "specimen.waviness_nm": share("ball_diameter_mm", 1e-6, 1e-6),
+            "specimen.ball_waviness_nm": share("waviness_nm", 0.25, 0.25),
+            "operation.load_n": share("bow_n", 8, 8),
+            "operation.jitter_deg": share("contact_angle_deg", 0.1, 0.1),
+            "contact": {"lubricant": {"viscosity_100_mm2_s": share("viscosity_40_mm2_s", 0.125, 0.125)}},
+        }
+    )
+    for scenario in draw_scenarios(recipe):
+        machine, properties, conditions = scenario.rig.machine, scenario.specimen.properties, scenario.record.conditions
+        assert machine["misalignment"] == pytest.approx(machine["bow"] / 2)
+        assert scenario.rig.resonator["mass"] == pytest.approx(machine["shaft_mass"] / 50)
+        assert properties["waviness"] == pytest.approx(1e-6 * CATALOGUE["6205"].ball_diameter)
+        assert properties["ball_waviness"] == pytest.approx(properties["waviness"] / 4)
+        assert conditions["load"] == pytest.approx(8 * machine["bow"])
+        assert conditions["jitter"] == pytest.approx(math.radians(1))
+        assert scenario.rig.lubricant["viscosity_100"] == pytest.approx(68e-6 / 8)
+
+
+def test_the_dimensions_of_a_bearing_by_geometry_can_be_shares(recipe_with):
+    geometry = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": uniform(30, 60), "ball_share": 0.2}
+    geometry["roller_length_mm"] = share("pitch_diameter_mm", 0.3, 0.3)
+    for scenario in draw_scenarios(recipe_with({"bearing": geometry})):
+        assert scenario.rig.bearing.roller_length == pytest.approx(0.3 * scenario.rig.bearing.pitch_diameter)
+
+
+def test_a_chain_of_shares_is_a_product_in_any_order(recipe_with):
+    chain = {"operation.load_n": share("axial_load_n", 4, 4), "operation.axial_load_n": share("bow_n", 2, 2)}
+    recipe = recipe_with(SLANTED | chain | {"machine.bow_n": uniform(10, 20)})
+    for scenario in draw_scenarios(recipe):
+        assert scenario.record.conditions["axial_load"] == pytest.approx(2 * scenario.rig.machine["bow"])
+        assert scenario.record.conditions["load"] == pytest.approx(8 * scenario.rig.machine["bow"])
+    assert recipe.operation.load_n.support() == pytest.approx((80, 160))
+
+
+def test_the_contact_angle_of_a_specimen_is_that_of_its_clearance_and_grooves(recipe_with):
+    """By the formula of Harris, written out."""
+    recipe = recipe_with(
+        {
+            "specimen.contact_angle_deg": share("free_contact_angle_deg", 1, 1),
+            "specimen.inner_conformity": uniform(0.515, 0.53),
+            "specimen.outer_conformity": share("inner_conformity", 1.01, 1.01),
+        }
+    )
+    angles = set()
+    for scenario in draw_scenarios(recipe):
+        drawn = scenario.specimen.properties
+        apart = (2.01 * drawn["inner_conformity"] - 1) * CATALOGUE["6205"].ball_diameter
+        expected = math.acos(1 - max(drawn["diametral_clearance"], 0) / 2 / apart)
+        assert drawn["contact_angle"] == pytest.approx(expected, rel=1e-6, abs=1e-9)
+        assert scenario.specimen.bearing.contact_angle == drawn["contact_angle"]
+        angles.add(drawn["contact_angle"])
+    assert 0.0 in angles  # some specimens have no clearance
+    assert max(angles) > math.radians(5)
+
+
+def test_a_bearing_with_a_contact_angle_on_its_drawing_has_no_free_angle(recipe_with):
+    free = {"specimen.contact_angle_deg": share("free_contact_angle_deg", 1, 1)}
+    geometry = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": 39, "ball_share": 0.2, "contact_angle_deg": 15}
+    for scenario in draw_scenarios(recipe_with(free | {"bearing": geometry})):
+        assert scenario.specimen.properties["contact_angle"] == 0
+
+
+@pytest.mark.parametrize("site", ["inner", "outer"])
+def test_a_spall_can_be_a_share_of_the_arc_between_two_balls(recipe_with, site):
+    entry = {
+        "kind": site,
+        "width_mm": share("ball_spacing_mm", 0.1, 0.3),
+        "depth_um": share("width_mm", 0.01, 0.01),
+        "n_spalls": 3,
+    }
+    spalls = [
+        (one.specimen, spall)
+        for one in draw_scenarios(recipe_with({"faults": [entry]}))
+        for spall in one.specimen.spalls
+    ]
+    shares = [spall.width / ball_spacing(specimen.bearing, site) for specimen, spall in spalls]
+    assert 0.1 <= min(shares) < 0.15 < 0.25 < max(shares) <= 0.3
+    assert [spall.depth for _, spall in spalls] == pytest.approx([0.01 * spall.width for _, spall in spalls])
+
+
+def test_the_shares_of_the_parts_of_a_compound_are_those_of_the_part(recipe_with):
+    width = {"width_mm": share("ball_spacing_mm", 0.1, 0.1)}
+    parts = [{"kind": "inner", **width}, {"kind": "outer", **width}]
+    for scenario in draw_scenarios(recipe_with({"faults": [{"kind": "compound", "parts": parts}]})):
+        for spall in scenario.specimen.spalls:
+            assert spall.width == pytest.approx(0.1 * ball_spacing(scenario.specimen.bearing, spall.site))
+
+
+@law
+@given(st.tuples(*[st.floats(0.01, 2)] * 2), st.tuples(*[st.floats(10, 1000)] * 2), st.integers(0, 2**31))
+def test_every_product_lies_in_its_support(recipe_with, shares, loads, seed):
+    axial, load = share("load_n", *sorted(shares)), uniform(*sorted(loads))
+    recipe = recipe_with(SLANTED | {"seed": seed, "operation.load_n": load, "operation.axial_load_n": axial})
+    low, high = recipe.operation.axial_load_n.support()
+    assert (low, high) == pytest.approx((min(shares) * min(loads), max(shares) * max(loads)))
+    for scenario in draw_scenarios(recipe, 0, 4):
+        assert low * (1 - 1e-9) <= scenario.record.conditions["axial_load"] <= high * (1 + 1e-9)
+
+
+def test_the_support_of_a_share_that_is_known_only_when_drawn_is_that_of_its_field(recipe_with):
+    recipe = recipe_with({"specimen.contact_angle_deg": share("free_contact_angle_deg", 1, 1)})
+    assert recipe.specimen.contact_angle_deg.support() == (0, 30)
+    assert recipe.specimen.contact_angle_deg.own_support() == (1, 1)
+
+
+def test_the_limits_of_loads_see_the_product(recipe_with):
+    """A share of at least 20 of a bow of at least 1 kN is above the limit of a 6205, 15.8 kN; one of at least 10 is not."""
+    heavy = {"machine.bow_n": uniform(1000, 2000), "operation.load_n": share("bow_n", 20, 30)}
+    with pytest.raises(ValueError, match=r"operation.load_n: gives an equivalent static load of at least 2e\+04 N"):
+        recipe_with(heavy)
+    recipe_with(heavy | {"operation.load_n": share("bow_n", 10, 30)})
+
+
+def test_the_unbalance_follows_the_highest_product_of_a_speed_that_is_a_share(recipe_with):
+    rated = {"machine.support_frequency_hz": uniform(200, 500), "machine.balance_mm_s": 1}
+    share_of_it, plain = share("support_frequency_hz", 0.02, 0.1), uniform(240, 3000)
+    one, other = (
+        draw_scenarios(recipe_with(rated | {"operation.shaft_rpm": speed}), 0, 1)[0] for speed in (share_of_it, plain)
+    )
+    assert one.rig.machine["unbalance"] == pytest.approx(other.rig.machine["unbalance"])
+
+
+def test_every_distribution_can_be_a_share():
+    given = {"value": 0.5, "low": 0.1, "high": 0.6, "mean": 0.3, "sd": 0.1, "values": (0.1, 0.6)}
+    for model in DISTRIBUTIONS:
+        own = {key: given[key] for key in set(model.model_fields) & set(given)}
+        found = model(kind=model.model_fields["kind"].annotation.__args__[0], share_of="load_n", **own)
+        assert found.share_of == "load_n"
+        assert found.own_support() == found.support()
+        found.set_product((3.0, 4.0), (0.0, 9.0))
+        assert found.support() == found.known_support() == (3.0, 4.0)
+
+
+def test_a_section_has_the_quantities_that_can_be_drawn():
+    assert set(quantities(OperationSection(shaft_rpm=1))) == set(OperationSection.model_fields) - {
+        "speed_profile",
+        "load_profile",
+    }
+    assert set(quantities(MachineSection())) == set(MachineSection.model_fields) - {"resonator"}
+
+
+def test_quantiles_of_a_share_are_as_even_as_those_of_any_quantity(recipe_with):
+    changes = {"corpus.sampling": "sobol", "corpus.rigs": 8, "machine.bow_n": 100}
+    recipe = recipe_with(changes | {"operation.load_n": share("bow_n", 1, 65)})
+    quantiles = [one.record.conditions["load"] / 100 - 1 for one in draw_scenarios(recipe)]
+    assert sorted(int(found) for found in quantiles) == list(range(64))
