@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from gen.labels import part_dataset
+from gen.recipe.sensing import FloatConverter
 from gen.records import FAULT_TRIES, made_again, made_records
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
 
+FLOAT = FloatConverter(kind="float32")
 OUTER = {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -180, "high": 180}}
 LEVEL = {
     "kind": "snr",
@@ -151,3 +153,58 @@ def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_w
     _, made = hidden(recipe_with, "redraw")
     assert sorted(made.response.failures) == [0, 1]
     assert f"none of {FAULT_TRIES} drawn faults of class outer" in made.response.failures[0]
+
+
+LADDER = {
+    "level": LEVEL,
+    "recording.duration_s": 0.25,
+    "corpus.rungs": [0, 0.5, 1],
+    "corpus.specimens_per_rig": 3,
+    "faults": [{"kind": "healthy", "weight": 1}, OUTER | {"angle_deg": 0}, {"kind": "inner", "width_mm": 0.5}],
+}
+
+
+@pytest.fixture(scope="module", params=["keep", "redraw"])
+def ladders(recipe_with, request):
+    recipe = recipe_with(LADDER | {"corpus.undetected": request.param})
+    return recipe, made_records(recipe, range(18))
+
+
+def groups_of(made):
+    found = {}
+    for place, scenario in enumerate(made.measured.scenarios):
+        if scenario.record.pair >= 0:
+            found.setdefault(scenario.record.pair, []).append(place)
+    return list(found.values())
+
+
+def test_records_of_a_group_differ_in_what_the_fault_adds_alone(ladders):
+    """Background and bearing have the same gains at every severity, so the difference to the first rung is the fault."""
+    recipe, made = ladders
+    exact = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"converter": FLOAT})})
+    signal = made_records(exact, range(18)).measured.signal.astype(float)
+    groups = groups_of(made)
+    assert groups
+    for group in groups:
+        healthy, *damaged = (signal[place] for place in group)
+        rest = np.sqrt(np.mean(healthy**2))
+        for place, record in zip(group[1:], damaged, strict=True):
+            added = np.sqrt(np.mean((record - healthy) ** 2))
+            assert 20 * np.log10(added / rest) == pytest.approx(made.measured.fault_snr[place], abs=0.05)
+
+
+def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
+    _, made = ladders
+    for *_, largest in groups_of(made):
+        drawn = made.measured.scenarios[largest].record.snr
+        assert made.measured.fault_snr[largest] == pytest.approx(drawn, abs=0.05)
+
+
+def test_a_group_is_not_cut_by_a_part(ladders):
+    recipe, whole = ladders
+    for number in (1, 4, 11):
+        some = made_records(recipe, range(number, number + 2))
+        np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[number : number + 2])
+        scenario = whole.measured.scenarios[number]
+        again = made_again(recipe, number, scenario.specimen.fault_try, scenario.record.level_try)
+        np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[number])

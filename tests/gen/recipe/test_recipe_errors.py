@@ -241,6 +241,12 @@ TABLE = [
      "faults[1].parts: an operation of cage alone does nothing; give the compound one."),
     # rungs
     ("rigs: 2", "rigs: 2, rungs: [1]", "corpus.rungs: 1 is too few; give at least 2."),
+    (
+        "rigs: 2",
+        "rigs: 2, records_per_part: 1, undetected: redraw",
+        "corpus.undetected: redraw judges all 2 records of a specimen together, and a part has 1; raise records_per_part, or choose keep.",
+    ),
+    ("rigs: 2", "rigs: 2, truth: some", "corpus.truth: 'some' is not allowed here; it must be 'full' or 'none'."),
     ("rigs: 2", "rigs: 2, rungs: 2", "corpus.rungs: 2 is not allowed here; it must be a list."),
     ("rigs: 2", "rigs: 2, rungs: [0, 1, 0.5]", "corpus.rungs: 0.5 after 1 does not rise; sort them, each once."),
     ("rigs: 2", "rigs: 2, rungs: [0, 1, 1]", "corpus.rungs: 1 after 1 does not rise; sort them, each once."),
