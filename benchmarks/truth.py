@@ -1,0 +1,43 @@
+"""CPU time of a record whose fault is judged, compared with a record that is simulated once and not judged.
+
+A part of ``domain_randomised`` is drawn, simulated, measured, labelled and written in this process, by the same code as a worker's.
+"""
+
+import tempfile
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+from benchmarks.pairs import Line, interleaved, row
+from gen.part_task import make_part
+from gen.recipe import Recipe, read_recipe
+
+SETTINGS = {
+    "none": {"truth": "none", "undetected": "keep"},
+    "full": {"truth": "full", "undetected": "keep"},
+    "redraw": {"truth": "full", "undetected": "redraw"},
+}
+
+
+def rows(pairs: int = 7, records: int = 480) -> Iterator[Line]:
+    """Lines of the table."""
+    recipe = read_recipe("domain_randomised", records=records)
+    recipes = {
+        name: recipe.model_copy(update={"corpus": recipe.corpus.model_copy(update=keys)})
+        for name, keys in SETTINGS.items()
+    }
+    for given in recipes.values():
+        cpu_per_record(given)  # compiles the kernels, or loads them
+    found = interleaved(pairs, **{name: lambda given=given: cpu_per_record(given) for name, given in recipes.items()})
+    for name in ("full", "redraw"):
+        what = f"domain_randomised, {' and '.join(f'{key}: {value}' for key, value in SETTINGS[name].items())}"
+        yield row(f"truth {name}", what, "ms", found[name], "truth: none", found["none"])
+
+
+def cpu_per_record(recipe: Recipe) -> float:
+    """CPU time of a record of the first part [ms]."""
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "parts").mkdir()
+        start = time.process_time()
+        made = make_part(recipe, 0, Path(folder))
+        return 1e3 * (time.process_time() - start) / max(made.row.records, 1)
