@@ -140,6 +140,7 @@ def _draw_rig(recipe: Recipe, number: int, point: NDArray[np.float64]) -> Rig:
         background_rms=level.get("background", 1.0),
         lubricant=oil,
         footprint=recipe.contact.footprint == "hertz",
+        ball_mass=recipe.contact.ball_mass == "steel",
     )
 
 
@@ -281,6 +282,8 @@ def _draw_record(recipe: Recipe, specimen: Specimen, number: int, point: NDArray
         None if profile is None else _draw_profile(draws, profile, recipe.recording.duration_s)
         for profile in (recipe.operation.speed_profile, recipe.operation.load_profile)
     ]
+    if recipe.operation.slip_walk is not None:
+        conditions["slip_walk"] = draws.section(recipe.operation.slip_walk)["spacing"]
     return Operation(number, conditions, snr, rms, *profiles)
 
 

@@ -47,6 +47,9 @@ def _with_part(draws: Draws, part: RaceFault | BallFault | CageFault, specimen: 
         return replace(specimen, spalls=spalls)
     axis = draws.section(part)
     axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander")}
+    if part.axis_jumps is not None:
+        jumps = draws.section(part.axis_jumps)
+        axis |= {"jumps": jumps["probability"], "spread": jumps["spread"]}
     return replace(specimen, spalls=spalls, axis=axis)
 
 
@@ -58,6 +61,7 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
     for _ in range(round(draws.value(entry.n_spalls))):
         width, depth = to_si(draws.value(entry.width_mm), "mm"), to_si(draws.value(entry.depth_um), "um")
         angle, roughness = to_si(draws.value(entry.angle_deg), "deg"), to_si(draws.value(entry.roughness_um), "um")
+        edge = {} if entry.jagged_edge is None else draws.section(entry.jagged_edge)
         spalls.append(
             Spall(
                 site=entry.kind,
@@ -68,6 +72,7 @@ def _draw_spalls(draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, s
                 profile=entry.profile,
                 trace=trace,
                 roughness=roughness,
+                scatter=edge.get("scatter", 0.0),
             )
         )
         if width > _WIDEST[entry.kind] * radius:

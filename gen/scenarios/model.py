@@ -33,6 +33,9 @@ class Purpose(IntEnum):
     WEAR = 11
     LOAD_WANDER = 12
     KNOCKS = 13
+    EDGES = 20
+    AXIS = 21
+    SLIP = 22
 
 
 @dataclass(frozen=True)
@@ -53,6 +56,8 @@ class Spall:
     """Depths of a measured surface from edge to edge, evenly spaced [m]."""
     roughness: float = 0.0
     """Rms roughness of the floor [m]."""
+    scatter: float = 0.0
+    """Standard deviation of the logarithm of the drop from passage to passage [1]."""
 
 
 @dataclass(frozen=True)
@@ -153,6 +158,8 @@ class Rig:
     lubricant: Drawn | None = None
     footprint: bool = False
     """True for contacts of Hertzian width, False for point contacts."""
+    ball_mass: bool = False
+    """True if the mass of the balls strikes the edges of spalls."""
 
 
 @dataclass(frozen=True)
@@ -165,7 +172,8 @@ class Specimen:
     fault: str
     spalls: tuple[Spall, ...]
     axis: Drawn
-    """Tilt of the spin axis of a damaged ball [rad]: mean, rms, and tilt beyond which the spall misses the track."""
+    """Tilt of the spin axis of a damaged ball [rad]: mean, rms, and tilt beyond which the spall misses the track; probability [1] and
+    spread [rad] of its jumps."""
     split: str
     cage: Drawn = field(default_factory=dict)
     """Pitch error [rad] and knock [N] of a broken cage."""

@@ -77,6 +77,11 @@ def turning_of(scenario: Scenario, start: Start) -> Turning:
         knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)) if specimen.cage else 0,
         late_ball=0 if specimen.cage else -1,
         late_by=specimen.cage.get("pitch_error", 0.0),
+        walk=conditions.get("slip_walk", 0.0),
+        walk_seed=int(scenario.rng(Purpose.SLIP).integers(2**52)) if "slip_walk" in conditions else 0,
+        axis_jumps=specimen.axis.get("jumps", 0.0),
+        axis_spread=specimen.axis.get("spread", 0.0),
+        axis_seed=int(scenario.rng(Purpose.AXIS).integers(2**52)) if "jumps" in specimen.axis else 0,
     )
 
 
