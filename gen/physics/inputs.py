@@ -149,6 +149,16 @@ def is_wavy(waviness: Waviness) -> bool:
     return waviness.races.size > 0 or waviness.balls.size > 0
 
 
+def walk_slip_rms(bearing: Bearing, turning: Turning, held: float) -> float:
+    """Rms of a random slip of the cage that is new every ``held`` seconds and gives the random walk of ``turning`` [1].
+
+    While the cage turns by the angle ``b`` between two balls, its angle is to spread by ``walk * b``. If it turns by ``a`` while a slip is
+    held, ``b / a`` independent slips spread it by ``rms * a * sqrt(b / a)``.
+    """
+    apart, turned = 2 * math.pi / bearing.n_balls, math.pi * turning.shaft_rate * (1 - bearing.gamma) * held
+    return turning.walk * math.sqrt(apart / turned) if turning.walk > 0 else 0.0
+
+
 def spall_span(bearing: Bearing, spall: SpallInput) -> tuple[float, float]:
     """Half the angle between the edges of a spall [rad], and the radius of the damaged surface [m]."""
     radius = bearing.radius(spall.site)

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
-from gen.physics.elementary import exponential, power
-from gen.physics.inputs import CONSTANT, Turning
+from gen.physics.elementary import exponential, power, standard_normals
+from gen.physics.inputs import CONSTANT, Turning, walk_slip_rms
 from gen.physics.kernel.layout import (
     JITTER_TERMS,
     SLIP_FIRST,
@@ -21,6 +21,7 @@ from gen.physics.kernel.layout import (
     TILT_TERMS,
     n_process_terms,
 )  # fmt: skip
+from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Purpose, Scenario
 from gen.simulation.timeline import Timeline
@@ -163,6 +164,14 @@ class MeanMotion(NamedTuple):
     """Fault frequencies in orders of the mean shaft rate [1]."""
 
 
+def _walk(scenario: Scenario, timeline: Timeline) -> FloatArray:
+    """Slip of the random walk of the cage at the knots of the record, as the kernel draws it, shape (time,) [1]."""
+    turning = turning_of(scenario, Start(0.0, 0.0, 0.0, np.empty(0), np.empty(0)))
+    strides = np.arange(timeline.settle, timeline.settle + timeline.record) // STRIDE
+    normals = standard_normals(np.arange(strides[0], strides[-1] + 1), turning.walk_seed)
+    return walk_slip_rms(scenario.specimen.bearing, turning, STRIDE / timeline.fs) * normals[strides - strides[0]]
+
+
 def mean_motion(scenario: Scenario, timeline: Timeline, frequencies: FloatArray, phases: FloatArray) -> MeanMotion:
     """Mean shaft rate and fault orders over the record.
 
@@ -185,6 +194,10 @@ def mean_motion(scenario: Scenario, timeline: Timeline, frequencies: FloatArray,
     rate = conditions["shaft"] * mean_share(profile, duration)
     rate *= 1 + conditions["speed_wander"] * mean(0, SPEED_TERMS)
     slip = conditions["mean_slip"] + conditions["slip"] * mean(SLIP_FIRST, SLIP_TERMS)
+    if "slip_walk" in conditions:
+        walk = _walk(scenario, timeline)
+        times = (np.arange(timeline.record) + 0.5) / timeline.fs
+        slip += float(np.average(walk, weights=None if profile is None else share_at(profile, times)))
     found = slipping_orders(scenario.specimen.bearing, slip)
     wander = conditions["spin_wander"] * mean(SPIN_FIRST, SPIN_TERMS)
     return MeanMotion(rate, found._replace(bsf=found.bsf * (1 + wander)))

@@ -7,7 +7,7 @@ set by its name in :mod:`gen.physics.kernel.layout`, so a row that is forgotten 
 import numpy as np
 
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, MOST_STRIKES, TABLE_POINTS
-from gen.physics.inputs import KernelInput, Strike, Turning, farthest_jitter, is_wavy, spall_span
+from gen.physics.inputs import KernelInput, Strike, Turning, farthest_jitter, is_wavy, spall_span, walk_slip_rms
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
 from gen.physics.kernel.layout import (
@@ -167,18 +167,16 @@ def _drive(records: list[KernelInput], turning: Turning, machine: Machine, knot:
     drive[Drive.LATE_BALL], drive[Drive.LATE_BY] = turning.late_ball, turning.late_by
     drive[Drive.BALL_MASS] = [record.ball_mass for record in records]
     drive[Drive.HERTZ_TIME] = [record.hertz_time for record in records]
-    _set_chances(drive, records, turning)
+    _set_chances(drive, records, turning, knot)
     return drive
 
 
-def _set_chances(drive: FloatArray, records: list[KernelInput], turning: Turning) -> None:
+def _set_chances(drive: FloatArray, records: list[KernelInput], turning: Turning, knot: float) -> None:
     """Set the rows of the random walk of the cage and of the jumps of a spin axis."""
-    # while the cage turns by the angle b between two balls, its angle is to spread by walk * b; a slip that is new every STRIDE knots, in
-    # each of which the cage turns by a, spreads it by slip * sqrt(b * STRIDE * a)
-    apart = 2 * np.pi / np.array([record.bearing.n_balls for record in records])
-    per_stride = STRIDE * drive[Drive.CAGE_RATIO] * drive[Drive.SHAFT_STEP]
-    drive[Drive.WALK] = np.asarray(turning.walk) * np.sqrt(apart / np.maximum(per_stride, 1e-300))
+    held = STRIDE * knot
+    drive[Drive.WALK] = [walk_slip_rms(record.bearing, record.turning, held) for record in records]
     drive[Drive.WALK_NOW], drive[Drive.WALK_SEED] = 0.0, turning.walk_seed
+    apart = 2 * np.pi / np.array([record.bearing.n_balls for record in records])
     carriers = [next((spall.ball for spall in record.spalls if spall.site == "ball"), 0) for record in records]
     opposite = np.arctan2(-drive[Drive.LOAD_Y], -drive[Drive.LOAD_X])
     drive[Drive.AXIS_JUMPS], drive[Drive.AXIS_SPREAD] = turning.axis_jumps, turning.axis_spread
