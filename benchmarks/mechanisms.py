@@ -34,6 +34,7 @@ CASES: dict[str, tuple[dict[str, Any], Changes]] = {
     "ball, footprint and oil": (BALL, OIL),
     "ball, axis wanders 0.1 rad": (BALL | {"axis_wander_deg": 5.7}, {}),
     "ball, rare hits": (BALL | {"axis_wander_deg": 11.5, "axis_offset_deg": 8}, {}),
+    "ball, axis jumps": (BALL | {"axis_jumps": {"probability_percent": 30, "spread_deg": 15}}, {}),
     "ball 0.18 mm, point contact": (BALL | {"width_mm": 0.178}, {}),
     "ball 0.18 mm, footprint": (BALL | {"width_mm": 0.178}, {"contact": {"footprint": "hertz"}}),
     "outer, balanced": (OUTER, {"machine": {"balance_mm_s": 0}}),
@@ -41,6 +42,10 @@ CASES: dict[str, tuple[dict[str, Any], Changes]] = {
     "outer, bent shaft of 100 N": (OUTER, {"machine": {"bow_n": 100}}),
     "inner, clearance 10 um": (INNER, {}),
     "inner, preload 6 um": (INNER, {"specimen": {"diametral_clearance_um": -6}}),
+    "inner, 10 deg and 300 N along the axis": (
+        INNER,
+        {"specimen": {"contact_angle_deg": 10}, "operation": {"axial_load_n": 300}},
+    ),
     "inner, 15 deg and 600 N along the axis": (
         INNER,
         {"specimen": {"contact_angle_deg": 15}, "operation": {"axial_load_n": 600}},
@@ -48,6 +53,10 @@ CASES: dict[str, tuple[dict[str, Any], Changes]] = {
     "inner, inner ring 15 K hotter": (INNER, {"operation": {"inner_ring_hotter_k": 15}}),
     "outer, steady load": (OUTER, {"operation": {"slip_percent": 0, "jitter_deg": 0}}),
     "outer, load wanders 10 %": (OUTER, {"operation": {"slip_percent": 0, "jitter_deg": 0, "load_wander_percent": 10}}),
+    "outer, jagged edge of 40 %": (OUTER | {"jagged_edge": {"scatter_percent": 40}}, {}),
+    "outer, mass of the balls": (OUTER, {"contact": {"ball_mass": "steel"}}),
+    "outer, shaft and housing of 1 kg": (OUTER, {"machine": {"shaft_mass_kg": 1, "housing_mass_kg": 1}}),
+    "inner, shaft and housing of 1 kg": (INNER, {"machine": {"shaft_mass_kg": 1, "housing_mass_kg": 1}}),
     "outer, slip 2 %, jitter 1 deg": (OUTER, {"operation": {"slip_percent": 2, "jitter_deg": 1}}),
 }
 
