@@ -1,17 +1,19 @@
 """Effect of each mechanism on the marks in which simulated and real faults differ.
 
 ``python -m benchmarks.mechanisms`` prints a table of medians over the seeds, for the reference machine of :mod:`benchmarks.visibility` with
-one change at a time. Marks: rms and kurtosis of the record; lines of the squared envelope one shaft rate beside BPFO, relative to BPFO;
-lines beside BPFI, relative to BPFI; share of the power of the envelope, without its mean, below 0.8 orders.
+one change at a time. Marks: rms, kurtosis and skewness of the record; its power from 3.5 to 5 kHz, relative to the whole; lines of the
+squared envelope one shaft rate beside BPFO, relative to BPFO; lines beside BPFI, relative to BPFI; share of the power of the envelope,
+without its mean, below 0.8 orders.
 """
 
 import argparse
 from typing import Any
 
 import numpy as np
-from scipy.stats import kurtosis
+from scipy.stats import kurtosis, skew
 
 from benchmarks.visibility import (
+    FS,
     LINES,
     SECONDS,
     TURNING,
@@ -69,11 +71,20 @@ def marks(fault: dict[str, Any], changes: Changes, n_seeds: int) -> dict[str, fl
     return {
         "rms [m/s2]": float(np.median(np.std(signals, axis=1))),
         "kurtosis": float(np.median(kurtosis(signals, axis=1, fisher=False))),
+        "skewness": float(np.median(skew(signals, axis=1))),
+        "3.5-5 kHz [dB]": float(np.median(_share(signals, 3500, 5000))),
         "BPFO +/- fr [dB]": _beside(spectrum, LINES["BPFO"] * rate, rate),
         "BPFI +/- fr [dB]": _beside(spectrum, LINES["BPFI"] * rate, rate),
         "share below 0.8 fr [%]": 100
         * float(np.median((spectrum[:, slow] ** 2).sum(axis=1) / (spectrum**2).sum(axis=1))),
     }
+
+
+def _share(signals: FloatArray, low: float, high: float) -> FloatArray:
+    """Power between two frequencies relative to the whole, shape (seed,) [dB]."""
+    power = np.abs(np.fft.rfft(signals * np.hanning(signals.shape[1]))) ** 2
+    frequency = np.fft.rfftfreq(signals.shape[1], 1 / FS)
+    return 10 * np.log10(power[:, (frequency >= low) & (frequency < high)].sum(axis=1) / power.sum(axis=1))
 
 
 def _beside(spectrum: FloatArray, line: float, rate: float) -> float:
