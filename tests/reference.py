@@ -135,7 +135,7 @@ def walk(record: KernelInput, knot: float, n_knots: int) -> FloatArray:
     """Slip that is new every ``STRIDE`` knots and lets the angle of the cage walk at random, shape (knot,) [1]."""
     drawn = record.turning
     apart = 2 * np.pi / record.bearing.n_balls
-    turned = 2 * np.pi * drawn.shaft_rate * (1 - record.bearing.gamma) / 2 * STRIDE * knot
+    turned = 2 * np.pi * abs(drawn.shaft_rate) * (1 - record.bearing.gamma) / 2 * STRIDE * knot
     seen = [standard_normal(at // STRIDE, drawn.walk_seed) if drawn.walk > 0 else 0.0 for at in range(n_knots)]
     return drawn.walk * math.sqrt(apart / turned) * np.array(seen)
 

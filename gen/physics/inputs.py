@@ -155,7 +155,7 @@ def walk_slip_rms(bearing: Bearing, turning: Turning, held: float) -> float:
     While the cage turns by the angle ``b`` between two balls, its angle is to spread by ``walk * b``. If it turns by ``a`` while a slip is
     held, ``b / a`` independent slips spread it by ``rms * a * sqrt(b / a)``.
     """
-    apart, turned = 2 * math.pi / bearing.n_balls, math.pi * turning.shaft_rate * (1 - bearing.gamma) * held
+    apart, turned = 2 * math.pi / bearing.n_balls, math.pi * abs(turning.shaft_rate) * (1 - bearing.gamma) * held
     return turning.walk * math.sqrt(apart / turned) if turning.walk > 0 else 0.0
 
 
