@@ -74,7 +74,7 @@ def repeat(part: int, shape: Any, batch: Batch, n_steps: int, dt: float, filters
                 ball_gaps(shape, own, work.moves, work.scratch, work.gaps)
         elif part == SPALLS:
             if len(shape.spalled):
-                move_spalls(shape, own, n_steps, work.moves, work.scratch, work.dropped)
+                move_spalls(shape, own, n_steps, dt, work.moves, work.scratch, work.dropped)
                 for i in range(own.angles.size):
                     own.angles[i] += work.moves[i]
         elif part == FIRST_FILTER:

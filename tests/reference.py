@@ -39,6 +39,7 @@ from gen.physics.kernel.layout import (
 )
 from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.kernel.step import advance
+from gen.physics.kernel.strikes import LONGEST_PULSE
 from gen.physics.kernel.turning import N_ANGLES, STRIDE
 from gen.physics.rotor import Machine
 
@@ -75,6 +76,8 @@ class Slow(NamedTuple):
     """Outer forces on shaft and housing, x and y, now and just before the next knot, shape (knot, 2, 4) [N]."""
     share: FloatArray
     """Of its drop that a ball spall gives up to this knot, shape (knot,) [1]."""
+    shift: FloatArray
+    """Angle by which the jump of the spin axis has turned the spin, shape (knot,) [rad]."""
 
 
 def process(record: KernelInput, first: int, terms: int, times: FloatArray) -> FloatArray:
@@ -98,6 +101,7 @@ def slow_motion(record: KernelInput, knot: float, n_knots: int) -> Slow:
     shaft = 2 * np.pi * drawn.shaft_rate * (1 + drawn.speed_rms * straight(0, SPEED_TERMS, halfway))
     shaft = shaft * scheduled(record, n_knots + 1)[:, 0]
     slip = drawn.mean_slip + drawn.slip_rms * straight(SLIP_FIRST, SLIP_TERMS, halfway)
+    slip = slip + walk(record, knot, n_knots + 1)
     wander = 1 + drawn.spin_rms * straight(SPIN_FIRST, SPIN_TERMS, halfway)
     rates = np.stack([shaft, shaft * (1 - gamma) / 2 * (1 - slip), shaft * size / 2 * (1 - gamma**2) * wander], axis=1)
     start = np.array([drawn.shaft_angle, drawn.cage_angle, drawn.spin_angle])
@@ -119,9 +123,36 @@ def slow_motion(record: KernelInput, knot: float, n_knots: int) -> Slow:
     places = angles[:, 1:2] + 2 * np.pi * balls / bearing.n_balls
     height = waviness(record, places - angles[:, :1], places) + ball_waviness(record, angles[:, 2])
     gaps = record.machine.half_clearance - height
-    tilt = drawn.axis_offset + drawn.axis_rms * straight(TILT_FIRST, TILT_TERMS, times)
+    jumped, shift = jumps(record, angles[:, 1])
+    # the share holds up to the next knot: its tilt is that at the end, but a jump counts from the start
+    jumped = np.concatenate([[0.0], jumped[:-1]])
+    tilt = drawn.axis_offset + drawn.axis_rms * straight(TILT_FIRST, TILT_TERMS, times) + jumped
     share = np.maximum(0.0, 1 - (tilt / drawn.axis_limit) ** 2) if drawn.axis_limit > 0 else np.ones(n_knots + 1)
-    return Slow(angles, gaps, jitter, directions, rates, outer_forces(record, knot, angles, rates), share)
+    return Slow(angles, gaps, jitter, directions, rates, outer_forces(record, knot, angles, rates), share, shift)
+
+
+def walk(record: KernelInput, knot: float, n_knots: int) -> FloatArray:
+    """Slip that is new every ``STRIDE`` knots and lets the angle of the cage walk at random, shape (knot,) [1]."""
+    drawn = record.turning
+    apart = 2 * np.pi / record.bearing.n_balls
+    turned = 2 * np.pi * abs(drawn.shaft_rate) * (1 - record.bearing.gamma) / 2 * STRIDE * knot
+    seen = [standard_normal(at // STRIDE, drawn.walk_seed) if drawn.walk > 0 else 0.0 for at in range(n_knots)]
+    return drawn.walk * math.sqrt(apart / turned) * np.array(seen)
+
+
+def jumps(record: KernelInput, cage: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Tilt and shift of the spin angle since the last jump of the axis of the damaged ball, each of shape (knot,) [rad]."""
+    drawn, machine = record.turning, record.machine
+    carrier = next((spall.ball for spall in record.spalls if spall.site == "ball"), 0)
+    opposite = math.atan2(-machine.load_y, -machine.load_x) - carrier * 2 * np.pi / record.bearing.n_balls
+    turns = np.floor((cage - opposite) / (2 * np.pi)).astype(int)
+    last, found = None, np.zeros((len(cage), 2))
+    for at, turn in enumerate(turns.tolist()):
+        moved = at == 0 or (turn != turns[at - 1] and split_mix(8 * turn, drawn.axis_seed) < drawn.axis_jumps)
+        last = turn if moved else last
+        if drawn.axis_jumps > 0:
+            found[at] = [drawn.axis_spread * standard_normal(4 * last + k, drawn.axis_seed) for k in (1, 2)]
+    return found[:, 0], found[:, 1]
 
 
 def scheduled(record: KernelInput, n_knots: int) -> FloatArray:
@@ -161,9 +192,14 @@ def knock(drawn: Turning, cage: float, rate: float, knot: float) -> float:
 
 
 def knock_scatter(turn: int, seed: int) -> float:
-    """Log-normal factor of the knock of a turn, from two uniform numbers by Box and Muller [1]."""
-    first, second = (split_mix(2 * turn + k, seed) for k in (0, 1))
-    return math.exp(KNOCK_SCATTER * math.sqrt(-2 * math.log(first)) * math.cos(2 * math.pi * second))
+    """Log-normal factor of the knock of a turn [1]."""
+    return math.exp(KNOCK_SCATTER * standard_normal(turn, seed))
+
+
+def standard_normal(number: int, seed: int) -> float:
+    """Normal number from two uniform numbers by Box and Muller."""
+    first, second = (split_mix(2 * number + k, seed) for k in (0, 1))
+    return math.sqrt(-2 * math.log(first)) * math.cos(2 * math.pi * second)
 
 
 def split_mix(number: int, seed: int) -> float:
@@ -174,13 +210,13 @@ def split_mix(number: int, seed: int) -> float:
     return (((x ^ x >> 31) >> 12) + 0.5) / 2**52
 
 
-def half_sine_under_slope(since: float, reach: float) -> float:
+def half_sine_under_slope(since: float, reach: float, length: float = KNOCK_SECONDS) -> float:
     """Integral of the unit half sine that began ``since`` seconds ago, under a line from 1 now to 0 at ``reach`` from now [s]."""
-    low, high = np.clip(sorted((since, since + reach)), 0.0, KNOCK_SECONDS)
+    low, high = np.clip(sorted((since, since + reach)), 0.0, length)
     nodes, weights = np.polynomial.legendre.leggauss(24)
     at = (low + high) / 2 + (high - low) / 2 * nodes
     line = 1 - (at - since) / reach
-    return float((high - low) / 2 * weights @ (np.sin(np.pi * at / KNOCK_SECONDS) * line))
+    return float((high - low) / 2 * weights @ (np.sin(np.pi * at / length) * line))
 
 
 def waviness(record: KernelInput, on_inner: FloatArray, on_outer: FloatArray) -> FloatArray:
@@ -241,22 +277,91 @@ def fall(fault: SpallInput, offset: float, arc: float, ball: float, race: float)
     return fault.depth
 
 
-def drops(record: KernelInput, angles: FloatArray, places: FloatArray, share: float) -> FloatArray:
-    """How far each ball, at the angle ``places``, has dropped into all spalls together, shape (ball,) [m]."""
-    bearing = record.bearing
-    shaft, _, spin = angles
-    ball, inner, outer = bearing.ball_diameter / 2, bearing.inner_radius, bearing.outer_radius
-    total = np.zeros(bearing.n_balls)
+class Meeting(NamedTuple):
+    """A ball near a spall."""
+
+    fault: SpallInput
+    ball: int
+    offset: float
+    """Of its contact from the middle of the spall [rad]."""
+    race: float
+    """Radius of the race, negative for the outer one [m]."""
+    number: int
+    """Of the passage."""
+    share: float
+    """Factor of its drop and of its strikes [1]."""
+
+
+def meetings(record: KernelInput, angles: FloatArray, jitter: FloatArray, share: float) -> list[Meeting]:
+    """Every ball with every spall, a damaged ball with both races; ``angles`` are those of shaft, cage and ball spin."""
+    bearing, met = record.bearing, []
+    shaft, cage, spin = angles
+    inner, outer, n_balls = bearing.inner_radius, -bearing.outer_radius, bearing.n_balls
     for fault in record.spalls:
         if fault.site == "ball":
-            on_inner, on_outer = wrapped(spin + fault.angle), wrapped(spin + fault.angle - math.pi)
-            fallen = fall(fault, on_inner, ball, ball, inner) + fall(fault, on_outer, ball, ball, -outer)
-            total[fault.ball] += share * fallen
+            turned = spin + fault.angle
+            for half, race in enumerate((inner, outer)):
+                offset = wrapped(turned - half * math.pi)
+                number = round((turned - offset) / math.pi)
+                met.append(Meeting(fault, fault.ball, offset, race, number, share * scatter(fault, number)))
             continue
-        race, centre = (inner, shaft + fault.angle) if fault.site == "inner" else (-outer, fault.angle)
-        for number, place in enumerate(places):
-            total[number] += fall(fault, wrapped(place - centre), abs(race), ball, race)
+        race, centre = (inner, shaft + fault.angle) if fault.site == "inner" else (outer, fault.angle)
+        for ball in range(n_balls):
+            place = cage + 2 * np.pi * ball / n_balls - centre
+            number = n_balls * round((place - wrapped(place)) / (2 * np.pi)) - ball
+            met.append(Meeting(fault, ball, wrapped(place) + jitter[ball], race, number, scatter(fault, number)))
+    return met
+
+
+def scatter(fault: SpallInput, number: int) -> float:
+    """Log-normal factor of the drop in one passage [1]."""
+    return math.exp(fault.scatter * standard_normal(number, fault.seed)) if fault.scatter > 0 else 1.0
+
+
+def drops(record: KernelInput, angles: FloatArray, jitter: FloatArray, share: float) -> FloatArray:
+    """How far each ball has dropped into all spalls together, shape (ball,) [m]."""
+    ball, total = record.bearing.ball_diameter / 2, np.zeros(record.bearing.n_balls)
+    for fault, number, offset, race, _, part in meetings(record, angles, jitter, share):
+        arc = ball if fault.site == "ball" else abs(race)
+        total[number] += part * fall(fault, offset, arc, ball, race)
     return total
+
+
+def strike_forces(
+    record: KernelInput, slow: Slow, knot: float, at: int, tau: float, y: FloatArray, dt: float
+) -> FloatArray:
+    """Forces of balls that strike edges, on shaft and housing, x and y of each [N], shape (4,).
+
+    ``y`` is the state at the knot, which decides whether a ball is held by the races.
+    """
+    forces, cosine = np.zeros(4), record.machine.contact_cosine
+    if record.ball_mass == 0:
+        return forces
+    motion = [[values[at + k] for values in (slow.angles, slow.jitter)] for k in (0, 1)]
+    for one in motion:
+        one[0] = one[0] + np.array([0, 0, slow.shift[at]])
+    middle = [(first + last) / 2 for first, last in zip(*motion, strict=True)]
+    offsets = [np.array([met.offset for met in meetings(record, *some, slow.share[at + 1])]) for some in motion]
+    for number, met in enumerate(meetings(record, *middle, slow.share[at + 1])):
+        moved = wrapped(offsets[1][number] - offsets[0][number])
+        rate = moved / knot
+        place = slow.angles[at, 1] + 2 * np.pi * met.ball / record.bearing.n_balls
+        direction = np.array([math.cos(place), math.sin(place)])
+        held = cosine * direction @ (y[0:2] - y[2:4]) - record.machine.half_clearance > 0
+        arc = record.bearing.radius(met.fault.site)
+        rows = met.fault.strikes or ((), ())
+        for strike in rows[1 if met.fault.site == "ball" and met.race < 0 else 0]:
+            speed = met.share * strike.change * abs(rate) * arc
+            if not held or speed <= 0:
+                continue
+            length = max(record.hertz_time * (speed / 2) ** -0.2, strike.spread / abs(rate))
+            length = min(length, LONGEST_PULSE)
+            begun = (met.offset - moved / 2 - strike.offset) / rate + strike.spread / abs(rate) / 2
+            since = begun + tau * knot
+            mean = sum(half_sine_under_slope(since, reach, length) for reach in (-dt, dt)) / dt
+            pulse = record.ball_mass * speed * math.pi / (2 * length) * mean * cosine * direction
+            forces += np.concatenate([-pulse, [0, 0]] if met.race > 0 else [[0, 0], pulse])
+    return forces
 
 
 class Contacts(NamedTuple):
@@ -273,11 +378,11 @@ class Contacts(NamedTuple):
 def contacts(record: KernelInput, slow: Slow, at: int, tau: float, y: FloatArray) -> Contacts:
     """Contacts in the state ``y``, a share ``tau`` of the way from knot ``at`` to the next."""
     angles, gaps, jitter, in_cage = ((1 - tau) * values[at] + tau * values[at + 1] for values in slow[:4])
-    places = angles[1] + 2 * np.pi * np.arange(record.bearing.n_balls) / record.bearing.n_balls + jitter
+    angles[2] += slow.shift[at]
     c, s = math.cos(angles[1]), math.sin(angles[1])
     directions = in_cage @ np.array([[c, s], [-s, c]])
     seen = record.machine.contact_cosine * directions
-    gaps = gaps + drops(record, angles, places, slow.share[at + 1])
+    gaps = gaps + drops(record, angles, jitter, slow.share[at + 1])
     return Contacts(directions, seen @ (y[0:2] - y[2:4]) - gaps, seen @ (y[6:8] - y[8:10]))
 
 
@@ -296,10 +401,19 @@ def contact_stiffness(machine: Machine, squeeze: FloatArray) -> float:
     return float(machine.contact_cosine**2 * slopes.sum())
 
 
-def right_hand_side(record: KernelInput, slow: Slow, knot: float, at: int, tau: float, y: FloatArray) -> FloatArray:
+def right_hand_side(
+    record: KernelInput,
+    slow: Slow,
+    knot: float,
+    at: int,
+    tau: float,
+    y: FloatArray,
+    at_knot: FloatArray | None = None,
+    n_steps: int = 1,
+) -> FloatArray:
     """Derivative of the state, shape (coordinate,), a share ``tau`` of the way from knot ``at`` to the next.
 
-    The equations of docs/model.md, Bodies and forces, term by term.
+    The equations of docs/model.md, Bodies and forces, term by term. ``at_knot`` is the state at the knot, if it is not ``y``.
     """
     machine = record.machine
     force = contact_force(machine, contacts(record, slow, at, tau, y))
@@ -309,6 +423,7 @@ def right_hand_side(record: KernelInput, slow: Slow, knot: float, at: int, tau: 
     outwards, across = np.array([math.cos(angle), math.sin(angle)]), np.array([math.sin(angle), -math.cos(angle)])
     turning = record.turning.unbalance * (rate**2 * outwards + speeding_up * across) + record.turning.bow * outwards
     outer = (1 - tau) * slow.forces[at, 0] + tau * slow.forces[at, 1]
+    outer = outer + strike_forces(record, slow, knot, at, tau, y if at_knot is None else at_knot, knot / n_steps)
     ring = np.array([machine.ring_stiffness_x, machine.ring_stiffness_y])
     support = np.array([machine.support_stiffness_x, machine.support_stiffness_y])
     leak = np.array([machine.support_damping_x, machine.support_damping_y])
@@ -328,12 +443,13 @@ def march_twin(record: KernelInput, start: FloatArray, n_knots: int, n_steps: in
     y = np.array(start, dtype=float)
     states, accelerations = [y], []
     for at in range(n_knots):
+        here = y
         for number in range(n_steps):
             begin, middle, end = number / n_steps, (number + 0.5) / n_steps, (number + 1) / n_steps
-            k1 = right_hand_side(record, slow, knot, at, begin, y)
-            k2 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k1)
-            k3 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k2)
-            k4 = right_hand_side(record, slow, knot, at, end, y + dt * k3)
+            k1 = right_hand_side(record, slow, knot, at, begin, y, here, n_steps)
+            k2 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k1, here, n_steps)
+            k3 = right_hand_side(record, slow, knot, at, middle, y + dt / 2 * k2, here, n_steps)
+            k4 = right_hand_side(record, slow, knot, at, end, y + dt * k3, here, n_steps)
             accelerations.append(k1[6:])
             y = y + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
         states.append(y)

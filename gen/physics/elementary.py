@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 FloatArray = NDArray[np.float64]
 
 _pow, _exp, _log10 = np.frompyfunc(math.pow, 2, 1), np.frompyfunc(math.exp, 1, 1), np.frompyfunc(math.log10, 1, 1)
+_log = np.frompyfunc(math.log, 1, 1)
 
 
 def power(base: ArrayLike, exponent: ArrayLike) -> FloatArray:
@@ -37,3 +38,20 @@ def decibels(ratio: ArrayLike) -> FloatArray:
     array([ 0., 20.])
     """
     return 20 * np.asarray(_log10(ratio), dtype=np.float64)
+
+
+def standard_normals(numbers: NDArray[np.integer], seed: int) -> FloatArray:
+    """Standard normal random numbers, functions of whole numbers and a seed, of the shape of ``numbers``.
+
+    Those of :mod:`gen.physics.kernel.chance`, to rounding.
+    """
+    first, second = (_uniforms(2 * numbers.astype(np.int64) + part, seed) for part in (0, 1))
+    return np.sqrt(-2 * np.asarray(_log(first), dtype=np.float64)) * np.cos(2 * np.pi * second)
+
+
+def _uniforms(numbers: NDArray[np.int64], seed: int) -> FloatArray:
+    """Random numbers in (0, 1): the finaliser of SplitMix64."""
+    x = numbers.astype(np.uint64) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(seed)
+    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return ((x ^ (x >> np.uint64(31))) >> np.uint64(12)).astype(np.float64) / 2.0**52 + 0.5 / 2.0**52

@@ -15,6 +15,17 @@ from gen.physics.rotor import Machine
 FloatArray = NDArray[np.float64]
 
 
+class Strike(NamedTuple):
+    """A place where the path of a ball over a spall bends away from the race, so that the mass of the ball strikes."""
+
+    offset: float
+    """From the middle of the spall [rad]."""
+    change: float
+    """Change of the slope of the path [1]."""
+    spread: float = 0.0
+    """Angle over which the slope changes, 0 for a sharp edge [rad]."""
+
+
 class SpallInput(NamedTuple):
     """One spall."""
 
@@ -31,6 +42,12 @@ class SpallInput(NamedTuple):
     profile: str = "geometric"
     table: tuple[tuple[float, ...], ...] = ()
     """Drops from edge to edge, evenly spaced [m], if ``profile`` is ``table``: one row for a race spall, one per race for a ball spall."""
+    strikes: tuple[tuple[Strike, ...], ...] = ()
+    """Strikes of a ball that has a mass: one row for a race spall, one per race for a ball spall; at most ``MOST_STRIKES`` each."""
+    scatter: float = 0.0
+    """Standard deviation of the logarithm of the drop from passage to passage [1]."""
+    seed: int = 0
+    """Seed of that scatter."""
 
 
 class Turning(NamedTuple):
@@ -78,6 +95,15 @@ class Turning(NamedTuple):
     """Number of the ball that is displaced from the centre of its pocket, -1 for none."""
     late_by: float = 0.0
     """Angle of that displacement [rad]."""
+    walk: float = 0.0
+    """Standard deviation of the distance between successive balls at a point of the outer race, as a share of its mean [1]; successive
+    distances are independent, so the angle of the cage walks at random."""
+    walk_seed: int = 0
+    axis_jumps: float = 0.0
+    """Probability that the spin axis of the damaged ball jumps, once per turn of the cage, where the ball is opposite the load [1]."""
+    axis_spread: float = 0.0
+    """Standard deviation of tilt and spin angle after a jump [rad]."""
+    axis_seed: int = 0
 
 
 class Waviness(NamedTuple):
@@ -112,11 +138,25 @@ class KernelInput(NamedTuple):
     """Factors of the shaft rate (mean over the knot) and of the load (at the start of the knot), shape (knot, 2); (0, 2) if constant."""
     displacement: bool = False
     """True for channels of displacement [m], False for channels of acceleration [m s-2]."""
+    ball_mass: float = 0.0
+    """Mass of a ball that strikes the edges of spalls; 0 for balls that only change their gap [kg]."""
+    hertz_time: float = 0.0
+    """Length of the impact of a ball times the fifth root of its speed, see :mod:`gen.physics.impact` [s (m/s)^(1/5)]."""
 
 
 def is_wavy(waviness: Waviness) -> bool:
     """True if a race or a ball has waviness."""
     return waviness.races.size > 0 or waviness.balls.size > 0
+
+
+def walk_slip_rms(bearing: Bearing, turning: Turning, held: float) -> float:
+    """Rms of a random slip of the cage that is new every ``held`` seconds and gives the random walk of ``turning`` [1].
+
+    While the cage turns by the angle ``b`` between two balls, its angle is to spread by ``walk * b``. If it turns by ``a`` while a slip is
+    held, ``b / a`` independent slips spread it by ``rms * a * sqrt(b / a)``.
+    """
+    apart, turned = 2 * math.pi / bearing.n_balls, math.pi * abs(turning.shaft_rate) * (1 - bearing.gamma) * held
+    return turning.walk * math.sqrt(apart / turned) if turning.walk > 0 else 0.0
 
 
 def spall_span(bearing: Bearing, spall: SpallInput) -> tuple[float, float]:

@@ -29,6 +29,22 @@ class Healthy(_Weighted):
     """Leaves the bearing undamaged."""
 
 
+class JaggedEdge(Section):
+    """A jagged edge, of which successive balls meet different points."""
+
+    scatter_percent: Distribution = within(0, 100, default=20.0)
+    """Scatter of the drop of a ball, and of its impact, from passage to passage: standard deviation of a log-normal factor."""
+
+
+class AxisJumps(Section):
+    """Jumps of the spin axis of a damaged ball, at most one per turn of the cage, where the ball is opposite the load."""
+
+    probability_percent: Distribution = within(0, 100, default=50.0)
+    """Probability of a jump in a turn of the cage."""
+    spread_deg: Distribution = within(0, 90, default=10.0)
+    """Standard deviation of the tilt after a jump, in addition to `axis_offset_deg`, and of the change of the spin angle."""
+
+
 class _Spalled(_Weighted):
     n_spalls: Distribution = within(1, MAX_SPALLS, default=1)
     """Number of spalls, each with its own draws; rounded to a whole number."""
@@ -44,6 +60,8 @@ class _Spalled(_Weighted):
     """Measured depths of the surface from edge to edge, evenly spaced; for `profile: trace`, which scales them to `width_mm`."""
     roughness_um: Distribution = within(0, 50, default=0.0)
     """Rms roughness of the floor of a geometric or traced spall."""
+    jagged_edge: JaggedEdge | None = None
+    """Edge that each ball meets a little differently; the same for all balls if left out."""
 
     @model_validator(mode="after")
     def _traced(self) -> Self:
@@ -72,6 +90,8 @@ class BallFault(_Spalled):
     """Mean tilt of the spin axis of the ball."""
     axis_wander_deg: Distribution = within(0, 180, default=0.0)
     """Rms of the random variation of that tilt (0.05 to 0.6 shaft rates); it makes hits rarer and irregular."""
+    axis_jumps: AxisJumps | None = None
+    """Jumps of the spin axis from one turn of the cage to the next; none if left out."""
 
 
 class CageFault(_Weighted):

@@ -191,6 +191,18 @@ class Recipe(Section):
         return max(tables) + max(traces)
 
     @model_validator(mode="after")
+    def _edges_have_a_slope(self) -> Self:
+        for number, fault in enumerate(self.faults):
+            parts = fault.parts if isinstance(fault, CompoundFault) else (fault,)
+            spalled = [part for part in parts if isinstance(part, RaceFault | BallFault)]
+            if self.contact.ball_mass == "steel" and any(part.profile == "rectangular" for part in spalled):
+                raise ValueError(
+                    f"faults[{number}].profile: the walls of a rectangular spall have no slope that gives the speed of an impact; "
+                    f"take another profile, or contact.ball_mass: none."
+                )
+        return self
+
+    @model_validator(mode="after")
     def _can_be_made(self) -> Self:
         problem = recipe_problem(self)
         if problem is not None:

@@ -75,6 +75,13 @@ class Table(Section):
 ProfileSection = Annotated[Ramp | RunUp | Steps | Table, Field(discriminator="kind")]
 
 
+class SlipWalk(Section):
+    """Slip of the cage that makes successive distances between balls independent."""
+
+    spacing_percent: Distribution = within(0, 5, default=0.3)
+    """Standard deviation of the distance from one impact on the outer race to the next, in percent of its mean."""
+
+
 class OperationSection(Section):
     """Operating conditions, drawn per record."""
 
@@ -90,6 +97,8 @@ class OperationSection(Section):
     """Mean slip of the cage: the balls go round this much slower than pure rolling gives, so FTF and BPFO fall and BPFI rises."""
     slip_percent: Distribution = within(0, 10, default=1.0)
     """Rms of the random variation of the slip (0.2 to 2 shaft rates); it smears the lines of race faults."""
+    slip_walk: SlipWalk | None = None
+    """Slip without memory: the phase of the lines of race faults walks at random; none if left out."""
     jitter_deg: Distribution = within(0, 5, default=0.3)
     """Rms of the random position of each ball in its cage pocket (0.3 to 3 cage rates), as an angle around the bearing."""
     spin_wander_percent: Distribution = within(0, 20, default=0.0)

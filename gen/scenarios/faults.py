@@ -42,6 +42,9 @@ def _with_part(draws: Draws, part: RaceFault | BallFault | CageFault, specimen: 
         return replace(specimen, spalls=spalls)
     axis = draws.section(part, known)
     axis = {name: axis[name] for name in ("track", "axis_offset", "axis_wander")}
+    if part.axis_jumps is not None:
+        jumps = draws.section(part.axis_jumps)
+        axis |= {"jumps": jumps["probability"], "spread": jumps["spread"]}
     return replace(specimen, spalls=spalls, axis=axis)
 
 
@@ -55,6 +58,7 @@ def _draw_spalls(
     for _ in range(round(draws.value(entry.n_spalls))):
         drawn = draws.section(entry, known, ("width_mm", "depth_um", "angle_deg", "roughness_um"))
         width = drawn["width"]
+        edge = {} if entry.jagged_edge is None else draws.section(entry.jagged_edge)
         spalls.append(
             Spall(
                 site=entry.kind,
@@ -65,6 +69,7 @@ def _draw_spalls(
                 profile=entry.profile,
                 trace=trace,
                 roughness=drawn["roughness"],
+                scatter=edge.get("scatter", 0.0),
             )
         )
         if width > _WIDEST[entry.kind] * radius:

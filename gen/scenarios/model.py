@@ -44,6 +44,9 @@ class Purpose(IntEnum):
     SPECIMEN_OPERATION = 31
     SPEED_PROFILE = 32
     LOAD_PROFILE = 33
+    EDGES = 40
+    AXIS = 41
+    SLIP = 42
 
 
 @dataclass(frozen=True)
@@ -64,6 +67,8 @@ class Spall:
     """Depths of a measured surface from edge to edge, evenly spaced [m]."""
     roughness: float = 0.0
     """Rms roughness of the floor [m]."""
+    scatter: float = 0.0
+    """Standard deviation of the logarithm of the drop from passage to passage [1]."""
 
     def at_severity(self, share: float) -> "Spall":
         """The same spall with a share of its width and depth; the roughness of its floor stays."""
@@ -223,6 +228,8 @@ class Rig:
     footprint: bool = False
     """True for contacts of Hertzian width, False for point contacts."""
     sensor_faults: RigSensorFaults | None = None
+    ball_mass: bool = False
+    """True if the mass of the balls strikes the edges of spalls."""
 
 
 @dataclass(frozen=True)
@@ -235,7 +242,8 @@ class Specimen:
     fault: str
     spalls: tuple[Spall, ...]
     axis: Drawn
-    """Tilt of the spin axis of a damaged ball [rad]: mean, rms, and tilt beyond which the spall misses the track."""
+    """Tilt of the spin axis of a damaged ball [rad]: mean, rms, and tilt beyond which the spall misses the track; probability [1] and
+    spread [rad] of its jumps."""
     split: str
     cage: Drawn = field(default_factory=dict)
     """Pitch error [rad] and knock [N] of a broken cage."""

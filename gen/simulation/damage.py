@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 from gen.physics.bearing import Bearing, orders
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
-from gen.physics.inputs import ROUND, SpallInput, Waviness
+from gen.physics.impact import edge_strikes, path_strikes
+from gen.physics.inputs import ROUND, SpallInput, Strike, Waviness
 from gen.physics.kernel.drop import PROFILES, drop, largest_drop
 from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
 from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
@@ -24,10 +25,44 @@ FASTEST_WAVE = (
 
 def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]:
     """Spalls as the kernel takes them: angles on the outer race count from x, and rough floors or wide contacts need a table."""
+    spalls = scenario.specimen.spalls
+    if not spalls:
+        return ()
+    seeds = scenario.rng(Purpose.EDGES).integers(2**52, size=len(spalls)).tolist()
+    made = []
+    for number, (spall, bare) in enumerate(zip(spalls, untabulated_spalls(scenario), strict=True)):
+        known = bare._replace(scatter=spall.scatter, seed=seeds[number])
+        if scenario.rig.ball_mass:
+            known = known._replace(strikes=_strikes(scenario, number, ball_load))
+        made.append(_tabulated(scenario, number, known, ball_load) if _needs_table(scenario, spall) else known)
+    return tuple(made)
+
+
+def _strikes(scenario: Scenario, number: int, ball_load: float) -> tuple[tuple[Strike, ...], ...]:
+    """Strikes of a rigid ball over a spall, one row for each race; a contact of finite width spreads each over its width."""
+    spall, bearing = scenario.specimen.spalls[number], scenario.specimen.bearing
+    arc, ball, races = bearing.radius(spall.site), bearing.ball_diameter / 2, _races(bearing, spall.site)
+    if spall.profile == "geometric" and spall.roughness == 0:
+        rows = [edge_strikes(spall.width, arc, ball, race, spall.depth) for race in races]
+    else:
+        rows = [path_strikes(path, spall.width, arc) for path in spall_paths(scenario, number)]
+    wide = _half_widths(scenario, spall.site, ball_load) if scenario.rig.footprint else (0.0,) * len(races)
     return tuple(
-        _tabulated(scenario, number, bare, ball_load) if _needs_table(scenario, spall) else bare
-        for number, (spall, bare) in enumerate(zip(scenario.specimen.spalls, untabulated_spalls(scenario), strict=True))
+        tuple(strike._replace(spread=strike.spread + 2 * b / arc) for strike in row)
+        for row, b in zip(rows, wide, strict=True)
     )
+
+
+def _races(bearing: Bearing, site: str) -> tuple[float, ...]:
+    """Radii of the races that a spall meets: a convex one (inner) positive, a concave one (outer) negative [m]."""
+    inner, outer = bearing.inner_radius, -bearing.outer_radius
+    return {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[site]
+
+
+def _half_widths(scenario: Scenario, site: str, ball_load: float) -> tuple[float, ...]:
+    """Half the width of the contact along the rolling direction, on each race that the spall meets [m]."""
+    inner, outer = footprints(scenario.specimen.bearing, ball_load)
+    return {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[site]
 
 
 def untabulated_spalls(scenario: Scenario) -> tuple[SpallInput, ...]:
@@ -54,8 +89,7 @@ def _tabulated(scenario: Scenario, number: int, bare: SpallInput, ball_load: flo
     paths = spall_paths(scenario, number)
     if not scenario.rig.footprint:
         return bare._replace(profile="table", table=tuple(tuple(path) for path in paths))
-    inner, outer = footprints(scenario.specimen.bearing, ball_load)
-    widths = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[bare.site]
+    widths = _half_widths(scenario, bare.site, ball_load)
     margin = max(widths)
     table = tuple(tuple(contact_mean(path, bare.width, b, margin)) for path, b in zip(paths, widths, strict=True))
     return bare._replace(profile="table", width=bare.width + 2 * margin, table=table)
@@ -65,10 +99,8 @@ def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
     """Path of the middle of a contact over a spall, shape (point,) [m]: on its race, or for a ball spall on both races."""
     specimen, spall = scenario.specimen, scenario.specimen.spalls[number]
     bearing = specimen.bearing
-    inner, outer = bearing.inner_radius, -bearing.outer_radius
-    races = {"inner": (inner,), "outer": (outer,), "ball": (inner, outer)}[spall.site]
     place = scenario.seed, scenario.rig.number, specimen.number, number
-    return _paths(spall, bearing.ball_diameter / 2, races, place)
+    return _paths(spall, bearing.ball_diameter / 2, _races(bearing, spall.site), place)
 
 
 def largest_drop_over(scenario: Scenario, number: int) -> float:

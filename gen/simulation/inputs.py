@@ -7,6 +7,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from gen.errors import SimulationError
+from gen.physics.impact import hertz_time, rolling_mass
 from gen.physics.inputs import KernelInput
 from gen.scenarios import Scenario
 from gen.simulation.damage import spall_inputs, waviness_of
@@ -42,20 +43,22 @@ def bare_input(scenario: Scenario) -> KernelInput:
         If no such machine is possible.
     """
     check_load(scenario)
-    start = start_of(scenario)
+    start, bearing = start_of(scenario), scenario.specimen.bearing
     channels = scenario.rig.channels
     pickups = np.zeros((len(channels), 6))
     for weights, channel in zip(pickups, channels, strict=True):
         first = _FIRST_COORDINATE[channel.body]
         weights[first : first + 2] = math.cos(channel.angle), math.sin(channel.angle)
     return KernelInput(
-        bearing=scenario.specimen.bearing,
+        bearing=bearing,
         machine=machine_of(scenario, start.cage),
         turning=turning_of(scenario, start),
         spalls=(),
         frequencies=start.frequencies,
         phases=start.phases,
         pickups=pickups,
+        ball_mass=rolling_mass(bearing) if scenario.rig.ball_mass else 0.0,
+        hertz_time=hertz_time(bearing) if scenario.rig.ball_mass else 0.0,
     )
 
 

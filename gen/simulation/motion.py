@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.bearing import Bearing, Orders, orders, slipping_orders
-from gen.physics.elementary import exponential, power
-from gen.physics.inputs import CONSTANT, Turning
+from gen.physics.elementary import exponential, power, standard_normals
+from gen.physics.inputs import CONSTANT, Turning, walk_slip_rms
 from gen.physics.kernel.layout import (
     JITTER_TERMS,
     SLIP_FIRST,
@@ -21,6 +21,7 @@ from gen.physics.kernel.layout import (
     TILT_TERMS,
     n_process_terms,
 )  # fmt: skip
+from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Purpose, Scenario
 from gen.simulation.timeline import Timeline
@@ -77,6 +78,11 @@ def turning_of(scenario: Scenario, start: Start) -> Turning:
         knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)) if specimen.cage else 0,
         late_ball=0 if specimen.cage else -1,
         late_by=specimen.cage.get("pitch_error", 0.0),
+        walk=conditions.get("slip_walk", 0.0),
+        walk_seed=int(scenario.rng(Purpose.SLIP).integers(2**52)) if "slip_walk" in conditions else 0,
+        axis_jumps=specimen.axis.get("jumps", 0.0),
+        axis_spread=specimen.axis.get("spread", 0.0),
+        axis_seed=int(scenario.rng(Purpose.AXIS).integers(2**52)) if "jumps" in specimen.axis else 0,
     )
 
 
@@ -161,6 +167,14 @@ class MeanMotion(NamedTuple):
     """Fault frequencies in orders of the mean shaft rate [1]."""
 
 
+def _walk(scenario: Scenario, timeline: Timeline) -> FloatArray:
+    """Slip of the random walk of the cage at the knots of the record, as the kernel draws it, shape (time,) [1]."""
+    turning = turning_of(scenario, Start(0.0, 0.0, 0.0, np.empty(0), np.empty(0)))
+    strides = np.arange(timeline.settle, timeline.settle + timeline.record) // STRIDE
+    normals = standard_normals(np.arange(strides[0], strides[-1] + 1), turning.walk_seed)
+    return walk_slip_rms(scenario.specimen.bearing, turning, STRIDE / timeline.fs) * normals[strides - strides[0]]
+
+
 def mean_motion(scenario: Scenario, timeline: Timeline, frequencies: FloatArray, phases: FloatArray) -> MeanMotion:
     """Mean shaft rate and fault orders over the record.
 
@@ -183,6 +197,10 @@ def mean_motion(scenario: Scenario, timeline: Timeline, frequencies: FloatArray,
     rate = conditions["shaft"] * mean_share(profile, duration)
     rate *= 1 + conditions["speed_wander"] * mean(0, SPEED_TERMS)
     slip = conditions["mean_slip"] + conditions["slip"] * mean(SLIP_FIRST, SLIP_TERMS)
+    if "slip_walk" in conditions:
+        walk = _walk(scenario, timeline)
+        times = (np.arange(timeline.record) + 0.5) / timeline.fs
+        slip += float(np.average(walk, weights=None if profile is None else share_at(profile, times)))
     found = slipping_orders(scenario.specimen.bearing, slip)
     wander = conditions["spin_wander"] * mean(SPIN_FIRST, SPIN_TERMS)
     return MeanMotion(rate, found._replace(bsf=found.bsf * (1 + wander)))

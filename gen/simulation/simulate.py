@@ -121,7 +121,7 @@ def _healthy_inputs(
     healthy = {}
     for place, some in given.items():
         specimen = scenarios[place].specimen
-        if specimen.wear is not None or specimen.cage:
+        if specimen.wear is not None or specimen.cage or specimen.axis.get("jumps"):
             healthy[place] = kernel_input(scenarios[place].without_fault(), timeline(recipe))
         elif specimen.fault != "healthy":  # spalls are the only difference
             healthy[place] = some._replace(spalls=())

@@ -9,8 +9,11 @@ drop         how far a ball drops over a spall
 equations    the equations of motion
 step         one step of the classical Runge-Kutta method
 turning      how shaft, cage and balls turn from knot to knot
+chance       random numbers that are functions of a count and a seed
+pulse        half-sine pulses of force
 outer_forces load, misalignment and cage knocks from knot to knot
 waviness     the gap under every ball: clearance and waviness
+strikes      the force of a ball that strikes the edge of a spall
 spalls       the drop of every ball that passes a spall
 decimate     from the rate of the steps down to the sample rate
 batch        records laid out in lanes

@@ -6,8 +6,8 @@ set by its name in :mod:`gen.physics.kernel.layout`, so a row that is forgotten 
 
 import numpy as np
 
-from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, TABLE_POINTS
-from gen.physics.inputs import KernelInput, Turning, farthest_jitter, is_wavy, spall_span
+from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER, MOST_STRIKES, TABLE_POINTS
+from gen.physics.inputs import KernelInput, Strike, Turning, farthest_jitter, is_wavy, spall_span, walk_slip_rms
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
 from gen.physics.kernel.layout import (
@@ -29,6 +29,7 @@ from gen.physics.kernel.layout import (
     n_folds,
     race_rows,
 )  # fmt: skip
+from gen.physics.kernel.spalls import NEVER
 from gen.physics.kernel.turning import STRIDE
 from gen.physics.rotor import Machine, as_columns, rest
 
@@ -51,6 +52,7 @@ def input_shape(record: KernelInput) -> Shape:
         forced=record.schedule.size > 0 or bool(turning.twice_x or turning.twice_y or turning.knock),
         loose=record.machine.looseness > 0,
         roller=record.bearing.roller_length is not None,
+        struck=record.ball_mass > 0 and (bool(record.spalls) or wavy),
     )
 
 
@@ -62,7 +64,7 @@ def lay_out(records: list[KernelInput], shape: Shape, knot: float, *, at_rest: b
     padded = records + [records[0]] * (LANES - len(records))
     machines = as_columns([record.machine for record in padded])
     turnings = as_columns([record.turning for record in padded])
-    spalls, tables = _spalls(padded)
+    spalls, tables, strikes = _spalls(padded)
     return Batch(
         state=_state(machines, turnings, shape, at_rest=at_rest).ravel(),
         params=_params(padded, machines, shape).ravel(),
@@ -74,6 +76,7 @@ def lay_out(records: list[KernelInput], shape: Shape, knot: float, *, at_rest: b
         waves=_waves(padded, shape).ravel(),
         schedule=_schedules(padded),
         tables=tables,
+        strikes=strikes,
     )
 
 
@@ -162,21 +165,45 @@ def _drive(records: list[KernelInput], turning: Turning, machine: Machine, knot:
     drive[Drive.KNOCK], drive[Drive.KNOCK_ANGLE] = turning.knock, turning.knock_angle
     drive[Drive.KNOCK_SEED] = turning.knock_seed
     drive[Drive.LATE_BALL], drive[Drive.LATE_BY] = turning.late_ball, turning.late_by
+    drive[Drive.BALL_MASS] = [record.ball_mass for record in records]
+    drive[Drive.HERTZ_TIME] = [record.hertz_time for record in records]
+    _set_chances(drive, records, turning, knot)
     return drive
 
 
-def _spalls(records: list[KernelInput]) -> tuple[FloatArray, FloatArray]:
-    """Spalls, shape (spall, row, lane), and the tables of those that have one, shape (table, point)."""
+def _set_chances(drive: FloatArray, records: list[KernelInput], turning: Turning, knot: float) -> None:
+    """Set the rows of the random walk of the cage and of the jumps of a spin axis."""
+    held = STRIDE * knot
+    drive[Drive.WALK] = [walk_slip_rms(record.bearing, record.turning, held) for record in records]
+    drive[Drive.WALK_NOW], drive[Drive.WALK_SEED] = 0.0, turning.walk_seed
+    apart = 2 * np.pi / np.array([record.bearing.n_balls for record in records])
+    carriers = [next((spall.ball for spall in record.spalls if spall.site == "ball"), 0) for record in records]
+    opposite = np.arctan2(-drive[Drive.LOAD_Y], -drive[Drive.LOAD_X])
+    drive[Drive.AXIS_JUMPS], drive[Drive.AXIS_SPREAD] = turning.axis_jumps, turning.axis_spread
+    drive[Drive.AXIS_ANGLE], drive[Drive.AXIS_SEED] = opposite - apart * carriers, turning.axis_seed
+    drive[Drive.AXIS_TURN], drive[Drive.AXIS_TILT], drive[Drive.AXIS_SHIFT] = NEVER, 0.0, 0.0
+
+
+def _spalls(records: list[KernelInput]) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Spalls, shape (spall, row, lane), the tables of those that have one, shape (table, point), and strikes as :class:`Batch` has them."""
     spalls = unset(max(len(record.spalls) for record in records), len(SpallRow), LANES)
-    tables = [np.zeros(TABLE_POINTS)]
+    tables, strikes = [np.zeros(TABLE_POINTS)], [np.zeros((MOST_STRIKES, 3))]
     for lane, record in enumerate(records):
         for place in range(len(spalls)):
             if place < len(record.spalls):
                 _spall(spalls[place, :, lane], record, place, len(tables))
+                spalls[place, SpallRow.STRIKES, lane] = len(strikes) if record.spalls[place].strikes else 0
+                strikes += [_strike_rows(some) for some in record.spalls[place].strikes]
                 tables += [_resampled(drops) for drops in record.spalls[place].table]
             else:
                 _no_spall(spalls[place, :, lane])
-    return spalls, np.stack(tables)
+    return spalls, np.stack(tables), np.stack(strikes)
+
+
+def _strike_rows(strikes: tuple[Strike, ...]) -> FloatArray:
+    rows = np.zeros((MOST_STRIKES, 3))
+    rows[: len(strikes)] = np.reshape(strikes, (-1, 3))
+    return rows
 
 
 def _spall(rows: FloatArray, record: KernelInput, place: int, table: int) -> None:
@@ -195,6 +222,7 @@ def _spall(rows: FloatArray, record: KernelInput, place: int, table: int) -> Non
     rows[SpallRow.DEPTH] = spall.depth
     rows[SpallRow.PROFILE] = PROFILES.index(spall.profile)
     rows[SpallRow.TABLE] = table
+    rows[SpallRow.SCATTER], rows[SpallRow.SEED] = spall.scatter, spall.seed
 
 
 def _no_spall(rows: FloatArray) -> None:

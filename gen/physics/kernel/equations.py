@@ -54,7 +54,7 @@ class Instant(NamedTuple):
     since: float
     """Half steps since the directions of the balls were last computed."""
     drops: FloatArray
-    """Drop of each ball into spalls, shape (ball * LANES + lane) [m]."""
+    """Drop of each ball into spalls [m], then the forces of strikes on shaft and housing [N], shape (row * LANES + lane)."""
 
 
 @njit(**INLINE)
@@ -156,18 +156,22 @@ def contact_force(
 
 
 @njit(**INLINE)
-def forces(shape: Shape, half_step: float, lane: int, params: FloatArray) -> tuple[float, float, float, float]:
-    """Outer forces on shaft and housing, x and y of each [N], ``half_step`` half steps after the knot."""
+def forces(shape: Shape, instant: Instant, lane: int, params: FloatArray) -> tuple[float, float, float, float]:
+    """Outer forces on shaft and housing, and those of strikes, x and y of each [N]."""
     wx, wy = params[Param.SHAFT_FORCE_X * LANES + lane], params[Param.SHAFT_FORCE_Y * LANES + lane]
-    if not len(shape.forced):
-        return wx, wy, 0.0, 0.0
-    hx, hy = params[Param.HOUSING_FORCE_X * LANES + lane], params[Param.HOUSING_FORCE_Y * LANES + lane]
-    return (
-        fma(params[Param.SHAFT_FORCE_X_SLOPE * LANES + lane], half_step, wx),
-        fma(params[Param.SHAFT_FORCE_Y_SLOPE * LANES + lane], half_step, wy),
-        fma(params[Param.HOUSING_FORCE_X_SLOPE * LANES + lane], half_step, hx),
-        fma(params[Param.HOUSING_FORCE_Y_SLOPE * LANES + lane], half_step, hy),
-    )
+    hx = hy = 0.0
+    if len(shape.forced):
+        half_step = instant.half_step
+        hx, hy = params[Param.HOUSING_FORCE_X * LANES + lane], params[Param.HOUSING_FORCE_Y * LANES + lane]
+        wx = fma(params[Param.SHAFT_FORCE_X_SLOPE * LANES + lane], half_step, wx)
+        wy = fma(params[Param.SHAFT_FORCE_Y_SLOPE * LANES + lane], half_step, wy)
+        hx = fma(params[Param.HOUSING_FORCE_X_SLOPE * LANES + lane], half_step, hx)
+        hy = fma(params[Param.HOUSING_FORCE_Y_SLOPE * LANES + lane], half_step, hy)
+    if len(shape.struck):
+        i = len(shape.balls) * LANES + lane
+        wx, wy = wx + instant.drops[i], wy + instant.drops[i + LANES]
+        hx, hy = hx + instant.drops[i + 2 * LANES], hy + instant.drops[i + 3 * LANES]
+    return wx, wy, hx, hy
 
 
 @njit(**INLINE)
@@ -208,7 +212,7 @@ def accelerations(
     jx = fma(params[Param.RING_STIFFNESS_X * LANES + lane], dx, fma(c1, du, fx))
     jy = fma(params[Param.RING_STIFFNESS_Y * LANES + lane], dy, fma(c1, dv, fy))
     p, t = params[Param.UNBALANCE_RADIAL * LANES + lane], params[Param.UNBALANCE_TANGENTIAL * LANES + lane]
-    wx, wy, hx, hy = forces(shape, instant.half_step, lane, params)
+    wx, wy, hx, hy = forces(shape, instant, lane, params)
     f1x = fma(-k0, x1, fma(-c0, u1, fma(p, shaft_c, fma(t, shaft_s, wx)) - jx))
     f1y = fma(-k0, y1, fma(-c0, v1, fma(p, shaft_s, fma(-t, shaft_c, wy)) - jy))
     sx, sy = x2, y2
@@ -218,7 +222,7 @@ def accelerations(
     k2x, k2y = params[Param.SUPPORT_STIFFNESS_X * LANES + lane], params[Param.SUPPORT_STIFFNESS_Y * LANES + lane]
     c2x, c2y = params[Param.SUPPORT_DAMPING_X * LANES + lane], params[Param.SUPPORT_DAMPING_Y * LANES + lane]
     f2x, f2y = fma(-k2x, sx, fma(-c2x, u2, jx)), fma(-k2y, sy, fma(-c2y, v2, jy))
-    if len(shape.forced):
+    if len(shape.forced) or len(shape.struck):
         f2x, f2y = f2x + hx, f2y + hy
     arx = ary = 0.0
     if len(shape.resonator):

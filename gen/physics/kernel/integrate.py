@@ -30,7 +30,15 @@ from gen.physics.kernel.layout import (
 from gen.physics.kernel.outer_forces import move_forces
 from gen.physics.kernel.spalls import move_spalls
 from gen.physics.kernel.step import advance
-from gen.physics.kernel.turning import N_ANGLES, STRIDE, keep_turning, move_processes, start_processes, turn_rings
+from gen.physics.kernel.turning import (
+    N_ANGLES,
+    STRIDE,
+    keep_turning,
+    move_processes,
+    new_walk,
+    start_processes,
+    turn_rings,
+)
 from gen.physics.kernel.waviness import N_ROTATION_ROWS, ball_gaps, move_gaps
 
 FAR_OFF = 1.0  # displacement beyond which a record has diverged [m]; soft supports sag by millimetres
@@ -81,6 +89,7 @@ def set_out(shape: Shape, batch: Batch, n_steps: int) -> Batch:
         waves=copied(batch.waves),
         schedule=batch.schedule,
         tables=batch.tables,
+        strikes=batch.strikes,
     )
 
 
@@ -102,13 +111,14 @@ def to_next_knot(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float,
     """Set ``batch.params`` for the steps up to the next knot, and advance the angles to it."""
     if knot % STRIDE == 0:
         move_processes(shape, batch, n_steps, work.scratch)
+        new_walk(batch, knot)
     turn_rings(shape, batch, knot, n_steps, dt, work.moves)
     if len(shape.forced):
         move_forces(batch, knot, n_steps, dt, work.moves, work.scratch)
     if len(shape.wavy):
         move_gaps(shape, batch, n_steps, work.moves, work.scratch, work.gaps)
     if len(shape.spalled):
-        move_spalls(shape, batch, n_steps, work.moves, work.scratch, work.dropped)
+        move_spalls(shape, batch, n_steps, dt, work.moves, work.scratch, work.dropped)
     keep_turning(shape, batch, work.moves)
 
 

@@ -2,49 +2,24 @@
 
 import math
 
-import numpy as np
 from numba import njit
 
+from gen.physics.kernel.chance import standard_normal
 from gen.physics.kernel.compiling import INLINE, LANES, cosine, fma, lane_count, sine, wide
 from gen.physics.kernel.layout import Angle, Batch, Drive, FloatArray, Param, State
+from gen.physics.kernel.pulse import second_difference
 
 KNOCK_SECONDS = 3e-4  # length of a knock, a half sine
 KNOCK_SCATTER = 0.3  # standard deviation of the logarithm of its strength
 
 
 @njit(**INLINE)
-def pushed(since: float) -> float:
-    """Displacement of a free unit mass under a knock of unit force, ``since`` seconds after its start [s2]."""
-    if since <= 0.0:
-        return 0.0
-    phase = math.pi * since / KNOCK_SECONDS
-    if phase >= math.pi:
-        return (KNOCK_SECONDS / math.pi) ** 2 * (2 * phase - math.pi)
-    return (KNOCK_SECONDS / math.pi) ** 2 * (phase - math.sin(phase))
-
-
-@njit(**INLINE)
-def uniform(number: float, seed: float) -> float:
-    """Random number in (0, 1), a function of the whole numbers ``number`` and ``seed``: the finaliser of SplitMix64."""
-    x = np.uint64(np.int64(number)) * np.uint64(0x9E3779B97F4A7C15) + np.uint64(np.int64(seed))
-    x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-    x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-    x ^= x >> np.uint64(31)
-    return (np.float64(x >> np.uint64(12)) + 0.5) / 2.0**52
-
-
-@njit(**INLINE)
-def standard_normal(number: float, seed: float) -> float:
-    """Standard normal random number, a function of the whole numbers ``number`` and ``seed`` (Box and Muller)."""
-    return math.sqrt(-2 * math.log(uniform(2 * number, seed))) * math.cos(2 * math.pi * uniform(2 * number + 1, seed))
-
-
-@njit(**INLINE)
 def knock(batch: Batch, knot_seconds: float, ahead: int, lane: int, moves: FloatArray) -> float:
     """Force of the knock of the cage on the housing ``ahead`` knots from now: a half sine once per turn of the cage [N].
 
-    The steps see a force that changes linearly from knot to knot. Its values at the knots are second differences of :func:`pushed`, which
-    give it the momentum of the half sine at any sample rate. Its strength has a log-normal scatter from turn to turn.
+    The steps see a force that changes linearly from knot to knot. Its values at the knots are second differences (see
+    :mod:`gen.physics.kernel.pulse`), which give it the momentum of the half sine at any sample rate. Its strength has a log-normal scatter
+    from turn to turn.
     """
     turned = batch.angles[Angle.CAGE * LANES + lane] - batch.drive[Drive.KNOCK_ANGLE * LANES + lane]
     turned += ahead * moves[Angle.CAGE * LANES + lane]
@@ -54,7 +29,7 @@ def knock(batch: Batch, knot_seconds: float, ahead: int, lane: int, moves: Float
         not -knot_seconds < since < KNOCK_SECONDS + knot_seconds
     ):  # also for a cage at a standstill, where it is NaN or infinite
         return 0.0
-    there = pushed(since + knot_seconds) - 2 * pushed(since) + pushed(since - knot_seconds)
+    there = second_difference(since, KNOCK_SECONDS, knot_seconds)
     scatter = math.exp(KNOCK_SCATTER * standard_normal(turns, batch.drive[Drive.KNOCK_SEED * LANES + lane]))
     return batch.drive[Drive.KNOCK * LANES + lane] * scatter * there / knot_seconds**2
 

@@ -1,11 +1,20 @@
-"""The drop of every ball that passes a spall, at every half step; a ball over several spalls drops by the sum."""
+"""The drop of every ball that passes a spall, at every half step; a ball over several spalls drops by the sum.
 
-from typing import NamedTuple
+The edge of a real spall is jagged, and successive balls meet different points of it: the drops of a spall may have a log-normal scatter
+from passage to passage, as the impacts in the model of Antoni and Randall have random amplitudes [1]_. The number of a passage counts the
+balls, or the contacts of a damaged ball, that have passed the spall since angle 0.
+
+.. [1] J. Antoni, R. B. Randall, "A stochastic model for simulation and diagnostics of rolling element bearings with localized faults",
+       *J. Vib. Acoust.* 125 (2003) 282-289.
+"""
+
+import math
 
 import numpy as np
 from numba import njit
 
 from gen.physics.extent import TABLE_POINTS
+from gen.physics.kernel.chance import standard_normal, uniform
 from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
 from gen.physics.kernel.drop import GEOMETRIC, RECTANGULAR, TABLE, drop
 from gen.physics.kernel.layout import (
@@ -18,10 +27,34 @@ from gen.physics.kernel.layout import (
     Site,
     SpallRow,
     drop_row,
+    drop_width,
     slow_rows,
 )
+from gen.physics.kernel.strikes import Passage, longest_pulse, strike_edges
 
 SPALL_ROWS = len(SpallRow)
+NEVER = -1e9  # number of a turn before any other
+
+
+@njit(**INLINE)
+def jump_axes(batch: Batch) -> None:
+    """Let the spin axis of the damaged ball of every lane take a new place, with some probability, where the ball is opposite the load.
+
+    There the races hold the ball least. Tilt and spin angle after a jump are independent normal numbers with the same standard deviation,
+    as after a small random rotation of the ball.
+    """
+    drive = batch.drive
+    for lane in range(lane_count()):
+        probability = drive[Drive.AXIS_JUMPS * LANES + lane]
+        if probability > 0.0:
+            past = batch.angles[Angle.CAGE * LANES + lane] - drive[Drive.AXIS_ANGLE * LANES + lane]
+            turn, last = math.floor(past / (2 * math.pi)), drive[Drive.AXIS_TURN * LANES + lane]
+            seed, spread = drive[Drive.AXIS_SEED * LANES + lane], drive[Drive.AXIS_SPREAD * LANES + lane]
+            if turn != last and (last == NEVER or uniform(8 * turn, seed) < probability):
+                # standard_normal(n) takes the uniform numbers 2 n and 2 n + 1
+                drive[Drive.AXIS_TILT * LANES + lane] = spread * standard_normal(4 * turn + 1, seed)
+                drive[Drive.AXIS_SHIFT * LANES + lane] = spread * standard_normal(4 * turn + 2, seed)
+            drive[Drive.AXIS_TURN * LANES + lane] = turn
 
 
 @njit(**INLINE)
@@ -32,6 +65,7 @@ def share_on_track(shape: Shape, batch: Batch, lane: int) -> float:
         return 1.0
     slope = batch.slow[(slow_rows(shape) + Process.TILT) * LANES + lane]
     tilt = batch.drive[Drive.AXIS_OFFSET * LANES + lane] + batch.slow[Process.TILT * LANES + lane] + slope
+    tilt += batch.drive[Drive.AXIS_TILT * LANES + lane]
     return max(0.0, 1 - (tilt / limit) ** 2)
 
 
@@ -46,17 +80,11 @@ def tabulated(tables: FloatArray, row: int, offset: float, half: float) -> float
     return (1 - part) * tables[row, point] + part * tables[row, point + 1]
 
 
-class Passage(NamedTuple):
-    """How one ball passes one spall."""
-
-    start: float
-    """Offset of the ball from the middle of the spall at the knot [rad]."""
-    slope: float
-    """Its change per half step [rad]."""
-    share: float
-    """Factor of the drop [1]."""
-    race: float
-    """Radius of the race under the ball: positive if convex (inner), negative if concave (outer) [m]."""
+@njit(**INLINE)
+def scatter(spall: FloatArray, lane: int, number: float) -> float:
+    """Factor of the drop in one passage of a spall, whose rows are ``spall`` [1]."""
+    rms = spall[SpallRow.SCATTER * LANES + lane]
+    return math.exp(rms * standard_normal(number, spall[SpallRow.SEED * LANES + lane])) if rms > 0.0 else 1.0
 
 
 @njit(**INLINE)
@@ -90,14 +118,22 @@ def pass_spall(
             falls[half_step] = drop(profile, fma(slope, half_step, start), half, arc, radius, race, depth)
     drops = batch.params[(drop_row(shape) + ball) * LANES + lane :]
     for half_step in range(n_half_steps):
-        drops[half_step * len(shape.balls) * LANES] += share * falls[half_step]
+        drops[half_step * drop_width(shape) * LANES] += share * falls[half_step]
 
 
 @njit(**INLINE)
 def meet_spall(
-    shape: Shape, batch: Batch, spall: int, lane: int, n_steps: int, start: float, slope: float, falls: FloatArray
+    shape: Shape,
+    batch: Batch,
+    spall: int,
+    lane: int,
+    n_steps: int,
+    dt: float,
+    start: float,
+    slope: float,
+    falls: FloatArray,
 ) -> None:
-    """Add the drops of all balls that meet one spall of one lane before the next knot.
+    """Add the drops of all balls that meet one spall of one lane before the next knot, and the forces of those that strike it.
 
     Ball 0, or for a ball spall the contact with the inner race, is ``start`` past the spall at the knot and moves by ``slope`` to the next
     knot [rad].
@@ -109,12 +145,16 @@ def meet_spall(
     inner, outer = batch.drive[Drive.INNER_RADIUS * LANES + lane], -batch.drive[Drive.OUTER_RADIUS * LANES + lane]
     if site == Site.BALL:
         race, ball = inner if nearest & 1 == 0 else outer, int(this[SpallRow.CARRIER * LANES + lane])
-        share = share_on_track(shape, batch, lane)
+        share = share_on_track(shape, batch, lane) * scatter(this, lane, float(nearest))
         passage = Passage(start - nearest * period, rate, share, race)
         pass_spall(shape, batch, spall, lane, ball, passage, n_steps, falls)
+        if len(shape.struck):
+            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt)
         return
     race = inner if site == Site.INNER else outer
     reach = this[SpallRow.REACH * LANES + lane] + 0.5 * abs(slope)
+    if len(shape.struck):
+        reach += longest_pulse(slope, n_steps, dt)
     around = min(int(reach / period + 0.5), n_balls // 2)
     for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
         ball = int((rank - nearest) % n_balls)
@@ -123,23 +163,27 @@ def meet_spall(
             source = (Process.JITTER + ball) * LANES + lane
             offset += batch.slow[source]
             passing += batch.slow[slow_rows(shape) * LANES + source] / (2 * n_steps)
-        pass_spall(shape, batch, spall, lane, ball, Passage(offset, passing, 1.0, race), n_steps, falls)
+        passage = Passage(offset, passing, scatter(this, lane, float(nearest - rank)), race)
+        pass_spall(shape, batch, spall, lane, ball, passage, n_steps, falls)
+        if len(shape.struck):
+            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt)
 
 
 @njit(**INLINE)
 def move_spalls(
-    shape: Shape, batch: Batch, n_steps: int, moves: FloatArray, work: FloatArray, dropped: FloatArray
+    shape: Shape, batch: Batch, n_steps: int, dt: float, moves: FloatArray, work: FloatArray, dropped: FloatArray
 ) -> None:
-    """Set the drops of all balls over all spalls at every half step up to the next knot.
+    """Set the drops of all balls over all spalls, and the forces of strikes, at every half step up to the next knot.
 
     ``work`` has four rows and room for all half steps. ``dropped[0]`` is 1 if there are drops of the last knot to clear.
     """
     wide()
     if dropped[0] > 0.0:
         drops = batch.params[drop_row(shape) * LANES :]
-        for i in range((2 * n_steps + 1) * len(shape.balls) * lane_count()):
+        for i in range((2 * n_steps + 1) * drop_width(shape) * lane_count()):
             drops[i] = 0.0
         dropped[0] = 0.0
+    jump_axes(batch)
     angles, starts, slopes, near, falls = batch.angles, 0, LANES, 2 * LANES, work[3 * LANES :]
     for spall in range(batch.spalls.size // (SPALL_ROWS * LANES)):
         this = batch.spalls[spall * SPALL_ROWS * LANES :]
@@ -147,14 +191,18 @@ def move_spalls(
             with_cage, with_shaft = this[SpallRow.WITH_CAGE * LANES + lane], this[SpallRow.WITH_SHAFT * LANES + lane]
             with_spin, period = this[SpallRow.WITH_SPIN * LANES + lane], this[SpallRow.PERIOD * LANES + lane]
             start = with_cage * angles[Angle.CAGE * LANES + lane] + with_shaft * angles[Angle.SHAFT * LANES + lane]
-            start += with_spin * angles[Angle.SPIN * LANES + lane] + this[SpallRow.POSITION * LANES + lane]
+            spin = angles[Angle.SPIN * LANES + lane] + batch.drive[Drive.AXIS_SHIFT * LANES + lane]
+            start += with_spin * spin + this[SpallRow.POSITION * LANES + lane]
             slope = with_cage * moves[Angle.CAGE * LANES + lane] + with_shaft * moves[Angle.SHAFT * LANES + lane]
             slope += with_spin * moves[Angle.SPIN * LANES + lane]
             middle = start + 0.5 * slope
             away = abs(middle - period * np.rint(middle / period)) - 0.5 * abs(slope)
+            if len(shape.struck):
+                away -= longest_pulse(slope, n_steps, dt)
             work[starts + lane], work[slopes + lane] = start, slope
             work[near + lane] = 1.0 if away < this[SpallRow.REACH * LANES + lane] else 0.0
         for lane in range(lane_count()):
             if work[near + lane] > 0.0:
-                meet_spall(shape, batch, spall, lane, n_steps, work[starts + lane], work[slopes + lane], falls)
+                start, slope = work[starts + lane], work[slopes + lane]
+                meet_spall(shape, batch, spall, lane, n_steps, dt, start, slope, falls)
                 dropped[0] = 1.0

@@ -9,7 +9,7 @@ from numba import njit
 
 from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
 from gen.physics.kernel.equations import Instant, accelerations
-from gen.physics.kernel.layout import AXES, PICKUPS, FloatArray, Param, Shape, State, drop_row
+from gen.physics.kernel.layout import AXES, PICKUPS, FloatArray, Param, Shape, State, drop_row, drop_width
 
 Dynamic = tuple[float, ...]
 """Coordinates and rates of a lane, or their slopes."""
@@ -170,7 +170,7 @@ def advance(
     at : int
         First row of ``history`` to fill; a row is a step and a channel.
     """
-    drops, width = drop_row(shape) * LANES, len(shape.balls) * LANES if len(shape.spalled) else 0
+    drops, width = drop_row(shape) * LANES, drop_width(shape) * LANES if len(shape.spalled) else 0
     for step in range(n_steps):
         half_step = 2.0 * step
         # a view of the drops: for an index, numba would test whether it counts from the end

@@ -9,6 +9,7 @@ import math
 
 from numba import njit
 
+from gen.physics.kernel.chance import standard_normal
 from gen.physics.kernel.compiling import INLINE, LANES, cosine, fma, lane_count, sine, wide
 from gen.physics.kernel.equations import COS, SIN
 from gen.physics.kernel.layout import (
@@ -120,6 +121,16 @@ def move_processes(shape: Shape, batch: Batch, n_steps: int, after: FloatArray) 
 
 
 @njit(**INLINE)
+def new_walk(batch: Batch, knot: int) -> None:
+    """Draw the random slip of every lane for the next ``STRIDE`` knots: white noise, so that the angle of the cage walks at random."""
+    for lane in range(lane_count()):
+        rms = batch.drive[Drive.WALK * LANES + lane]
+        if rms > 0.0:
+            drawn = standard_normal(knot // STRIDE, batch.drive[Drive.WALK_SEED * LANES + lane])
+            batch.drive[Drive.WALK_NOW * LANES + lane] = rms * drawn
+
+
+@njit(**INLINE)
 def turn_rings(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float, moves: FloatArray) -> None:
     """Set the rotation per half step and the unbalance up to the next knot.
 
@@ -133,7 +144,7 @@ def turn_rings(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float, m
     for lane in range(lane_count()):
         speed = 1 + fma(0.5, slopes[Process.SPEED * LANES + lane], slow[Process.SPEED * LANES + lane])
         slip = fma(0.5, slopes[Process.SLIP * LANES + lane], slow[Process.SLIP * LANES + lane])
-        slip = drive[Drive.MEAN_SLIP * LANES + lane] + slip
+        slip = drive[Drive.MEAN_SLIP * LANES + lane] + slip + drive[Drive.WALK_NOW * LANES + lane]
         wander = 1 + fma(0.5, slopes[Process.SPIN * LANES + lane], slow[Process.SPIN * LANES + lane])
         shaft = drive[Drive.SHAFT_STEP * LANES + lane] * speed
         if scheduled >= 0:

@@ -173,7 +173,8 @@ def test_the_rates_at_both_ends_of_a_run_up_are_labelled(recipe_with):
 def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profile, mean):
     """Wander during a run-up: the mean of a product is not the product of the means."""
     changes = {"operation.speed_wander_percent": 1, "operation.slip_percent": 2, "operation.shaft_rpm": 1800}
-    recipe = recipe_with(changes | {"operation.speed_profile": profile})
+    walk = {"spacing_percent": 1}
+    recipe = recipe_with(changes | {"operation.speed_profile": profile, "operation.slip_walk": walk})
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 3):
         found = truth(scenario, recipe)

@@ -1,11 +1,13 @@
 """Mechanisms that make simulated faults more like real ones have the effects that docs/model.md states."""
 
 import functools
+from itertools import pairwise
 
 import numpy as np
+import pytest
 
 from benchmarks.mechanisms import BALL, INNER, OUTER, marks
-from benchmarks.visibility import recorded, reference_recipe
+from benchmarks.visibility import FS, LINES, recorded, reference_recipe
 
 SEEDS = 8
 plain = functools.cache(lambda name: marks({"ball": BALL, "inner": INNER, "outer": OUTER}[name], {}, SEEDS))
@@ -38,3 +40,44 @@ def test_a_contact_of_finite_width_takes_a_little_from_the_level_of_a_narrow_spa
         for footprint in ("point", "hertz")
     )
     assert (np.std(wide, axis=1) < 0.98 * np.std(point, axis=1)).all()
+
+
+def test_an_axis_that_jumps_weakens_the_lines_of_a_ball_and_makes_its_hits_come_and_go():
+    jumping = recorded(reference_recipe(BALL | {"axis_jumps": {"probability_percent": 30, "spread_deg": 15}}, SEEDS))[0]
+    fixed = recorded(reference_recipe(BALL, SEEDS))[0]
+
+    def levels(signals):
+        """Rms of eight windows of half a second, shape (seed, window) [m s-2]."""
+        return signals.reshape(len(signals), 8, -1).std(axis=2)
+
+    assert levels(fixed).min() > 0.8 * levels(fixed).max()
+    assert (levels(jumping).min(axis=1) < 0.5 * levels(jumping).max(axis=1)).all()
+
+
+def test_a_jagged_edge_scatters_the_impacts_of_an_outer_fault():
+    def scatter(changes):
+        """Standard deviation of the logarithm of the peaks of 100 passages, median over the seeds [1]."""
+        still = {"operation": {"slip_percent": 0, "jitter_deg": 0, "speed_wander_percent": 0}}
+        signals, rate = recorded(reference_recipe(OUTER | changes, SEEDS, **still))
+        edges = np.round(np.arange(101) * FS / (LINES["BPFO"] * rate)).astype(int)
+        peaks = [np.abs(signals[:, low:high]).max(axis=1) for low, high in pairwise(edges)]
+        return np.median(np.log(peaks).std(axis=0))
+
+    smooth, jagged = scatter({}), scatter({"jagged_edge": {"scatter_percent": 40}})
+    assert smooth < 0.15 < 0.2 < jagged < 0.45
+
+
+def test_the_mass_of_the_balls_matters_above_ten_kilohertz_alone():
+    """The momentum of a ball of 2 g is a hundredth of what the elastic contacts give the housing while it passes the spall."""
+    fast = {"recording": {"sample_rate_hz": 48_000, "duration_s": 0.5}, "level": {"background_m_s2": 1e-3}}
+    light, heavy = (
+        recorded(reference_recipe(OUTER, SEEDS, contact={"ball_mass": mass}, **fast))[0] for mass in ("none", "steel")
+    )
+
+    def level(signals, low, high):
+        power = np.abs(np.fft.rfft(signals * np.hanning(signals.shape[1]))) ** 2
+        frequency = np.fft.rfftfreq(signals.shape[1], 1 / 48_000)
+        return 10 * np.log10(power[:, (frequency >= low) & (frequency < high)].mean())
+
+    assert level(heavy, 500, 5000) == pytest.approx(level(light, 500, 5000), abs=1.0)
+    assert level(heavy, 15_000, 20_000) > level(light, 15_000, 20_000) + 3

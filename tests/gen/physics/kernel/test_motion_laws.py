@@ -8,10 +8,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.bearing import slipping_orders
-from gen.physics.inputs import SpallInput
+from gen.physics.inputs import SpallInput, Turning
 from gen.physics.kernel.layout import SPEED_TERMS
 from tests.reference import march_lanes, process, slow_motion
-from tests.strategies import angles, machines, record, seeds, wandering_records, wandering_turnings
+from tests.strategies import RIG, angles, machines, record, seeds, wandering_records, wandering_turnings
 
 law = settings(deadline=None, max_examples=15)
 KNOT = 1 / 12_000
@@ -87,3 +87,19 @@ def test_a_wavy_race_shakes_what_an_even_one_does_not(machine, motion, seed):
         march_lanes([record(machine, even, flat, seed=seed, waviness=rms)], 1200, 8, KNOT)[0] for rms in (0.0, 1e-7)
     )
     assert np.std(wavy.accelerations[4800:]) > np.std(calm.accelerations[4800:])
+
+
+def test_the_distances_between_successive_balls_at_the_outer_race_are_independent_and_as_scattered_as_drawn():
+    """The angle of the cage walks at random: its variance grows in proportion to time, from one ball to many."""
+    seats, n_knots, walk = 16, 9600, 0.02
+    drawn = [record(RIG, Turning(50.0, walk=walk, walk_seed=seed)) for seed in range(seats)]
+    cages = np.array([trip.angles[:, 1] for trip in march_lanes(drawn, n_knots, 1, KNOT)])
+    mean = 2 * np.pi * 50.0 * slipping_orders(drawn[0].bearing, 0.0).ftf * KNOT
+    apart, away = 2 * np.pi / 9, cages - mean * np.arange(n_knots + 1)
+    for balls in (1, 4):
+        knots = round(balls * apart / mean)
+        steps = np.diff(away[:, ::knots], axis=1)
+        # 16 lanes of 35 or 143 passages: the standard deviation has a standard error of at most 3 %
+        assert steps.std() == pytest.approx(walk * apart * np.sqrt(balls), rel=0.1)
+        follower = np.corrcoef(steps[:, :-1].ravel(), steps[:, 1:].ravel())[0, 1]
+        assert abs(follower) < 0.15
