@@ -105,7 +105,8 @@ def measure(
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
     several = max(1, _ROWS // shape[1])
-    levels: dict[int, Levelled] = {}  # of the groups; backwards, because the last of a group has the largest severity
+    # of the groups; backwards, because the last of a group has the largest severity. One that diverged has no level.
+    levels: dict[int, Levelled] = {}
     for first in reversed(range(0, shape[0], several)):
         some = slice(first, first + several)
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
@@ -113,15 +114,11 @@ def measure(
         for row, part in reversed(list(enumerate(parts, first))):
             pair = scenarios[row].record.pair
             found = _levelled(part, scenarios[row], recipe, rounding, level_tries, levels.get(pair))
-            if pair >= 0:
+            if pair >= 0 and part.is_finite:
                 levels.setdefault(pair, found)
             mixed, flags[row] = disturbed(_mixed(part, found.gains), found.scenario, axis.fs)
             if counts_per_unit is not None:
-                np.rint(np.multiply(mixed, np.float32(counts_per_unit), out=mixed), out=mixed)
-                clipped[row] = np.count_nonzero(np.abs(mixed) > LARGEST_COUNT)
-                np.clip(mixed, -LARGEST_COUNT, LARGEST_COUNT, out=mixed)
-                if not math.isfinite(sum(part.products)):
-                    mixed[:] = 0.0  # a record that diverged is left out, but NaN has no count
+                clipped[row] = _to_counts(mixed, counts_per_unit)
             signal[row] = mixed
             taken[row], detectable[row] = found.scenario, found.detectable
             fault_snr[row], fault_share[row] = found.fault_snr, found.fault_share
@@ -144,6 +141,11 @@ class Part(NamedTuple):
     """Angle of the shaft, shape (time,) [rad]."""
     orders: tuple[float, ...]
     """Orders at which the faults repeat [1]."""
+
+    @property
+    def is_finite(self) -> bool:
+        """False if the record diverged."""
+        return math.isfinite(sum(self.products))
 
 
 class Levelled(NamedTuple):
@@ -210,6 +212,19 @@ def _mixed(part: Part, gains: Gains) -> Float32Array:
     return mixed
 
 
+def _to_counts(signal: Float32Array, counts_per_unit: float) -> int:
+    """Round a signal to counts of the converter, in place; return the number of samples beyond its limits.
+
+    A record that diverged has no counts. It is left out of the corpus; here it becomes zeros.
+    """
+    if not np.isfinite(signal).all():
+        signal[:] = 0.0
+    np.rint(np.multiply(signal, np.float32(counts_per_unit), out=signal), out=signal)
+    clipped = np.count_nonzero(np.abs(signal) > LARGEST_COUNT)
+    np.clip(signal, -LARGEST_COUNT, LARGEST_COUNT, out=signal)
+    return int(clipped)
+
+
 def _levelled(
     part: Part, scenario: Scenario, recipe: Recipe, rounding: float, tries: int, of_group: Levelled | None
 ) -> Levelled:
@@ -218,7 +233,7 @@ def _levelled(
     A record of a group has the gains ``of_group``, those of its largest severity, so that all that differs is the fault.
     """
     judge = None
-    if part.orders and part.fault.size and math.isfinite(sum(part.products)):
+    if part.orders and part.fault.size and part.is_finite:
         steady = scenario.record.speed_profile is None
         of_record = spectra_of(part.fault, part.healthy, part.background, part.orders, part.angles, steady=steady)
         judge = Judge(of_record)

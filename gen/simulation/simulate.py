@@ -38,7 +38,7 @@ class Response:
     """Motion of the bodies that the channels measure, from the lead ahead of the record to its end, and its truth."""
 
     acceleration: NDArray[np.float32]
-    """Shape (record, channel, time), NaN where a record diverged [m s-2]."""
+    """Shape (record, channel, time), NaN where a record or its twin diverged [m s-2]."""
     oversampling: NDArray[np.int64]
     """Steps per sample, shape (record,)."""
     step_phase: FloatArray
@@ -79,6 +79,7 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
     given = {place: some for place, some in enumerate(inputs) if some is not None}
     steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
     healthy = _healthy_inputs(scenarios, given, recipe)
+    twin_rows = {place: row for row, place in enumerate(healthy, len(given))}
     every, of_steps = [*given.values(), *healthy.values()], [*steps.values(), *(steps[place] for place in healthy)]
     made = integrate_all(every, of_steps, axis, lambda done: report(done * len(given) // len(every)))
     acceleration = np.full((len(scenarios), len(recipe.recording.channels), axis.returned), np.nan, np.float32)
@@ -86,7 +87,9 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
     for row, (place, some) in enumerate(given.items()):
         oversampling[place] = steps[place]
         phases[place] = step_phase(some, made.steepest[row], steps[place], axis.fs)
-        sentence = failure(scenarios[place].record.number, steps[place], made.diverged[row] / axis.fs, phases[place])
+        # with its twin: if that diverged, what the fault adds is not known
+        diverged = made.diverged[[row, twin_rows.get(place, row)]].max() / axis.fs
+        sentence = failure(scenarios[place].record.number, steps[place], diverged, phases[place])
         if sentence is None:
             acceleration[place] = made.response[row]
         else:
@@ -97,7 +100,7 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
         twins = Twins(
             acceleration.copy(), [lines_of_faults(*of) for of in zip(scenarios, (t.orders for t in truth), strict=True)]
         )
-        for row, place in enumerate(healthy, len(given)):
+        for place, row in twin_rows.items():
             if place not in failures:
                 twins.acceleration[place] = made.response[row]
     return Response(acceleration, oversampling, phases, failures, inputs, truth, twins)

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 
 from gen.labels import part_dataset
+from gen.measurement.measure import measure
 from gen.recipe.sensing import FloatConverter
 from gen.records import FAULT_TRIES, made_again, made_records
 from gen.scenarios import draw_scenarios
+from gen.simulation import simulate as simulation
 from gen.simulation.simulate import simulate
 
 FLOAT = FloatConverter(kind="float32")
@@ -115,6 +117,48 @@ def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, wavin
     np.testing.assert_array_equal(twins.acceleration, alone.acceleration)
 
 
+def test_a_record_is_the_same_whether_its_fault_is_known_apart_or_not(recipe_with):
+    """Bearing without the fault plus what the fault adds is the bearing with the fault, in every channel."""
+    changes = {
+        "recording.converter": {"kind": "float32"},
+        "recording.channels": [
+            {"name": "a", "body": "sensor"},
+            {"name": "b", "body": "housing", "path": {"direct": 2}},
+        ],
+        "path.modulation": {"probability": 1, "first": 0.5, "second": 0.2},
+        "level": {"kind": "physical", "background_m_s2": 0.1, "gain": 3},
+    }
+    whole, apart = (
+        made_records(recipe_with(changes | {"corpus.truth": truth}), range(8)) for truth in ("none", "full")
+    )
+    assert (apart.measured.fault_snr > 0).any()
+    for row in range(8):
+        np.testing.assert_allclose(
+            apart.measured.signal[row],
+            whole.measured.signal[row],
+            rtol=0,
+            atol=2e-6 * np.abs(whole.measured.signal[row]).max(),
+        )
+    np.testing.assert_allclose(apart.measured.snr, whole.measured.snr, atol=1e-4)
+
+
+def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
+    recipe = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}]})
+    integrate = simulation.integrate_all
+
+    def second_twin_diverges(*given):
+        made = integrate(*given)
+        made.diverged[3] = 100
+        return made
+
+    monkeypatch.setattr(simulation, "integrate_all", second_twin_diverges)
+    response = simulate(draw_scenarios(recipe, 0, 2), recipe)
+    assert list(response.failures) == [1]
+    assert "record 1 diverged at t = 0.008333 s" in response.failures[1]
+    assert np.isnan(response.acceleration[1]).all()
+    assert np.isfinite(response.acceleration[0]).all()
+
+
 def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with):
     recipe = recipe_with({"corpus.truth": "none"})
     made = made_records(recipe, range(8))
@@ -198,6 +242,36 @@ def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
     for *_, largest in groups_of(made):
         drawn = made.measured.scenarios[largest].record.snr
         assert made.measured.fault_snr[largest] == pytest.approx(drawn, abs=0.05)
+
+
+def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with):
+    quiet = LEVEL | {"faulty_db": {"kind": "uniform", "low": -40, "high": 10}}
+    recipe = recipe_with(LADDER | {"level": quiet, "corpus.undetected": "redraw"})
+    made = made_records(recipe, range(18))
+    tried = 0
+    for group in groups_of(made):
+        levels = {(one.snr, one.level_try) for one in (made.measured.scenarios[place].record for place in group)}
+        assert len(levels) == 1
+        fault_try, level_try = made.measured.scenarios[group[0]].specimen.fault_try, levels.pop()[1]
+        again = made_again(recipe, group[0], fault_try, level_try)
+        np.testing.assert_array_equal(again.measured.signal[0], made.measured.signal[group[0]])
+        tried += level_try > 0
+    assert tried > 0
+
+
+def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_diverge(recipe_with):
+    recipe = recipe_with(LADDER)
+    scenarios = [one for one in draw_scenarios(recipe, 0, 18) if one.record.pair >= 0][:6]
+    response = simulate(scenarios, recipe)
+    for damaged in (response.acceleration, response.twins.acceleration):
+        damaged[2] = np.nan
+    measured = measure(response.acceleration, scenarios, recipe, response.twins)
+    assert measured.fault_snr[1] == pytest.approx(measured.scenarios[1].record.snr, abs=0.05)
+    scale = recipe.recording.converter.full_scale_m_s2 / 32767
+    rms = np.sqrt(np.mean((measured.signal[1] * scale) ** 2))
+    assert rms == pytest.approx(scenarios[1].record.rms, rel=1e-3)
+    assert measured.signal[0].any()
+    assert not measured.signal[2].any()
 
 
 def test_a_group_is_not_cut_by_a_part(ladders):
