@@ -57,8 +57,9 @@ class Spectra(NamedTuple):
 
     @property
     def chance(self) -> float:
-        """Logarithm of the number of searched lines, in all bands together, over the probability of a false alarm."""
-        return math.log(max(sum(len(self.searched(band)) for band in self.bands), 1) / FALSE_ALARM)
+        """Logarithm of the number of searched lines, in all bands of all channels, over the probability of a false alarm."""
+        lines = len(self.fault) * sum(len(self.searched(band)) for band in self.bands)
+        return math.log(max(lines, 1) / FALSE_ALARM)
 
 
 class Bands(NamedTuple):

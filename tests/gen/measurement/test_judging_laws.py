@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from gen.measurement import judging
 from gen.measurement.judging import FALSE_ALARM, Judge, is_detectable, judged_bands, spectra_of
 from gen.measurement.levels import Gains
 
@@ -33,6 +34,13 @@ def test_noise_in_place_of_a_fault_is_called_a_fault_as_rarely_as_stated():
     """What a fault adds may be noise of the same power as all else; the whole is then Gaussian noise without a line."""
     alarms = sum(judged(noise(2 * k), np.zeros((1, N), np.float32)) for k in range(2000))
     assert alarms <= 2000 * FALSE_ALARM + 3 * math.sqrt(2000 * FALSE_ALARM) + 1
+
+
+def test_more_channels_do_not_give_more_false_alarms(monkeypatch):
+    monkeypatch.setattr(judging, "FALSE_ALARM", 0.1)
+    silence = np.zeros((8, N), np.float32)
+    alarms = sum(judged(noise(k, 8 * N).reshape(8, N), silence) for k in range(300))
+    assert alarms <= 300 * 0.1 + 3 * math.sqrt(300 * 0.1)
 
 
 def test_a_train_of_impacts_is_seen_down_to_some_level_and_not_below():
