@@ -14,7 +14,7 @@ from gen.corpus.schema import FAULTS, SIGNAL
 
 FloatArray = NDArray[np.float64]
 
-MOST_RECORDS = 1500  # spread evenly over the corpus; more change the correlations by some hundredths
+MOST_RECORDS = 1500  # drawn at random from a larger corpus; more change the correlations by some hundredths
 FEWEST = 20  # specimens or records of a class
 LABELS = ("width", "depth", "largest_drop", "n_spalls", "diametral_clearance", "load", "shaft_rate", "fault_snr")
 NUMBERS = ("rms", "kurtosis", "crest factor", "power above a quarter of the sample rate")
@@ -35,8 +35,10 @@ class Recovery(NamedTuple):
 
 def recoveries(corpus: xr.Dataset) -> list[Recovery]:
     """Closest number for each label and each class of fault; labels that do not vary are left out."""
-    apart = max(1, -(-corpus.sizes["record"] // MOST_RECORDS))
-    some = corpus.isel(record=slice(None, None, apart))
+    n_records = corpus.sizes["record"]
+    # every so many records would be the same rung of every ladder, or the same record of every specimen
+    drawn = np.random.default_rng(0).choice(n_records, min(MOST_RECORDS, n_records), replace=False)
+    some = corpus.isel(record=np.sort(drawn))
     numbers = record_numbers(some)
     found = []
     for code, fault in enumerate(FAULTS):

@@ -5,7 +5,7 @@ import pytest
 import xarray as xr
 from scipy.stats import spearmanr
 
-from gen.corpus import FAULTS, SIGNAL
+from gen.corpus import FAULTS, SIGNAL, recoverable
 from gen.corpus.recoverable import rank_correlation, recoveries
 
 
@@ -38,6 +38,12 @@ def test_a_label_of_the_specimen_counts_specimens_and_one_of_the_record_counts_r
 def test_labels_that_do_not_vary_and_healthy_records_are_left_out(corpus):
     assert [row.label for row in recoveries(corpus.assign(width=corpus["width"] * 0 + 1))] == ["load"]
     assert recoveries(corpus.assign(fault=corpus["fault"] * 0)) == []
+
+
+def test_records_of_every_rung_are_looked_at_in_a_corpus_of_ladders(corpus, monkeypatch):
+    monkeypatch.setattr(recoverable, "MOST_RECORDS", 60)
+    damaged_each_second = corpus.assign(fault=corpus["fault"] * (np.arange(120) % 2))
+    assert {row.label for row in recoveries(damaged_each_second)} == {"width", "load"}
 
 
 @pytest.mark.parametrize("seed", range(5))
