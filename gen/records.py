@@ -80,12 +80,15 @@ def _redrawn(specimens: Iterable[int], recipe: Recipe, tries: dict[int, int]) ->
 
 
 def _with_hits(scenarios: list[Scenario], recipe: Recipe, tries: dict[int, int]) -> list[Scenario]:
-    """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record."""
+    """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record.
+
+    Of a group, the largest severity alone counts, as in :func:`_unseen_places`.
+    """
     found = {scenario.record.number: scenario for scenario in scenarios}
     tried = scenarios
     while tried:
-        felt = felt_places(tried)
-        missed = {one.specimen.number for one, is_felt in zip(tried, felt, strict=True) if not is_felt}
+        largest = [tried[place] for place in _largest_places(tried)]
+        missed = {one.specimen.number for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt}
         tried = _redrawn(sorted(n for n in missed if tries.get(n, 0) < FAULT_TRIES - 1), recipe, tries)
         found.update({scenario.record.number: scenario for scenario in tried})
     return list(found.values())
@@ -99,13 +102,17 @@ def _unseen(made: Records, tries: dict[int, int]) -> list[int]:
 
 def _unseen_places(made: Records) -> list[int]:
     """Places of the records that were made and whose fault cannot be seen; of a group, that of the largest severity alone is looked at."""
-    scenarios, detectable = made.measured.scenarios, made.measured.detectable
+    detectable, failures = made.measured.detectable, made.response.failures
+    largest = _largest_places(made.measured.scenarios)
+    return [place for place in largest if not detectable[place] and place not in failures]
+
+
+def _largest_places(scenarios: list[Scenario]) -> list[int]:
+    """Places of the records with a fault; of a group, that of the largest severity alone."""
     return [
         place
         for place, scenario in enumerate(scenarios)
         if scenario.specimen.fault != "healthy"
-        and not detectable[place]
-        and place not in made.response.failures
         and (place + 1 == len(scenarios) or scenarios[place + 1].record.rung <= scenario.record.rung)
     ]
 

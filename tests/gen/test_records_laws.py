@@ -9,6 +9,7 @@ from gen.recipe.sensing import FloatConverter
 from gen.records import FAULT_TRIES, made_again, made_records
 from gen.scenarios import draw_scenarios
 from gen.simulation import simulate as simulation
+from gen.simulation.hits import felt_places
 from gen.simulation.simulate import simulate
 
 FLOAT = FloatConverter(kind="float32")
@@ -257,6 +258,20 @@ def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with)
         np.testing.assert_array_equal(again.measured.signal[0], made.measured.signal[group[0]])
         tried += level_try > 0
     assert tried > 0
+
+
+def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_of_its_group(recipe_with):
+    """Of the widest spalls at the edge of the load zone, half the width may lie outside."""
+    angles = {"kind": "uniform", "low": 20, "high": 180}
+    changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "corpus.undetected": "redraw"}
+    recipe = recipe_with(LADDER | {"corpus.rungs": [0.1, 1], "corpus.rigs": 6} | changes)
+    made = made_records(recipe, range(recipe.n_records))
+    tries = {one.specimen.number: one.specimen.fault_try for one in made.measured.scenarios}
+    drawn = draw_scenarios(recipe, fault_tries=tries)
+    missed = {one.record.number for one, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
+    assert any(
+        one.record.number in missed and one.record.number + 1 not in missed for one in drawn if one.record.rung == 0
+    )
 
 
 def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_diverge(recipe_with):
