@@ -10,7 +10,8 @@ from scipy.signal import welch
 
 from gen.measurement.measure import LARGEST_COUNT, measure
 from gen.measurement.rig import base_excited
-from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios
+from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios, with_level
+from gen.simulation.simulate import Twins
 from gen.simulation.timeline import timeline
 
 law = settings(deadline=None, max_examples=25)
@@ -53,6 +54,37 @@ def levelled(recipe_with):
     }
     recipe = recipe_with(FLOAT | {"level": level, "recording.duration_s": 1.0})
     return recipe, draw_scenarios(recipe)
+
+
+def test_every_try_of_a_level_is_a_draw_of_its_own_and_moves_nothing_else(levelled):
+    recipe, scenarios = levelled
+    faulty = next(scenario for scenario in scenarios if scenario.specimen.fault != "healthy")
+    tries = [with_level(faulty, recipe, level_try) for level_try in range(8)]
+    ratios = [one.record.snr for one in tries]
+    assert len(set(ratios)) == 8
+    assert -10 <= min(ratios) < max(ratios) <= 25
+    assert tries == [
+        replace(faulty, record=replace(faulty.record, snr=snr, level_try=n)) for n, snr in enumerate(ratios)
+    ]
+
+
+def test_the_gain_of_the_sensor_scales_bearing_and_background_alike(recipe_with):
+    found = []
+    for gain in (1, 4):
+        recipe = recipe_with(FLOAT | {"level": {"kind": "physical", "background_m_s2": 2, "gain": gain}})
+        found.append(measure(hiss(recipe, 4), draw_scenarios(recipe, 0, 4), recipe))
+    np.testing.assert_array_equal(4 * found[0].signal, found[1].signal)
+    np.testing.assert_allclose(found[0].snr, found[1].snr)
+
+
+@pytest.mark.parametrize(("rise", "seen"), [(1.2, 0), (1.3, 1)])
+def test_wear_is_seen_if_it_raises_the_rms_by_a_quarter(recipe_with, rise, seen):
+    quiet = {"level": {"kind": "physical", "background_m_s2": 1e-6}}
+    recipe = recipe_with(FLOAT | quiet | {"faults": [{"kind": "distributed", "site": "inner"}]})
+    twin = hiss(recipe, 2)
+    measured = measure(np.float32(rise * twin), draw_scenarios(recipe, 0, 2), recipe, Twins(np.float32(twin), [(), ()]))
+    assert measured.detectable.tolist() == [seen, seen]
+    np.testing.assert_allclose(measured.fault_snr, 20 * np.log10(rise - 1), atol=1e-3)
 
 
 def test_the_bearing_stands_over_the_background_by_the_drawn_ratio(levelled):
