@@ -20,6 +20,7 @@ from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import (
     FREE_ANGLE,
     CatalogueBearing,
+    Fault,
     Modes,
     PathSection,
     Recipe,
@@ -237,16 +238,25 @@ def _draw_specimen(recipe: Recipe, rig: Rig, number: int, draws: Draws, classes:
         )
     position = number % recipe.corpus.specimens_per_rig
     fault = classes[position]
-    draws = Draws(
-        stream(recipe.seed, rig.number, number, fault_try, Purpose.FAULT), np.empty(0), number, f"specimen {number}"
-    )
-    wanted = [place for place, entry in enumerate(recipe.faults) if fault_class(entry) == fault]
-    entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), draws.u())]
+    wanted, entry = [place for place, one in enumerate(recipe.faults) if fault_class(one) == fault], 0
+    for attempt in sorted({0, fault_try}):
+        draws = Draws(
+            stream(recipe.seed, rig.number, number, attempt, Purpose.FAULT), np.empty(0), number, f"specimen {number}"
+        )
+        entry = wanted[weighted_index(tuple(recipe.faults[place].weight for place in wanted), draws.u())]
+        # a fault that is drawn again leaves the conditions as they are
+        first = recipe.faults[entry]
+        wanted = [place for place in wanted if _same_conditions(recipe.faults[place], first)]
     split = _draw_split(recipe, rig.number, position)
     specimen = Specimen(
         number, bearing, properties, fault, spalls=(), axis={}, split=split, fault_try=fault_try, entry=entry
     )
     return damaged(draws, recipe.faults[entry], specimen, {**known, **known_of(recipe.specimen, properties)})
+
+
+def _same_conditions(one: Fault, other: Fault) -> bool:
+    """Whether two entries of ``faults`` have the same operating conditions and levels."""
+    return one.operation == other.operation and one.level == other.level
 
 
 def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:

@@ -60,6 +60,18 @@ def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing)
         )
 
 
+def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_with):
+    """Of two entries of a class with conditions of their own, the second is not taken where the first cannot be seen."""
+    slow = OUTER | {"operation": {"shaft_rpm": 600}}
+    recipe = recipe_with({"faults": [OUTER, slow], "corpus.rigs": 8})
+    first = draw_scenarios(recipe)
+    assert len({scenario.specimen.entry for scenario in first}) == 2
+    for fault_try in (1, 2):
+        again = draw_scenarios(recipe, fault_tries=dict.fromkeys(range(32), fault_try))
+        assert [one.record.conditions for one in again] == [one.record.conditions for one in first]
+        assert [one.specimen.spalls for one in again] != [one.specimen.spalls for one in first]
+
+
 def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
     _, made = redrawing
     found = {}
