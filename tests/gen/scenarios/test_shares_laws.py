@@ -211,6 +211,7 @@ def test_a_section_has_the_quantities_that_can_be_drawn():
     assert set(quantities(OperationSection(shaft_rpm=1))) == set(OperationSection.model_fields) - {
         "speed_profile",
         "load_profile",
+        "slip_walk",
     }
     assert set(quantities(MachineSection())) == set(MachineSection.model_fields) - {"resonator"}
 
