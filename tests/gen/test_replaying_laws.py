@@ -5,10 +5,30 @@ import shutil
 import numpy as np
 import pytest
 
-from gen import draw_scenarios, open_corpus, shaft_angles, stored_scenario
+from gen import draw_scenarios, generate, open_corpus, replay, shaft_angles, stored_scenario
 from gen.errors import CorpusError
 from gen.replaying import corpus_recipe
+from gen.simulation.motion import start_of
 from tests import corpora
+
+
+def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for_bit(write_recipe, tmp_path):
+    """Also where records before them were left out, so that their places in the corpus are not their numbers."""
+    level = {
+        "kind": "snr",
+        "faulty_db": {"kind": "uniform", "low": -25, "high": 10},
+        "healthy_db": {"kind": "uniform", "low": -15, "high": 10},
+    }
+    outer = {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -180, "high": 180}}
+    hidden = {"kind": "ball", "width_mm": 0.1, "level": {"faulty_db": -60}}
+    changes = {"level": level, "faults": [outer, hidden], "recording.duration_s": 0.25, "corpus.undetected": "redraw"}
+    generated = generate(write_recipe(tmp_path / "r.yaml", changes), tmp_path / "corpus")
+    assert generated.failures
+    with open_corpus(tmp_path / "corpus") as corpus:
+        numbers, faults, levels = (corpus[name].values for name in ("recording", "fault_tries", "level_tries"))
+    moved = numbers != np.arange(len(numbers))
+    for wanted in (moved & (faults > 0), moved & (levels > 0)):
+        assert replay(tmp_path / "corpus", int(np.flatnonzero(wanted)[0])).identical
 
 
 def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):
@@ -52,6 +72,15 @@ def test_the_angle_of_the_shaft_turns_at_the_true_rate_of_the_record(tiny_corpus
         angles = shaft_angles(tiny_corpus, record)
         assert angles.shape == time.shape
         assert np.polyfit(time, angles / (2 * np.pi), 1)[0] == pytest.approx(rates[record], rel=2e-3)
+
+
+def test_the_angle_of_the_shaft_begins_with_the_record_after_its_settling(tiny_corpus):
+    recipe = corpus_recipe(tiny_corpus)
+    for record in (0, 17):
+        scenario = stored_scenario(tiny_corpus, record)
+        turned = shaft_angles(tiny_corpus, record)[0] - start_of(scenario).shaft
+        settling = 2 * np.pi * scenario.record.conditions["shaft"] * recipe.recording.settle_s
+        assert turned == pytest.approx(settling, rel=0.02)
 
 
 def test_a_corpus_that_was_not_generated_has_no_angle_of_the_shaft(tmp_path):

@@ -43,6 +43,24 @@ def test_more_channels_do_not_give_more_false_alarms(monkeypatch):
     assert alarms <= 300 * 0.1 + 3 * math.sqrt(300 * 0.1)
 
 
+def test_a_line_at_the_threshold_has_the_stated_probability_in_the_whole_search():
+    fault = np.concatenate([ringing(ORDER), ringing(ORDER)])
+    spectra = spectra_of(fault, np.zeros_like(fault), fault, (ORDER,), ANGLES, steady=True)
+    searched = 2 * sum(len(spectra.searched(band)) for band in spectra.bands)
+    for (low, high), threshold in zip(spectra.bands, judged_bands(spectra, spectra.bands).thresholds, strict=True):
+        assert searched * math.exp(-(high - low) * threshold**2) == pytest.approx(FALSE_ALARM)
+
+
+def test_the_power_of_a_record_is_that_of_bearing_and_background_together():
+    """A background that cancels the healthy bearing leaves the fault alone, and one that adds to it hides the fault."""
+    healthy = 30 * noise(1)
+    cancelled, hidden = (
+        spectra_of(ringing(ORDER), healthy, sign * healthy, (ORDER,), ANGLES, steady=True) for sign in (-1, 1)
+    )
+    assert Judge(cancelled).sees(Gains(1.0, 1.0))
+    assert not Judge(hidden).sees(Gains(1.0, 1.0))
+
+
 def test_a_train_of_impacts_is_seen_down_to_some_level_and_not_below():
     seen = [judged(ringing(ORDER), noise(1), bearing=10 ** (level / 20)) for level in (0, -5, -10, -20, -30, -60)]
     assert seen[:2] == [True, True]
