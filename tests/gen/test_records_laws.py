@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from gen.corpus import FAULTS
 from gen.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.recipe.sensing import FloatConverter
@@ -204,6 +205,14 @@ def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(
     assert dataset["n_spalls"].values.tolist() == [0, 0]
     assert (dataset["width"] == 0).all()
     assert dataset["fault_snr"].values.tolist() == [-np.inf, -np.inf]
+
+
+def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
+    recipe = recipe_with({"corpus.truth": "none", "corpus.undetected": "healthy"})
+    made = made_records(recipe, range(8))
+    faults = [FAULTS.index(scenario.specimen.fault) for scenario in made.measured.scenarios]
+    assert any(faults)
+    assert labelled(made, recipe)["fault"].values.tolist() == faults
 
 
 def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):

@@ -73,6 +73,12 @@ def test_impacts_at_another_order_are_not_the_line_of_the_class():
     assert judged(ringing(5.4 * 0.83), noise(1), orders=(5.4 * 0.83,))
 
 
+def test_a_fault_is_seen_by_its_second_or_third_harmonic_alone():
+    for harmonic in (2, 3):
+        assert judged(ringing(harmonic * ORDER), noise(1))
+    assert not judged(ringing(4.5 * ORDER), noise(1))
+
+
 def test_one_loud_channel_does_not_hide_a_fault_that_another_shows():
     fault = np.concatenate([ringing(ORDER), ringing(ORDER)])
     rest = np.concatenate([1000 * noise(1), noise(2)])

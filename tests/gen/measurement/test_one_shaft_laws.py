@@ -72,6 +72,18 @@ def test_every_harmonic_stands_at_its_order(recipe_with, changes):
             assert nearest_line(spectrum, orders, order) == pytest.approx(order, abs=0.5 / turns)
 
 
+def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft(recipe_with):
+    recipe = recipe_with(FLOAT | {"path.modes": None, "operation.speed_wander_percent": 1})
+    signals, scenarios = background_of(recipe, replace(QUIET, knocks=Tone(3.0, 30.0)))
+    axis, of_records = timeline(recipe), []
+    for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
+        angles = shaft_angles(scenario, axis)[axis.kept][np.abs(signal) > 10]
+        assert len(angles) == pytest.approx(3 * turns_of(scenario, recipe), abs=1)
+        of_records.append(np.angle(np.mean(np.exp(3j * angles))))
+    one_sample = 3 * 2 * np.pi * 30 / axis.fs
+    assert np.angle(np.exp(1j * np.diff(of_records)))[0] == pytest.approx(0.0, abs=one_sample)
+
+
 @courses
 def test_knocks_and_the_modulation_of_the_noise_stand_at_their_orders(recipe_with, changes):
     recipe = recipe_with(FLOAT | changes | {"path.modes": None})
