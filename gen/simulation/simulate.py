@@ -158,14 +158,14 @@ def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -
 def laid_out(scenarios: list[Scenario], recipe: Recipe) -> list[tuple[Group, Batch]]:
     """Scenarios in lanes, batch by batch, as :func:`simulate` integrates them; all must be possible."""
     axis = timeline(recipe)
-    inputs = [kernel_input(scenario, axis) for scenario in scenarios]
-    groups = {
-        place: group_of(given, steps_per_sample(given, scenario.record.number, recipe))
-        for place, (given, scenario) in enumerate(zip(inputs, scenarios, strict=True))
-    }
+    given = {place: kernel_input(scenario, axis) for place, scenario in enumerate(scenarios)}
+    steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
+    healthy = _healthy_inputs(scenarios, given, recipe)
+    inputs = [*given.values(), *healthy.values()]
+    places = [*given, *healthy]
+    groups = {row: group_of(some, steps[place]) for row, (some, place) in enumerate(zip(inputs, places, strict=True))}
     return [
-        (group, lay_out([inputs[place] for place in places], group.shape, 1 / axis.fs))
-        for group, places in batches(groups)
+        (group, lay_out([inputs[row] for row in rows], group.shape, 1 / axis.fs)) for group, rows in batches(groups)
     ]
 
 
