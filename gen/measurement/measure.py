@@ -180,7 +180,8 @@ def _parts(
         healthy = acceleration.copy()
         healthy[faulty] = twins.acceleration[first : first + count][faulty]
         difference = acceleration[faulty] - healthy[faulty]
-    both = _through_paths(np.concatenate([healthy, difference]), [*filters, *(filters[row] for row in faulty)])
+    bare = np.concatenate([healthy, difference]) if faulty else healthy
+    both = _through_paths(bare, [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
     angles = [shaft_angles(scenario, axis) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
