@@ -18,7 +18,7 @@ from gen.simulation.batches import Group, batches, group_of, integrate_all
 from gen.simulation.inputs import kernel_input
 from gen.simulation.steps import checked_places, failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
-from gen.simulation.truth import Truth, lines_of_faults, truths_of
+from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
 
 FloatArray = NDArray[np.float64]
 
@@ -91,12 +91,12 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
             acceleration[place] = made.response[row]
         else:
             failures[place] = sentence
-    truth = truths_of(scenarios, axis, inputs)
+    truth = [truth_of(scenario, axis, some) for scenario, some in zip(scenarios, inputs, strict=True)]
     twins = None
     if recipe.corpus.truth == "full":
-        twins = Twins(
-            acceleration.copy(), [lines_of_faults(*of) for of in zip(scenarios, (t.orders for t in truth), strict=True)]
-        )
+        truth = with_loaded_hits(truth, inputs, axis)
+        orders = [lines_of_faults(scenario, known.orders) for scenario, known in zip(scenarios, truth, strict=True)]
+        twins = Twins(acceleration.copy(), orders)
         for row, place in enumerate(healthy, len(given)):
             if place not in failures:
                 twins.acceleration[place] = made.response[row]
