@@ -88,7 +88,9 @@ def _with_hits(scenarios: list[Scenario], recipe: Recipe, tries: dict[int, int])
     tried = scenarios
     while tried:
         largest = [tried[place] for place in _largest_places(tried)]
-        missed = {one.specimen.number for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt}
+        missed = {
+            one.specimen.number for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt
+        }
         tried = _redrawn(sorted(n for n in missed if tries.get(n, 0) < FAULT_TRIES - 1), recipe, tries)
         found.update({scenario.record.number: scenario for scenario in tried})
     return list(found.values())

@@ -5,7 +5,7 @@ import numpy as np
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import Response
 from gen.simulation.timeline import timeline
-from gen.simulation.truth import Truth, truths_of
+from gen.simulation.truth import Truth, truth_of, with_loaded_hits
 
 
 def still(recipe, n_records):
@@ -17,11 +17,12 @@ def response_of(scenarios, recipe, *, impossible=()):
     """Response of bodies at rest with the truth of every scenario; places in ``impossible`` have no machine."""
     n, axis = len(scenarios), timeline(recipe)
     inputs = [None if n in impossible else kernel_input(scenario, axis) for n, scenario in enumerate(scenarios)]
-    truth = truths_of(scenarios, axis, inputs)
+    truth = [truth_of(scenario, axis, given) for scenario, given in zip(scenarios, inputs, strict=True)]
     return Response(still(recipe, n), np.arange(n) + 2, np.linspace(0.1, 0.3, n), {}, inputs, truth, None)
 
 
 def truth(scenario, recipe) -> Truth:
     """Truth of a scenario."""
     axis = timeline(recipe)
-    return truths_of([scenario], axis, [kernel_input(scenario, axis)])[0]
+    given = kernel_input(scenario, axis)
+    return with_loaded_hits([truth_of(scenario, axis, given)], [given], axis)[0]

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import irfft
 
-from features.faults import CLASSES
+from features.faults import CLASSES, COMBS
 from features.indicators import BROAD, FLOOR_WIDTH, Orders, log_level
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted
@@ -33,8 +33,9 @@ SIDEBAND_REACH = 2  # bins of the zero-padded spectrum, half a resolution
 HARMONICS = 3
 DB_PER_NEPER = 20 / np.log(10)
 
-RACES = ("inner", "outer")
-SPALLED = ("inner", "outer", "ball")
+SPALLED = tuple(COMBS)  # classes with a line of their own
+RACES = tuple(name for name in SPALLED if CLASSES[name].lines[0].base in ("bpfi", "bpfo"))
+BALLS = tuple(name for name in SPALLED if CLASSES[name].lines[0].base == "bsf")
 
 
 class Measure(NamedTuple):
@@ -64,8 +65,8 @@ MEASURES = (
     Measure("line_width", "rad", "rms wander of the phase of that line against a constant frequency", SPALLED),
     Measure("shaft_sidebands", "dB", "mean of both sidebands at the shaft rate over the line", RACES),
     Measure("cyclostationarity", "1", "degree of cyclostationarity at the line and two harmonics", SPALLED),
-    Measure("cage_line", "dB", "height of the line of the cage over the median floor of the envelope", ("ball",)),
-    Measure("cage_sidebands", "dB", "mean height of the cage sidebands of the line over the floor", ("ball",)),
+    Measure("cage_line", "dB", "height of the line of the cage over the median floor of the envelope", BALLS),
+    Measure("cage_sidebands", "dB", "mean height of the cage sidebands of the line over the floor", BALLS),
 )
 NAMES = tuple(measure.name for measure in MEASURES)
 
@@ -195,7 +196,7 @@ def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: 
     rows = np.arange(len(line))
     level = DB_PER_NEPER * envelope.level[rows, line]
     clear = level > CLEAR_DB
-    spacing = (orders.ftf if fault == "ball" else 1.0) * shaft_rate
+    spacing = (orders.ftf if fault in BALLS else 1.0) * shaft_rate
     sides = line[:, None] + np.outer(spacing / envelope.step, (-1, 1))
     read = DB_PER_NEPER * single_lines(
         envelope.level, np.column_stack([orders.ftf * shaft_rate / envelope.step, sides])

@@ -31,6 +31,7 @@ QUANTITIES = (
     ("depth", "depth of the fault [µm]", 1e6),
     ("angle", "angle of the fault [°]", 180 / np.pi),
     ("snr", "signal over background [dB]", 1.0),
+    ("fault_snr", "fault over all else [dB]", 1.0),
 )
 
 

@@ -15,6 +15,7 @@ manifest    files of a corpus with size and hash
 reading     lazy reading, with a few files open at a time
 index       ``corpus.nc`` over the parts; opening a corpus
 validation  all checks of a corpus
+visible     faults that can be seen in their records
 recoverable labels that can be recovered from the signals
 card        data card of a corpus
 description page about the format
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from gen.corpus.signals import SignalCounts, complaint, described, summed
     from gen.corpus.simulated import SIMULATED
     from gen.corpus.validation import validate_corpus
+    from gen.corpus.visible import FaultCounts, fault_counts
 
 __all__ = [
     "CODECS",
@@ -73,6 +75,7 @@ __all__ = [
     "SIMULATED",
     "SPLITS",
     "Codec",
+    "FaultCounts",
     "Manifest",
     "PartRow",
     "SignalCounts",
@@ -81,6 +84,7 @@ __all__ = [
     "complaint",
     "data_card",
     "described",
+    "fault_counts",
     "format_page",
     "make_dataset",
     "open_corpus",
@@ -125,5 +129,6 @@ __getattr__, __dir__ = lazy_names(
         "gen.corpus.signals": ("SignalCounts", "complaint", "described", "summed"),
         "gen.corpus.simulated": ("SIMULATED",),
         "gen.corpus.validation": ("validate_corpus",),
+        "gen.corpus.visible": ("FaultCounts", "fault_counts"),
     },
 )  # fmt: skip

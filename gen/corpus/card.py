@@ -6,6 +6,7 @@ import xarray as xr
 from gen.corpus.recoverable import NUMBERS, recoveries
 from gen.corpus.schema import FAULTS, SIGNAL, SPLITS
 from gen.corpus.signals import SignalCounts, described
+from gen.corpus.visible import fault_counts
 
 
 def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
@@ -52,19 +53,16 @@ def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
 
 def _visible_faults(corpus: xr.Dataset) -> list[str]:
     """Paragraph on the faults that can be seen in their records, and on those that were drawn again."""
-    detectable = corpus["detectable"].values[corpus["fault"].values != FAULTS.index("healthy")]
-    if not detectable.size:
+    counts = fault_counts(corpus)
+    if counts is None:
         return []
-    if (detectable == 2).all():
+    if counts.unjudged == counts.records:
         return ["What the faults add to the records is not known: `corpus.truth` of the recipe is `none`."]
-    tries, specimens = corpus["fault_tries"].values, corpus["specimen"].values
-    redrawn = np.unique(specimens[tries > 0]).size
-    levels = int((corpus["level_tries"].values > 0).sum())
     seen = (
-        f"Of {detectable.size} records labelled with a fault, the fault can be seen in {(detectable == 1).sum()} (`detectable`): its line "
-        f"in the squared envelope of some band would be a false alarm of noise with a probability below one in a thousand."
+        f"Of {counts.records} records labelled with a fault, the fault can be seen in {counts.detectable} (`detectable`): its line in the "
+        f"squared envelope of some band would be a false alarm of noise with a probability below one in a thousand."
     )
-    again = f"the fault of {redrawn} specimens, the level of {levels} records"
+    again = f"the fault of {counts.redrawn_specimens} specimens, the level of {counts.redrawn_levels} records"
     return [f"{seen} Drawn again because the fault could not be seen: {again}."]
 
 

@@ -62,9 +62,12 @@ def record_numbers(corpus: xr.Dataset) -> FloatArray:
         signal = corpus[SIGNAL][record, 0].values.astype(float)
         signal -= signal.mean()
         power = np.abs(np.fft.rfft(signal)) ** 2
-        square = max(float(np.mean(signal**2)), 1e-300)
-        above = power[len(power) // 2 :].sum() / max(power.sum(), 1e-300)
-        rows.append([square**0.5, np.mean(signal**4) / square**2, np.abs(signal).max() / square**0.5, above])
+        if not power.any():
+            rows.append([0.0] * len(NUMBERS))
+            continue
+        rms = float(np.sqrt(np.mean(signal**2)))
+        above = power[len(power) // 2 :].sum() / power.sum()
+        rows.append([rms, np.mean((signal / rms) ** 4), np.abs(signal).max() / rms, above])
     return np.array(rows).reshape(-1, len(NUMBERS))
 
 

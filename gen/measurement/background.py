@@ -44,17 +44,19 @@ def lines_of(filters: RigFilters, scenario: Scenario, rng: np.random.Generator, 
     n_orders = len(filters.harmonics)
     phases = 2 * np.pi * rng.random(len(steps))
     rates = record.conditions["shaft"] * np.arange(1, n_orders + 1)
-    harmonics = filters.in_channels(filters.harmonic_motion, filters.harmonics, rates)
-    tones = filters.in_channels(filters.tone_motion, filters.tones[:, 1], steps * axis.fs / (2 * np.pi))
+    motion = np.concatenate([filters.harmonic_motion, filters.tone_motion], axis=1)
+    amplitudes = np.concatenate([filters.harmonics, filters.tones[:, 1]])
+    lines = filters.in_channels(motion, amplitudes, np.concatenate([rates, steps * axis.fs / (2 * np.pi)]))
+    parts = np.stack([lines.real, lines.imag], axis=2)
     growth = _NO_GROWTH
     if record.speed_profile is not None and filters.growth > 0 and n_orders:
         growth = power(share_at(record.speed_profile, axis.response_times()), filters.growth)
     return Lines(
         modulations=filters.modulations,
-        harmonics=np.stack([harmonics.real, harmonics.imag], axis=2),
+        harmonics=parts[:, :n_orders],
         growth=growth,
         tones=np.stack([steps, phases, filters.tones[:, 2], filters.tones[:, 3]], axis=1),
-        tone_parts=np.stack([tones.real, tones.imag], axis=2),
+        tone_parts=parts[:, n_orders:],
     )
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, rfft
 
+from gen.corpus.visible import UNJUDGED
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
 from gen.measurement.gear import gear_in_channels
 from gen.measurement.judging import Judge, spectra_of
@@ -37,7 +38,6 @@ from gen.simulation.timeline import Timeline, timeline
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
 LARGEST_COUNT = 32767
-UNJUDGED = 2  # value of ``detectable`` where it is neither 0 nor 1
 LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
 SIGNIFICANT_RISE = 1.25  # of the rms by a fault without lines: ISO 20816-1:2016, criterion II
 _ROWS = 8  # records times channels per pass: transforms run side by side, and their arrays fit the second-level cache
@@ -182,7 +182,8 @@ def _parts(
         healthy = acceleration.copy()
         healthy[faulty] = twins.acceleration[first : first + count][faulty]
         difference = acceleration[faulty] - healthy[faulty]
-    both = _through_paths(np.concatenate([healthy, difference]), [*filters, *(filters[row] for row in faulty)])
+    bare = np.concatenate([healthy, difference]) if faulty else healthy
+    both = _through_paths(bare, [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
     angles = [shaft_angles(scenario, axis) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]

@@ -60,8 +60,9 @@ class RigFilters:
         ``motion``, shape (channel, line), and the paths at ``frequencies`` [Hz] divide each line among the channels.
         """
         at = np.clip(frequencies, 0.0, self.fs / 2) * (self.n / self.fs)
-        bins = np.arange(self.paths.shape[1])
-        found = motion * [np.interp(at, bins, path.real) + 1j * np.interp(at, bins, path.imag) for path in self.paths]
+        below = np.minimum(at.astype(int), self.paths.shape[1] - 2)
+        share = at - below
+        found = motion * (self.paths[:, below] * (1 - share) + self.paths[:, below + 1] * share)
         return found * (amplitudes / np.maximum(np.sqrt(np.mean(np.abs(found) ** 2, axis=0)), _SMALLEST_GAIN))
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.kernel.layout import SPEED_TERMS
+from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import share_at
 from gen.scenarios import Scenario
 from gen.simulation.motion import Start, cosine_sum, start_of
@@ -28,14 +29,24 @@ def shaft_angles(scenario: Scenario, timeline: Timeline) -> FloatArray:
     start, record = start_of(scenario), scenario.record
     omega, wander = 2 * math.pi * record.conditions["shaft"], record.conditions["speed_wander"]
     if record.speed_profile is None:
-        times = (timeline.dropped + np.arange(timeline.returned)) / timeline.fs
-        return start.shaft + omega * (times + (wander * _integrated_wander(start, times) if wander > 0 else 0.0))
+        nodes = np.arange(timeline.dropped, timeline.dropped + timeline.returned + STRIDE, STRIDE) / timeline.fs
+        turned = omega * (nodes + (wander * _integrated_wander(start, nodes) if wander > 0 else 0.0))
+        return start.shaft + _between(turned)[: timeline.returned]
     middles = (np.arange(timeline.dropped + timeline.returned - 1) + 0.5) / timeline.fs
     speed = share_at(record.speed_profile, middles - timeline.settle / timeline.fs)
     if wander > 0:
         speed *= 1 + wander * _wander(start, middles)
     turned = np.concatenate([[0.0], np.cumsum(speed)]) * (omega / timeline.fs)
     return start.shaft + turned[timeline.dropped :]
+
+
+def _between(nodes: FloatArray) -> FloatArray:
+    """Values on straight lines between nodes that are ``STRIDE`` samples apart, without the last node.
+
+    The error is below 1e-5 rad for a wander of 1 % at 50 Hz, and the nodes take an eighth of the cosines.
+    """
+    slopes = np.diff(nodes) / STRIDE
+    return (nodes[:-1, None] + slopes[:, None] * np.arange(STRIDE)).ravel()
 
 
 def _wander(start: Start, times: NDArray[np.floating]) -> FloatArray:

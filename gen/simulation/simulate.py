@@ -18,7 +18,7 @@ from gen.simulation.batches import Group, batches, group_of, integrate_all
 from gen.simulation.inputs import kernel_input
 from gen.simulation.steps import checked_places, failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
-from gen.simulation.truth import Truth, lines_of_faults, truths_of
+from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
 
 FloatArray = NDArray[np.float64]
 
@@ -94,12 +94,12 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
             acceleration[place] = made.response[row]
         else:
             failures[place] = sentence
-    truth = truths_of(scenarios, axis, inputs)
+    truth = [truth_of(scenario, axis, some) for scenario, some in zip(scenarios, inputs, strict=True)]
     twins = None
     if recipe.corpus.truth == "full":
-        twins = Twins(
-            acceleration.copy(), [lines_of_faults(*of) for of in zip(scenarios, (t.orders for t in truth), strict=True)]
-        )
+        truth = with_loaded_hits(truth, inputs, axis)
+        orders = [lines_of_faults(scenario, known.orders) for scenario, known in zip(scenarios, truth, strict=True)]
+        twins = Twins(acceleration.copy(), orders)
         for place, row in twin_rows.items():
             if place not in failures:
                 twins.acceleration[place] = made.response[row]
@@ -161,14 +161,14 @@ def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -
 def laid_out(scenarios: list[Scenario], recipe: Recipe) -> list[tuple[Group, Batch]]:
     """Scenarios in lanes, batch by batch, as :func:`simulate` integrates them; all must be possible."""
     axis = timeline(recipe)
-    inputs = [kernel_input(scenario, axis) for scenario in scenarios]
-    groups = {
-        place: group_of(given, steps_per_sample(given, scenario.record.number, recipe))
-        for place, (given, scenario) in enumerate(zip(inputs, scenarios, strict=True))
-    }
+    given = {place: kernel_input(scenario, axis) for place, scenario in enumerate(scenarios)}
+    steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
+    healthy = _healthy_inputs(scenarios, given, recipe)
+    inputs = [*given.values(), *healthy.values()]
+    places = [*given, *healthy]
+    groups = {row: group_of(some, steps[place]) for row, (some, place) in enumerate(zip(inputs, places, strict=True))}
     return [
-        (group, lay_out([inputs[place] for place in places], group.shape, 1 / axis.fs))
-        for group, places in batches(groups)
+        (group, lay_out([inputs[row] for row in rows], group.shape, 1 / axis.fs)) for group, rows in batches(groups)
     ]
 
 

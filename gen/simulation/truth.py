@@ -11,7 +11,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over
-from gen.simulation.hits import LoadZone, load_zones, loaded_hits
+from gen.simulation.hits import load_zones, loaded_hits
 from gen.simulation.motion import mean_motion, start_of
 from gen.simulation.timeline import Timeline
 
@@ -44,8 +44,8 @@ class Truth(NamedTuple):
     """Of a rigid ball over it [m]."""
     width_share: float
     """Its width over the distance from ball to ball, or over the circumference of a ball [1]."""
-    loaded_hits: int
-    """Expected number of passages of loaded balls over all spalls, 0 if no such machine is possible [1]."""
+    loaded_hits: int = -1
+    """Expected number of passages of loaded balls over all spalls, -1 if it was not asked for [1]."""
 
     def without_fault(self) -> "Truth":
         """The same without damage."""
@@ -67,14 +67,14 @@ class WidestSpall(NamedTuple):
     width_share: float = 0.0
 
 
-def truths_of(scenarios: Sequence[Scenario], timeline: Timeline, inputs: Sequence[KernelInput | None]) -> list[Truth]:
-    """Truth of each scenario; its kernel input is None if no such machine is possible."""
+def with_loaded_hits(truths: Sequence[Truth], inputs: Sequence[KernelInput | None], timeline: Timeline) -> list[Truth]:
+    """Truths with the hits of loaded balls; 0 for a record without spalls or of which no machine is possible."""
     spalled = {place: given for place, given in enumerate(inputs) if given is not None and given.spalls}
-    zones = dict(zip(spalled, load_zones(list(spalled.values())), strict=True))
-    return [
-        _truth_of(scenario, timeline, given, zones.get(place))
-        for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True))
-    ]
+    found = [truth._replace(loaded_hits=0) for truth in truths]
+    for (place, given), zone in zip(spalled.items(), load_zones(list(spalled.values())), strict=True):
+        turns = found[place].true_shaft_rate * timeline.duration
+        found[place] = found[place]._replace(loaded_hits=loaded_hits(given, zone, found[place].orders, turns))
+    return found
 
 
 def lines_of_faults(scenario: Scenario, orders: Orders) -> tuple[float, ...]:
@@ -84,7 +84,8 @@ def lines_of_faults(scenario: Scenario, orders: Orders) -> tuple[float, ...]:
     return (*lines, *([orders.ftf] if scenario.specimen.cage else []))
 
 
-def _truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None, zone: LoadZone | None) -> Truth:
+def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) -> Truth:
+    """Truth of a scenario; ``given`` is its kernel input, None if no such machine is possible."""
     record, duration = scenario.record, timeline.duration
     start = start_of(scenario) if given is None else given
     motion = mean_motion(scenario, timeline, start.frequencies, start.phases)
@@ -99,9 +100,6 @@ def _truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None,
         **{f"true_{name}": order for name, order in motion.orders._asdict().items()},
         operating_clearance=math.nan if given is None else 2 * given.machine.half_clearance,
         **widest_spall(scenario)._asdict(),
-        loaded_hits=0
-        if given is None or zone is None
-        else loaded_hits(given, zone, motion.orders, motion.shaft_rate * duration),
     )
 
 

@@ -17,11 +17,13 @@ from gen.corpus import (
     Manifest,
     SignalCounts,
     described,
+    fault_counts,
     open_corpus,
     open_part,
     plain_file,
     read_manifest,
 )
+from gen.corpus.visible import VARIABLES
 from raceway.console import show
 
 _SHOWN = [
@@ -87,7 +89,7 @@ def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
 
 
 def _shown(records: xr.Dataset) -> xr.Dataset:
-    known = [name for name in _SEVERITIES if name in records.variables]
+    known = [name for name in (*_SEVERITIES, *VARIABLES) if name in records.variables]
     return records.drop_vars(DRAWS, errors="ignore")[[*_SHOWN, *known]].load()
 
 
@@ -108,6 +110,7 @@ def _content(labels: xr.Dataset) -> dict[str, Any]:
         "shaft_rate": _range(labels["shaft_rate"].values),
         "load": _range(labels["load"].values),
         "severities": _severities(labels),
+        "faults": None if (counts := fault_counts(labels)) is None else counts._asdict(),
     }
 
 
@@ -168,6 +171,7 @@ def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
         "channels": ", ".join(facts["channels"]),
         "classes": show.counts(facts["classes"]),
         **{f"  {fault}": _shown_severities(ranges) for fault, ranges in facts["severities"].items()},
+        **({} if facts["faults"] is None else {"faults": _shown_faults(facts["faults"])}),
         "splits": show.counts(facts["splits"]),
         "bearings": show.counts(facts["bearings"]),
         "rigs": f"{facts['rigs']:,}",
@@ -176,6 +180,13 @@ def _shown_content(facts: dict[str, Any]) -> dict[str, str]:
         "shaft rate": _shown_range(facts["shaft_rate"], "Hz"),
         "load": _shown_range(facts["load"], "N"),
     }
+
+
+def _shown_faults(counts: dict[str, int]) -> str:
+    if counts["unjudged"] == counts["records"]:
+        return "not judged"
+    again = f"{counts['redrawn_specimens']:,} specimens and {counts['redrawn_levels']:,} levels drawn again"
+    return f"seen in {counts['detectable']:,} of {counts['records']:,} records, {again}"
 
 
 def _shown_severities(ranges: dict[str, list[float]]) -> str:

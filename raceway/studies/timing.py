@@ -23,7 +23,7 @@ from gen.physics.kernel.layout import Batch
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.batches import Group, integrate_batch
-from gen.simulation.simulate import Response, laid_out, simulate
+from gen.simulation.simulate import Response, integrations, laid_out, simulate
 from gen.simulation.timeline import timeline
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
@@ -60,7 +60,8 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     response = simulate(scenarios, checked)  # compiles the kernels that are not compiled yet
     seconds = _repeated(checked, scenarios, response)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
-    steps = timeline(checked).integrated * int(response.oversampling.sum())
+    each = zip(scenarios, response.oversampling, strict=True)
+    steps = timeline(checked).integrated * sum(int(some) * integrations([scenario], checked) for scenario, some in each)
     making = sum(stages.values()) - stages["features"]
     return Bench(
         recipe=checked.name,

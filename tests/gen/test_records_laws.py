@@ -318,3 +318,19 @@ def test_a_group_is_not_cut_by_a_part(ladders):
         scenario = whole.measured.scenarios[number]
         again = made_again(recipe, number, scenario.specimen.fault_try, scenario.record.level_try)
         np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[number])
+
+
+def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
+    """The background of a machine and the gain of its sensor are the same at every severity, and both are stored."""
+    level = {"kind": "physical", "gain": {"kind": "uniform", "low": 0.5, "high": 2}, "background_m_s2": 0.2}
+    rungs, width = [0.25, 0.5, 0.75, 1], {"kind": "outer", "width_mm": 0.4}
+    recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
+    made = made_records(recipe, range(16))
+    dataset = labelled(made, recipe)
+    assert dataset["gain"].values.tolist() == [scenario.rig.gain for scenario in made.measured.scenarios]
+    assert dataset["background_rms"].values == pytest.approx(0.2)
+    signal = made.measured.signal.astype(float) / made.measured.counts_per_unit
+    rms = np.sqrt(np.mean(signal**2, axis=(1, 2))) / dataset["gain"].values
+    for group in groups_of(made):
+        assert np.all(np.diff(rms[group]) > 0)
+        assert np.all(np.diff(made.measured.fault_snr[group]) > 3)

@@ -170,7 +170,7 @@ def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tm
         response = simulate(scenarios, recipe, **given)
         return replace(response, failures={0: f"record {scenarios[0].record.number} diverged."})
 
-    monkeypatch.setattr("gen.part_task.simulate", first_diverges)
+    monkeypatch.setattr("gen.records.simulate", first_diverges)
     result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
     assert result.exit_code == 0
     assert "left out: record 0 diverged.\nleft out: record 12 diverged.\n" in result.stderr

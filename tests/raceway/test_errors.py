@@ -115,7 +115,7 @@ TABLE = [
     ("benchmark {corpus} -o {file}", "file.txt is a file; give a folder"),
     ("import generic {file} -o {file}", "file.txt is a file; give a folder"),
     # recipes
-    ("plan {nowhere}", "nowhere: neither a file nor one of the recipes domain_randomised"),
+    ("plan {nowhere}", "nowhere: neither a file nor one of the recipes dirty_sensors, domain_randomised"),
     ("plan quikstart", "did you mean quickstart?"),
     ("plan {folder}", "folder: is a folder; give a recipe file, or the name of one of"),
     ("plan {binary}", "binary.yaml: cannot be read"),
