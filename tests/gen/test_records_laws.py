@@ -89,6 +89,18 @@ def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut
     assert some.measured.scenarios == whole.measured.scenarios[cut.start : cut.stop]
 
 
+def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_records_show(redrawing):
+    recipe, whole = redrawing
+    per_specimen = recipe.corpus.records_per_specimen
+    redrawn = {one.specimen.number for one in whole.measured.scenarios if one.specimen.fault_try}
+    assert redrawn
+    for specimen in redrawn:
+        number = (specimen + 1) * per_specimen - 1
+        alone = made_records(recipe, range(number, number + 1))
+        assert alone.measured.scenarios == whole.measured.scenarios[number : number + 1]
+        np.testing.assert_array_equal(alone.measured.signal[0], whole.measured.signal[number])
+
+
 def test_a_record_is_made_again_with_the_fault_and_the_level_that_it_has(redrawing):
     recipe, whole = redrawing
     redrawn = [one for one in whole.measured.scenarios if one.specimen.fault_try or one.record.level_try]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from gen.measurement.measure import measure
-from gen.measurement.rig import along
-from gen.scenarios import Background, Path, ShaftModulation, Tone, draw_scenarios
+from gen.measurement.rig import along, base_excited
+from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios
 from gen.simulation.shaft import shaft_angles
 from gen.simulation.timeline import timeline
 
@@ -70,6 +70,23 @@ def test_every_harmonic_stands_at_its_order(recipe_with, changes):
         assert turns > 10
         for order in (1, 2, 5, 12):
             assert nearest_line(spectrum, orders, order) == pytest.approx(order, abs=0.5 / turns)
+
+
+def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(recipe_with):
+    channels = [{"name": name, "body": "housing", "angle_deg": 0} for name in ("direct", "resonant")]
+    steady = {"operation.speed_wander_percent": 0, "operation.label_error_percent": 0}
+    recipe = recipe_with(FLOAT | steady | {"recording.channels": channels})
+    modes = (Mode(150.0, 0.1, 3.0),)
+    paths = Path(1.0, (), ShaftModulation()), Path(0.5, modes, ShaftModulation())
+    scenarios = [
+        replace(one, rig=replace(one.rig, own_paths=paths, background=replace(QUIET, harmonics=(Tone(5, 1e3),))))
+        for one in draw_scenarios(recipe, 0, 1)
+    ]
+    silence = np.zeros((1, 2, timeline(recipe).returned), np.float32)
+    signal = measure(silence, scenarios, recipe).signal[0].astype(float)
+    axis = timeline(recipe)
+    lines = signal @ np.exp(-5j * shaft_angles(scenarios[0], axis)[axis.kept])
+    assert lines[1] / lines[0] == pytest.approx(complex(0.5 + base_excited(modes, np.array([150.0]))[0]), rel=0.01)
 
 
 def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft(recipe_with):
