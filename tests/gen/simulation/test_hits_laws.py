@@ -55,6 +55,17 @@ def test_an_inner_spall_is_hit_during_the_part_of_a_turn_that_the_load_zone_take
     assert 0 < zone.half < math.pi
 
 
+def test_an_outer_spall_is_hit_if_its_nearer_edge_lies_in_the_load_zone(recipe_with):
+    _, scenario, given = first_of(recipe_with, {"kind": "outer", "width_mm": 4})
+    orders, zone, spall = truth(scenario, recipe_with()).orders, load_zones([given])[0], given.spalls[0]
+    reach = 0.002 / given.bearing.outer_radius
+    for share, hit in ((0.9, True), (1.1, False)):
+        for side in (-1, 1):
+            angle = zone.direction + side * (zone.half + share * reach)
+            moved = given._replace(spalls=(spall._replace(angle=angle),))
+            assert (loaded_hits(moved, zone, orders, 100) > 0) == hit
+
+
 def test_two_spalls_are_hit_twice_as_often(recipe_with):
     fault = {"kind": "outer", "width_mm": 0.5, "n_spalls": 2}
     _, scenario, given = first_of(recipe_with, fault)
