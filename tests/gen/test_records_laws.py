@@ -134,12 +134,13 @@ def test_a_spall_that_no_loaded_ball_meets_adds_exactly_nothing(recipe_with):
 
 @pytest.mark.parametrize("waviness", [0, 20])
 def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, waviness):
-    recipe = recipe_with(
-        {"specimen.waviness_nm": waviness, "faults": [{"kind": "inner", "width_mm": 0.5}, {"kind": "cage"}]}
-    )
-    scenarios = draw_scenarios(recipe, 0, 4)
+    worn = {"kind": "distributed", "site": "outer", "waviness_um": 0.5}
+    faults = [{"kind": "inner", "width_mm": 0.5}, worn, {"kind": "cage"}]
+    recipe = recipe_with({"specimen.waviness_nm": waviness, "faults": faults, "corpus.specimens_per_rig": 3})
+    scenarios = draw_scenarios(recipe, 0, 6)
     twins = simulate(scenarios, recipe).twins
     alone = simulate([scenario.without_fault() for scenario in scenarios], recipe)
+    assert {scenario.specimen.fault for scenario in scenarios} == {"inner", "outer", "cage"}
     np.testing.assert_array_equal(twins.acceleration, alone.acceleration)
 
 

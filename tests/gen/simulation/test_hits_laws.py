@@ -66,6 +66,15 @@ def test_an_outer_spall_is_hit_if_its_nearer_edge_lies_in_the_load_zone(recipe_w
             assert (loaded_hits(moved, zone, orders, 100) > 0) == hit
 
 
+def test_a_spall_of_a_ball_is_hit_twice_in_each_turn_of_the_ball(recipe_with):
+    fault = {"kind": "ball", "width_mm": 0.5}
+    recipe, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
+    found, zone = truth(scenario, recipe), load_zones([given])[0]
+    assert found.loaded_hits == pytest.approx(
+        2 * found.true_bsf * found.true_shaft_rate * 2.0 * zone.half / math.pi, abs=1
+    )
+
+
 def test_two_spalls_are_hit_twice_as_often(recipe_with):
     fault = {"kind": "outer", "width_mm": 0.5, "n_spalls": 2}
     _, scenario, given = first_of(recipe_with, fault)
