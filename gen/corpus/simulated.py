@@ -22,7 +22,7 @@ SIMULATED = (
     Variable("true_bpfi", "f8", "1", "latent", "mean ball pass frequency of the inner race in shaft orders, slip included"),
     Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders"),
     Variable("snr", "f8", "dB", "latent", "bearing over background or rounding of the converter, NaN without either or in silence"),
-    Variable("fault_snr", "f8", "dB", "latent", "what the fault adds over all else of the record, NaN if healthy or not known"),
+    Variable("fault_snr", "f8", "dB", "latent", "what the fault adds over all else of the record, NaN without a fault or if not known"),
     Variable("fault_share", "f8", "1", "latent", "power of what the fault adds over its sum with that of all else, NaN if not known"),
     Variable("loaded_hits", "i4", "1", "latent", "expected number of passages of loaded balls over spalls, -1 if not known"),
     Variable("detectable", "i1", "1", "latent", "whether the fault can be seen in the record", ("no", "yes", "unjudged")),

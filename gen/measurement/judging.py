@@ -4,7 +4,7 @@ The fault's own part of a record is its difference to the same record without th
 the fault order of the class, or at twice or three times that order, is compared with the power of the whole record in the band. In the
 squared envelope of Gaussian noise of that power and of ``N`` independent complex samples, a line of ``I`` times the mean has a probability
 of ``exp(-N I^2)`` [1]_. A fault is detectable if in some band its line would be a false alarm of noise with a probability of less than
-``FALSE_ALARM`` in the whole search.
+``FALSE_ALARM`` in the whole search. Where several parts are damaged, each of them must show its line.
 
 .. [1] P. Borghesani, P. Pennacchi, R. Ricci, S. Chatterton, Testing second order cyclostationarity in the squared envelope spectrum of
    non-white vibration signals, Mechanical Systems and Signal Processing 40 (2013) 38-55.
@@ -40,8 +40,8 @@ class Spectra(NamedTuple):
     """Samples of the record."""
     angles: FloatArray | None
     """Angle of the shaft at each sample, None if the speed is nearly constant [rad]."""
-    cycles: tuple[tuple[int, int], ...]
-    """Ranges of cycles per record, first and last, in which a line of the fault may lie."""
+    cycles: tuple[tuple[tuple[int, int], ...], ...]
+    """For each damaged part the ranges of cycles per record, first and last, in which its line may lie."""
 
     @property
     def bands(self) -> list[tuple[int, int]]:
@@ -50,23 +50,26 @@ class Spectra(NamedTuple):
         every = [(1, half), *((max(1, half * k // BANDS), half * (k + 1) // BANDS) for k in range(BANDS))]
         return [(low, high) for low, high in every if high - low >= _LEAST_SAMPLES]
 
-    def searched(self, band: tuple[int, int]) -> list[int]:
-        """Cycles per record at which the squared envelope of a band is searched."""
+    def searched(self, band: tuple[int, int]) -> list[list[int]]:
+        """Cycles per record at which the squared envelope of a band is searched for the line of each damaged part."""
         highest = (band[1] - band[0]) // 2
-        return sorted({cycle for first, last in self.cycles for cycle in range(first, min(last, highest) + 1)})
+        return [
+            sorted({cycle for first, last in ranges for cycle in range(first, min(last, highest) + 1)})
+            for ranges in self.cycles
+        ]
 
     @property
     def chance(self) -> float:
         """Logarithm of the number of searched lines, in all bands of all channels, over the probability of a false alarm."""
-        lines = len(self.fault) * sum(len(self.searched(band)) for band in self.bands)
+        lines = len(self.fault) * sum(len(cycles) for band in self.bands for cycles in self.searched(band))
         return math.log(max(lines, 1) / FALSE_ALARM)
 
 
 class Bands(NamedTuple):
-    """Parts of a record in some bands of each channel, before the gains; every array but the last has shape (channel, band)."""
+    """Powers of a record in some bands of each channel, before the gains, shape (channel, band), and the lines of its fault."""
 
     lines: FloatArray
-    """Largest line of the fault's squared envelope at the orders of its class."""
+    """Largest line of the fault's squared envelope at the orders of each damaged part, shape (part, channel, band)."""
     bearing: FloatArray
     """Power of the bearing with its fault."""
     background: FloatArray
@@ -92,7 +95,7 @@ def spectra_of(
     fault, healthy, background : array, shape (channel, time)
         What the fault adds, the bearing without it [m s-2], and the background [1].
     orders : tuple of float
-        Orders of the shaft at which the faults of the record repeat [1].
+        Order of the shaft at which the fault of each damaged part repeats [1].
     angles : array, shape (time,)
         Angle of the shaft [rad].
     steady : bool
@@ -101,20 +104,21 @@ def spectra_of(
     n = fault.shape[1]
     of_fault, of_healthy, of_background = rfft(np.stack([fault, healthy, background]))
     turns = (angles[-1] - angles[0]) / (2 * math.pi) * n / (n - 1)
-    middles = [multiple * order * turns for order in orders for multiple in range(1, HARMONICS + 1)]
-    reaches = [1 + TOLERANCE * middle for middle in middles]
-    cycles = tuple(
-        (max(1, math.ceil(middle - reach)), math.floor(middle + reach))
-        for middle, reach in zip(middles, reaches, strict=True)
-    )
+    cycles = tuple(tuple(_around(multiple * order * turns) for multiple in range(1, HARMONICS + 1)) for order in orders)
     return Spectra(of_fault, of_fault + of_healthy, of_background, n, None if steady else angles, cycles)
 
 
-def is_detectable(bands: Bands, gains: Gains) -> bool:
-    """Whether the line of the fault stands out of the record in some band of some channel."""
+def _around(middle: float) -> tuple[int, int]:
+    """First and last whole number of cycles within the tolerance of ``middle``."""
+    reach = 1 + TOLERANCE * middle
+    return max(1, math.ceil(middle - reach)), math.floor(middle + reach)
+
+
+def parts_seen(bands: Bands, gains: Gains) -> NDArray[np.bool_]:
+    """Whether the line of each damaged part stands out of the record in some band of some channel, shape (part,)."""
     b, n = gains
     whole = b * b * bands.bearing + 2 * b * n * bands.cross + n * n * bands.background
-    return bool(np.any(b * b * bands.lines > bands.thresholds * whole))
+    return np.any(b * b * bands.lines > bands.thresholds * whole, axis=(1, 2))
 
 
 class Judge:
@@ -125,12 +129,14 @@ class Judge:
         self._found: list[Bands] = []
 
     def sees(self, gains: Gains) -> bool:
-        """Whether the fault can be seen in some band."""
-        every = self._spectra.bands
+        """Whether every damaged part can be seen in some band."""
+        every, seen = self._spectra.bands, np.zeros(len(self._spectra.cycles), bool)
         for place, bands in enumerate((every[:1], every[1:])):
             if place == len(self._found) and bands:
                 self._found.append(judged_bands(self._spectra, bands))
-            if place < len(self._found) and is_detectable(self._found[place], gains):
+            if place < len(self._found):
+                seen |= parts_seen(self._found[place], gains)
+            if seen.all():
                 return True
         return False
 
@@ -143,7 +149,7 @@ def judged_bands(spectra: Spectra, bands: list[tuple[int, int]]) -> Bands:
         cross = np.sum((bearing * np.conj(background)).real, axis=1, dtype=np.float64)
         line = _largest_line(spectra.fault[:, low:high] * scale, spectra, (low, high))
         rows.append([line, *(scale**2 * power for power in (_power(bearing), _power(background), cross))])
-    lines, of_bearing, of_background, crosses = (np.stack(column, axis=1) for column in zip(*rows, strict=True))
+    lines, of_bearing, of_background, crosses = (np.stack(column, axis=-1) for column in zip(*rows, strict=True))
     thresholds = np.array([math.sqrt(spectra.chance / (high - low)) for low, high in bands])
     return Bands(lines, of_bearing, of_background, crosses, thresholds)
 
@@ -153,10 +159,11 @@ def _power(spectrum: NDArray[np.complexfloating]) -> FloatArray:
 
 
 def _largest_line(spectrum: NDArray[np.complexfloating], of: Spectra, band: tuple[int, int]) -> FloatArray:
-    """Largest searched line of the squared envelope of a band, shape (channel,)."""
+    """Largest line of the squared envelope of a band for each damaged part, shape (part, channel); 0 where the band is too narrow."""
     searched = of.searched(band)
-    if not searched:
-        return np.zeros(len(spectrum))
+    largest = np.zeros((len(searched), len(spectrum)))
+    if not any(searched):
+        return largest
     signal = ifft(spectrum, norm="forward")
     envelope = signal.real**2 + signal.imag**2
     count = envelope.shape[1]
@@ -164,4 +171,8 @@ def _largest_line(spectrum: NDArray[np.complexfloating], of: Spectra, band: tupl
         at = np.interp(np.arange(count) * (of.n / count), np.arange(of.n), of.angles)
         even = np.linspace(at[0], at[-1], count)
         envelope = np.stack([np.interp(even, at, row) for row in envelope])
-    return np.max(np.abs(rfft(envelope))[:, searched], axis=1).astype(np.float64) / count
+    lines = np.abs(rfft(envelope)) / count
+    for part, cycles in enumerate(searched):
+        if cycles:
+            largest[part] = lines[:, cycles].max(axis=1)
+    return largest

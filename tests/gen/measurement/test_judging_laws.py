@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen.measurement import judging
-from gen.measurement.judging import FALSE_ALARM, Judge, is_detectable, judged_bands, spectra_of
+from gen.measurement.judging import FALSE_ALARM, Judge, judged_bands, parts_seen, spectra_of
 from gen.measurement.levels import Gains
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
@@ -46,7 +46,7 @@ def test_more_channels_do_not_give_more_false_alarms(monkeypatch):
 def test_a_line_at_the_threshold_has_the_stated_probability_in_the_whole_search():
     fault = np.concatenate([ringing(ORDER), ringing(ORDER)])
     spectra = spectra_of(fault, np.zeros_like(fault), fault, (ORDER,), ANGLES, steady=True)
-    searched = 2 * sum(len(spectra.searched(band)) for band in spectra.bands)
+    searched = 2 * sum(len(cycles) for band in spectra.bands for cycles in spectra.searched(band))
     for (low, high), threshold in zip(spectra.bands, judged_bands(spectra, spectra.bands).thresholds, strict=True):
         assert searched * math.exp(-(high - low) * threshold**2) == pytest.approx(FALSE_ALARM)
 
@@ -79,6 +79,13 @@ def test_a_fault_is_seen_by_its_second_or_third_harmonic_alone():
     assert not judged(ringing(4.5 * ORDER), noise(1))
 
 
+def test_where_two_parts_are_damaged_each_must_show_its_line():
+    other = 5.4 * 0.83
+    assert judged(ringing(ORDER) + ringing(other), noise(1), orders=(ORDER, other))
+    assert not judged(ringing(ORDER), noise(1), orders=(ORDER, other))
+    assert not judged(ringing(other), noise(1), orders=(ORDER, other))
+
+
 def test_one_loud_channel_does_not_hide_a_fault_that_another_shows():
     fault = np.concatenate([ringing(ORDER), ringing(ORDER)])
     rest = np.concatenate([1000 * noise(1), noise(2)])
@@ -90,8 +97,8 @@ def test_a_fault_that_is_loud_in_one_band_is_seen_behind_noise_in_another():
     hum = 30 * np.sin(2 * np.pi * 700 * time)[None].astype(np.float32)
     spectra = spectra_of(ringing(ORDER), np.zeros_like(hum), hum, (ORDER,), ANGLES, steady=True)
     whole, *quarters = spectra.bands
-    assert not is_detectable(judged_bands(spectra, [whole]), Gains(1.0, 1.0))
-    assert is_detectable(judged_bands(spectra, quarters), Gains(1.0, 1.0))
+    assert parts_seen(judged_bands(spectra, [whole]), Gains(1.0, 1.0)).tolist() == [False]
+    assert parts_seen(judged_bands(spectra, quarters), Gains(1.0, 1.0)).tolist() == [True]
     assert Judge(spectra).sees(Gains(1.0, 1.0))
 
 
