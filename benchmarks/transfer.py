@@ -1,6 +1,6 @@
 """Train on ``domain_randomised`` alone and test on recordings of real machines.
 
-``python benchmarks/transfer.py REAL`` with REAL a folder that holds ``cwru`` and ``mfpt`` as their providers publish them. Each seed gives
+``python -m benchmarks.transfer REAL`` with REAL a folder that holds ``cwru`` and ``mfpt`` as their providers publish them. Each seed gives
 another corpus. Scores are balanced accuracies over the classes present, by half-second window and by recording.
 """
 

@@ -3,7 +3,7 @@
 import importlib.util
 import math
 
-from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting
+from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
 from benchmarks.profile import PARTS, kernel_parts
@@ -93,3 +93,9 @@ def test_the_table_has_a_line_for_each_row_and_a_sentence_for_each_that_is_missi
     lines = table([made, Skipped("rival", "it is not here.")]).splitlines()
     assert lines[1].split() == ["kernel", "speed", "4", "records/s", "rival", "3", "records/s", "2", "3"]
     assert lines[2] == "rival: it is not here."
+
+
+def test_judged_records_are_compared_with_records_that_are_not():
+    rows = finite_rows(truth.rows(1, 12))
+    assert set(rows) == {"truth full", "truth redraw"}
+    assert all(row.ratio > 1 for row in rows.values())
