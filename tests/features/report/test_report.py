@@ -165,6 +165,7 @@ def test_quantities_are_drawn_in_the_unit_of_their_label():
         ("depth", "[µm]", 5e-6, 5.0),
         ("angle", "[°]", np.pi / 2, 90.0),
         ("snr", "[dB]", 6.0, 6.0),
+        ("fault_snr", "[dB]", 6.0, 6.0),
     ):
         label, factor = factors.pop(name)
         assert label.endswith(unit)

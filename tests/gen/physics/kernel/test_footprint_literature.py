@@ -79,5 +79,5 @@ def test_the_model_page_says_how_far_a_ball_drops_into_a_narrow_spall_through_it
     path = ball_path(np.full(3, 280e-6), width, bearing.ball_diameter / 2, bearing.inner_radius)
     footprint = footprints(bearing, LOAD)[0]
     through = contact_mean(path, width, footprint, footprint).max()
-    page = (ROOT / "docs" / "model.md").read_text(encoding="utf-8")
+    page = " ".join((ROOT / "docs" / "model.md").read_text(encoding="utf-8").split())
     assert f"under {LOAD:.0f} N by {1e6 * through:.2f} um instead of {1e6 * path.max():.2f} um" in page
