@@ -6,8 +6,11 @@ operating conditions of a class do not depend on what can be seen in them. All r
 another part, so that every part finds the same fault.
 """
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, replace
+
+import numpy as np
+from numpy.typing import NDArray
 
 from gen.measurement.measure import LEVEL_TRIES, Measured, measure
 from gen.recipe import Recipe
@@ -41,7 +44,8 @@ def made_records(recipe: Recipe, numbers: range, report: Callable[[int], None] =
     again = _unseen(made, tries)
     while again:
         redrawn = _with_hits(_redrawn(again, recipe, tries), recipe, tries)
-        _replace(made, _made(redrawn, recipe, LEVEL_TRIES), [one.record.number - whole.start for one in redrawn])
+        places = [scenario.record.number - whole.start for scenario in redrawn]
+        _replace(made, _made(redrawn, recipe, LEVEL_TRIES, known_twins=_twins_at(made, places)), places)
         again = _unseen(made, tries)
     advice = "raise level.faulty_db" if recipe.level.kind == "snr" else "lower level.background_m_s2"
     for place in _unseen_places(made):
@@ -63,11 +67,23 @@ def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> R
 
 
 def _made(
-    scenarios: list[Scenario], recipe: Recipe, level_tries: int, report: Callable[[int], None] = lambda _: None
+    scenarios: list[Scenario],
+    recipe: Recipe,
+    level_tries: int,
+    report: Callable[[int], None] = lambda _: None,
+    known_twins: Mapping[int, NDArray[np.float32]] | None = None,
 ) -> Records:
-    response = simulate(scenarios, recipe, report=report)
+    response = simulate(scenarios, recipe, report=report, known_twins=known_twins)
     measured = measure(response.acceleration, scenarios, recipe, response.twins, level_tries=level_tries)
     return Records(response, measured)
+
+
+def _twins_at(made: Records, places: list[int]) -> dict[int, NDArray[np.float32]]:
+    """Accelerations without the fault at some places, by rank: another fault does not change them."""
+    twins = made.response.twins
+    if twins is None:
+        return {}
+    return {rank: twins.acceleration[place] for rank, place in enumerate(places) if place not in made.response.failures}
 
 
 def _redrawn(specimens: Iterable[int], recipe: Recipe, tries: dict[int, int]) -> list[Scenario]:

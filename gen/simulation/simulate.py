@@ -52,7 +52,13 @@ class Response:
     """None with ``corpus.truth: none``."""
 
 
-def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int], None] = lambda _: None) -> Response:
+def simulate(
+    scenarios: list[Scenario],
+    recipe: Recipe,
+    *,
+    report: Callable[[int], None] = lambda _: None,
+    known_twins: Mapping[int, NDArray[np.float32]] | None = None,
+) -> Response:
     """Integrate scenarios.
 
     Parameters
@@ -63,6 +69,8 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
         Gives sample rate, duration and settling time.
     report : callable, optional
         Called after each batch with the number of records integrated so far.
+    known_twins : mapping, optional
+        Accelerations of records without their faults that are known already, by place, each of shape (channel, time) [m s-2].
 
     Returns
     -------
@@ -78,7 +86,10 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
     inputs, failures = possible_inputs(scenarios, recipe)
     given = {place: some for place, some in enumerate(inputs) if some is not None}
     steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
-    healthy = _healthy_inputs(scenarios, given, recipe)
+    known_twins = known_twins or {}
+    healthy = _healthy_inputs(
+        scenarios, {place: some for place, some in given.items() if place not in known_twins}, recipe
+    )
     twin_rows = {place: row for row, place in enumerate(healthy, len(given))}
     every, of_steps = [*given.values(), *healthy.values()], [*steps.values(), *(steps[place] for place in healthy)]
     made = integrate_all(every, of_steps, axis, lambda done: report(done * len(given) // len(every)))
@@ -103,6 +114,9 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
         for place, row in twin_rows.items():
             if place not in failures:
                 twins.acceleration[place] = made.response[row]
+        for place, alone in known_twins.items():
+            if place not in failures:
+                twins.acceleration[place] = alone
     return Response(acceleration, oversampling, phases, failures, inputs, truth, twins)
 
 
