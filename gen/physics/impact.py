@@ -43,7 +43,7 @@ def hertz_time(bearing: Bearing) -> float:
 
     >>> bearing = Bearing("6205", 9, 39.04e-3, 7.94e-3)
     >>> round(1e6 * hertz_time(bearing) * 0.09**-0.2, 1)  # microseconds at 0.09 m/s
-    45.2
+    44.6
     """
     modulus = effective_modulus(bearing.youngs_modulus, bearing.poisson_ratio) / 2  # E* of two bodies of one material
     square = rolling_mass(bearing) ** 2 / (bearing.ball_diameter / 2 * modulus**2)
