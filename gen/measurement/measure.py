@@ -105,7 +105,7 @@ def measure(
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
     several = max(1, _ROWS // shape[1])
-    # of the groups; backwards, because the last of a group has the largest severity. One that diverged has no level.
+    # Backwards: the last record of a group has the largest severity and sets the level of the group. One that diverged sets none.
     levels: dict[int, Levelled] = {}
     for first in reversed(range(0, shape[0], several)):
         some = slice(first, first + several)
