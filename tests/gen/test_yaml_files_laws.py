@@ -190,7 +190,7 @@ def test_the_recipes_that_ship_keep_their_hashes():
         "domain_randomised": "8612b4ea1296a5af",
         "every_fault": "9e14e5cf7320a1e9",
         "ophel2025": "3ded3d0dbefc31bc",
-        "quickstart": "8e51a980b9e2c6cf",
+        "quickstart": "e5732fb8f87d8bf0",
         "run_up": "293bb531a1817f4f",
     }
 
