@@ -19,18 +19,18 @@ SETTINGS = {
 }
 
 
-def rows(pairs: int = 7, records: int = 480) -> Iterator[Line]:
+def rows(pairs: int = 7, records: int = 480, recipe: Path | str = "domain_randomised") -> Iterator[Line]:
     """Lines of the table."""
-    recipe = read_recipe("domain_randomised", records=records)
+    checked = read_recipe(recipe, records=records)
     recipes = {
-        name: recipe.model_copy(update={"corpus": recipe.corpus.model_copy(update=keys)})
+        name: checked.model_copy(update={"corpus": checked.corpus.model_copy(update=keys)})
         for name, keys in SETTINGS.items()
     }
     for given in recipes.values():
         cpu_per_record(given)  # compiles the kernels, or loads them
     found = interleaved(pairs, **{name: lambda given=given: cpu_per_record(given) for name, given in recipes.items()})
     for name in ("full", "redraw"):
-        what = f"domain_randomised, {' and '.join(f'{key}: {value}' for key, value in SETTINGS[name].items())}"
+        what = f"{checked.name}, {' and '.join(f'{key}: {value}' for key, value in SETTINGS[name].items())}"
         yield row(f"truth {name}", what, "ms", found[name], "truth: none", found["none"])
 
 

@@ -60,10 +60,8 @@ def test_over_the_rigs_the_classes_have_the_shares_of_their_weights(recipe_with,
 def test_over_the_seeds_the_classes_of_a_rig_have_the_shares_of_their_weights(recipe_with, specimens):
     weights = (2, 1, 0.6, 0.4)
     seeds_tried = 3000
-    recipes = (
-        recipe_with({"seed": seed, "corpus.specimens_per_rig": specimens, "faults": faults(weights)})
-        for seed in range(seeds_tried)
-    )
+    recipe = recipe_with({"corpus.specimens_per_rig": specimens, "faults": faults(weights)})
+    recipes = (recipe.model_copy(update={"seed": seed}) for seed in range(seeds_tried))
     counts = sum(counted(recipe, 1)[0] for recipe in recipes)
     np.testing.assert_allclose(counts / seeds_tried, specimens * np.array(weights) / 4, atol=0.04)  # 4 sigma
 
