@@ -1,4 +1,4 @@
-"""Laws of the sensor chain: levels, converter, path and background, on responses that need no simulation."""
+"""Laws of the sensor chain: levels, path and background, on responses that need no simulation."""
 
 from dataclasses import replace
 
@@ -8,39 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal import welch
 
-from gen.measurement.measure import LARGEST_COUNT, measure
+from gen.measurement.measure import measure
 from gen.measurement.rig import base_excited
 from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios, with_level
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import timeline
+from tests.measuring import FLOAT, FS, QUIET, hiss, response, rms, silence, with_rig
 
 law = settings(deadline=None, max_examples=25)
-FS = 12_000.0
-FLOAT = {"recording.converter": {"kind": "float32"}}
-QUIET = Background(0.0, 1e-6, (), ShaftModulation(), (), (), None, None)
-
-
-def response(recipe, n_records, wave):
-    """``wave(time)`` as the acceleration of every record and channel, shape (record, channel, time)."""
-    n = timeline(recipe).lead + recipe.n_samples
-    signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
-    return signal.copy()
-
-
-def silence(recipe, n_records):
-    return response(recipe, n_records, np.zeros_like)
-
-
-def hiss(recipe, n_records):
-    return response(recipe, n_records, lambda time: np.random.default_rng(0).standard_normal(len(time)))
-
-
-def rms(x):
-    return np.sqrt(np.mean(np.asarray(x, dtype=float) ** 2, axis=(1, 2)))
-
-
-def with_rig(scenarios, **changes):
-    return [replace(scenario, rig=replace(scenario.rig, **changes)) for scenario in scenarios]
 
 
 @pytest.fixture(scope="module")
@@ -137,114 +112,6 @@ def test_a_record_is_measured_alike_alone_and_among_others(recipe_with):
     for place in (0, 7, 23):
         alone = measure(moved[place : place + 1], [scenarios[place]], recipe)
         np.testing.assert_array_equal(alone.signal[0], together.signal[place])
-
-
-@law
-@given(st.floats(1.0, 1000.0))
-def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recipe_with, full_scale):
-    adc = {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}}
-    recipe, exact = recipe_with(adc), recipe_with(FLOAT)
-    scenarios = draw_scenarios(recipe, 0, 3)
-    moved = response(recipe, 3, lambda time: 40 * np.sin(2 * np.pi * 313 * time))
-    counts, truth = measure(moved, scenarios, recipe), measure(moved, scenarios, exact)
-    assert counts.counts_per_unit == pytest.approx(LARGEST_COUNT / full_scale)
-    assert counts.signal.dtype == np.int16
-    assert np.abs(counts.signal.astype(int)).max() <= LARGEST_COUNT
-    scaled = truth.signal.astype(float) * counts.counts_per_unit
-    over = np.abs(scaled) > LARGEST_COUNT + 0.5
-    np.testing.assert_array_equal(counts.clipped, over.sum(axis=(1, 2)))
-    error = np.abs(counts.signal - scaled)[~over]
-    assert error.max(initial=0.0) <= 0.5 + 1e-6 * np.abs(scaled).max()
-    np.testing.assert_array_equal(counts.signal[over], np.sign(scaled[over]) * LARGEST_COUNT)
-
-
-def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
-    recipe = recipe_with(FLOAT | {"path.modes": None, "path.direct": 1.0})
-    scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, background_rms=0.0, gain=1.0)
-    moved = response(recipe, 1, lambda time: 1e5 * np.cos(2 * np.pi * 500 * time))
-    measured = measure(moved, scenarios, recipe)
-    assert measured.counts_per_unit is None
-    assert measured.clipped.tolist() == [0]
-    expected = moved[:, :, timeline(recipe).lead :]
-    np.testing.assert_allclose(measured.signal, expected, rtol=1e-6, atol=1e-2)
-
-
-PLAIN = {"path.modes": None, "path.direct": 1.0}
-COUNT = 500 / LARGEST_COUNT  # m s-2
-
-
-def pure_tone(recipe, amplitude):
-    """A response that is a tone of this amplitude, whole cycles of it in the record [m s-2]."""
-    return response(recipe, 1, lambda time: amplitude * np.cos(2 * np.pi * 500 * time))
-
-
-def plain(recipe, **changes):
-    quiet = {"background": QUIET, "background_rms": 0.0, "gain": 1.0}
-    return with_rig(draw_scenarios(recipe, 0, 1), **(quiet | changes))
-
-
-def test_a_sample_at_full_scale_is_not_clipped_and_one_count_beyond_it_is(recipe_with):
-    recipe = recipe_with(PLAIN)
-    moved, start = silence(recipe, 1), timeline(recipe).lead
-    at_full_scale = COUNT * np.array([LARGEST_COUNT, -LARGEST_COUNT])
-    moved[0, 0, start : start + 2] = at_full_scale
-    found = measure(moved, plain(recipe), recipe)
-    assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
-    assert found.clipped.tolist() == [0]
-    moved[0, 0, start : start + 2] = at_full_scale * (1 + 1 / LARGEST_COUNT)
-    found = measure(moved, plain(recipe), recipe)
-    assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
-    assert found.clipped.tolist() == [2]
-
-
-def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_converter(recipe_with):
-    """Rounding to counts has an error of 1/sqrt(12) count, which is the only background of such a record."""
-    recipe = recipe_with(PLAIN)
-    found = measure(pure_tone(recipe, 100.0), plain(recipe), recipe)
-    exact = measure(pure_tone(recipe, 100.0), plain(recipe), recipe_with(FLOAT | PLAIN)).signal[0, 0].astype(float)
-    error = found.signal[0, 0] * COUNT - exact
-    assert found.snr[0] == pytest.approx(20 * np.log10(100 / np.sqrt(2) / (COUNT / np.sqrt(12))), abs=1e-3)
-    assert found.snr[0] == pytest.approx(20 * np.log10(np.std(exact) / np.std(error)), abs=1.5)
-
-
-def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_ratio(recipe_with):
-    recipe = recipe_with(PLAIN)
-    without, with_little, with_more = (
-        measure(pure_tone(recipe, 100.0), plain(recipe, background_rms=rms), recipe).snr[0] for rms in (0.0, 1e-6, 1.0)
-    )
-    assert without == with_little
-    assert with_more == pytest.approx(20 * np.log10(100 / np.sqrt(2)), abs=0.3)
-
-
-@pytest.mark.parametrize(
-    ("amplitude", "background", "converter"),
-    [(0.4 * COUNT, 0.0, {}), (0.0, 0.3, {}), (0.0, 0.0, {}), (100.0, 0.0, FLOAT), (0.0, 0.3, FLOAT), (0.0, 0.0, FLOAT)],
-    ids=["below half a count", "no bearing", "silence", "no background", "no bearing in floats", "silence in floats"],
-)
-def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with, amplitude, background, converter):
-    """A bearing below half a count without background is stored as zeros; it was once labelled with 515 dB."""
-    recipe = recipe_with(PLAIN | converter)
-    found = measure(pure_tone(recipe, amplitude), plain(recipe, background_rms=background), recipe)
-    assert np.isnan(found.snr[0])
-    assert found.signal.any() == (background > 0 or (bool(converter) and amplitude > 0))
-
-
-def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
-    """A signal of a tenth of a count is still in the record, because the background acts as dither."""
-    recipe = recipe_with(PLAIN)
-    found = measure(pure_tone(recipe, 0.1 * COUNT), plain(recipe, background_rms=1.0), recipe)
-    assert found.snr[0] == pytest.approx(20 * np.log10(0.1 * COUNT / np.sqrt(2)), abs=0.3)
-
-
-def test_a_record_that_diverged_has_no_ratio_and_leaves_its_neighbours_alone(recipe_with):
-    recipe = recipe_with()
-    scenarios, moved = draw_scenarios(recipe, 0, 3), hiss(recipe, 3)
-    sound = measure(moved, scenarios, recipe)
-    moved[1] = np.nan
-    found = measure(moved, scenarios, recipe)
-    assert np.isnan(found.snr).tolist() == [False, True, False]
-    assert not found.signal[1].any()
-    np.testing.assert_array_equal(found.signal[[0, 2]], sound.signal[[0, 2]])
 
 
 def tone_through(recipe, scenarios, frequency):

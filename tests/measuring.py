@@ -1,0 +1,35 @@
+"""Accelerations and rigs for the laws of the measurement, on responses that need no simulation."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from gen.scenarios import Background, ShaftModulation
+from gen.simulation.timeline import timeline
+
+FS = 12_000.0
+FLOAT = {"recording.converter": {"kind": "float32"}}
+QUIET = Background(0.0, 1e-6, (), ShaftModulation(), (), (), None, None)
+
+
+def response(recipe, n_records, wave):
+    """``wave(time)`` as the acceleration of every record and channel, shape (record, channel, time)."""
+    n = timeline(recipe).lead + recipe.n_samples
+    signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
+    return signal.copy()
+
+
+def silence(recipe, n_records):
+    return response(recipe, n_records, np.zeros_like)
+
+
+def hiss(recipe, n_records):
+    return response(recipe, n_records, lambda time: np.random.default_rng(0).standard_normal(len(time)))
+
+
+def rms(x):
+    return np.sqrt(np.mean(np.asarray(x, dtype=float) ** 2, axis=(1, 2)))
+
+
+def with_rig(scenarios, **changes):
+    return [replace(scenario, rig=replace(scenario.rig, **changes)) for scenario in scenarios]
