@@ -1,4 +1,4 @@
-"""A slow, readable twin of the kernel in NumPy, and the kernel run over the same time to compare them.
+"""A slow, readable twin of the kernel in NumPy; :mod:`tests.lanes` runs the kernel over the same time.
 
 The twin integrates one record. Angles are angles, every ball is compared with every spall, and every process is the sum of cosines that
 was drawn. It shares one property with the kernel: between two knots slow quantities change linearly.
@@ -8,42 +8,27 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.inputs import KernelInput, SpallInput, Turning
 from gen.physics.kernel import decimate
-from gen.physics.kernel.batch import input_shape, lay_out
-from gen.physics.kernel.compiling import KERNEL, LANES
 from gen.physics.kernel.drop import RAISED_EDGE
-from gen.physics.kernel.integrate import kernel_sources, prepare, to_next_knot
 from gen.physics.kernel.layout import (
-    AXES,
     JITTER_FIRST,
     JITTER_TERMS,
-    N_DYNAMIC,
     SLIP_FIRST,
     SLIP_TERMS,
     SPEED_TERMS,
     SPIN_FIRST,
     SPIN_TERMS,
-    STATE_ROWS,
     TILT_FIRST,
     TILT_TERMS,
-    Batch,
     FloatArray,
-    Shape,
-    State,
-    param_rows,
-    slow_rows,
 )
 from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
-from gen.physics.kernel.step import advance
 from gen.physics.kernel.strikes import LONGEST_PULSE
-from gen.physics.kernel.turning import N_ANGLES, STRIDE
+from gen.physics.kernel.turning import STRIDE
 from gen.physics.rotor import Machine
-
-EVERY_ACCELERATION = np.eye(AXES)
 
 
 class Trip(NamedTuple):
@@ -467,63 +452,3 @@ def decimation_taps(n_steps: int) -> FloatArray:
             spread[::spacing] = taps[: kept + 1, 0]
             whole, spacing = np.convolve(whole, spread), spacing * factor
     return whole
-
-
-def march_lanes(
-    records: list[KernelInput], n_knots: int, n_steps: int, knot: float, start: FloatArray | None = None
-) -> list[Trip]:
-    """The same by the lane kernel, one trip per record; all of one shape, from static rest unless a ``start`` is given."""
-    every = [record._replace(pickups=EVERY_ACCELERATION) for record in records]
-    shape = input_shape(every[0])
-    batch = lay_out(every, shape, knot)
-    if start is not None:
-        batch.state.reshape(-1, LANES)[:N_DYNAMIC] = np.asarray(start)[:, None]
-    return march_batch(shape, batch, n_knots, n_steps, knot)[: len(records)]
-
-
-def march_batch(shape: Shape, batch: Batch, n_knots: int, n_steps: int, knot: float) -> list[Trip]:
-    """A batch by the lane kernel, one trip per lane; its channels are the six accelerations."""
-    own = with_room(shape, batch, n_steps)
-    states = np.empty((n_knots + 1, STATE_ROWS, LANES))
-    angles = np.empty((n_knots + 1, N_ANGLES, LANES))
-    history = np.empty(n_knots * n_steps * AXES * LANES)
-    _march(shape, own, knot / n_steps, n_steps, states, angles, history)
-    accelerations = history.reshape(-1, AXES, LANES)
-    return [
-        Trip(
-            states[:, :N_DYNAMIC, i],
-            accelerations[..., i],
-            angles[..., i],
-            states[:, State.CAGE_COS : State.STEEPEST, i],
-        )
-        for i in range(LANES)
-    ]
-
-
-def with_room(shape: Shape, batch: Batch, n_steps: int) -> Batch:
-    """A copy of a batch that the kernel may change, with all rows of ``params`` and ``slow``."""
-    params = np.zeros(param_rows(shape, n_steps) * LANES)
-    params[: batch.params.size] = batch.params
-    own = {name: array.copy() for name, array in batch._asdict().items()}
-    return Batch(**own | {"params": params, "slow": np.zeros(2 * slow_rows(shape) * LANES)})
-
-
-def _cached(sources: str):
-    """Compile and cache: the kernel under test is part of the key, as a variable that the function closes over."""
-
-    @njit(**KERNEL)
-    def march(shape, batch, dt, n_steps, states, angles, history):
-        _ = sources
-        work = prepare(shape, batch, n_steps)
-        for knot in range(len(states)):
-            states[knot] = batch.state.reshape(STATE_ROWS, LANES)
-            angles[knot] = batch.angles.reshape(N_ANGLES, LANES)
-            if knot + 1 < len(states):
-                to_next_knot(shape, batch, knot, n_steps, dt, work)
-                since = 2.0 * n_steps * (knot % STRIDE)
-                advance(shape, batch.state, batch.params, dt, n_steps, since, history, knot * n_steps * AXES)
-
-    return march
-
-
-_march = _cached(kernel_sources())

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from features.faults import CLASSES
@@ -31,23 +32,28 @@ BRIGHTEST_DB = 30.0  # level drawn black, above the median
 HIGHEST_ORDER = 17.0  # end of the axis
 
 
+def draw_envelope(axes: Axes, shown: Shown) -> None:
+    """Squared envelope spectrum of one record over orders: lines of its fault shaded, the other fundamentals dashed."""
+    order, spectrum = squared_envelope(shown)
+    visible = (order > 0) & (order <= HIGHEST_ORDER)
+    own, others = fault_lines(shown.orders, shown.fault)
+    for line in own.values():
+        span = line * (1 - TOLERANCE), line * (1 + TOLERANCE)
+        axes.axvspan(*span, color=CLASSES[shown.fault].colour, alpha=0.25, linewidth=0)
+    for line in others.values():
+        axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
+    axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
+    axes.set(xlim=(0, HIGHEST_ORDER), ylim=(0, None))
+
+
 @rc_context(STYLE)
 def draw_envelopes(records: Sequence[Shown]) -> Figure:
-    """Squared envelope spectra of several records in two columns: lines of the fault shaded, the other fundamentals dashed."""
+    """Squared envelope spectra of several records in two columns."""
     rows = -(-len(records) // 2)
     figure = Figure(figsize=(2 * WIDTH, 1.75 * rows), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False, sharex=True).ravel()
     for axes, shown in zip(panels, records, strict=False):
-        order, spectrum = squared_envelope(shown)
-        visible = (order > 0) & (order <= HIGHEST_ORDER)
-        own, others = fault_lines(shown.orders, shown.fault)
-        for line in own.values():
-            span = line * (1 - TOLERANCE), line * (1 + TOLERANCE)
-            axes.axvspan(*span, color=CLASSES[shown.fault].colour, alpha=0.25, linewidth=0)
-        for line in others.values():
-            axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
-        axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
-        axes.set(xlim=(0, HIGHEST_ORDER), ylim=(0, None))
+        draw_envelope(axes, shown)
         axes.set_title(shown.title, color=CLASSES[shown.fault].colour, fontweight="bold")
     for axes in panels[len(records) :]:
         axes.remove()

@@ -10,21 +10,16 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.faults import CLASSES
-from features.report.envelopes import HIGHEST_ORDER
+from features.report.envelopes import draw_envelope
 from features.report.pictures import (
     BLUE,
-    FAINT,
     INK,
     SEGMENT,
     STYLE,
-    TOLERANCE,
     TURNS,
     VERMILION,
     WIDTH,
     Shown,
-    fault_lines,
-    squared_envelope,
     thinned,
 )
 from features.signal.rows import FloatArray
@@ -56,7 +51,8 @@ def draw_sides(records: Mapping[int, Shown], top: float) -> Figure:
         level = 10 * np.log10(np.maximum(share, 10 ** (FAINTEST_DB / 10)))
         density.plot(frequencies / 1e3, level, color=INK, linewidth=0.8)
         density.set(xlabel="frequency [kHz]", xlim=(0, top / 1e3))
-        _draw_envelope(envelope, shown)
+        draw_envelope(envelope, shown)
+        envelope.set_xlabel("order of the shaft")
     panels[0, 0].set_ylabel("acceleration / rms")
     panels[1, 0].set_ylabel("share of the energy [dB]")
     panels[2, 0].set_ylabel("squared envelope [1]")
@@ -73,19 +69,6 @@ def _draw_turns(axes: Axes, shown: Shown) -> None:
     turns, values = thinned(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
     axes.plot(turns, values, color=INK, linewidth=0.5)
     axes.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
-
-
-def _draw_envelope(axes: Axes, shown: Shown) -> None:
-    order, spectrum = squared_envelope(shown)
-    visible = (order > 0) & (order <= HIGHEST_ORDER)
-    own, others = fault_lines(shown.orders, shown.fault)
-    for line in own.values():
-        span = line * (1 - TOLERANCE), line * (1 + TOLERANCE)
-        axes.axvspan(*span, color=CLASSES[shown.fault].colour, alpha=0.25, linewidth=0)
-    for line in others.values():
-        axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
-    axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
-    axes.set(xlabel="order of the shaft", xlim=(0, HIGHEST_ORDER), ylim=(0, None))
 
 
 @rc_context(STYLE)

@@ -14,7 +14,7 @@ from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
-from tests.reference import march_lanes
+from tests.lanes import march_lanes
 
 FS, SAMPLES, LANES = 100_000, 500, 8
 RECORDING = {"sample_rate_hz": FS, "oversampling": 1, "duration_s": 0.001, "settle_s": 0.05}

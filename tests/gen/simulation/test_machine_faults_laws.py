@@ -16,7 +16,8 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.inputs import SpallInput, Turning
 from gen.physics.kernel.outer_forces import KNOCK_SCATTER, KNOCK_SECONDS
 from gen.physics.rotor import as_columns, rest
-from tests.reference import knock_scatter, march_lanes
+from tests.lanes import march_lanes
+from tests.reference import knock_scatter
 from tests.strategies import RIG, angles, record
 
 law = settings(deadline=None, max_examples=15)

@@ -12,7 +12,8 @@ from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
 from gen.simulation.steps import FINE_STEP, steps_per_sample
 from gen.simulation.timeline import timeline
-from tests.reference import decimation_taps, march_lanes, slow_motion, waviness
+from tests.lanes import march_lanes
+from tests.reference import decimation_taps, slow_motion, waviness
 from tests.responses import truth
 
 FS = 12_000.0

@@ -15,7 +15,8 @@ from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate, step_errors
 from gen.simulation.steps import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places
 from gen.simulation.timeline import timeline
-from tests.reference import contact_stiffness, contacts, march_lanes, slow_motion
+from tests.lanes import march_lanes
+from tests.reference import contact_stiffness, contacts, slow_motion
 
 FS = 12_000.0
 # the races of the second rig are so rough that ball forces far exceed the load from which the step is chosen

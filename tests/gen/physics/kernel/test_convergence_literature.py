@@ -13,7 +13,7 @@ import pytest
 
 from gen.physics.inputs import SpallInput, Turning
 from gen.physics.kernel.compiling import LANES
-from tests.reference import march_lanes
+from tests.lanes import march_lanes
 from tests.strategies import RIG, record
 
 KNOT = 1 / 12_000

@@ -10,8 +10,9 @@ from gen.physics.bearing import Bearing
 from gen.physics.inputs import KernelInput, SpallInput, Turning
 from gen.physics.kernel.layout import n_process_terms
 from gen.physics.rotor import Machine
+from tests.lanes import EVERY_ACCELERATION, march_lanes
 from tests.paths import GOLDEN
-from tests.reference import EVERY_ACCELERATION, march_lanes, right_hand_side, slow_motion
+from tests.reference import right_hand_side, slow_motion
 
 GOLDEN = json.loads((GOLDEN / "model.json").read_text())
 START = np.array(GOLDEN["start"])

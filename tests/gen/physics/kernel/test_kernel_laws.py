@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gen.physics.inputs import SpallInput, Turning
 from gen.physics.kernel.compiling import LANES
-from tests.reference import march_lanes
+from tests.lanes import march_lanes
 from tests.strategies import RIG, machines, record, steady_turnings, wandering_records
 
 law = settings(deadline=None, max_examples=20)

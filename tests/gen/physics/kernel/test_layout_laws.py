@@ -8,7 +8,7 @@ from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
 from gen.physics.kernel.layout import PICKUPS, Angle, Drive, Param, Site, SpallRow, direction_row
-from tests.reference import march_batch
+from tests.lanes import march_batch
 from tests.strategies import RIG, ball_waves, race_waves, record
 
 KNOT, N_KNOTS, N_STEPS = 1 / 12_000, 240, 4

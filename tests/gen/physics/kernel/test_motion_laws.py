@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 from gen.physics.bearing import slipping_orders
 from gen.physics.inputs import SpallInput, Turning
 from gen.physics.kernel.layout import SPEED_TERMS
-from tests.reference import march_lanes, process, slow_motion
+from tests.lanes import march_lanes
+from tests.reference import process, slow_motion
 from tests.strategies import RIG, angles, machines, record, seeds, wandering_records, wandering_turnings
 
 law = settings(deadline=None, max_examples=15)

@@ -11,7 +11,8 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.impact import edge_strikes, hertz_time, rolling_mass
 from gen.physics.inputs import SpallInput, Turning
 from gen.physics.kernel.pulse import pushed
-from tests.reference import march_lanes, march_twin
+from tests.lanes import march_lanes
+from tests.reference import march_twin
 from tests.strategies import RIG, record
 
 law = settings(deadline=None, max_examples=100)

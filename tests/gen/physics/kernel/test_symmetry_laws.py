@@ -12,7 +12,7 @@ from gen.physics.inputs import SpallInput, Waviness
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import N_DYNAMIC
-from tests.reference import march_lanes
+from tests.lanes import march_lanes
 from tests.strategies import RIG, angles, record, steady_turnings, troubled_records
 
 law = settings(deadline=None, max_examples=20)

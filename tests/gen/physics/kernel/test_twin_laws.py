@@ -13,14 +13,8 @@ from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate
 from gen.physics.kernel.layout import N_DYNAMIC
-from tests.reference import (
-    contact_stiffness,
-    contacts,
-    march_lanes,
-    march_twin,
-    right_hand_side,
-    slow_motion,
-)
+from tests.lanes import march_lanes
+from tests.reference import contact_stiffness, contacts, march_twin, right_hand_side, slow_motion
 from tests.strategies import RIG, extended_records, record, steady_records, troubled_records, wandering_records
 
 law = settings(deadline=None, max_examples=20)
