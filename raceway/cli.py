@@ -10,7 +10,7 @@ from typing import Any, NoReturn
 
 import click
 
-from raceway.commands import comparing, corpora, gallery, importing, learning, reproduce
+from raceway.commands import benchmarking, comparing, corpora, feature_tables, gallery, importing, models, reproduce
 from raceway.console.ending import NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 
@@ -92,13 +92,13 @@ for command in (
     corpora.validate,
     corpora.info,
     corpora.replay,
-    learning.plot,
-    learning.features,
-    learning.train,
-    learning.evaluate,
-    learning.benchmark,
+    feature_tables.plot,
+    feature_tables.features,
+    models.train,
+    models.evaluate,
+    benchmarking.benchmark,
     comparing.compare,
-    learning.bench,
+    benchmarking.bench,
     reproduce.reproduce,
     gallery.gallery,
 ):

@@ -1,15 +1,17 @@
 """The commands: each reads its options, calls ``gen``, ``features`` or a study, and shows the result.
 
-========= =====================================================================
-module    responsibility
-========= =====================================================================
-corpora   commands that make corpora and look at them
-importing commands that convert real recordings into the format
-comparing synthetic records against real ones
-learning  commands from a corpus to features, models and a report
-reproduce the seed paper run again
-gallery   a page of pictures of simulated signals
-========= =====================================================================
+============== ================================================================
+module         responsibility
+============== ================================================================
+corpora        commands that make corpora and look at them
+importing      commands that convert real recordings into the format
+feature_tables a picture of one record, and features of all
+models         a model trained, and scored on another corpus
+benchmarking   scores of all baselines, and the speed of this machine
+comparing      synthetic records against real ones
+reproduce      the seed paper run again
+gallery        a page of pictures of simulated signals
+============== ================================================================
 
 Heavy libraries are imported inside the commands, so that help and version are printed at once. A command that takes a recipe looks for
 its file before it imports the simulator, so that a misspelt name is reported at once.

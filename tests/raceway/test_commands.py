@@ -16,7 +16,7 @@ from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.limits import VARIABLE
 from gen.simulation.simulate import simulate
 from raceway.cli import cli
-from raceway.commands import learning
+from raceway.commands import models
 
 
 def leaves(command, path=("raceway",)):
@@ -87,7 +87,7 @@ def test_the_package_runs_as_the_command():
 
 
 def test_the_choices_of_train_are_the_estimators_of_the_registry(run):
-    assert tuple(ESTIMATORS) == learning.ESTIMATORS
+    assert tuple(ESTIMATORS) == models.ESTIMATORS
     assert f"default: {DEFAULT_ESTIMATOR}" in " ".join(run("train", "--help").stdout.split())
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from features.baselines import save_model, train
-from raceway.commands import learning
+from raceway.commands import benchmarking, feature_tables, models
 from tests.model_files import make_table
 
 SENTENCE = "warning: tested but not trained: inner 2 mm wide; the scores of these classes include extrapolation."
@@ -33,7 +33,8 @@ def folder(tmp_path, monkeypatch):
     (tmp_path / "corpus").mkdir()
 
     def returning(made):
-        monkeypatch.setattr(learning, "_table", lambda _: made)
+        for module in (feature_tables, models, benchmarking):
+            monkeypatch.setattr(module, "table_of", lambda _: made)
         return tmp_path / "corpus"
 
     return returning
@@ -41,7 +42,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_parquet_without_pyarrow_is_refused_before_any_feature_is_computed(run, folder, tmp_path, monkeypatch):
     corpus = folder(None)
-    monkeypatch.setattr(learning, "_table", lambda _: pytest.fail("features were computed"))
+    monkeypatch.setattr(feature_tables, "table_of", lambda _: pytest.fail("features were computed"))
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     result = run("features", corpus, "-o", tmp_path / "x.parquet")
     assert result.exit_code != 0

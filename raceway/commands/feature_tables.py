@@ -1,0 +1,65 @@
+"""Commands that show one record and compute features, and the feature table that further commands need."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from raceway.console import show
+from raceway.console.options import corpus_argument, file_option, json_option, record_option
+from raceway.console.progress import progress
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@click.command()
+@corpus_argument
+@record_option
+@file_option("FILE", "Picture: .png, .svg or .pdf.", (".png", ".svg", ".pdf"))
+def plot(corpus: Path, record: int, output: Path) -> None:
+    """Draw one record with its fault lines.
+
+    The picture has the waveform, the power spectrum and the envelope spectrum.
+
+      raceway plot corpus --record 17 -o record.png
+    """
+    from features.report.examples import plot_record
+
+    plot_record(corpus, record, output)
+    show.text(f"{output}: record {record} of {corpus}.")
+
+
+@click.command()
+@corpus_argument
+@file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"))
+@json_option
+def features(corpus: Path, output: Path, as_json: bool) -> None:
+    """Compute the features of every record of DIR.
+
+    The table has one row per record, with the features of its signal and all its labels.
+
+      raceway features corpus -o features.nc
+      raceway features corpus -o features.parquet
+    """
+    from features.table_files import check_destination, write_table
+
+    check_destination(output)
+    table = table_of(corpus)
+    write_table(table, output)
+    records, columns = table.sizes["record"], table.sizes["feature"]
+    missing = table.attrs["records_with_missing_features"]
+    if as_json:
+        facts = {"table": output, "records": records, "features": columns, "records_with_missing_features": missing}
+        show.as_json(facts)
+        return
+    lacking = f"; some are missing in {show.counted(missing, 'record')}" if missing else ""
+    show.text(f"{output}: {columns} features of {show.counted(records, 'record')}{lacking}.")
+
+
+def table_of(corpus: Path) -> "xr.Dataset":
+    """Feature table of a corpus, with progress."""
+    from features import feature_table
+
+    with progress("computing features", "parts") as report:
+        return feature_table(corpus, scheduler="local", progress=report)
