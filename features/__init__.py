@@ -13,6 +13,7 @@ indicators  the feature vector of records, in four groups [pure]
 transformer the feature vector as a scikit-learn transformer
 table       corpus -> feature table (record, feature), part by part
 table_files feature tables on disk
+auditing    splits of real recordings that can leak
 baselines   classifiers on a feature table, scored by specimen or rig beside their controls
 realism     synthetic records against real ones: AUC of measures, class by class
 report      figures of records, corpora and scores, and one page with all of them
@@ -24,9 +25,17 @@ from typing import TYPE_CHECKING
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from features.auditing import audit_splits
     from features.baselines import evaluate
     from features.table import feature_table
 
-__all__ = ["evaluate", "feature_table"]
+__all__ = ["audit_splits", "evaluate", "feature_table"]
 
-__getattr__, __dir__ = lazy_names(__name__, {"features.baselines": ("evaluate",), "features.table": ("feature_table",)})
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "features.auditing": ("audit_splits",),
+        "features.baselines": ("evaluate",),
+        "features.table": ("feature_table",),
+    },
+)
