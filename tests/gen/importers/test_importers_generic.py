@@ -341,12 +341,17 @@ def test_a_link_out_of_the_folder_is_refused(tmp_path):
 
 def test_the_mapping_in_the_documentation_is_one(tmp_path):
     page = (ROOT / "docs" / "importing.md").read_text(encoding="utf-8")
-    (example,) = re.findall(r"```yaml\n(.*?)```", page, flags=re.DOTALL)
+    example, paths, channels = re.findall(r"```yaml\n(.*?)```", page, flags=re.DOTALL)
     (tmp_path / "mapping.yaml").write_text(example, encoding="utf-8")
     mapping = read_mapping(tmp_path / "mapping.yaml")
     entries = [next(section.examples()) for section in mapping.sections]
     assert [entry.fault for entry in entries] == ["healthy", "outer", "ball"]
     assert [bearing_of(entry).designation for entry in entries] == ["6205", "6205", "L8"]
+    (tmp_path / "mapping.yaml").write_text(paths, encoding="utf-8")
+    (section,) = read_mapping(tmp_path / "mapping.yaml").sections
+    assert section.entry({"fault": "O", "shaft_rpm": "1200"}).recording == "O 1200"
+    (tmp_path / "mapping.yaml").write_text(f"{COMMON}{channels}files: [{{path: a.csv}}]", encoding="utf-8")
+    assert read_mapping(tmp_path / "mapping.yaml").channels == ("drive end", "fan end")
 
 
 def test_a_folder_in_place_of_a_mapping_file_is_refused_with_what_to_give(tmp_path):
