@@ -48,11 +48,22 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     CorpusError
         As :func:`all_records`, or if all records are of class ``unknown``.
     """
+    return all_records(labelled_rows(table), features)
+
+
+def labelled_rows(table: xr.Dataset) -> xr.Dataset:
+    """Records of a feature table whose class is known.
+
+    Raises
+    ------
+    CorpusError
+        If all records are of class ``unknown``.
+    """
     unknown = count_unknown(table)
     if unknown and unknown == table.sizes["record"]:
         message = f"{title_of(table)}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
         raise CorpusError(message)
-    return all_records(table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table, features)
+    return table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table
 
 
 def count_unknown(table: xr.Dataset) -> int:
@@ -71,26 +82,44 @@ def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         If the table has no records, or lacks a feature, the fault, or the number of rig, specimen or recording.
     """
     title = title_of(table)
-    _require(title, ("features", "fault", "rig", "specimen", "recording"), table.variables)
-    _require(title, features, table["feature"].values)
-    if table.sizes["record"] == 0:
-        message = f"{title}: the feature table holds no record; give a corpus with at least one."
-        raise CorpusError(message)
+    rows = feature_rows(table, features)
     fault = np.asarray(table["fault"].values, dtype=np.intp)
     if not np.isin(fault, [*FAULT_NAMES]).all():
         known = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
         message = f"{title}: fault has values other than {known}."
         raise CorpusError(message)
-    rig, specimen, recording = (table[name].values for name in ("rig", "specimen", "recording"))
+    rig, specimen = (table[name].values for name in ("rig", "specimen"))
     return Records(
         title=title,
-        features=cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas()),
+        features=rows,
         fault=fault,
         rig=_numbered(rig),
         specimen=_numbered(rig, specimen),
-        recording=_numbered(rig, specimen, fault, recording),
+        recording=recording_numbers(table),
         width=np.asarray(table["width"].values, dtype=float) if "width" in table else np.full(len(fault), np.nan),
     )
+
+
+def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
+    """Rows of a feature table with some of its features, in the order given, whatever their labels.
+
+    Raises
+    ------
+    CorpusError
+        If the table has no records, or lacks a feature, the fault, or the number of rig, specimen or recording.
+    """
+    title = title_of(table)
+    _require(title, ("features", "fault", "rig", "specimen", "recording"), table.variables)
+    _require(title, features, table["feature"].values)
+    if table.sizes["record"] == 0:
+        message = f"{title}: the feature table holds no record; give a corpus with at least one."
+        raise CorpusError(message)
+    return cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas())
+
+
+def recording_numbers(table: xr.Dataset) -> IntArray:
+    """Number of the recording of each record, from 0 and without a gap, shape (record,)."""
+    return _numbered(*(table[name].values for name in ("rig", "specimen", "fault", "recording")))
 
 
 def check_classes(records: Records) -> IntArray:
