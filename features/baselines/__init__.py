@@ -8,6 +8,8 @@ module            responsibility
 records           labelled rows of a feature table, and the groups that they belong to
 estimators        the registry of baselines, from majority class to ensemble
 calibration       calibrated probabilities, and thresholds of answers
+references        features relative to healthy records of the same rig
+reference_choice  records tested against a reference, without those that belong to it
 predictions       classes predicted for the records of a table and for whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 severities        fault widths that a test contains and its training does not

@@ -72,6 +72,8 @@ class Scores:
         Records by their largest probability, in bins of equal width.
     coverage, answered_accuracy
         Share of the records that are answered, and the accuracy of these; None without any.
+    reference
+        What the records were compared with, in one sentence; empty without a reference.
     seen
         Number of tested records that the model was trained on, 0 in a fair test.
     uncovered_widths
@@ -95,6 +97,7 @@ class Scores:
     reliability: tuple[Bin, ...] = ()
     coverage: float = 1.0
     answered_accuracy: float | None = None
+    reference: str = ""
     seen: int = 0
     uncovered_widths: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
