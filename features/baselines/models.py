@@ -44,7 +44,7 @@ from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
 from features.table import feature_table
-from gen.corpus import FAULTS, write_durably
+from gen.corpus import FAULTS, UNKNOWN_CODE, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -188,6 +188,7 @@ def evaluate(
 
 def _evaluate(table: xr.Dataset, model: Model, reference: xr.Dataset | None, seed: int) -> Scores:
     records = labelled_records(table, model.features)
+    table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
     scores = score(records, predict(table, model, reference), seed)
     seen = seen_records(records.features.to_numpy(), model.digests)
     return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))

@@ -22,11 +22,10 @@ from features.baselines.records import (
 )
 from features.faults import HEALTHY
 from features.indicators import NAMES, TOP
-from gen.corpus import FAULTS
+from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.errors import CorpusError
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)
-UNKNOWN_CODE = 127
 ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))
 RELATIVE = "relative"  # group of the features of a relative table
 NEAREST = 3  # recordings, nearest in speed, that a virtual reference is chosen from
