@@ -4,8 +4,13 @@
 
 The first line of a family must exceed a level that noise exceeds anywhere in the search of a recording with a
 probability of 1 %. Further lines are searched only at multiples of the frequency of the first one, and beside them, and
-again noise adds one with 1 %. Multiples of the shaft rate tell nothing about the bearing, since imbalance and gears make
-them too: they are never counted, so a fault line that cannot be resolved from one is not found.
+again noise adds one with 1 %. Three rules keep out lines that are there and tell no fault:
+
+- Multiples of the shaft rate are never counted, since imbalance and gears make them too. So a fault line that cannot be
+  resolved from one is not found.
+- The first line must be ten times as high as the floor, because long recordings of healthy bearings show faint lines
+  at many fault frequencies.
+- A weaker family must come within 10 dB of the strongest, beside whose harmonics shaft and cage make lines everywhere.
 """
 
 from collections.abc import Iterator, Sequence
@@ -22,8 +27,11 @@ FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, an
 TOLERANCE = 0.02  # of an order: slip, contact angle and the remaining error of the speed
 DRIFT = 0.002  # by which harmonics of one family may differ from multiples of each other
 SHAFT_DRIFT = 0.004  # error of the shaft rate, by which its multiples are left out more widely
+LEAST_LEVEL = 10.0  # dB, of a first line
+SPREAD = 10.0  # dB, between the first lines of the strongest and the weakest family
+FIRST_HARMONICS = 2  # harmonics among which the first line is searched
 HARMONICS = 5  # of a fault line that are searched
-SIDEBANDS = 2  # on each side of a harmonic that belong to its family
+SIDEBANDS = 4  # on each side of a harmonic that belong to its family
 CAGE_LINES = 2  # a slow fluctuation has one line at the rate of the cage by chance
 TRIALS_PER_BIN = 0.5  # independent trials per bin of spectra that are padded to four times their length
 
@@ -87,18 +95,19 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
         for place in _searched(row, spectrum, shaft_rate, orders)
     )
     lines: list[Line] = []
+    least = LEAST_LEVEL
     while families and trials:
         found = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
-        heights = [ratio for ratio, *_ in found]
-        strongest = int(np.argmax(heights))
-        if heights[strongest] <= 0:
+        strongest = int(np.argmax([ratio for ratio, *_ in found]))
+        ratio, number, fundamental = found[strongest]
+        if ratio < 10 ** (least / 10):
             break
         row = families.pop(strongest)
-        _, number, fundamental = found[strongest]
         family = _family(row, spectra[number], free[number], fundamental, shaft_rate, orders)
         if row.name == "cage" and sum(not line.sideband for line in family) < CAGE_LINES:
             continue
         lines += family
+        least = max(least, 10 * float(np.log10(ratio)) - SPREAD)
         for spectrum, free_bins in zip(spectra, free, strict=True):
             _remove(spectrum, free_bins, row, fundamental, shaft_rate, orders)
     return lines
@@ -131,7 +140,7 @@ def strange_series(spectra: Sequence[BandSpectrum], shaft_rate: float, known: Se
             weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
         place = int(np.argmax(weakest))
         level = 10 * float(np.log10(max(weakest[place], 1e-12)))
-        if weakest[place] > spectrum.threshold(bound) and (best is None or level > best.level):
+        if weakest[place] > max(spectrum.threshold(bound), 10 ** (LEAST_LEVEL / 10)) and (best is None or level > best.level):
             best = Series(float(frequency[place]) / shaft_rate, level)
     return best
 
@@ -147,7 +156,7 @@ def _harmonics(row: FaultClass) -> range:
 
 def _searched(row: FaultClass, spectrum: BandSpectrum, shaft_rate: float, orders: Orders) -> Iterator[tuple[int, int]]:
     """Bins in which the first line of a family is searched, harmonic by harmonic."""
-    for harmonic in _harmonics(row):
+    for harmonic in range(1, FIRST_HARMONICS + 1):
         frequency = harmonic * _fundamental_order(row, orders) * shaft_rate
         yield spectrum.bins(frequency, TOLERANCE * frequency)
 
@@ -171,7 +180,7 @@ def _first_line(
     best = 0.0, 0, 0.0
     for number, (spectrum, free_bins) in enumerate(zip(spectra, free, strict=True)):
         threshold = spectrum.threshold(probability)
-        for harmonic, (first, last) in zip(_harmonics(row), _searched(row, spectrum, shaft_rate, orders), strict=True):
+        for harmonic, (first, last) in enumerate(_searched(row, spectrum, shaft_rate, orders), start=1):
             ratio = np.where(free_bins[first:last], spectrum.ratio[first:last], 0.0)
             if ratio.size and ratio.max() > max(threshold, best[0]):
                 best = float(ratio.max()), number, (first + int(ratio.argmax())) * spectrum.resolution / harmonic
