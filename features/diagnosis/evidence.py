@@ -145,6 +145,20 @@ def strange_series(spectra: Sequence[BandSpectrum], shaft_rate: float, known: Se
     return best
 
 
+def line_facts(line: Line) -> dict[str, object]:
+    """Line as plain values, for JSON."""
+    return {
+        "line": line.name,
+        "fault": line.fault,
+        "harmonic": line.harmonic,
+        "order": round(line.order, 4),
+        "frequency_hz": round(line.frequency, 3),
+        "level_db": round(line.level, 2),
+        "band": [round(edge, 1) for edge in line.band],
+        "sideband": line.sideband,
+    }
+
+
 def _fundamental_order(row: FaultClass, orders: Orders) -> float:
     line = row.lines[0]
     return line.multiple * float(getattr(orders, line.base))

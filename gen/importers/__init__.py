@@ -7,6 +7,7 @@ cwru       Case Western Reserve University set, drive end, 12 kHz
 mfpt       MFPT fault data set of Bechhoefer
 generic    recordings of the user, described by a mapping file
 mapping    the mapping file: keys, units, checks
+bearing_text a bearing on the command line
 matlab     one variable of a MATLAB file
 level_7_3  MATLAB files of level 7.3, which are HDF5 files
 level_5    MATLAB files of level 5
