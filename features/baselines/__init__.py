@@ -27,7 +27,7 @@ from features.baselines.benchmark import Baseline, Results, benchmark
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
 from features.baselines.predictions import UNSURE, Predictions, predict
-from features.baselines.records import DEFAULT_GROUPS
+from features.baselines.records import DEFAULT_GROUPS, count_unknown
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import severity_warning
 from features.baselines.splits import cross_validate
@@ -43,6 +43,7 @@ __all__ = [
     "Results",
     "Scores",
     "benchmark",
+    "count_unknown",
     "cross_validate",
     "evaluate",
     "interval_text",

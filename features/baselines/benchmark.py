@@ -20,6 +20,7 @@ from features.baselines.records import (
     DEFAULT_GROUPS,
     IntArray,
     Records,
+    count_unknown,
     features_of,
     labelled_records,
 )
@@ -34,7 +35,7 @@ Progress = Callable[[int, int], None]
 
 @dataclass(frozen=True)
 class Content:
-    """Title and counts of a benchmarked corpus; ``classes`` counts records."""
+    """Title and counts of a benchmarked corpus; ``classes`` counts records, ``unknown`` those left out because their class is not known."""
 
     title: str
     records: int
@@ -42,6 +43,7 @@ class Content:
     specimens: int
     rigs: int
     classes: dict[str, int]
+    unknown: int = 0
 
 
 @dataclass(frozen=True)
@@ -138,8 +140,8 @@ def benchmark(
         if progress is not None:
             progress(done, len(ESTIMATORS))
     return Results(
-        corpus=_content(records),
-        test=None if other is None else _content(other),
+        corpus=_content(records, count_unknown(table)),
+        test=None if test is None or other is None else _content(other, count_unknown(test)),
         by=by,
         folds=folds,
         seed=seed,
@@ -182,7 +184,7 @@ def _check_apart(records: Records, test: Records) -> None:
         raise CorpusError(message)
 
 
-def _content(records: Records) -> Content:
+def _content(records: Records, unknown: int) -> Content:
     counts = np.bincount(records.fault, minlength=len(FAULTS))
     return Content(
         title=records.title,
@@ -191,6 +193,7 @@ def _content(records: Records) -> Content:
         specimens=len(np.unique(records.specimen)),
         rigs=len(np.unique(records.rig)),
         classes={fault: int(count) for fault, count in zip(FAULTS, counts, strict=True) if count},
+        unknown=unknown,
     )
 
 

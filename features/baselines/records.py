@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import FAULTS
+from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.errors import CorpusError
 
 if TYPE_CHECKING:
@@ -41,7 +41,29 @@ class Records(NamedTuple):
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
+    """Rows of a feature table whose class is known; see :func:`all_records`.
+
+    Raises
+    ------
+    CorpusError
+        As :func:`all_records`, or if all records are of class ``unknown``.
+    """
+    unknown = count_unknown(table)
+    if unknown and unknown == table.sizes["record"]:
+        message = f"{title_of(table)}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
+        raise CorpusError(message)
+    return all_records(table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table, features)
+
+
+def count_unknown(table: xr.Dataset) -> int:
+    """Number of records of a feature table whose class is not known."""
+    return int((table["fault"].values == UNKNOWN_CODE).sum()) if "fault" in table else 0
+
+
+def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     """Rows of a feature table with some of its features, in the order given; the width is NaN if the table lacks it.
+
+    ``fault`` of a record whose class is not known is ``gen.corpus.UNKNOWN_CODE``.
 
     Raises
     ------
@@ -51,8 +73,9 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     title = title_of(table)
     rows = feature_rows(table, features)
     fault = np.asarray(table["fault"].values, dtype=np.intp)
-    if fault.min() < 0 or fault.max() >= len(FAULTS):
-        message = f"{title}: fault has values outside 0..{len(FAULTS) - 1} ({', '.join(FAULTS)})."
+    if not np.isin(fault, [*FAULT_NAMES]).all():
+        known = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
+        message = f"{title}: fault has values other than {known}."
         raise CorpusError(message)
     rig, specimen = (table[name].values for name in ("rig", "specimen"))
     return Records(

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.corpus import (
-    FAULTS,
+    FAULT_NAMES,
     PartRow,
     SignalCounts,
     Variable,
@@ -202,7 +202,11 @@ def _data_card(collection: Collection, log: _Log, length: int, signals: SignalCo
         "",
         "| fault | recordings | records |",
         "|---|---|---|",
-        *(f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |" for fault in FAULTS if log.recordings[fault]),
+        *(
+            f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |"
+            for fault in FAULT_NAMES.values()
+            if log.recordings[fault]
+        ),
     ]
     for heading, sentences in (("Assumptions and changes", log.warnings), ("Skipped files", log.skipped)):
         lines += ["", f"## {heading}", "", *(f"- {plain_text(sentence)}" for sentence in sentences or ("Nothing.",))]

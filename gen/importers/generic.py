@@ -8,16 +8,14 @@ from collections.abc import Hashable, Iterable
 from functools import partial
 from pathlib import Path
 
+from gen.corpus import UNKNOWN
 from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, Progress, import_recordings
-from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text
+from gen.importers.conversion import Scale, accelerations
 from gen.importers.mapping import Entry, bearing_of, read_mapping
-from gen.importers.matlab import read_matlab
 from gen.importers.recordings import Candidate, Recording, name_of, some_files
-from gen.units import STANDARD_GRAVITY, rpm_to_hertz, to_si
-
-_METRES_PER_SECOND_SQUARED = {"g": STANDARD_GRAVITY, "m/s2": 1.0}
-_TEXT = (".csv", ".txt", ".tsv", ".dat")
+from gen.importers.signals import Place, read_values
+from gen.units import rpm_to_hertz, to_si
 
 
 def import_generic(source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None) -> Import:
@@ -118,8 +116,10 @@ def _name(path: str, entry: Entry) -> str:
 
 
 def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Recording:
+    found = read_values(path, Place(entry.variable, entry.column, entry.delimiter))
     spalled = entry.fault not in ("healthy", "cage")
     unknown = math.nan if spalled else 0.0
+    count = {"healthy": 0, "cage": 0, "compound": 2, UNKNOWN: -1}.get(entry.fault, 1)
     return Recording(
         number=number,
         rig=rig,
@@ -127,28 +127,10 @@ def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Rec
         bearing=bearing_of(entry),
         shaft_rate=rpm_to_hertz(entry.shaft_rpm),
         fault=entry.fault,
-        signal=_column(path, entry) * _METRES_PER_SECOND_SQUARED[entry.unit],
+        signal=accelerations(found.values, Scale(entry.unit)),
         load=math.nan if entry.load_n is None else entry.load_n,
-        n_spalls=entry.n_spalls or (2 if entry.fault == "compound" else int(spalled)),
+        n_spalls=entry.n_spalls or count,
         width=unknown if entry.width_mm is None else to_si(entry.width_mm, "mm"),
         depth=unknown if entry.depth_um is None else to_si(entry.depth_um, "um"),
         angle=math.nan if entry.angle_deg is None else to_si(entry.angle_deg, "deg"),
     )
-
-
-def _column(path: Path, entry: Entry) -> FloatArray:
-    """Values of the recording in the unit of the file."""
-    suffix = path.suffix.lower()
-    if suffix in _TEXT:
-        return one_column(read_text(path, entry.column, entry.delimiter))
-    if isinstance(entry.column, str):
-        message = f"has columns without names, so none is called {entry.column}; give the number of the column, from 0"
-        raise UnusableError(message)
-    if suffix == ".npy":
-        return one_column(read_numpy(path), entry.column)
-    if suffix != ".mat":
-        message = f"is of no known type; known are .mat, .npy, {', '.join(_TEXT)}"
-        raise UnusableError(message)
-    if entry.variable is None:
-        raise UnusableError("is a MATLAB file; give the key variable, the name of the variable that holds the signal")
-    return one_column(read_matlab(path, entry.variable), entry.column)

@@ -23,7 +23,7 @@ from pydantic import (
     model_validator,
 )
 
-from gen.corpus import FAULTS
+from gen.corpus import FAULTS, UNKNOWN
 from gen.errors import CorpusError
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
@@ -33,7 +33,7 @@ from gen.yaml_files import read_yaml
 if TYPE_CHECKING:
     FaultClass = str
 else:
-    FaultClass = Literal[FAULTS]
+    FaultClass = Literal[(*FAULTS, UNKNOWN)]
 _MOST_COLUMNS = 1_000_000
 _RENAMED = {"depth_mm": "depth_um, in micrometres"}
 Millimetres = Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
@@ -140,7 +140,7 @@ class Entry(BaseModel):
     @model_validator(mode="after")
     def _spall_keys_need_a_spall(self) -> Self:
         spall = [key for key in ("width_mm", "depth_um", "angle_deg", "n_spalls") if getattr(self, key) is not None]
-        if self.fault in ("healthy", "cage") and spall:
+        if self.fault in ("healthy", "cage", UNKNOWN) and spall:
             message = f"{spall[0]} describes a spall, and fault is {self.fault}; remove one of the two"
             raise ValueError(message)
         return self

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus import FAULTS, SPLITS
+from gen.corpus import FAULTS, SPLITS, UNKNOWN, UNKNOWN_CODE
 from gen.errors import CorpusError
 from gen.importers.files import FloatArray, UnusableError
 from gen.limits import check_limit, limit
@@ -105,7 +105,7 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
         **orders(recording.bearing)._asdict(),
         **recording.extra,
         "bearing": recording.bearing.designation,
-        "fault": FAULTS.index(recording.fault),
+        "fault": UNKNOWN_CODE if recording.fault == UNKNOWN else FAULTS.index(recording.fault),
         "recording": recording.number,
         "sample_rate": fs,
         "split": SPLITS.index("test"),

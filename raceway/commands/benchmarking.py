@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.feature_tables import table_of
+from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.models import warn_of_severities
 from raceway.console import show
 from raceway.console.options import A_PATH, corpus_argument, corpus_folder, folder_option, json_option, recipe_argument
@@ -57,6 +57,9 @@ def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int
     other = None if test is None else table_of(test)
     with progress("scoring", "baselines") as report:
         results = run(table, other, by=by, folds=folds, seed=seed, progress=report)
+    notice_of_unknown(corpus, results.corpus.unknown)
+    if test is not None and results.test is not None:
+        notice_of_unknown(test, results.test.unknown)
     warn_of_severities(results, next(iter(results.baselines.values())).test)
     page = write_report(corpus, results, output)
     if as_json:
