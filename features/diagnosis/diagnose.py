@@ -1,0 +1,288 @@
+"""One recording in, a diagnosis out: class, probabilities, and the lines that stand above the floor.
+
+``recording -> quality -> shaft speed -> windows -> features -> prediction``, and beside it ``-> band spectra -> evidence``
+
+The verdict is that of the classifier. It becomes "unsure" if the classifier is, if the signal tells nothing, if the
+labelled speed is clearly wrong and the classifier says something else at the speed found, or if the lines plainly tell
+another class. Evidence is measured in the signal alone, whatever the verdict.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
+
+from features.baselines.predictions import UNSURE, predict
+from features.diagnosis.evidence import Line, find_evidence, strange_series
+from features.diagnosis.quality import quality_of
+from features.diagnosis.spectrum import BandSpectrum, band_spectra
+from features.diagnosis.wording import FAULTS_IN_WORDS, by_family, candidates, family_in_words, reasons, speed_in_words
+from features.faults import CLASSES
+from features.indicators import Orders
+from features.recording_table import recording_table, windows_of
+from features.signal.rows import FloatArray
+from features.speed import shaft_speed
+from gen.corpus import UNKNOWN_CODE
+from gen.errors import CorpusError
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from features.baselines.models import Model
+
+SpeedUse = Literal["off", "check", "correct"]
+LONGEST = 60.0  # s; of a longer recording the beginning is used
+CONTRADICTING = 15.0  # dB, of the lines of another class, with two harmonics or more, that contradict the classifier
+TOLERANCE_PERCENT = 8  # within which the speed is searched
+
+
+class Recorded(NamedTuple):
+    """A recording: signal [m s-2], shape (time,), sample rate and labelled shaft rate [Hz], and nominal orders as numbers."""
+
+    signal: FloatArray
+    fs: float
+    shaft_rate: float
+    orders: Orders
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """A diagnosis.
+
+    Attributes
+    ----------
+    verdict
+        A class of the model, or "unsure".
+    probabilities
+        Of each class that the model can predict, combined over the windows; all equal if there is no prediction.
+    threshold
+        The least probability that is answered; NaN if there is no prediction.
+    labelled_rate
+        Shaft rate as given [Hz].
+    shaft_rate
+        Shaft rate [Hz] that the orders of the evidence refer to: the one found where the recording clearly tells another
+        than the labelled one, else the labelled one.
+    evidence
+        Lines that stand above the floor, strongest family first.
+    sentence
+        The verdict with its reason.
+    advice
+        What would help, one sentence each; empty if nothing is wanting.
+    warnings
+        What is to be read with care, one sentence each.
+    windows
+        Number of windows that the classifier used.
+    spectrum
+        Envelope spectrum of the band with the highest evidence, or of the most impulsive band; None for a useless signal.
+    """
+
+    verdict: str
+    probabilities: Mapping[str, float]
+    threshold: float
+    labelled_rate: float
+    shaft_rate: float
+    evidence: tuple[Line, ...]
+    sentence: str
+    advice: tuple[str, ...] = ()
+    warnings: tuple[str, ...] = ()
+    windows: int = 0
+    spectrum: BandSpectrum | None = field(default=None, repr=False, compare=False)
+
+
+def diagnose(
+    recording: Recorded, model: "Model", *, healthy: Recorded | None = None, speed: SpeedUse = "check"
+) -> Diagnosis:
+    """Diagnose one recording.
+
+    Parameters
+    ----------
+    recording
+        At least 0.05 s; of more than 60 s the first 60 s are used.
+    model
+        A trained model.
+    healthy
+        A recording of the same machine with a healthy bearing, from the same sensor.
+    speed
+        ``check`` searches the shaft speed in the recording and warns if the label is wrong; ``correct`` computes the
+        features at the speed found; ``off`` believes the label.
+
+    Raises
+    ------
+    CorpusError
+        If a recording has values that are not finite, or the model cannot take its features or the healthy recording.
+    """
+    for name, checked in (("the recording", recording), ("the healthy recording", healthy)):
+        if checked is not None and not np.isfinite(checked.signal).all():
+            wrong = int(np.count_nonzero(~np.isfinite(checked.signal)))
+            raise CorpusError(f"{name} has {wrong:,} samples that are not finite numbers; export it again.")
+    signal, warnings = _beginning(recording)
+    quality = quality_of(signal, recording.fs, recording.shaft_rate)
+    if quality.useless:
+        return _useless(recording, model, quality.useless, quality.advice)
+    warnings += quality.warnings
+    if healthy is not None:
+        reason = quality_of(healthy.signal, healthy.fs, healthy.shaft_rate).useless
+        if reason:
+            raise CorpusError(f"the healthy recording cannot be used: {reason}; give another, or none.")
+    used = recording._replace(signal=signal)
+    found, uncertainty = _speed(used) if speed != "off" else (None, 0.0)
+    rate = recording.shaft_rate if found is None else found
+    spectra = band_spectra(signal, recording.fs, rate)
+    lines = find_evidence(spectra, rate, recording.orders)
+    reference = None if healthy is None else _table(healthy._replace(signal=_beginning(healthy)[0]), model)
+    predicted = _predicted(used._replace(shaft_rate=rate), model, reference)
+    if found is not None:
+        warnings.append(_speed_warning(recording.shaft_rate, found, uncertainty))
+        if speed == "check":
+            predicted = _agreed(predicted, _predicted(used, model, reference))
+    diagnosis = replace(
+        predicted,
+        labelled_rate=recording.shaft_rate,
+        shaft_rate=rate,
+        evidence=tuple(lines),
+        spectrum=_shown_spectrum(spectra, lines),
+        warnings=tuple(warnings + _bearing_warning(spectra, lines, rate, recording.orders)),
+    )
+    return _worded(diagnosis, found, speed, len(signal) / recording.fs, healthy is not None)
+
+
+def _beginning(recording: Recorded) -> tuple[FloatArray, list[str]]:
+    """At most the first 60 s, and a sentence if there is more."""
+    most = round(LONGEST * recording.fs)
+    if len(recording.signal) <= most:
+        return recording.signal, []
+    duration = len(recording.signal) / recording.fs
+    return recording.signal[:most], [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."]
+
+
+def _useless(recording: Recorded, model: "Model", reason: str, advice: str) -> Diagnosis:
+    return Diagnosis(
+        verdict=UNSURE,
+        probabilities=dict.fromkeys(model.classes, 1 / len(model.classes)),
+        threshold=np.nan,
+        labelled_rate=recording.shaft_rate,
+        shaft_rate=recording.shaft_rate,
+        evidence=(),
+        sentence=f"Unsure: {reason}; {advice}.",
+        advice=(f"{advice[0].upper()}{advice[1:]}.",),
+    )
+
+
+def _speed(recording: Recorded) -> tuple[float | None, float]:
+    """Shaft rate found, if it is clearly another than the labelled one, and its uncertainty [Hz]."""
+    found = shaft_speed(
+        windows_of(recording.signal, recording.fs), recording.fs, recording.shaft_rate, recording.orders
+    )
+    return (float(found.rate) if found.clear and not found.agrees else None), float(found.uncertainty)
+
+
+def _table(recording: Recorded, model: "Model") -> "xr.Dataset":
+    windows = windows_of(recording.signal, recording.fs)
+    return recording_table(
+        windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, model.groups
+    )
+
+
+def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | None") -> Diagnosis:
+    """Diagnosis with the prediction of the model alone."""
+    table = _table(recording, model)
+    predictions = predict(table, model, reference).by_recording
+    assert predictions is not None  # noqa: S101 - only the predictions by recording have none
+    probabilities = dict(zip(predictions.classes, map(float, predictions.probabilities[0]), strict=True))
+    return Diagnosis(
+        predictions.answers[0], probabilities, predictions.threshold, recording.shaft_rate, recording.shaft_rate, (), "",
+        windows=table.sizes["record"],
+    )  # fmt: skip
+
+
+def _agreed(found: Diagnosis, labelled: Diagnosis) -> Diagnosis:
+    """Prediction at the speed found if that at the labelled speed is the same, else unsure."""
+    if found.verdict == labelled.verdict:
+        return found
+    why = (
+        f"at the labelled speed the classifier says {labelled.verdict} ({candidates(labelled.probabilities, 1)}) and at the speed found "
+        f"{found.verdict} ({candidates(found.probabilities, 1)})"
+    )
+    advice = "Measure the speed again and give it with --rpm, or take the speed found with --speed correct."
+    return replace(found, verdict=UNSURE, sentence=why, advice=(advice,))
+
+
+def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration: float, compared: bool) -> Diagnosis:
+    """Diagnosis with its sentence and advice; the verdict becomes unsure if the lines plainly tell another class."""
+    at_speed = speed_in_words(diagnosis.labelled_rate, found, speed != "off")
+    contradiction = "" if diagnosis.verdict == UNSURE else _contradiction(diagnosis)
+    if diagnosis.verdict != UNSURE and not contradiction:
+        probability = diagnosis.probabilities[diagnosis.verdict]
+        why = reasons(diagnosis.verdict, diagnosis.evidence)
+        text = f"{FAULTS_IN_WORDS[diagnosis.verdict]} (probability {probability:.2f}): {why}; {at_speed}."
+        return replace(diagnosis, sentence=text)
+    why = contradiction or diagnosis.sentence or _doubt(diagnosis)
+    likely = candidates(diagnosis.probabilities)
+    advice = diagnosis.advice or _advice(duration, compared)
+    return replace(
+        diagnosis, verdict=UNSURE, sentence=f"Unsure ({likely}): {why}; {at_speed}.", advice=advice
+    )
+
+
+def _contradiction(diagnosis: Diagnosis) -> str:
+    """What lines of another class say against the verdict, empty if they do not."""
+    families = by_family(diagnosis.evidence)
+    if diagnosis.verdict in families or diagnosis.verdict == "compound":
+        return ""
+    for fault, lines in families.items():
+        plain = [line for line in lines if not line.sideband]
+        if len(plain) >= 2 and max(line.level for line in plain) >= CONTRADICTING:
+            return f"the classifier says {diagnosis.verdict}, but {family_in_words(lines)}, which tells of {fault}"
+    return ""
+
+
+def _doubt(diagnosis: Diagnosis) -> str:
+    families = by_family(diagnosis.evidence)
+    least = f"the classifier answers from {diagnosis.threshold:.2f}"
+    if not families:
+        return f"{least}, and no line stands out"
+    return f"{least}, although {family_in_words(next(iter(families.values())))}"
+
+
+def _advice(duration: float, compared: bool) -> tuple[str, ...]:
+    found = []
+    if duration < 10:
+        found.append(f"Record longer: 10 s instead of {duration:.2g} s.")
+    if not compared:
+        found.append("Give a recording of the machine with a healthy bearing (--healthy).")
+    return (*found, "Measure the speed during the recording, and check the bearing designation.")
+
+
+def _speed_warning(labelled: float, found: float, uncertainty: float) -> str:
+    off = 100 * (found / labelled - 1)
+    return (
+        f"The labelled speed of {60 * labelled:,.0f} rpm does not fit the lines of this recording; they fit {60 * found:,.0f} rpm "
+        f"(± {60 * uncertainty:.1g}), {off:+.1f} %."
+    )
+
+
+def _bearing_warning(
+    spectra: list[BandSpectrum], lines: list[Line], shaft_rate: float, orders: Orders
+) -> list[str]:
+    """Warning of a series of lines that belongs to no part of the bearing, if no part shows lines."""
+    if lines:
+        return []
+    nominal = {"shaft": 1.0, **{name: float(value) for name, value in orders._asdict().items()}}
+    known = [row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence]
+    series = strange_series(spectra, shaft_rate, known)
+    if series is None:
+        return []
+    return [
+        f"A line at {series.order:.2f} orders and its harmonics stand {series.level:.0f} dB above the floor, and no part of this bearing "
+        f"has that order: the bearing may be another one, or the speed wrong by more than {TOLERANCE_PERCENT} %, or the lines come from "
+        "another part of the machine."
+    ]
+
+
+def _shown_spectrum(spectra: list[BandSpectrum], lines: list[Line]) -> BandSpectrum:
+    """Spectrum of the band with the highest line, or of the most impulsive band, which is the last."""
+    if not lines:
+        return spectra[-1]
+    best = max(lines, key=lambda line: line.level)
+    return next(spectrum for spectrum in spectra if spectrum.band == best.band)
