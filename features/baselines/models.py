@@ -39,7 +39,7 @@ from features.baselines.records import (
     record_digests,
 )
 from features.baselines.reference_choice import check_durations, compared
-from features.baselines.references import RELATIVE, paired_table, relative_names
+from features.baselines.references import RELATIVE, paired_table, relative_names, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
@@ -203,8 +203,7 @@ def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dat
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
-    wanted = {*model.groups, *(() if reference is None else ("bands",))}
-    return feature_table(corpus, [group for group in GROUPS if group in wanted])
+    return feature_table(corpus, model.groups if reference is None else with_energies(model.groups))
 
 
 def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:

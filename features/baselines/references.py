@@ -32,6 +32,11 @@ NEAREST = 3  # recordings, nearest in speed, that a virtual reference is chosen 
 COMPARABLE_RATE = 2 * TOP  # Hz: from it on, all bands of the features lie below the Nyquist frequency
 
 
+def with_energies(groups: Sequence[str]) -> tuple[str, ...]:
+    """Groups of features that records and references need for a model of some groups."""
+    return tuple(dict.fromkeys((*groups, "bands")))
+
+
 def relative_names(features: Sequence[str]) -> tuple[str, ...]:
     """Names of the features of a record relative to a reference.
 

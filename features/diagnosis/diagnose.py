@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from features.baselines.predictions import UNSURE, predict
+from features.baselines.references import with_energies
 from features.diagnosis.evidence import Line, find_evidence, strange_series
 from features.diagnosis.quality import quality_of
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
@@ -180,7 +181,7 @@ def _speed(recording: Recorded) -> tuple[float | None, float]:
 def _table(recording: Recorded, model: "Model") -> "xr.Dataset":
     windows = windows_of(recording.signal, recording.fs)
     return recording_table(
-        windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, model.groups
+        windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, with_energies(model.groups)
     )
 
 

@@ -1,11 +1,12 @@
 """Commands that train a model and score it on another corpus."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from raceway.commands.feature_tables import notice_of_unknown, table_of
+from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
 from raceway.console.options import A_PATH, corpus_argument, file_option, json_option
 from raceway.console.progress import notice
@@ -80,14 +81,20 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
 @click.command()
 @corpus_argument
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
+@reference_options
 @json_option
-def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
+def evaluate(corpus: Path, model: Path, reference: Path | None, as_json: bool, **reading: Any) -> None:
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
     scored together, by the sum of their probabilities. The interval is a bootstrap over specimens.
 
+    With --reference, records are compared with healthy records of their rig: those of a corpus, which may be DIR itself, or a recording
+    (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores.
+
       raceway evaluate cwru --model model.skops
+      raceway evaluate pump --model model.skops --reference pump
+      raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
     from features.baselines import count_unknown, load_model
     from features.baselines import evaluate as score
@@ -95,7 +102,8 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
     loaded = load_model(model)
     table = table_of(corpus)
     notice_of_unknown(corpus, count_unknown(table))
-    scores = score(table, loaded)
+    healthy = None if reference is None else reference_table(reference, corpus, table, **reading)
+    scores = score(table, loaded, reference=healthy)
     warn_of_severities(scores)
     if scores.seen:
         notice(
@@ -105,6 +113,8 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
         show.as_json({"corpus": corpus, "model": model, "estimator": loaded.name, **show.plain(scores)})
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")
+    if scores.reference:
+        show.text(scores.reference, "")
     _show_scores(scores)
 
 
