@@ -179,6 +179,7 @@ def paired_table(table: xr.Dataset, features: Sequence[str], seed: int) -> xr.Da
     """
     if not set(ENERGIES) <= set(table["feature"].values) or "shaft_rate" not in table:
         return None
+    table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
     records, references = virtual_references(table, features, seed)
     paired = table.isel(record=records)
     if len(np.unique(paired["fault"].values)) < len(np.unique(table["fault"].values)):
