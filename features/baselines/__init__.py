@@ -26,6 +26,7 @@ benchmark         scores of every baseline with controls, and on another corpus
 """
 
 from features.baselines.benchmark import Baseline, Results, benchmark
+from features.baselines.calibration import Calibration
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
 from features.baselines.predictions import UNSURE, Predictions, predict
@@ -40,6 +41,7 @@ __all__ = [
     "ESTIMATORS",
     "UNSURE",
     "Baseline",
+    "Calibration",
     "Model",
     "Predictions",
     "Results",

@@ -28,7 +28,8 @@ INTERVAL = (0.025, 0.975)  # quantiles of a 95 % interval
 Interval = tuple[float, float]
 
 
-class Bin(NamedTuple):
+@dataclass(frozen=True)
+class Bin:
     """Records whose largest probability lies in one interval: their number, mean probability, and share of right ones."""
 
     records: int

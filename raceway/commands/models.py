@@ -12,7 +12,7 @@ from raceway.console.options import A_PATH, corpus_argument, file_option, json_o
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
-    from features.baselines import Results, Scores
+    from features.baselines import Calibration, Results, Scores
 
 # a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
@@ -65,13 +65,14 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
     warn_of_severities(scores)
     if as_json:
         names = ("records", "classes", "groups")
-        facts = {name: getattr(model, name) for name in names}
+        facts = {name: getattr(model, name) for name in names} | {"calibration": model.calibration.model_dump()}
         show.as_json(
             {"model": output, "estimator": estimator, **facts, "features": len(model.features), "test": scores}
         )
         return
     show.text(
-        f"{output}: {estimator}, trained on {show.counted(model.records, 'record')}, classes {', '.join(model.classes)}."
+        f"{output}: {estimator}, trained on {show.counted(model.records, 'record')}, classes {', '.join(model.classes)}.",
+        calibration_text(model.calibration),
     )
     if scores is not None:
         show.text("", f"Scores on the test split of {show.counted(scores.records, 'record')}:")
@@ -87,7 +88,8 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, as_json: bool, *
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
-    scored together, by the sum of their probabilities. The interval is a bootstrap over specimens.
+    scored together, by the geometric mean of their probabilities. The interval is a bootstrap over specimens. A record is answered if
+    its largest probability reaches the threshold of the model, and otherwise the answer is "unsure".
 
     With --reference, records are compared with healthy records of their rig: those of a corpus, which may be DIR itself, or a recording
     (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores.
@@ -118,6 +120,16 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, as_json: bool, *
     _show_scores(scores)
 
 
+def calibration_text(calibration: "Calibration") -> str:
+    """Sentence on the calibration of a model."""
+    if calibration.by == "nothing":
+        return "Not calibrated: every record is answered."
+    return (
+        f"Calibrated on {calibration.by}s outside the training: answers {100 * calibration.coverage:.0f} % of their records, those with "
+        f"a largest probability of at least {calibration.threshold:.2f}, and is unsure of the others."
+    )
+
+
 def warn_of_severities(*tested: "Scores | Results | None") -> None:
     """Warn of fault widths that were tested and not trained."""
     from features.baselines import severity_warning
@@ -128,20 +140,50 @@ def warn_of_severities(*tested: "Scores | Results | None") -> None:
 
 
 def _show_scores(scores: "Scores") -> None:
-    from features.baselines import interval_text
-
-    found = {
-        "balanced accuracy": f"{scores.balanced_accuracy:.3f} (95 % interval {interval_text(scores.interval)})",
-        "macro F1": f"{scores.macro_f1:.3f}",
-        "accuracy": f"{scores.accuracy:.3f}",
-        "records": f"{scores.records:,}",
-    }
     whole = scores.by_recording
-    if whole is not None and whole.records < scores.records:
-        found["by recording"] = f"balanced accuracy {whole.balanced_accuracy:.3f} of {whole.records:,}"
-    show.facts(found)
+    compared = [scores] if whole is None or whole.records == scores.records else [scores, whole]
+    header = ("", "by record", "by recording")[: 1 + len(compared)]
+    show.table(header, zip(FIGURES, *(_figures(one) for one in compared), strict=True))
     show.text("")
     show.table(
         ("true \\ predicted", *scores.model_classes),
         zip(scores.classes, *zip(*scores.confusion, strict=True), strict=True),
     )
+
+
+FIGURES = (
+    "balanced accuracy",
+    "95 % interval",
+    "false alarms on healthy",
+    "macro F1",
+    "accuracy",
+    "AUC",
+    "log-loss",
+    "calibration error",
+    "answered",
+    "accuracy of the answered",
+    "number",
+)
+
+
+def _figures(scores: "Scores") -> tuple[str, ...]:
+    """Text of each of ``FIGURES``."""
+    from features.baselines import interval_text
+
+    return (
+        f"{scores.balanced_accuracy:.3f}",
+        interval_text(scores.interval),
+        _shown(scores.false_alarms),
+        f"{scores.macro_f1:.3f}",
+        f"{scores.accuracy:.3f}",
+        _shown(scores.auc),
+        f"{scores.log_loss:.3f}",
+        f"{scores.ece:.3f}",
+        f"{scores.coverage:.3f}",
+        _shown(scores.answered_accuracy),
+        f"{scores.records:,}",
+    )
+
+
+def _shown(figure: float | None) -> str:
+    return "none" if figure is None else f"{figure:.3f}"
