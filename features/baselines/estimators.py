@@ -178,6 +178,19 @@ def _ensemble(seed: int) -> VotingClassifier:
     return VotingClassifier(members, voting="soft", weights=[3, 1])
 
 
+def _relative_ensemble(seed: int) -> VotingClassifier:
+    """Ensemble for records relative to a reference; there are twice as many features, and the changes tell more than the others.
+
+    So each node of a tree tries more of them, and the logistic regression is less regularised and has a larger part. On simulated rigs
+    outside the training and on recordings, both the balanced accuracy and the log-loss are better than with the settings of the ensemble.
+    """
+    trees = ExtraTreesClassifier(
+        TREES, min_samples_leaf=LEAF, max_features=0.3, class_weight="balanced", random_state=seed
+    )
+    members = [("extra_trees", _filled(trees)), ("logistic_regression", _logistic_regression(seed, 0.01))]
+    return VotingClassifier(members, voting="soft", weights=[2, 1])
+
+
 ESTIMATORS: dict[str, Callable[[int], Estimator]] = {
     "majority": _majority,
     "envelope_rule": _envelope_rule,
@@ -188,22 +201,30 @@ ESTIMATORS: dict[str, Callable[[int], Estimator]] = {
     "gradient_boosting": _gradient_boosting,
     "ensemble": _ensemble,
 }
+RELATIVE_ESTIMATORS: dict[str, Callable[[int], Estimator]] = {"relative_ensemble": _relative_ensemble}
+"""Estimators for records relative to a reference alone; the other baselines take such records as they are."""
 UNTRAINED = ("majority", "envelope_rule")
 DEFAULT_ESTIMATOR = "ensemble"
 
 
+def relative_name(name: str) -> str:
+    """Name of the estimator that a baseline uses for records relative to a reference."""
+    return f"relative_{name}" if f"relative_{name}" in RELATIVE_ESTIMATORS else name
+
+
 def make_estimator(name: str, seed: int) -> Estimator:
-    """Unfitted baseline.
+    """Unfitted baseline, or estimator for records relative to a reference.
 
     Raises
     ------
     ValueError
         For a name that is not in the registry.
     """
-    if name not in ESTIMATORS:
+    known = ESTIMATORS | RELATIVE_ESTIMATORS
+    if name not in known:
         message = f"estimator: {name!r} is no baseline; choose from {', '.join(ESTIMATORS)}."
         raise ValueError(message)
-    return ESTIMATORS[name](seed)
+    return known[name](seed)
 
 
 def class_probabilities(estimator: Estimator, features: "DataFrame") -> FloatArray:

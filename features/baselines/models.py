@@ -21,9 +21,11 @@ from features.baselines.cross_calibration import cross_calibration
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
     ESTIMATORS,
+    RELATIVE_ESTIMATORS,
     UNTRAINED,
     Estimator,
     make_estimator,
+    relative_name,
 )
 from features.baselines.model_check import check_estimator
 from features.baselines.model_file import pack, read_state, unpack
@@ -32,11 +34,11 @@ from features.baselines.model_states import Known, State, plain
 from features.baselines.predictions import class_names, estimator_probabilities, predict
 from features.baselines.records import (
     DEFAULT_GROUPS,
-    FloatArray,
     check_classes,
     features_of,
     labelled_records,
     record_digests,
+    seen_records,
 )
 from features.baselines.reference_choice import check_durations, compared
 from features.baselines.references import RELATIVE, paired_table, relative_names, with_energies
@@ -123,7 +125,9 @@ def train(
     """
     model = _train(table, estimator, groups, seed)
     paired = None if estimator in UNTRAINED else paired_table(table, model.features, seed)
-    return replace(model, relative=None if paired is None else _train(paired, estimator, (RELATIVE,), seed))
+    return replace(
+        model, relative=None if paired is None else _train(paired, relative_name(estimator), (RELATIVE,), seed)
+    )
 
 
 def _train(table: xr.Dataset, estimator: str, groups: Sequence[str], seed: int) -> Model:
@@ -206,12 +210,6 @@ def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dat
     return feature_table(corpus, model.groups if reference is None else with_energies(model.groups))
 
 
-def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
-    """Number of records whose digest is known; records without any feature are not counted."""
-    known = np.isfinite(features).any(axis=1)
-    return int(np.isin(record_digests(features[known]), digests).sum())
-
-
 def save_model(model: Model, path: Path | str) -> None:
     """Write a model file, whole or not at all; equal models give equal bytes.
 
@@ -246,13 +244,10 @@ def load_model(path: Path | str) -> Model:
         if set(part) != set(_OWN):
             raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
         its = _checked(f"{path}: relative", part, known)
-        if (its.name, its.seed, its.classes, its.features) != (
-            about.name,
-            about.seed,
-            about.classes,
-            relative_names(about.features),
-        ):
-            refuse(f"{path}: relative:", "is not of the same estimator, seed, classes and features")
+        own = {"records": its.records, "widths": its.widths, "calibration": its.calibration}
+        named = {"name": relative_name(about.name), "features": relative_names(about.features), "groups": (RELATIVE,)}
+        if its != about.model_copy(update=own | named):
+            refuse(f"{path}: relative:", "is not of the same estimator, seed, classes, features and corpus")
         part = _created(f"{path}: relative", part, its)
     return replace(_created(str(path), held, about), relative=part)
 
@@ -318,7 +313,7 @@ class _About(BaseModel):
     @field_validator("name")
     @classmethod
     def _is_a_baseline(cls, name: str) -> str:
-        if name not in ESTIMATORS:
+        if name not in ESTIMATORS | RELATIVE_ESTIMATORS:
             raise ValueError(f"{brief(name)!r} is no baseline; the baselines are {', '.join(ESTIMATORS)}")
         return name
 

@@ -119,6 +119,12 @@ def record_digests(features: FloatArray) -> NDArray[np.uint64]:
     return np.fromiter(digests, dtype=np.uint64, count=len(features))
 
 
+def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
+    """Number of records whose digest is known; records without any feature are not counted."""
+    known = np.isfinite(features).any(axis=1)
+    return int(np.isin(record_digests(features[known]), digests).sum())
+
+
 def check_classes(records: Records) -> IntArray:
     """Classes present, as indices into ``gen.corpus.FAULTS``, ascending.
 

@@ -66,6 +66,7 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
     if as_json:
         names = ("records", "classes", "groups")
         facts = {name: getattr(model, name) for name in names} | {"calibration": model.calibration.model_dump()}
+        facts |= {"takes_reference": model.relative is not None}
         show.as_json(
             {"model": output, "estimator": estimator, **facts, "features": len(model.features), "test": scores}
         )
@@ -73,6 +74,9 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
     show.text(
         f"{output}: {estimator}, trained on {show.counted(model.records, 'record')}, classes {', '.join(model.classes)}.",
         calibration_text(model.calibration),
+        "It also takes healthy records of the tested rig (raceway evaluate --reference)."
+        if model.relative
+        else "It takes no healthy reference: each class needs records on rigs with two healthy recordings.",
     )
     if scores is not None:
         show.text("", f"Scores on the test split of {show.counted(scores.records, 'record')}:")

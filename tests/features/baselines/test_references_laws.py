@@ -218,6 +218,10 @@ def forged_seed(held: dict) -> None:
     held["seed"]["content"] = "1"
 
 
+def forged_corpus(held: dict) -> None:
+    held["corpus"]["content"] = '"another corpus"'
+
+
 def forged_digests(held: dict) -> None:
     held["digests"] = held["name"]
 
@@ -229,7 +233,8 @@ def missing_calibration(held: dict) -> None:
 @pytest.mark.parametrize(
     ("forge", "sentence"),
     [
-        (forged_seed, "relative"),
+        (forged_seed, "relative: estimator.*random_state is 0 and must be 1"),
+        (forged_corpus, "relative: is not of the same estimator, seed, classes, features and corpus"),
         (forged_digests, "relative: digests must be 64 of 64 bits"),
         (missing_calibration, "not a complete model"),
     ],
