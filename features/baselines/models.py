@@ -265,7 +265,7 @@ def _about(path: Path, values: dict[str, Any]) -> _About:
         return _About.model_validate(values)
     except ValidationError as error:
         first = error.errors()[0]
-        place = "".join(f"[{part}]" if isinstance(part, int) else str(part) for part in first["loc"])
+        place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in first["loc"]).removeprefix(".")
         refuse(f"{path}: {place}:", f"{first['msg'].removeprefix('Value error, ')}")
 
 
