@@ -121,7 +121,7 @@ def recording_speeds(
 def with_speeds(table: xr.Dataset, recording: IntArray, found: list[ShaftSpeed], speed: Speed) -> xr.Dataset:
     """Table with the found rate, its uncertainty and its evidence as variables of the records."""
     label = table["shaft_rate"].values
-    relative, spread = (np.array(found_of)[recording] for found_of in zip(*map(_relative, found), strict=True))
+    relative, spread = np.array([_relative(one) for one in found]).reshape(-1, 2)[recording].T
     codes = np.array([EVIDENCE.index(one.evidence) for one in found], np.int8)[recording]
     described = {"units": "Hz", "role": "operating"}
     flags = {"flag_values": np.arange(len(EVIDENCE), dtype=np.int8), "flag_meanings": " ".join(EVIDENCE)}
@@ -166,7 +166,9 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
     first = np.unique(numbers, return_index=True)[1]
     wrong = first[other_speed(table)[first]]
     corrected = table.attrs["speed"] == "correct"
-    action = "its features use the found speed" if corrected else "use --speed correct, or correct the label"
+    action = (
+        "its features use the found speed" if corrected else "check the label and the bearing, or use --speed correct"
+    )
     sentences = [
         f"{table['source'].values[row]}: labelled {60 * label[row]:.0f} rpm, but its {LINES[EVIDENCE[table[BY].values[row]]]} "
         f"fit {60 * found[row]:.0f} +- {60 * uncertainty[row]:.0f} rpm ({100 * (found[row] / label[row] - 1):+.1f} %); "

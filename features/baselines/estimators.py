@@ -150,7 +150,13 @@ def _random_forest(seed: int) -> Pipeline:
 
 
 def _extra_trees(seed: int) -> Pipeline:
-    return _filled(ExtraTreesClassifier(TREES, min_samples_leaf=LEAF, class_weight="balanced", random_state=seed))
+    trees = ExtraTreesClassifier(
+        TREES,
+        min_samples_leaf=LEAF,  # pyright: ignore[reportArgumentType]
+        class_weight="balanced",
+        random_state=seed,
+    )
+    return _filled(trees)
 
 
 def _gradient_boosting(seed: int) -> Pipeline:

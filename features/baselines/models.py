@@ -330,7 +330,7 @@ def _about(where: str, values: dict[str, Any]) -> _About:
         return _About.model_validate(values)
     except ValidationError as error:
         first = error.errors()[0]
-        place = "".join(f"[{part}]" if isinstance(part, int) else str(part) for part in first["loc"])
+        place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in first["loc"]).removeprefix(".")
         refuse(f"{where}: {place}:", f"{first['msg'].removeprefix('Value error, ')}")
 
 

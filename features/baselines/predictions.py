@@ -101,7 +101,7 @@ def predictions(
 ) -> Predictions:
     """Predictions from the probabilities of an estimator, shape (record, class), which are calibrated here."""
     records = calibrated(probabilities, calibration.temperature)
-    whole = combined(records, recording)
+    whole = combined(records, recording, calibration.dependence)
     return Predictions(
         classes=classes,
         probabilities=records,

@@ -8,11 +8,12 @@ import click
 from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, file_option, json_option
+from raceway.console.options import A_PATH, corpus_argument, file_option, json_option, speed_option
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
     from features.baselines import Calibration, Results, Scores
+    from features.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
@@ -87,8 +88,9 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
 @corpus_argument
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
 @reference_options
+@speed_option
 @json_option
-def evaluate(corpus: Path, model: Path, reference: Path | None, as_json: bool, **reading: Any) -> None:
+def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", as_json: bool, **reading: Any) -> None:
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
@@ -106,9 +108,9 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, as_json: bool, *
     from features.baselines import evaluate as score
 
     loaded = load_model(model)
-    table = table_of(corpus)
+    table = table_of(corpus, speed)
     notice_of_unknown(corpus, count_unknown(table))
-    healthy = None if reference is None else reference_table(reference, corpus, table, **reading)
+    healthy = None if reference is None else reference_table(reference, corpus, table, speed, **reading)
     scores = score(table, loaded, reference=healthy)
     warn_of_severities(scores)
     if scores.seen:

@@ -12,6 +12,8 @@ from raceway.console.progress import notice
 if TYPE_CHECKING:
     import xarray as xr
 
+    from features.table import Speed
+
 
 def _number_or_name(_context: click.Context, _option: click.Parameter, text: str | None) -> int | str | None:
     return int(text) if text is not None and text.isdecimal() else text
@@ -62,13 +64,14 @@ def reference_table(
     path: Path,
     corpus: Path,
     table: "xr.Dataset",
+    speed: "Speed",
     *,
     reference_rpm: float | None,
     reference_rate: float | None,
     reference_column: int | str | None,
     reference_variable: str | None,
 ) -> "xr.Dataset":
-    """Feature table of a reference of the corpus whose own feature table is ``table``."""
+    """Feature table of a reference of the corpus whose own feature table is ``table``; the speed of a recording is believed."""
     from features.baselines.reference_choice import check_durations, recording_reference
     from gen.importers.signals import read_signal
     from gen.units import rpm_to_hertz
@@ -83,4 +86,4 @@ def reference_table(
     if path.resolve() == corpus.resolve():
         return table
     check_durations(corpus, path)
-    return table_of(path)
+    return table_of(path, speed)
