@@ -12,7 +12,7 @@ from raceway.console.progress import notice
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.table import Speed
+    from features.recording_speeds import Speed
 
 
 def _number_or_name(_context: click.Context, _option: click.Parameter, text: str | None) -> int | str | None:
@@ -81,8 +81,8 @@ def reference_table(
         fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
         if signal.fs is None:
             notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")
-        speed = None if reference_rpm is None else rpm_to_hertz(reference_rpm)
-        return recording_reference(signal.values, fs, corpus, path, speed)
+        rate = None if reference_rpm is None else rpm_to_hertz(reference_rpm)
+        return recording_reference(signal.values, fs, corpus, path, rate)
     if path.resolve() == corpus.resolve():
         return table
     check_durations(corpus, path)
