@@ -10,7 +10,17 @@ from typing import Any, NoReturn
 
 import click
 
-from raceway.commands import benchmarking, comparing, corpora, diagnosing, feature_tables, gallery, importing, models, reproduce
+from raceway.commands import (
+    benchmarking,
+    comparing,
+    corpora,
+    diagnosing,
+    feature_tables,
+    gallery,
+    importing,
+    models,
+    reproduce,
+)
 from raceway.console.ending import NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 

@@ -34,7 +34,6 @@ from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
-from features.table import feature_table
 from gen.corpus import FAULTS, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -155,6 +154,8 @@ def _features_for(model: Model, corpus: Path | str) -> xr.Dataset:
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
+    from features.table import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
+
     return feature_table(corpus, model.groups)
 
 

@@ -17,7 +17,15 @@ from features.baselines.predictions import UNSURE, predict
 from features.diagnosis.evidence import Line, find_evidence, strange_series
 from features.diagnosis.quality import quality_of
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
-from features.diagnosis.wording import FAULTS_IN_WORDS, by_family, candidates, family_in_words, reasons, speed_in_words
+from features.diagnosis.wording import (
+    FAULTS_IN_WORDS,
+    by_family,
+    candidates,
+    family_in_words,
+    probability_in_words,
+    reasons,
+    speed_in_words,
+)
 from features.faults import CLASSES
 from features.indicators import Orders
 from features.recording_table import recording_table, windows_of
@@ -179,9 +187,7 @@ def _speed(recording: Recorded) -> tuple[float | None, float]:
 
 def _table(recording: Recorded, model: "Model") -> "xr.Dataset":
     windows = windows_of(recording.signal, recording.fs)
-    return recording_table(
-        windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, model.groups
-    )
+    return recording_table(windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, model.groups)
 
 
 def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | None") -> Diagnosis:
@@ -213,16 +219,14 @@ def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration
     at_speed = speed_in_words(diagnosis.labelled_rate, found, speed != "off")
     contradiction = "" if diagnosis.verdict == UNSURE else _contradiction(diagnosis)
     if diagnosis.verdict != UNSURE and not contradiction:
-        probability = diagnosis.probabilities[diagnosis.verdict]
+        probability = probability_in_words(diagnosis.probabilities[diagnosis.verdict])
         why = reasons(diagnosis.verdict, diagnosis.evidence)
-        text = f"{FAULTS_IN_WORDS[diagnosis.verdict]} (probability {probability:.2f}): {why}; {at_speed}."
+        text = f"{FAULTS_IN_WORDS[diagnosis.verdict]} (probability {probability}): {why}; {at_speed}."
         return replace(diagnosis, sentence=text)
     why = contradiction or diagnosis.sentence or _doubt(diagnosis)
     likely = candidates(diagnosis.probabilities)
     advice = diagnosis.advice or _advice(duration, compared)
-    return replace(
-        diagnosis, verdict=UNSURE, sentence=f"Unsure ({likely}): {why}; {at_speed}.", advice=advice
-    )
+    return replace(diagnosis, verdict=UNSURE, sentence=f"Unsure ({likely}): {why}; {at_speed}.", advice=advice)
 
 
 def _contradiction(diagnosis: Diagnosis) -> str:
@@ -262,9 +266,7 @@ def _speed_warning(labelled: float, found: float, uncertainty: float) -> str:
     )
 
 
-def _bearing_warning(
-    spectra: list[BandSpectrum], lines: list[Line], shaft_rate: float, orders: Orders
-) -> list[str]:
+def _bearing_warning(spectra: list[BandSpectrum], lines: list[Line], shaft_rate: float, orders: Orders) -> list[str]:
     """Warning of a series of lines that belongs to no part of the bearing, if no part shows lines."""
     if lines:
         return []
@@ -273,11 +275,12 @@ def _bearing_warning(
     series = strange_series(spectra, shaft_rate, known)
     if series is None:
         return []
-    return [
+    sentence = (
         f"A line at {series.order:.2f} orders and its harmonics stand {series.level:.0f} dB above the floor, and no part of this bearing "
         f"has that order: the bearing may be another one, or the speed wrong by more than {TOLERANCE_PERCENT} %, or the lines come from "
         "another part of the machine."
-    ]
+    )
+    return [sentence]
 
 
 def _shown_spectrum(spectra: list[BandSpectrum], lines: list[Line]) -> BandSpectrum:

@@ -21,7 +21,6 @@ import numpy as np
 from features.diagnosis.spectrum import TOP_ORDER, BandSpectrum
 from features.faults import CLASSES, FaultClass
 from features.indicators import Orders
-from features.signal.rows import FloatArray
 
 FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
 TOLERANCE = 0.02  # of an order: slip, contact angle and the remaining error of the speed
@@ -134,13 +133,17 @@ def strange_series(spectra: Sequence[BandSpectrum], shaft_rate: float, known: Se
         if not bins.size:
             continue
         weakest = np.minimum.reduce([ratio[bins], highest[2 * bins], highest[3 * bins]])
-        bound = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * len(spectra))) ** (1 / 3) / (TRIALS_PER_BIN * (2 * lobe + 1))
+        bound = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * len(spectra))) ** (1 / 3) / (
+            TRIALS_PER_BIN * (2 * lobe + 1)
+        )
         frequency = bins * spectrum.resolution
         for mains in (50.0, 60.0):
             weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
         place = int(np.argmax(weakest))
         level = 10 * float(np.log10(max(weakest[place], 1e-12)))
-        if weakest[place] > max(spectrum.threshold(bound), 10 ** (LEAST_LEVEL / 10)) and (best is None or level > best.level):
+        if weakest[place] > max(spectrum.threshold(bound), 10 ** (LEAST_LEVEL / 10)) and (
+            best is None or level > best.level
+        ):
             best = Series(float(frequency[place]) / shaft_rate, level)
     return best
 
@@ -228,7 +231,7 @@ def _family(
         lines[harmonic, sign] = Line(
             row.name, name, harmonic, frequency / shaft_rate, frequency, 10 * float(np.log10(ratio.max())), spectrum.band, sign != 0
         )  # fmt: skip
-    return [lines[key] for key in sorted(lines)]
+    return [lines[key] for key in sorted(lines, key=lambda key: (key[1] != 0, *key))]
 
 
 def _remove(
