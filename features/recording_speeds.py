@@ -166,7 +166,9 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
     first = np.unique(numbers, return_index=True)[1]
     wrong = first[other_speed(table)[first]]
     corrected = table.attrs["speed"] == "correct"
-    action = "its features use the found speed" if corrected else "use --speed correct, or correct the label"
+    action = (
+        "its features use the found speed" if corrected else "check the label and the bearing, or use --speed correct"
+    )
     sentences = [
         f"{table['source'].values[row]}: labelled {60 * label[row]:.0f} rpm, but its {LINES[EVIDENCE[table[BY].values[row]]]} "
         f"fit {60 * found[row]:.0f} +- {60 * uncertainty[row]:.0f} rpm ({100 * (found[row] / label[row] - 1):+.1f} %); "

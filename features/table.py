@@ -94,11 +94,12 @@ def feature_table(
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
     treatment = checked_speed(speed, table)
-    paths = [path.absolute() for path in part_paths(corpus, check="size")]
+    paths = part_paths(corpus, check="size")
     small = len(paths) == 1 or table.sizes["record"] <= INLINE_RECORDS
     starts = np.cumsum([0, *(row.records for row in read_manifest(Path(corpus)).parts)])
     report = _counted(progress, len(paths) * (1 if treatment == "off" else 2))
     with _client(None if scheduler == "local" and small else scheduler) as client:
+        paths = paths if client is None else [path.absolute() for path in paths]
         if treatment != "off":
             recording = recording_numbers(table)
             tasks = list(zip(paths, np.split(recording, starts[1:-1]), strict=True))

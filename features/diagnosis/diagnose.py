@@ -3,8 +3,8 @@
 ``recording -> quality -> shaft speed -> windows -> features -> prediction``, and beside it ``-> band spectra -> evidence``
 
 The verdict is that of the classifier. It becomes "unsure" if the classifier is, if the signal tells nothing, if the
-labelled speed is clearly wrong and the classifier says something else at the speed found, or if the lines plainly tell
-another class. Evidence is measured in the signal alone, whatever the verdict.
+labelled speed is clearly wrong and the classifier says different classes at both speeds without a line that decides, or
+if the lines plainly tell another class. Evidence is measured in the signal alone, whatever the verdict.
 """
 
 from collections.abc import Mapping
@@ -41,7 +41,9 @@ if TYPE_CHECKING:
 
 SpeedUse = Literal["off", "check", "correct"]
 LONGEST = 60.0  # s; of a longer recording the beginning is used
-CONTRADICTING = 15.0  # dB, of the lines of another class, with two harmonics or more, that contradict the classifier
+CONTRADICTING = (
+    15.0  # dB, of lines of another class, the fundamental and a harmonic or three harmonics, against the classifier
+)
 TOLERANCE_PERCENT = 8  # within which the speed is searched
 
 
@@ -112,8 +114,9 @@ def diagnose(
     healthy
         A recording of the same machine with a healthy bearing, from the same sensor.
     speed
-        ``check`` searches the shaft speed in the recording and warns if the label is wrong; ``correct`` computes the
-        features at the speed found; ``off`` believes the label.
+        ``check`` searches the shaft speed in the recording; if the label is clearly wrong it warns, and answers only if
+        the classifier says the same class at both speeds or if lines tell that of the speed found. ``correct`` takes the
+        speed found, and ``off`` believes the label.
 
     Raises
     ------
@@ -143,7 +146,7 @@ def diagnose(
     if found is not None:
         warnings.append(_speed_warning(recording.shaft_rate, found, uncertainty))
         if speed == "check":
-            predicted = _agreed(predicted, _predicted(used, model, reference))
+            predicted = _agreed(predicted, _predicted(used, model, reference), lines)
     diagnosis = replace(
         predicted,
         labelled_rate=recording.shaft_rate,
@@ -202,9 +205,10 @@ def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | Non
     )  # fmt: skip
 
 
-def _agreed(found: Diagnosis, labelled: Diagnosis) -> Diagnosis:
-    """Prediction at the speed found if that at the labelled speed is the same, else unsure."""
-    if found.verdict == labelled.verdict:
+def _agreed(found: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
+    """Prediction at the speed found, unless the classifier says another class at the labelled speed and no line of its class is there."""
+    told = {line.fault for line in lines}
+    if labelled.verdict in (found.verdict, UNSURE) or found.verdict in told:
         return found
     why = (
         f"at the labelled speed the classifier says {labelled.verdict} ({candidates(labelled.probabilities, 1)}) and at the speed found "
@@ -235,8 +239,9 @@ def _contradiction(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict in families or diagnosis.verdict == "compound":
         return ""
     for fault, lines in families.items():
-        plain = [line for line in lines if not line.sideband]
-        if len(plain) >= 2 and max(line.level for line in plain) >= CONTRADICTING:
+        harmonics = {line.harmonic for line in lines if not line.sideband}
+        plain = 1 in harmonics and len(harmonics) >= 2 or len(harmonics) >= 3
+        if plain and max(line.level for line in lines) >= CONTRADICTING:
             return f"the classifier says {diagnosis.verdict}, but {family_in_words(lines)}, which tells of {fault}"
     return ""
 
@@ -262,7 +267,7 @@ def _speed_warning(labelled: float, found: float, uncertainty: float) -> str:
     off = 100 * (found / labelled - 1)
     return (
         f"The labelled speed of {60 * labelled:,.0f} rpm does not fit the lines of this recording; they fit {60 * found:,.0f} rpm "
-        f"(± {60 * uncertainty:.1g}), {off:+.1f} %."
+        f"(± {60 * uncertainty:.0f}), {off:+.1f} %."
     )
 
 

@@ -10,7 +10,8 @@ again noise adds one with 1 %. Three rules keep out lines that are there and tel
   resolved from one is not found.
 - The first line must be ten times as high as the floor, because long recordings of healthy bearings show faint lines
   at many fault frequencies.
-- A weaker family must come within 10 dB of the strongest, beside whose harmonics shaft and cage make lines everywhere.
+- The family with the largest sum of levels comes first, and its lines explain no other family. The others must come
+  within 10 dB of it: beside its harmonics shaft and cage make lines everywhere.
 """
 
 from collections.abc import Iterator, Sequence
@@ -97,16 +98,22 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     least = LEAST_LEVEL
     while families and trials:
         found = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
-        strongest = int(np.argmax([ratio for ratio, *_ in found]))
+        held = [
+            _family(row, spectra[number], free[number], fundamental, shaft_rate, orders) if ratio else []
+            for row, (ratio, number, fundamental) in zip(families, found, strict=True)
+        ]
+        strongest = int(np.argmax([sum(line.level for line in family) for family in held]))
         ratio, number, fundamental = found[strongest]
-        if ratio < 10 ** (least / 10):
-            break
-        row = families.pop(strongest)
-        family = _family(row, spectra[number], free[number], fundamental, shaft_rate, orders)
-        if row.name == "cage" and sum(not line.sideband for line in family) < CAGE_LINES:
+        row, family = families.pop(strongest), held[strongest]
+        level = 10 * float(np.log10(max(ratio, 1.0)))
+        if (
+            not family
+            or level < least
+            or (row.name == "cage" and sum(not line.sideband for line in family) < CAGE_LINES)
+        ):
             continue
         lines += family
-        least = max(least, 10 * float(np.log10(ratio)) - SPREAD)
+        least = max(least, level - SPREAD)
         for spectrum, free_bins in zip(spectra, free, strict=True):
             _remove(spectrum, free_bins, row, fundamental, shaft_rate, orders)
     return lines

@@ -34,6 +34,9 @@ PENALTY = 1.0  # of a candidate at the end of the tolerance; it decides between 
 
 RIVALS_BEYOND = 0.025  # relative distance from which another candidate is a rival
 CLEAR_MARGIN = 1.5  # standard deviations by which the best candidate exceeds its rivals
+SHAFT_BEHIND = (
+    1.0  # standard deviations by which the shaft may fit another speed better: else the bearing may be another
+)
 CLEAR_FAMILY = 2.0  # standard deviations from which a comb, and not the shaft, is named
 SHARPNESS = 2.0  # factor from evidence to a logarithm of probability
 SLIP = 0.007  # relative, standard deviation of true from nominal orders
@@ -131,7 +134,8 @@ def find_speed(levels: FloatArray, windows: int, label: float, tolerance: float 
     evidence = combs.max(axis=0) + shaft - PENALTY * (error / TOLERANCE) ** 2
     best = int(evidence.argmax())
     rivals = np.abs(error - error[best]) > RIVALS_BEYOND
-    clear = bool(rivals.any() and evidence[best] - evidence[rivals].max() > CLEAR_MARGIN)
+    ahead = rivals.any() and evidence[best] - evidence[rivals].max() > CLEAR_MARGIN
+    clear = bool(ahead and shaft.max() - shaft[best] < SHAFT_BEHIND)
     probability = np.exp(SHARPNESS * (evidence - evidence[best]))
     variance = np.average((error - error[best]) ** 2, weights=probability)
     rate, uncertainty = label * (1 + error[best]), label * np.sqrt(variance + SLIP**2)

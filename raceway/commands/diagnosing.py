@@ -108,11 +108,18 @@ def diagnose(
     from gen.importers.signals import read_signal
 
     known = bearing_from_text(bearing)
-    reading: dict[str, Any] = {"variable": variable, "column": column, "unit": unit, "sensitivity": sensitivity, "rate": rate}
+    reading: dict[str, Any] = {
+        "variable": variable,
+        "column": column,
+        "unit": unit,
+        "sensitivity": sensitivity,
+        "rate": rate,
+    }
     paths = [path for path in (recording, healthy) if path is not None]
     signals = [read_signal(path, **reading) for path in paths]
     recorded = [
-        _recorded(signal.values, _rate(path, signal.fs), rpm, known) for path, signal in zip(paths, signals, strict=True)
+        _recorded(signal.values, _rate(path, signal.fs), rpm, known)
+        for path, signal in zip(paths, signals, strict=True)
     ]
     loaded, source = _model(model)
     from features.diagnosis import diagnose as run

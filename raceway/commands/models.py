@@ -7,11 +7,12 @@ import click
 
 from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, corpus_folder, file_option, json_option
+from raceway.console.options import A_PATH, corpus_argument, corpus_folder, file_option, json_option, speed_option
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
     from features.baselines import Results, Scores
+    from features.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
@@ -93,8 +94,9 @@ def train(source: str, output: Path | None, estimator: str, as_json: bool) -> No
 @click.command()
 @corpus_argument
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
+@speed_option
 @json_option
-def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
+def evaluate(corpus: Path, model: Path, speed: "Speed", as_json: bool) -> None:
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
@@ -106,7 +108,7 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
     from features.baselines import evaluate as score
 
     loaded = load_model(model)
-    table = table_of(corpus)
+    table = table_of(corpus, speed)
     notice_of_unknown(corpus, count_unknown(table))
     scores = score(table, loaded)
     warn_of_severities(scores)
