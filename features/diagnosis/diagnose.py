@@ -26,7 +26,7 @@ from features.diagnosis.wording import (
     reasons,
     speed_in_words,
 )
-from features.faults import CLASSES
+from features.faults import HEALTHY
 from features.indicators import Orders
 from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray
@@ -44,16 +44,19 @@ LONGEST = 60.0  # s; of a longer recording the beginning is used
 CONTRADICTING = (
     15.0  # dB, of lines of another class, the fundamental and a harmonic or three harmonics, against the classifier
 )
+NEARLY_AS_HIGH = 5.0  # dB, by which lines of no part of the bearing may be below the evidence and are still told
+WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
 TOLERANCE_PERCENT = 8  # within which the speed is searched
 
 
 class Recorded(NamedTuple):
-    """A recording: signal [m s-2], shape (time,), sample rate and labelled shaft rate [Hz], and nominal orders as numbers."""
+    """A recording: signal [m s-2], shape (time,), sample rate and labelled shaft rate [Hz], nominal orders as numbers, and name."""
 
     signal: FloatArray
     fs: float
     shaft_rate: float
     orders: Orders
+    name: str = "the recording"
 
 
 @dataclass(frozen=True)
@@ -123,10 +126,10 @@ def diagnose(
     CorpusError
         If a recording has values that are not finite, or the model cannot take its features or the healthy recording.
     """
-    for name, checked in (("the recording", recording), ("the healthy recording", healthy)):
-        if checked is not None and not np.isfinite(checked.signal).all():
-            wrong = int(np.count_nonzero(~np.isfinite(checked.signal)))
-            raise CorpusError(f"{name} has {wrong:,} samples that are not finite numbers; export it again.")
+    for checked in (recording, healthy):
+        wrong = 0 if checked is None else int(np.count_nonzero(~np.isfinite(checked.signal)))
+        if checked is not None and wrong:
+            raise CorpusError(f"{checked.name}: {wrong:,} of its samples are not finite numbers; export it again.")
     signal, warnings = _beginning(recording)
     quality = quality_of(signal, recording.fs, recording.shaft_rate)
     if quality.useless:
@@ -135,7 +138,9 @@ def diagnose(
     if healthy is not None:
         reason = quality_of(healthy.signal, healthy.fs, healthy.shaft_rate).useless
         if reason:
-            raise CorpusError(f"the healthy recording cannot be used: {reason}; give another, or none.")
+            raise CorpusError(
+                f"{healthy.name}: cannot be used as the healthy recording, since {reason}; give another, or none."
+            )
     used = recording._replace(signal=signal)
     found, uncertainty = _speed(used) if speed != "off" else (None, 0.0)
     rate = recording.shaft_rate if found is None else found
@@ -206,7 +211,7 @@ def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | Non
 
 
 def _agreed(found: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
-    """Prediction at the speed found, unless the classifier says another class at the labelled speed and no line of its class is there."""
+    """Prediction at the speed found, unless the classifier says another class at the labelled speed and no line decides."""
     told = {line.fault for line in lines}
     if labelled.verdict in (found.verdict, UNSURE) or found.verdict in told:
         return found
@@ -226,7 +231,8 @@ def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration
         probability = probability_in_words(diagnosis.probabilities[diagnosis.verdict])
         why = reasons(diagnosis.verdict, diagnosis.evidence)
         text = f"{FAULTS_IN_WORDS[diagnosis.verdict]} (probability {probability}): {why}; {at_speed}."
-        return replace(diagnosis, sentence=text)
+        advice = (WATCH,) if diagnosis.verdict == HEALTHY and diagnosis.evidence else ()
+        return replace(diagnosis, sentence=text, advice=advice)
     why = contradiction or diagnosis.sentence or _doubt(diagnosis)
     likely = candidates(diagnosis.probabilities)
     advice = diagnosis.advice or _advice(duration, compared)
@@ -240,7 +246,7 @@ def _contradiction(diagnosis: Diagnosis) -> str:
         return ""
     for fault, lines in families.items():
         harmonics = {line.harmonic for line in lines if not line.sideband}
-        plain = 1 in harmonics and len(harmonics) >= 2 or len(harmonics) >= 3
+        plain = len(harmonics) >= (2 if 1 in harmonics else 3)
         if plain and max(line.level for line in lines) >= CONTRADICTING:
             return f"the classifier says {diagnosis.verdict}, but {family_in_words(lines)}, which tells of {fault}"
     return ""
@@ -272,13 +278,9 @@ def _speed_warning(labelled: float, found: float, uncertainty: float) -> str:
 
 
 def _bearing_warning(spectra: list[BandSpectrum], lines: list[Line], shaft_rate: float, orders: Orders) -> list[str]:
-    """Warning of a series of lines that belongs to no part of the bearing, if no part shows lines."""
-    if lines:
-        return []
-    nominal = {"shaft": 1.0, **{name: float(value) for name, value in orders._asdict().items()}}
-    known = [row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence]
-    series = strange_series(spectra, shaft_rate, known)
-    if series is None:
+    """Warning of a series of lines that belongs to no part of the bearing and is about as high as the evidence, or higher."""
+    series = strange_series(spectra, shaft_rate, orders, lines)
+    if series is None or series.level < max((line.level for line in lines), default=0.0) - NEARLY_AS_HIGH:
         return []
     sentence = (
         f"A line at {series.order:.2f} orders and its harmonics stand {series.level:.0f} dB above the floor, and no part of this bearing "

@@ -103,7 +103,7 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
             for row, (ratio, number, fundamental) in zip(families, found, strict=True)
         ]
         strongest = int(np.argmax([sum(line.level for line in family) for family in held]))
-        ratio, number, fundamental = found[strongest]
+        ratio, _, fundamental = found[strongest]
         row, family = families.pop(strongest), held[strongest]
         level = 10 * float(np.log10(max(ratio, 1.0)))
         if (
@@ -119,40 +119,51 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     return lines
 
 
-def strange_series(spectra: Sequence[BandSpectrum], shaft_rate: float, known: Sequence[float]) -> Series | None:
-    """Strongest series of three harmonics between 1.5 orders and a third of the spectrum that is no multiple of the shaft.
+def strange_series(
+    spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Orders, lines: Sequence[Line]
+) -> Series | None:
+    """Strongest series of three harmonics that belongs neither to the shaft nor to a part of the bearing.
 
-    ``known`` are orders of families, at whose multiples nothing is searched. None if noise has such a series with more
-    than 1 %, or if it lies at multiples of 50 or 60 Hz, where mains can make it.
+    It is searched between 1.5 orders and a third of the spectrum. None if noise has such a series with more than 1 %,
+    if it lies at multiples of 50 or 60 Hz, where mains can make it, or if it differs from harmonics of the evidence
+    ``lines`` by multiples of the shaft rate.
     """
+    families = [_fundamental_order(row, orders) for row in CLASSES.values() if row.evidence]
+    modulated = [line.order / line.harmonic for line in lines if not line.sideband]
     best: Series | None = None
     for spectrum in spectra:
         free = ~_near_shaft(spectrum, shaft_rate)
-        for order in known:
+        order = np.arange(len(free)) * spectrum.resolution / shaft_rate
+        for family in families:
+            multiple = np.rint(order / family)
+            free &= np.abs(order - multiple * family) > TOLERANCE * multiple * family + spectrum.width / shaft_rate
+        for fundamental in modulated:
             for harmonic in range(1, HARMONICS + 1):
-                place = order * harmonic * shaft_rate
-                free[slice(*spectrum.bins(place, TOLERANCE * place + spectrum.width))] = False
-        ratio = np.where(free, spectrum.ratio, 0.0)
-        lobe = max(1, round(spectrum.width / spectrum.resolution / 2))
-        highest = np.max([np.roll(ratio, shift) for shift in range(-lobe, lobe + 1)], axis=0)
-        first, last = int(np.ceil(1.5 * shaft_rate / spectrum.resolution)), len(ratio) // 3
-        bins = np.arange(first, max(first, last))
-        if not bins.size:
-            continue
-        weakest = np.minimum.reduce([ratio[bins], highest[2 * bins], highest[3 * bins]])
-        bound = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * len(spectra))) ** (1 / 3) / (
-            TRIALS_PER_BIN * (2 * lobe + 1)
-        )
-        frequency = bins * spectrum.resolution
-        for mains in (50.0, 60.0):
-            weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
-        place = int(np.argmax(weakest))
-        level = 10 * float(np.log10(max(weakest[place], 1e-12)))
-        if weakest[place] > max(spectrum.threshold(bound), 10 ** (LEAST_LEVEL / 10)) and (
-            best is None or level > best.level
-        ):
-            best = Series(float(frequency[place]) / shaft_rate, level)
+                beside = order - harmonic * fundamental
+                free &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
+        found = _series(spectrum, free, shaft_rate, len(spectra))
+        if found is not None and (best is None or found.level > best.level):
+            best = found
     return best
+
+
+def _series(spectrum: BandSpectrum, free: np.ndarray, shaft_rate: float, bands: int) -> Series | None:
+    """Strongest series of one band that noise does not have, in some bins, shape (frequency,)."""
+    ratio = np.where(free, spectrum.ratio, 0.0)
+    lobe = max(1, round(spectrum.width / spectrum.resolution / 2))
+    highest = np.max([np.roll(ratio, shift) for shift in range(-lobe, lobe + 1)], axis=0)
+    bins = np.arange(int(np.ceil(1.5 * shaft_rate / spectrum.resolution)), len(ratio) // 3)
+    if not bins.size:
+        return None
+    weakest = np.minimum.reduce([ratio[bins], highest[2 * bins], highest[3 * bins]])
+    frequency = bins * spectrum.resolution
+    for mains in (50.0, 60.0):
+        weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
+    place = int(np.argmax(weakest))
+    each = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * bands)) ** (1 / 3) / (TRIALS_PER_BIN * (2 * lobe + 1))
+    if weakest[place] <= max(spectrum.threshold(each), 10 ** (LEAST_LEVEL / 10)):
+        return None
+    return Series(float(frequency[place]) / shaft_rate, 10 * float(np.log10(weakest[place])))
 
 
 def line_facts(line: Line) -> dict[str, object]:

@@ -118,7 +118,7 @@ def diagnose(
     paths = [path for path in (recording, healthy) if path is not None]
     signals = [read_signal(path, **reading) for path in paths]
     recorded = [
-        _recorded(signal.values, _rate(path, signal.fs), rpm, known)
+        _recorded(signal.values, _rate(path, signal.fs), rpm, known, path)
         for path, signal in zip(paths, signals, strict=True)
     ]
     loaded, source = _model(model)
@@ -126,7 +126,8 @@ def diagnose(
 
     with compilation_noticed():
         found = run(recorded[0], loaded, healthy=recorded[1] if healthy else None, speed=speed)
-    notes = tuple(note for signal in signals for note in signal.warnings)
+    # the diagnosis itself warns of an implausible rms
+    notes = tuple(note for signal in signals for note in signal.warnings if "its rms" not in note)
     for sentence in (*notes, *found.warnings):
         notice(f"warning: {sentence}")
     if output is not None:
@@ -148,7 +149,7 @@ def _rate(path: Path, fs: float | None) -> float:
     return fs
 
 
-def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing") -> "Recorded":
+def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing", path: Path) -> "Recorded":
     import numpy as np
 
     from features.diagnosis import Recorded
@@ -157,7 +158,7 @@ def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing") -> "Record
     from gen.units import rpm_to_hertz
 
     nominal = Orders(*(np.asarray(order) for order in orders(bearing)))
-    return Recorded(values, fs, rpm_to_hertz(rpm), nominal)
+    return Recorded(values, fs, rpm_to_hertz(rpm), nominal, str(path))
 
 
 def _model(path: Path | None) -> tuple[Any, Path]:
