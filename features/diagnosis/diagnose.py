@@ -129,7 +129,9 @@ def diagnose(
     for checked in (recording, healthy):
         wrong = 0 if checked is None else int(np.count_nonzero(~np.isfinite(checked.signal)))
         if checked is not None and wrong:
-            raise CorpusError(f"{checked.name}: {wrong:,} of its samples are not finite numbers; export it again.")
+            raise CorpusError(
+                f"{checked.name}: {wrong:,} of {checked.signal.size:,} samples are not finite numbers; export it again."
+            )
     signal, warnings = _beginning(recording)
     quality = quality_of(signal, recording.fs, recording.shaft_rate)
     if quality.useless:

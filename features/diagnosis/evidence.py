@@ -125,8 +125,8 @@ def strange_series(
     """Strongest series of three harmonics that belongs neither to the shaft nor to a part of the bearing.
 
     It is searched between 1.5 orders and a third of the spectrum. None if noise has such a series with more than 1 %,
-    if it lies at multiples of 50 or 60 Hz, where mains can make it, or if it differs from harmonics of the evidence
-    ``lines`` by multiples of the shaft rate.
+    if it lies at multiples of 50 or 60 Hz, where mains can make it, or if its first line differs from a harmonic of the
+    evidence ``lines`` by a multiple of the shaft rate.
     """
     families = [_fundamental_order(row, orders) for row in CLASSES.values() if row.evidence]
     modulated = [line.order / line.harmonic for line in lines if not line.sideband]
@@ -134,28 +134,30 @@ def strange_series(
     for spectrum in spectra:
         free = ~_near_shaft(spectrum, shaft_rate)
         order = np.arange(len(free)) * spectrum.resolution / shaft_rate
+        first = free.copy()
         for family in families:
-            multiple = np.rint(order / family)
-            free &= np.abs(order - multiple * family) > TOLERANCE * multiple * family + spectrum.width / shaft_rate
+            first &= np.abs(order - family) > TOLERANCE * family + spectrum.width / shaft_rate
         for fundamental in modulated:
             for harmonic in range(1, HARMONICS + 1):
                 beside = order - harmonic * fundamental
-                free &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
-        found = _series(spectrum, free, shaft_rate, len(spectra))
+                first &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
+        found = _series(spectrum, first, free, shaft_rate, len(spectra))
         if found is not None and (best is None or found.level > best.level):
             best = found
     return best
 
 
-def _series(spectrum: BandSpectrum, free: np.ndarray, shaft_rate: float, bands: int) -> Series | None:
-    """Strongest series of one band that noise does not have, in some bins, shape (frequency,)."""
+def _series(
+    spectrum: BandSpectrum, first: np.ndarray, free: np.ndarray, shaft_rate: float, bands: int
+) -> Series | None:
+    """Strongest series of one band that noise does not have; its first line and the others are in some bins, shape (frequency,)."""
     ratio = np.where(free, spectrum.ratio, 0.0)
     lobe = max(1, round(spectrum.width / spectrum.resolution / 2))
     highest = np.max([np.roll(ratio, shift) for shift in range(-lobe, lobe + 1)], axis=0)
     bins = np.arange(int(np.ceil(1.5 * shaft_rate / spectrum.resolution)), len(ratio) // 3)
     if not bins.size:
         return None
-    weakest = np.minimum.reduce([ratio[bins], highest[2 * bins], highest[3 * bins]])
+    weakest = np.minimum.reduce([np.where(first, ratio, 0.0)[bins], highest[2 * bins], highest[3 * bins]])
     frequency = bins * spectrum.resolution
     for mains in (50.0, 60.0):
         weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
