@@ -129,7 +129,9 @@ def strange_series(
     evidence ``lines`` by a multiple of the shaft rate.
     """
     families = [_fundamental_order(row, orders) for row in CLASSES.values() if row.evidence]
-    modulated = [line.order / line.harmonic for line in lines if not line.sideband]
+    plain = [line for line in lines if not line.sideband]
+    strongest = {line.fault: line for line in sorted(plain, key=lambda line: line.level)}
+    modulated = [line.order / line.harmonic for line in strongest.values()]
     best: Series | None = None
     for spectrum in spectra:
         free = ~_near_shaft(spectrum, shaft_rate)
@@ -138,7 +140,7 @@ def strange_series(
         for family in families:
             first &= np.abs(order - family) > TOLERANCE * family + spectrum.width / shaft_rate
         for fundamental in modulated:
-            for harmonic in range(1, HARMONICS + 1):
+            for harmonic in range(1, 4):
                 beside = order - harmonic * fundamental
                 first &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
         found = _series(spectrum, first, free, shaft_rate, len(spectra))

@@ -41,7 +41,7 @@ def bearing_from_text(text: str) -> Bearing:
     try:
         return bearing_of_geometry(Geometry.model_validate(values))
     except ValidationError as error:
-        first = error.errors()[0]
+        first = max(error.errors(), key=lambda one: one["type"] == "extra_forbidden")  # it causes a missing key
         key = ".".join(map(str, first["loc"])) or "geometry"
         complaint = {
             "missing": "is missing",
