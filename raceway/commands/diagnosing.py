@@ -21,6 +21,12 @@ def _number_or_name(_context: click.Context, _option: click.Parameter, text: str
     return int(text) if text is not None and text.isdecimal() else text
 
 
+def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and math.isnan(value):  # it passes every range
+        raise click.BadParameter("nan is not a number")
+    return value
+
+
 @click.command()
 @click.argument("recording", metavar="RECORDING", type=A_PATH)
 @click.option(
@@ -33,10 +39,17 @@ def _number_or_name(_context: click.Context, _option: click.Parameter, text: str
     "--rpm",
     type=click.FloatRange(0.001, 1e7),
     required=True,
+    callback=_a_number,
     metavar="RPM",
     help="Speed of the shaft during the recording.",
 )
-@click.option("--rate", type=click.FloatRange(1, 1e8), metavar="HZ", help="Sample rate; a WAV file states its own.")
+@click.option(
+    "--rate",
+    type=click.FloatRange(1, 1e8),
+    callback=_a_number,
+    metavar="HZ",
+    help="Sample rate; a WAV file states its own.",
+)
 @click.option(
     "--unit",
     type=click.Choice(UNITS),
@@ -47,6 +60,7 @@ def _number_or_name(_context: click.Context, _option: click.Parameter, text: str
 @click.option(
     "--sensitivity",
     type=click.FloatRange(1e-6, 1e6),
+    callback=_a_number,
     metavar="MV_PER_G",
     help="Of the sensor [mV per g], with --unit V.",
 )

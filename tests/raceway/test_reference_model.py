@@ -20,6 +20,7 @@ def trainings(tiny_corpus, tmp_path, monkeypatch):
     """List that grows with each training; the table of the tiny corpus replaces that of every recipe."""
     table, made = feature_table(tiny_corpus), []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr("features.baselines.estimators.TREES", 2)
     monkeypatch.setattr(reference_model, "recipe_table", lambda recipe: made.append(recipe) or table)
     return made
 
@@ -28,7 +29,8 @@ def call(*arguments):
     return CliRunner().invoke(cli, [str(argument) for argument in arguments], prog_name="raceway")
 
 
-def test_the_name_tells_the_recipe_as_shipped_and_the_versions(trainings, tmp_path, monkeypatch):
+@pytest.mark.usefixtures("trainings")
+def test_the_name_tells_the_recipe_as_shipped_and_the_versions(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "domain_randomised").write_text("not the shipped recipe", encoding="utf-8")
     name = reference_model.kept_path(shipped_recipes()["domain_randomised"]).name
@@ -48,9 +50,7 @@ def test_the_reference_model_is_made_once_and_loaded_afterwards(trainings, tmp_p
     assert [found.name for found in path.parent.glob("*.skops")] == [path.name]
 
 
-@pytest.mark.parametrize(
-    "damage", [lambda content: content[: len(content) // 2], lambda content: b"", lambda content: b"x" * 100]
-)
+@pytest.mark.parametrize("damage", [lambda content: content[: len(content) // 2], lambda _: b"", lambda _: b"x" * 100])
 def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
     _, path = reference_model.load_reference_model()
     path.write_bytes(damage(path.read_bytes()))
@@ -74,7 +74,8 @@ def test_two_that_need_it_at_once_train_it_once(trainings):
     load_model(reference_model.kept_path("quickstart", "logistic_regression"))
 
 
-def test_train_on_a_recipe_keeps_the_model_or_writes_it(trainings, tiny_recipe, tmp_path):
+@pytest.mark.usefixtures("trainings")
+def test_train_on_a_recipe_keeps_the_model_or_writes_it(tiny_recipe, tmp_path):
     kept = call("train", tiny_recipe, "--estimator", "logistic_regression", "--json")
     assert kept.exit_code == 0, kept.output
     facts = json.loads(kept.stdout)
@@ -92,7 +93,8 @@ def test_train_on_a_folder_needs_a_place_for_the_model(tiny_corpus, trainings):
     assert trainings == []
 
 
-def test_a_name_that_is_neither_folder_nor_recipe_is_refused(trainings):
+@pytest.mark.usefixtures("trainings")
+def test_a_name_that_is_neither_folder_nor_recipe_is_refused():
     result = call("train", "domain_randomized")
     assert result.exit_code == 2
     assert "did you mean domain_randomised" in result.stderr
@@ -108,7 +110,8 @@ def test_the_cache_follows_the_conventions_of_the_system(tmp_path, monkeypatch):
     assert reference_model.cache_folder() == tmp_path / ".cache" / "raceway"
 
 
-def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(trainings, tmp_path, monkeypatch):
+@pytest.mark.usefixtures("trainings")
+def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tmp_path, monkeypatch):
     (tmp_path / "file").write_text("", encoding="utf-8")
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "file" / "cache"))
     result = call("train", "domain_randomised")
