@@ -121,7 +121,7 @@ def recording_speeds(
 def with_speeds(table: xr.Dataset, recording: IntArray, found: list[ShaftSpeed], speed: Speed) -> xr.Dataset:
     """Table with the found rate, its uncertainty and its evidence as variables of the records."""
     label = table["shaft_rate"].values
-    relative, spread = (np.array(found_of)[recording] for found_of in zip(*map(_relative, found), strict=True))
+    relative, spread = np.array([_relative(one) for one in found]).reshape(-1, 2)[recording].T
     codes = np.array([EVIDENCE.index(one.evidence) for one in found], np.int8)[recording]
     described = {"units": "Hz", "role": "operating"}
     flags = {"flag_values": np.arange(len(EVIDENCE), dtype=np.int8), "flag_meanings": " ".join(EVIDENCE)}

@@ -3,7 +3,7 @@
 ``signals -> windows of at most a second -> level of the envelope (mean of all bands) and of the signal -> lines``
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -18,7 +18,9 @@ from features.signal.speed import TOLERANCE, ShaftSpeed, find_speed, levels_at, 
 LONGEST = 1.0  # seconds; the lines of a longer signal are narrower than a candidate, and wander with the speed
 
 
-def shaft_speed(x: ArrayLike, fs: float, shaft_rate: float, orders: Orders, tolerance: float = TOLERANCE) -> ShaftSpeed:
+def shaft_speed(
+    x: ArrayLike, fs: float, shaft_rate: float, orders: Sequence[ArrayLike], tolerance: float = TOLERANCE
+) -> ShaftSpeed:
     """Shaft speed of one recording, estimated from what repeats in it.
 
     It searches the speeds within ``tolerance`` of the label for the one at which shaft harmonics and the lines of one
@@ -34,7 +36,7 @@ def shaft_speed(x: ArrayLike, fs: float, shaft_rate: float, orders: Orders, tole
     shaft_rate
         Shaft rate as labelled [Hz].
     orders
-        Nominal fault orders; numbers, or arrays of one value per window.
+        Nominal orders ``ftf, bpfo, bpfi, bsf`` (or `Orders`): numbers, or arrays of one value per window.
     tolerance
         Largest relative error of the label, up to 0.2.
 

@@ -79,7 +79,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         if self.speed != "correct":
             message = f"speed: {self.speed!r} is no treatment of shaft speeds; choose off or correct."
             raise ValueError(message)
-        orders = Orders(*(np.asarray(order) for order in (self.ftf, self.bpfo, self.bpfi, self.bsf)))
+        orders = (self.ftf, self.bpfo, self.bpfi, self.bsf)
         found = (shaft_speed(signal, self.fs, self.shaft_rate, orders) for signal in x)
         return np.array([speed.rate if speed.clear else self.shaft_rate for speed in found], dtype=float)
 

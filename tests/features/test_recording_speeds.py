@@ -15,7 +15,6 @@ from features.recording_speeds import (
     recording_speeds,
     speed_warnings,
 )
-from features.signal.lines import Orders
 from features.table_files import read_table, write_table
 from gen.corpus import (
     FAULTS,
@@ -137,7 +136,7 @@ def test_windows_of_one_recording_share_one_estimate_however_the_parts_are_cut(c
 def test_the_estimate_of_a_recording_is_that_of_shaft_speed(corpus, checked):
     with open_corpus(corpus) as opened:
         x = opened["acceleration"].values[WINDOWS : 2 * WINDOWS, 0]
-    found = shaft_speed(x, FS, 25.0, Orders(**ORDERS))
+    found = shaft_speed(x, FS, 25.0, tuple(ORDERS.values()))
     assert found.rate == pytest.approx(checked[FOUND].values[WINDOWS])
     assert found.uncertainty == pytest.approx(checked[UNCERTAINTY].values[WINDOWS])
 
@@ -187,7 +186,7 @@ def test_a_table_with_speeds_is_unchanged_after_netcdf(tmp_path, corrected):
 def test_a_warning_names_the_recording_both_speeds_and_the_lines(checked, corrected):
     inner, ball = speed_warnings(checked)
     assert inner.startswith("inner.csv: labelled 1500 rpm, but its BPFI lines fit 15")
-    assert ball.startswith("ball.csv: labelled 1560 rpm, but its 2 BSF lines fit 14")
+    assert ball.startswith("ball.csv: labelled 1560 rpm, but its shaft harmonics fit 14")
     assert inner.endswith("%); check the label and the bearing, or use --speed correct.")
     assert speed_warnings(corrected)[0].endswith("%); its features use the found speed.")
 
