@@ -45,7 +45,6 @@ from features.baselines.references import RELATIVE, paired_table, relative_names
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
-from features.table import feature_table
 from gen.corpus import FAULTS, UNKNOWN_CODE, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -207,6 +206,8 @@ def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dat
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
+    from features.table import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
+
     return feature_table(corpus, model.groups if reference is None else with_energies(model.groups))
 
 

@@ -3,8 +3,8 @@
 ``recording -> quality -> shaft speed -> windows -> features -> prediction``, and beside it ``-> band spectra -> evidence``
 
 The verdict is that of the classifier. It becomes "unsure" if the classifier is, if the signal tells nothing, if the
-labelled speed is clearly wrong and the classifier says something else at the speed found, or if the lines plainly tell
-another class. Evidence is measured in the signal alone, whatever the verdict.
+labelled speed is clearly wrong and the classifier says different classes at both speeds without a line that decides, or
+if the lines plainly tell another class. Evidence is measured in the signal alone, whatever the verdict.
 """
 
 from collections.abc import Mapping
@@ -18,8 +18,16 @@ from features.baselines.references import with_energies
 from features.diagnosis.evidence import Line, find_evidence, strange_series
 from features.diagnosis.quality import quality_of
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
-from features.diagnosis.wording import FAULTS_IN_WORDS, by_family, candidates, family_in_words, reasons, speed_in_words
-from features.faults import CLASSES
+from features.diagnosis.wording import (
+    FAULTS_IN_WORDS,
+    by_family,
+    candidates,
+    family_in_words,
+    probability_in_words,
+    reasons,
+    speed_in_words,
+)
+from features.faults import HEALTHY
 from features.indicators import Orders
 from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray
@@ -34,17 +42,22 @@ if TYPE_CHECKING:
 
 SpeedUse = Literal["off", "check", "correct"]
 LONGEST = 60.0  # s; of a longer recording the beginning is used
-CONTRADICTING = 15.0  # dB, of the lines of another class, with two harmonics or more, that contradict the classifier
+CONTRADICTING = (
+    15.0  # dB, of lines of another class, the fundamental and a harmonic or three harmonics, against the classifier
+)
+NEARLY_AS_HIGH = 5.0  # dB, by which lines of no part of the bearing may be below the evidence and are still told
+WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
 TOLERANCE_PERCENT = 8  # within which the speed is searched
 
 
 class Recorded(NamedTuple):
-    """A recording: signal [m s-2], shape (time,), sample rate and labelled shaft rate [Hz], and nominal orders as numbers."""
+    """A recording: signal [m s-2], shape (time,), sample rate and labelled shaft rate [Hz], nominal orders as numbers, and name."""
 
     signal: FloatArray
     fs: float
     shaft_rate: float
     orders: Orders
+    name: str = "the recording"
 
 
 @dataclass(frozen=True)
@@ -105,18 +118,21 @@ def diagnose(
     healthy
         A recording of the same machine with a healthy bearing, from the same sensor.
     speed
-        ``check`` searches the shaft speed in the recording and warns if the label is wrong; ``correct`` computes the
-        features at the speed found; ``off`` believes the label.
+        ``check`` searches the shaft speed in the recording; if the label is clearly wrong it warns, and answers only if
+        the classifier says the same class at both speeds or if lines tell that of the speed found. ``correct`` takes the
+        speed found, and ``off`` believes the label.
 
     Raises
     ------
     CorpusError
         If a recording has values that are not finite, or the model cannot take its features or the healthy recording.
     """
-    for name, checked in (("the recording", recording), ("the healthy recording", healthy)):
-        if checked is not None and not np.isfinite(checked.signal).all():
-            wrong = int(np.count_nonzero(~np.isfinite(checked.signal)))
-            raise CorpusError(f"{name} has {wrong:,} samples that are not finite numbers; export it again.")
+    for checked in (recording, healthy):
+        wrong = 0 if checked is None else int(np.count_nonzero(~np.isfinite(checked.signal)))
+        if checked is not None and wrong:
+            raise CorpusError(
+                f"{checked.name}: {wrong:,} of {checked.signal.size:,} samples are not finite numbers; export it again."
+            )
     signal, warnings = _beginning(recording)
     quality = quality_of(signal, recording.fs, recording.shaft_rate)
     if quality.useless:
@@ -125,7 +141,9 @@ def diagnose(
     if healthy is not None:
         reason = quality_of(healthy.signal, healthy.fs, healthy.shaft_rate).useless
         if reason:
-            raise CorpusError(f"the healthy recording cannot be used: {reason}; give another, or none.")
+            raise CorpusError(
+                f"{healthy.name}: cannot be used as the healthy recording, since {reason}; give another, or none."
+            )
     used = recording._replace(signal=signal)
     found, uncertainty = _speed(used) if speed != "off" else (None, 0.0)
     rate = recording.shaft_rate if found is None else found
@@ -136,7 +154,7 @@ def diagnose(
     if found is not None:
         warnings.append(_speed_warning(recording.shaft_rate, found, uncertainty))
         if speed == "check":
-            predicted = _agreed(predicted, _predicted(used, model, reference))
+            predicted = _agreed(predicted, _predicted(used, model, reference), lines)
     diagnosis = replace(
         predicted,
         labelled_rate=recording.shaft_rate,
@@ -180,9 +198,8 @@ def _speed(recording: Recorded) -> tuple[float | None, float]:
 
 def _table(recording: Recorded, model: "Model") -> "xr.Dataset":
     windows = windows_of(recording.signal, recording.fs)
-    return recording_table(
-        windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, with_energies(model.groups)
-    )
+    groups = with_energies(model.groups)
+    return recording_table(windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, groups)
 
 
 def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | None") -> Diagnosis:
@@ -197,9 +214,10 @@ def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | Non
     )  # fmt: skip
 
 
-def _agreed(found: Diagnosis, labelled: Diagnosis) -> Diagnosis:
-    """Prediction at the speed found if that at the labelled speed is the same, else unsure."""
-    if found.verdict == labelled.verdict:
+def _agreed(found: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
+    """Prediction at the speed found, unless the classifier says another class at the labelled speed and no line decides."""
+    told = {line.fault for line in lines}
+    if labelled.verdict in (found.verdict, UNSURE) or found.verdict in told:
         return found
     why = (
         f"at the labelled speed the classifier says {labelled.verdict} ({candidates(labelled.probabilities, 1)}) and at the speed found "
@@ -214,16 +232,15 @@ def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration
     at_speed = speed_in_words(diagnosis.labelled_rate, found, speed != "off")
     contradiction = "" if diagnosis.verdict == UNSURE else _contradiction(diagnosis)
     if diagnosis.verdict != UNSURE and not contradiction:
-        probability = diagnosis.probabilities[diagnosis.verdict]
+        probability = probability_in_words(diagnosis.probabilities[diagnosis.verdict])
         why = reasons(diagnosis.verdict, diagnosis.evidence)
-        text = f"{FAULTS_IN_WORDS[diagnosis.verdict]} (probability {probability:.2f}): {why}; {at_speed}."
-        return replace(diagnosis, sentence=text)
+        text = f"{FAULTS_IN_WORDS[diagnosis.verdict]} (probability {probability}): {why}; {at_speed}."
+        advice = (WATCH,) if diagnosis.verdict == HEALTHY and diagnosis.evidence else ()
+        return replace(diagnosis, sentence=text, advice=advice)
     why = contradiction or diagnosis.sentence or _doubt(diagnosis)
     likely = candidates(diagnosis.probabilities)
     advice = diagnosis.advice or _advice(duration, compared)
-    return replace(
-        diagnosis, verdict=UNSURE, sentence=f"Unsure ({likely}): {why}; {at_speed}.", advice=advice
-    )
+    return replace(diagnosis, verdict=UNSURE, sentence=f"Unsure ({likely}): {why}; {at_speed}.", advice=advice)
 
 
 def _contradiction(diagnosis: Diagnosis) -> str:
@@ -232,8 +249,9 @@ def _contradiction(diagnosis: Diagnosis) -> str:
     if diagnosis.verdict in families or diagnosis.verdict == "compound":
         return ""
     for fault, lines in families.items():
-        plain = [line for line in lines if not line.sideband]
-        if len(plain) >= 2 and max(line.level for line in plain) >= CONTRADICTING:
+        harmonics = {line.harmonic for line in lines if not line.sideband}
+        plain = len(harmonics) >= (2 if 1 in harmonics else 3)
+        if plain and max(line.level for line in lines) >= CONTRADICTING:
             return f"the classifier says {diagnosis.verdict}, but {family_in_words(lines)}, which tells of {fault}"
     return ""
 
@@ -259,26 +277,21 @@ def _speed_warning(labelled: float, found: float, uncertainty: float) -> str:
     off = 100 * (found / labelled - 1)
     return (
         f"The labelled speed of {60 * labelled:,.0f} rpm does not fit the lines of this recording; they fit {60 * found:,.0f} rpm "
-        f"(± {60 * uncertainty:.1g}), {off:+.1f} %."
+        f"(± {60 * uncertainty:.0f}), {off:+.1f} %."
     )
 
 
-def _bearing_warning(
-    spectra: list[BandSpectrum], lines: list[Line], shaft_rate: float, orders: Orders
-) -> list[str]:
-    """Warning of a series of lines that belongs to no part of the bearing, if no part shows lines."""
-    if lines:
+def _bearing_warning(spectra: list[BandSpectrum], lines: list[Line], shaft_rate: float, orders: Orders) -> list[str]:
+    """Warning of a series of lines that belongs to no part of the bearing and is about as high as the evidence, or higher."""
+    series = strange_series(spectra, shaft_rate, orders, lines)
+    if series is None or series.level < max((line.level for line in lines), default=0.0) - NEARLY_AS_HIGH:
         return []
-    nominal = {"shaft": 1.0, **{name: float(value) for name, value in orders._asdict().items()}}
-    known = [row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence]
-    series = strange_series(spectra, shaft_rate, known)
-    if series is None:
-        return []
-    return [
+    sentence = (
         f"A line at {series.order:.2f} orders and its harmonics stand {series.level:.0f} dB above the floor, and no part of this bearing "
         f"has that order: the bearing may be another one, or the speed wrong by more than {TOLERANCE_PERCENT} %, or the lines come from "
         "another part of the machine."
-    ]
+    )
+    return [sentence]
 
 
 def _shown_spectrum(spectra: list[BandSpectrum], lines: list[Line]) -> BandSpectrum:

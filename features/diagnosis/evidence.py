@@ -10,7 +10,8 @@ again noise adds one with 1 %. Three rules keep out lines that are there and tel
   resolved from one is not found.
 - The first line must be ten times as high as the floor, because long recordings of healthy bearings show faint lines
   at many fault frequencies.
-- A weaker family must come within 10 dB of the strongest, beside whose harmonics shaft and cage make lines everywhere.
+- The family with the largest sum of levels comes first, and its lines explain no other family. The others must come
+  within 10 dB of it: beside its harmonics shaft and cage make lines everywhere.
 """
 
 from collections.abc import Iterator, Sequence
@@ -21,7 +22,6 @@ import numpy as np
 from features.diagnosis.spectrum import TOP_ORDER, BandSpectrum
 from features.faults import CLASSES, FaultClass
 from features.indicators import Orders
-from features.signal.rows import FloatArray
 
 FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
 TOLERANCE = 0.02  # of an order: slip, contact angle and the remaining error of the speed
@@ -98,51 +98,76 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     least = LEAST_LEVEL
     while families and trials:
         found = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
-        strongest = int(np.argmax([ratio for ratio, *_ in found]))
-        ratio, number, fundamental = found[strongest]
-        if ratio < 10 ** (least / 10):
-            break
-        row = families.pop(strongest)
-        family = _family(row, spectra[number], free[number], fundamental, shaft_rate, orders)
-        if row.name == "cage" and sum(not line.sideband for line in family) < CAGE_LINES:
+        held = [
+            _family(row, spectra[number], free[number], fundamental, shaft_rate, orders) if ratio else []
+            for row, (ratio, number, fundamental) in zip(families, found, strict=True)
+        ]
+        strongest = int(np.argmax([sum(line.level for line in family) for family in held]))
+        ratio, _, fundamental = found[strongest]
+        row, family = families.pop(strongest), held[strongest]
+        level = 10 * float(np.log10(max(ratio, 1.0)))
+        if (
+            not family
+            or level < least
+            or (row.name == "cage" and sum(not line.sideband for line in family) < CAGE_LINES)
+        ):
             continue
         lines += family
-        least = max(least, 10 * float(np.log10(ratio)) - SPREAD)
+        least = max(least, level - SPREAD)
         for spectrum, free_bins in zip(spectra, free, strict=True):
             _remove(spectrum, free_bins, row, fundamental, shaft_rate, orders)
     return lines
 
 
-def strange_series(spectra: Sequence[BandSpectrum], shaft_rate: float, known: Sequence[float]) -> Series | None:
-    """Strongest series of three harmonics between 1.5 orders and a third of the spectrum that is no multiple of the shaft.
+def strange_series(
+    spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Orders, lines: Sequence[Line]
+) -> Series | None:
+    """Strongest series of three harmonics that belongs neither to the shaft nor to a part of the bearing.
 
-    ``known`` are orders of families, at whose multiples nothing is searched. None if noise has such a series with more
-    than 1 %, or if it lies at multiples of 50 or 60 Hz, where mains can make it.
+    It is searched between 1.5 orders and a third of the spectrum. None if noise has such a series with more than 1 %,
+    if it lies at multiples of 50 or 60 Hz, where mains can make it, or if its first line differs from a harmonic of the
+    evidence ``lines`` by a multiple of the shaft rate.
     """
+    families = [_fundamental_order(row, orders) for row in CLASSES.values() if row.evidence]
+    plain = [line for line in lines if not line.sideband]
+    strongest = {line.fault: line for line in sorted(plain, key=lambda line: line.level)}
+    modulated = [line.order / line.harmonic for line in strongest.values()]
     best: Series | None = None
     for spectrum in spectra:
         free = ~_near_shaft(spectrum, shaft_rate)
-        for order in known:
-            for harmonic in range(1, HARMONICS + 1):
-                place = order * harmonic * shaft_rate
-                free[slice(*spectrum.bins(place, TOLERANCE * place + spectrum.width))] = False
-        ratio = np.where(free, spectrum.ratio, 0.0)
-        lobe = max(1, round(spectrum.width / spectrum.resolution / 2))
-        highest = np.max([np.roll(ratio, shift) for shift in range(-lobe, lobe + 1)], axis=0)
-        first, last = int(np.ceil(1.5 * shaft_rate / spectrum.resolution)), len(ratio) // 3
-        bins = np.arange(first, max(first, last))
-        if not bins.size:
-            continue
-        weakest = np.minimum.reduce([ratio[bins], highest[2 * bins], highest[3 * bins]])
-        bound = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * len(spectra))) ** (1 / 3) / (TRIALS_PER_BIN * (2 * lobe + 1))
-        frequency = bins * spectrum.resolution
-        for mains in (50.0, 60.0):
-            weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
-        place = int(np.argmax(weakest))
-        level = 10 * float(np.log10(max(weakest[place], 1e-12)))
-        if weakest[place] > max(spectrum.threshold(bound), 10 ** (LEAST_LEVEL / 10)) and (best is None or level > best.level):
-            best = Series(float(frequency[place]) / shaft_rate, level)
+        order = np.arange(len(free)) * spectrum.resolution / shaft_rate
+        first = free.copy()
+        for family in families:
+            first &= np.abs(order - family) > TOLERANCE * family + spectrum.width / shaft_rate
+        for fundamental in modulated:
+            for harmonic in range(1, 4):
+                beside = order - harmonic * fundamental
+                first &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
+        found = _series(spectrum, first, free, shaft_rate, len(spectra))
+        if found is not None and (best is None or found.level > best.level):
+            best = found
     return best
+
+
+def _series(
+    spectrum: BandSpectrum, first: np.ndarray, free: np.ndarray, shaft_rate: float, bands: int
+) -> Series | None:
+    """Strongest series of one band that noise does not have; its first line and the others are in some bins, shape (frequency,)."""
+    ratio = np.where(free, spectrum.ratio, 0.0)
+    lobe = max(1, round(spectrum.width / spectrum.resolution / 2))
+    highest = np.max([np.roll(ratio, shift) for shift in range(-lobe, lobe + 1)], axis=0)
+    bins = np.arange(int(np.ceil(1.5 * shaft_rate / spectrum.resolution)), len(ratio) // 3)
+    if not bins.size:
+        return None
+    weakest = np.minimum.reduce([np.where(first, ratio, 0.0)[bins], highest[2 * bins], highest[3 * bins]])
+    frequency = bins * spectrum.resolution
+    for mains in (50.0, 60.0):
+        weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
+    place = int(np.argmax(weakest))
+    each = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * bands)) ** (1 / 3) / (TRIALS_PER_BIN * (2 * lobe + 1))
+    if weakest[place] <= max(spectrum.threshold(each), 10 ** (LEAST_LEVEL / 10)):
+        return None
+    return Series(float(frequency[place]) / shaft_rate, 10 * float(np.log10(weakest[place])))
 
 
 def line_facts(line: Line) -> dict[str, object]:
@@ -228,7 +253,7 @@ def _family(
         lines[harmonic, sign] = Line(
             row.name, name, harmonic, frequency / shaft_rate, frequency, 10 * float(np.log10(ratio.max())), spectrum.band, sign != 0
         )  # fmt: skip
-    return [lines[key] for key in sorted(lines)]
+    return [lines[key] for key in sorted(lines, key=lambda key: (key[1] != 0, *key))]
 
 
 def _remove(

@@ -50,8 +50,19 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
     if own:
         return family_in_words(own) + (f"; also {others}" if others else "")
     name = CLASSES[verdict].lines[0].label if CLASSES[verdict].evidence else "fault"
-    resting = f"no {name} line stands {LEAST_LEVEL:g} dB above the floor, so this rests on fainter features of the signal"
+    resting = (
+        f"no {name} line stands {LEAST_LEVEL:g} dB above the floor, so this rests on fainter features of the signal"
+    )
     return resting + (f", and {others}" if others else "")
+
+
+def probability_in_words(probability: float) -> str:
+    """Probability with two digits, never 1.
+
+    >>> probability_in_words(0.912), probability_in_words(0.9999)
+    ('0.91', 'above 0.99')
+    """
+    return "above 0.99" if probability > 0.99 else f"{probability:.2f}"
 
 
 def candidates(probabilities: Mapping[str, float], number: int = 2) -> str:

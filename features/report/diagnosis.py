@@ -108,7 +108,9 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis, recor
     for fault, lines in families.items():
         row = CLASSES[fault]
         for number, line in enumerate(lines):
-            axes.axvline(line, color=row.colour, linewidth=1.0, alpha=0.65, linestyle="-" if number == 0 else (0, (3, 3)))
+            axes.axvline(
+                line, color=row.colour, linewidth=1.0, alpha=0.65, linestyle="-" if number == 0 else (0, (3, 3))
+            )
         names[row.lines[0].label] = lines[0]
     axes.axvline(1.0, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], level[visible], color=INK, linewidth=0.7)
@@ -116,10 +118,15 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis, recor
     marked = [line for line in diagnosis.evidence if line.band == spectrum.band and line.order <= top]
     for line in marked:
         marker = "o" if not line.sideband else "s"
-        axes.plot(line.order, line.level, marker, color=CLASSES[line.fault].colour, markersize=4 if line.sideband else 6)
+        axes.plot(
+            line.order, line.level, marker, color=CLASSES[line.fault].colour, markersize=4 if line.sideband else 6
+        )
     highest = max(float(level[visible].max(initial=LEAST_LEVEL)), LEAST_LEVEL)
     axes.set(
-        xlabel="order of the shaft", ylabel="level over the floor [dB]", xlim=(0, top), ylim=(LOWEST_DB, highest + MARGIN_DB)
+        xlabel="order of the shaft",
+        ylabel="level over the floor [dB]",
+        xlim=(0, top),
+        ylim=(LOWEST_DB, highest + MARGIN_DB),
     )
     name_lines(axes, {}, names, INK, top)
     axes.set_title(f"Envelope spectrum of {_kilohertz(spectrum.band)}; dots mark the evidence", pad=30)
@@ -132,7 +139,11 @@ def _kilohertz(band: tuple[float, float]) -> str:
 def _families(recording: Recorded) -> dict[str, list[float]]:
     """Orders of the first harmonics of each family, by its class."""
     nominal = {name: float(value) for name, value in recording.orders._asdict().items()}
-    fundamental = {row.name: row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence}
+    fundamental = {
+        row.name: row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence
+    }
     return {
-        fault: [order * n for n in range(1, DRAWN_HARMONICS + 1)] for fault, order in fundamental.items() if fault != "cage"
+        fault: [order * n for n in range(1, DRAWN_HARMONICS + 1)]
+        for fault, order in fundamental.items()
+        if fault != "cage"
     } | {"cage": [fundamental["cage"]]}

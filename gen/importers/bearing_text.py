@@ -35,11 +35,13 @@ def bearing_from_text(text: str) -> Bearing:
         try:
             values[key] = value if key == "designation" else float(value)
         except ValueError:
-            raise CorpusError(f"bearing: {part.strip()!r} is not of the form key=number; write it like {example}.") from None
+            raise CorpusError(
+                f"bearing: {part.strip()!r} is not of the form key=number; write it like {example}."
+            ) from None
     try:
         return bearing_of_geometry(Geometry.model_validate(values))
     except ValidationError as error:
-        first = error.errors()[0]
+        first = max(error.errors(), key=lambda one: one["type"] == "extra_forbidden")  # it causes a missing key
         key = ".".join(map(str, first["loc"])) or "geometry"
         complaint = {
             "missing": "is missing",

@@ -1,5 +1,6 @@
 """Command that diagnoses one recording of the user."""
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,12 @@ def _number_or_name(_context: click.Context, _option: click.Parameter, text: str
     return int(text) if text is not None and text.isdecimal() else text
 
 
+def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and math.isnan(value):  # it passes every range
+        raise click.BadParameter("nan is not a number")
+    return value
+
+
 @click.command()
 @click.argument("recording", metavar="RECORDING", type=A_PATH)
 @click.option(
@@ -29,23 +36,46 @@ def _number_or_name(_context: click.Context, _option: click.Parameter, text: str
     help="Designation in the catalogue, such as 6205, or a geometry: n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938.",
 )
 @click.option(
-    "--rpm", type=click.FloatRange(0.001, 1e7), required=True, metavar="RPM", help="Speed of the shaft during the recording."
+    "--rpm",
+    type=click.FloatRange(0.001, 1e7),
+    required=True,
+    callback=_a_number,
+    metavar="RPM",
+    help="Speed of the shaft during the recording.",
 )
 @click.option(
-    "--rate", type=click.FloatRange(1, 1e8), metavar="HZ", help="Sample rate; a WAV file states its own."
+    "--rate",
+    type=click.FloatRange(1, 1e8),
+    callback=_a_number,
+    metavar="HZ",
+    help="Sample rate; a WAV file states its own.",
 )
 @click.option(
-    "--unit", type=click.Choice(UNITS), default="m/s2", show_default=True, help="Unit of the values; V needs --sensitivity."
+    "--unit",
+    type=click.Choice(UNITS),
+    default="m/s2",
+    show_default=True,
+    help="Unit of the values; V needs --sensitivity.",
 )
 @click.option(
-    "--sensitivity", type=click.FloatRange(1e-6, 1e6), metavar="MV_PER_G", help="Of the sensor [mV per g], with --unit V."
+    "--sensitivity",
+    type=click.FloatRange(1e-6, 1e6),
+    callback=_a_number,
+    metavar="MV_PER_G",
+    help="Of the sensor [mV per g], with --unit V.",
 )
 @click.option(
-    "--column", callback=_number_or_name, metavar="NAME", help="Column of a table by name or number from 0; channel of a WAV file."
+    "--column",
+    callback=_number_or_name,
+    metavar="NAME",
+    help="Column of a table by name or number from 0; channel of a WAV file.",
 )
 @click.option("--variable", metavar="NAME", help="Variable of a MATLAB file; by default the only signal in it.")
 @click.option(
-    "--healthy", type=A_PATH, metavar="FILE", help="Recording of the same machine with a healthy bearing, read in the same way."
+    "--healthy",
+    type=A_PATH,
+    metavar="FILE",
+    help="Recording of the same machine with a healthy bearing, read in the same way.",
 )
 @click.option("--model", type=A_PATH, metavar="MODEL", help="Model file; by default the reference model of this user.")
 @click.option(
@@ -92,16 +122,26 @@ def diagnose(
     from gen.importers.signals import read_signal
 
     known = bearing_from_text(bearing)
-    reading = {"variable": variable, "column": column, "unit": unit, "sensitivity": sensitivity, "rate": rate}
-    signals = [read_signal(path, **reading) for path in (recording, healthy) if path is not None]
-    rates = [_rate(path, signal.fs) for path, signal in zip((recording, healthy), signals, strict=False)]
-    recorded = [_recorded(signal.values, fs, rpm, known) for signal, fs in zip(signals, rates, strict=True)]
+    reading: dict[str, Any] = {
+        "variable": variable,
+        "column": column,
+        "unit": unit,
+        "sensitivity": sensitivity,
+        "rate": rate,
+    }
+    paths = [path for path in (recording, healthy) if path is not None]
+    signals = [read_signal(path, **reading) for path in paths]
+    recorded = [
+        _recorded(signal.values, _rate(path, signal.fs), rpm, known, path)
+        for path, signal in zip(paths, signals, strict=True)
+    ]
     loaded, source = _model(model)
     from features.diagnosis import diagnose as run
 
     with compilation_noticed():
         found = run(recorded[0], loaded, healthy=recorded[1] if healthy else None, speed=speed)
-    notes = tuple(note for signal in signals for note in signal.warnings)
+    # the diagnosis itself warns of an implausible rms
+    notes = tuple(note for signal in signals for note in signal.warnings if "its rms" not in note)
     for sentence in (*notes, *found.warnings):
         notice(f"warning: {sentence}")
     if output is not None:
@@ -123,16 +163,28 @@ def _rate(path: Path, fs: float | None) -> float:
     return fs
 
 
-def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing") -> "Recorded":
+def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing", path: Path) -> "Recorded":
+    import numpy as np
+
     from features.diagnosis import Recorded
     from features.indicators import Orders
     from gen.physics.bearing import orders
     from gen.units import rpm_to_hertz
 
-    return Recorded(values, fs, rpm_to_hertz(rpm), Orders(*orders(bearing)))
+    nominal = Orders(*(np.asarray(order) for order in orders(bearing)))
+    return Recorded(values, fs, rpm_to_hertz(rpm), nominal, str(path))
 
 
 def _model(path: Path | None) -> tuple[Any, Path]:
+    """Model and its file, or the reference model."""
+    from sklearn import utils
+
+    # skops lists all estimators for its default of trusted types, which imports all of scikit-learn: a tenth of the time of a diagnosis.
+    # Model files are read without that default.
+    listed, utils.all_estimators = utils.all_estimators, list
+    import skops.io  # noqa: F401
+
+    utils.all_estimators = listed
     if path is None:
         from raceway.studies.reference_model import load_reference_model
 
@@ -181,7 +233,7 @@ def _assumed(
 ) -> list[tuple[str, str]]:
     """Facts for the page, by name."""
     orders = ", ".join(f"{name.upper()} {float(order):.3f}" for name, order in recorded.orders._asdict().items())
-    angle = f", contact angle {bearing.contact_angle * 57.29578:.3g}°" if bearing.contact_angle else ", contact angle 0°"
+    angle = f", contact angle {math.degrees(bearing.contact_angle):.3g}°"
     facts = {
         "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of {1e3 * bearing.ball_diameter:.4g} mm on "
         f"{1e3 * bearing.pitch_diameter:.4g} mm{angle}, outer ring fixed",

@@ -8,7 +8,7 @@ import click
 from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, file_option, json_option, speed_option
+from raceway.console.options import A_PATH, corpus_argument, corpus_folder, file_option, json_option, speed_option
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
@@ -29,8 +29,8 @@ ESTIMATORS = (
 
 
 @click.command()
-@corpus_argument
-@file_option("MODEL", "Model file.")
+@click.argument("source", metavar="DIR|RECIPE")
+@file_option("MODEL", "Model file; without it the model of a RECIPE is kept for this user.", required=False)
 @click.option(
     "--estimator",
     type=click.Choice(ESTIMATORS),
@@ -40,29 +40,42 @@ ESTIMATORS = (
     help=f"One of {', '.join(ESTIMATORS)}.",
 )
 @json_option
-def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
-    """Train a classifier on the corpus in DIR.
+def train(source: str, output: Path | None, estimator: str, as_json: bool) -> None:
+    """Train a classifier on the corpus in DIR, or on a corpus generated from RECIPE.
 
     If the corpus has a test split (raceway info DIR), the model is trained on the other records and scored on the test split, which has
     other specimens. Otherwise it is trained on all records and not scored. Model files run no code when they are loaded.
 
       raceway train corpus -o model.skops
       raceway train corpus -o forest.skops --estimator random_forest
+      raceway train domain_randomised                 the reference model of raceway diagnose
+      raceway train my_recipe.yaml -o model.skops
+
+    A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training. Without -o the model is kept in
+    the folder RACEWAY_CACHE, or else in raceway in the cache folder of the user (XDG_CACHE_HOME or ~/.cache), and is not trained twice.
 
     Next: raceway evaluate OTHER --model MODEL
     """
-    from features.baselines import count_unknown, save_model
-    from features.baselines import evaluate as score
-    from features.baselines import train as fit
-    from gen.corpus import SPLITS
+    from features.baselines import count_unknown, load_model, save_model
+    from raceway.studies.reference_model import keep_model, recipe_table, train_and_score
 
-    table = table_of(corpus)
-    notice_of_unknown(corpus, count_unknown(table))
-    test = table["split"].values == SPLITS.index("test")
-    honest = bool(test.any() and not test.all())
-    model = fit(table.isel(record=~test) if honest else table, estimator)
-    save_model(model, output)
-    scores = score(table.isel(record=test), model) if honest else None
+    folder = Path(source)
+    from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
+    corpus = corpus_folder(None, None, folder) if from_folder else None
+    if corpus is None:
+        from gen.recipe import find_recipe
+
+        find_recipe(source)  # a misspelt name is reported before the simulator is imported
+    if corpus is None and output is None:
+        output, scores = keep_model(source, estimator)
+        model = load_model(output)
+    elif output is None:
+        raise click.UsageError("Missing option '-o' / '--output': only the model of a RECIPE is kept without it.")
+    else:
+        table = recipe_table(source) if corpus is None else table_of(corpus)
+        notice_of_unknown(corpus or folder, count_unknown(table))
+        model, scores = train_and_score(table, estimator)
+        save_model(model, output)
     warn_of_severities(scores)
     if as_json:
         names = ("records", "classes", "groups")
