@@ -191,7 +191,11 @@ def _relative_ensemble(seed: int) -> VotingClassifier:
     outside the training and on recordings, both the balanced accuracy and the log-loss are better than with the settings of the ensemble.
     """
     trees = ExtraTreesClassifier(
-        TREES, min_samples_leaf=LEAF, max_features=0.3, class_weight="balanced", random_state=seed
+        TREES,
+        min_samples_leaf=LEAF,  # pyright: ignore[reportArgumentType]
+        max_features=0.3,  # pyright: ignore[reportArgumentType]
+        class_weight="balanced",
+        random_state=seed,
     )
     members = [("extra_trees", _filled(trees)), ("logistic_regression", _logistic_regression(seed, 0.01))]
     return VotingClassifier(members, voting="soft", weights=[2, 1])
