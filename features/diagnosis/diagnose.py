@@ -199,7 +199,8 @@ def _speed(recording: Recorded) -> tuple[float | None, float]:
 def _table(recording: Recorded, model: "Model") -> "xr.Dataset":
     windows = windows_of(recording.signal, recording.fs)
     groups = with_energies(model.groups)
-    return recording_table(windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, groups)
+    table = recording_table(windows, recording.fs, recording.shaft_rate, recording.orders, UNKNOWN_CODE, groups)
+    return table.assign_attrs(title=recording.name)
 
 
 def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | None") -> Diagnosis:

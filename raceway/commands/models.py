@@ -41,7 +41,7 @@ ESTIMATORS = (
 )
 @json_option
 def train(source: str, output: Path | None, estimator: str, as_json: bool) -> None:
-    """Train a classifier on the corpus in DIR, or on a corpus generated from RECIPE.
+    """Train a classifier on the corpus in DIR or of RECIPE.
 
     If the corpus has a test split (raceway info DIR), the model is trained on the other records and scored on the test split, which has
     other specimens. Otherwise it is trained on all records and not scored. Model files run no code when they are loaded.
