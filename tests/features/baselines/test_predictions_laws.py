@@ -8,7 +8,7 @@ import xarray as xr
 
 from features.baselines import UNSURE, evaluate, load_model, predict, save_model, train
 from features.baselines.calibration import COVERAGE, UNCALIBRATED
-from features.baselines.cross_calibration import FOLDS, calibration_groups
+from features.baselines.cross_calibration import calibration_splits
 from features.baselines.records import features_of, labelled_records
 from tests.model_files import make_table
 
@@ -82,10 +82,16 @@ def test_training_calibrates_by_rig_and_states_the_coverage():
     assert 0 < found.dependence < 1  # windows with errors of their own
 
 
-@pytest.mark.parametrize(("rigs", "by"), [(FOLDS, "rig"), (FOLDS - 1, "specimen")])
-def test_rigs_are_kept_together_if_each_class_is_on_enough_of_them(rigs, by):
+@pytest.mark.parametrize(("rigs", "by", "folds"), [(6, "rig", 3), (2, "rig", 2), (1, "specimen", 3)])
+def test_rigs_are_kept_together_if_each_class_is_on_enough_of_them(rigs, by, folds):
     table = windowed(rigs=rigs)
-    assert calibration_groups(labelled_records(table, features_of(table, ("lines",)))) == by
+    records = labelled_records(table, features_of(table, ("lines",)))
+    found = calibration_splits(records, 0)
+    assert found is not None
+    assert (found[0], len(found[1])) == (by, folds)
+    for trained, tested in found[1]:
+        assert not set(getattr(records, by)[trained]) & set(getattr(records, by)[tested])
+        assert set(records.fault[trained]) == set(records.fault)
 
 
 def test_without_enough_specimens_and_without_training_nothing_is_calibrated():
