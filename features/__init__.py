@@ -16,6 +16,7 @@ recording_table  feature table of one recording that lies in no corpus
 recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels
 table            corpus -> feature table (record, feature), part by part
 table_files      feature tables on disk
+auditing         splits of real recordings that can leak
 baselines        classifiers on a feature table, scored by specimen or rig beside their controls
 realism          synthetic records against real ones: AUC of measures, class by class
 diagnosis        class of one recording, and the lines that speak for it
@@ -28,15 +29,17 @@ from typing import TYPE_CHECKING
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from features.auditing import audit_splits
     from features.baselines import evaluate
     from features.speed import shaft_speed
     from features.table import feature_table
 
-__all__ = ["evaluate", "feature_table", "shaft_speed"]
+__all__ = ["audit_splits", "evaluate", "feature_table", "shaft_speed"]
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "features.auditing": ("audit_splits",),
         "features.baselines": ("evaluate",),
         "features.speed": ("shaft_speed",),
         "features.table": ("feature_table",),

@@ -6,7 +6,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from gen.errors import CorpusError
-from gen.importers.mapping import Geometry, bearing_of_geometry
+from gen.importers.entry import Geometry, bearing_of_geometry
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
 

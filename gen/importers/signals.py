@@ -100,6 +100,11 @@ def read_signal(
     return Signal(signal, found.fs if rate is None else rate, tuple(f"{path.name}: {note}." for note in notes))
 
 
+def stated_rate(path: Path) -> float | None:
+    """Sample rate that a file states in its format [Hz]; only WAV files do."""
+    return read_wav(path).rate if path.suffix.lower() == ".wav" else None
+
+
 def read_values(path: Path, place: Place) -> Values:
     """Values of a signal in the unit of its file.
 

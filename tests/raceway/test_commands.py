@@ -180,7 +180,7 @@ def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tm
 
 
 def test_info_and_validate_find_a_sound_corpus_sound(run, told, tiny_corpus):
-    assert told("validate", tiny_corpus) == {"corpus": str(tiny_corpus), "valid": True, "problems": []}
+    assert told("validate", tiny_corpus) == {"corpus": str(tiny_corpus), "valid": True, "problems": [], "warnings": []}
     assert run("validate", tiny_corpus).stdout == f"{tiny_corpus}: sound.\n"
     found = told("info", tiny_corpus)
     assert (found["complete"], found["bearings"], found["recordings"]) == (True, {"6205": 48}, 48)
