@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 import numpy as np
 
 from features.baselines.predictions import UNSURE, Predictions, estimator_probabilities, predict, predictions
+from features.baselines.references import with_energies
 from features.diagnosis.evidence import Line, find_evidence, strange_series
 from features.diagnosis.quality import quality_of
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
@@ -203,7 +204,8 @@ def _speed(recording: Recorded) -> tuple[float | None, float]:
 
 def _table(recording: Recorded, model: "Model", fault: int) -> "xr.Dataset":
     windows = windows_of(recording.signal, recording.fs)
-    table = recording_table(windows, recording.fs, recording.shaft_rate, recording.orders, fault, model.groups)
+    groups = with_energies(model.groups)
+    table = recording_table(windows, recording.fs, recording.shaft_rate, recording.orders, fault, groups)
     return table.assign_attrs(title=recording.name)
 
 
