@@ -1,6 +1,6 @@
 """Feature table of one recording that lies in no corpus.
 
-The recording is cut into windows, which become the records of the table; its class is unknown.
+The recording is cut into windows, which become the records of the table.
 """
 
 from collections.abc import Sequence
@@ -22,7 +22,7 @@ def windows_of(signal: FloatArray, fs: float) -> FloatArray:
 
 
 def recording_table(
-    windows: FloatArray, fs: float, shaft_rate: float, orders: Orders, unknown: int, groups: Sequence[str] = GROUPS
+    windows: FloatArray, fs: float, shaft_rate: float, orders: Orders, fault: int, groups: Sequence[str] = GROUPS
 ) -> xr.Dataset:
     """Features of the windows of one recording.
 
@@ -34,8 +34,8 @@ def recording_table(
         [Hz]
     orders
         Nominal fault orders, as numbers.
-    unknown
-        Code of the class of a record whose class is not known.
+    fault
+        Code of the class of all windows.
     groups
         Some of ``features.indicators.GROUPS``.
 
@@ -53,7 +53,7 @@ def recording_table(
     nominal = Orders(*(float(order) * every for order in orders))
     values, names = indicators(windows, fs, shaft_rate * every, nominal, groups)
     same = np.zeros(count, dtype=np.int32)
-    variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, unknown, dtype=np.int8)}
+    variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, fault, dtype=np.int8)}
     variables |= {"sample_rate": fs * every, "shaft_rate": shaft_rate * every, **nominal._asdict()}
     return xr.Dataset(
         {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in variables.items()},

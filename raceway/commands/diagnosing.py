@@ -131,6 +131,7 @@ def diagnose(
     }
     paths = [path for path in (recording, healthy) if path is not None]
     signals = [read_signal(path, **reading) for path in paths]
+    _import_skops()
     recorded = [
         _recorded(signal.values, _rate(path, signal.fs), rpm, known, path)
         for path, signal in zip(paths, signals, strict=True)
@@ -175,16 +176,21 @@ def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing", path: Path
     return Recorded(values, fs, rpm_to_hertz(rpm), nominal, str(path))
 
 
-def _model(path: Path | None) -> tuple[Any, Path]:
-    """Model and its file, or the reference model."""
+def _import_skops() -> None:
+    """Import skops without its list of trusted types, which imports all of scikit-learn: a tenth of the time of a diagnosis.
+
+    Model files are read without that list: each of their types is named in `features.baselines.model_states`.
+    """
     from sklearn import utils
 
-    # skops lists all estimators for its default of trusted types, which imports all of scikit-learn: a tenth of the time of a diagnosis.
-    # Model files are read without that default.
     listed, utils.all_estimators = utils.all_estimators, list
     import skops.io  # noqa: F401
 
     utils.all_estimators = listed
+
+
+def _model(path: Path | None) -> tuple[Any, Path]:
+    """Model and its file, or the reference model."""
     if path is None:
         from raceway.studies.reference_model import load_reference_model
 
