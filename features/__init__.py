@@ -4,19 +4,21 @@ It uses the format of a corpus and not the simulator, so that recordings of real
 
 ``corpus -> feature_table -> evaluate -> report``
 
-=========== =================================================================================
-module      responsibility
-=========== =================================================================================
-faults      the fault classes: colour, lines and telling features of each, in one table
-signal      spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
-indicators  the feature vector of records, in four groups [pure]
-transformer the feature vector as a scikit-learn transformer
-table       corpus -> feature table (record, feature), part by part
-table_files feature tables on disk
-baselines   classifiers on a feature table, scored by specimen or rig beside their controls
-realism     synthetic records against real ones: AUC of measures, class by class
-report      figures of records, corpora and scores, and one page with all of them
-=========== =================================================================================
+================ =================================================================================
+module           responsibility
+================ =================================================================================
+faults           the fault classes: colour, lines and telling features of each, in one table
+signal           spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
+indicators       the feature vector of records, in four groups [pure]
+speed            shaft speed of a recording, from its windows [pure]
+transformer      the feature vector as a scikit-learn transformer
+recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels
+table            corpus -> feature table (record, feature), part by part
+table_files      feature tables on disk
+baselines        classifiers on a feature table, scored by specimen or rig beside their controls
+realism          synthetic records against real ones: AUC of measures, class by class
+report           figures of records, corpora and scores, and one page with all of them
+================ =================================================================================
 """
 
 from typing import TYPE_CHECKING
@@ -25,8 +27,16 @@ from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from features.baselines import evaluate
+    from features.speed import shaft_speed
     from features.table import feature_table
 
-__all__ = ["evaluate", "feature_table"]
+__all__ = ["evaluate", "feature_table", "shaft_speed"]
 
-__getattr__, __dir__ = lazy_names(__name__, {"features.baselines": ("evaluate",), "features.table": ("feature_table",)})
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "features.baselines": ("evaluate",),
+        "features.speed": ("shaft_speed",),
+        "features.table": ("feature_table",),
+    },
+)

@@ -7,6 +7,7 @@ rows         compilation of loops over records, sums in a fixed order, windows
 spectra      power spectra, Fourier coefficients, whitening
 demodulation analytic signals of bands, envelope spectra and their floor
 lines        levels of fault lines and combs at orders of the shaft
+speed        shaft speed that fits fault lines and shaft harmonics together
 modulation   phase wander, sidebands and cyclostationarity of a line of an envelope
 colour       roll-off, centroid and tonality of a power spectrum
 shape        impulsiveness, slow fluctuation, statistics of the waveform

@@ -9,11 +9,20 @@ import click
 from raceway.commands.feature_tables import table_of
 from raceway.commands.models import warn_of_severities
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, corpus_folder, folder_option, json_option, recipe_argument
+from raceway.console.options import (
+    A_PATH,
+    corpus_argument,
+    corpus_folder,
+    folder_option,
+    json_option,
+    recipe_argument,
+    speed_option,
+)
 from raceway.console.progress import compilation_noticed, progress
 
 if TYPE_CHECKING:
     from features.baselines import Baseline
+    from features.recording_speeds import Speed
 
 
 @click.command()
@@ -39,13 +48,16 @@ if TYPE_CHECKING:
 @click.option(
     "--seed", type=int, default=0, show_default=True, metavar="S", help="Seed of splits, classifiers and bootstrap."
 )
+@speed_option
 @json_option
-def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int, seed: int, as_json: bool) -> None:
+def benchmark(
+    corpus: Path, output: Path, test: Path | None, by: Any, folds: int, seed: int, speed: "Speed", as_json: bool
+) -> None:
     """Measure the scores of all baselines on DIR.
 
     (raceway bench measures speed.) Cross-validation keeps all records of a specimen (or rig) on one side of each split. Two controls
     are shown beside each score: a split of random records, which leaks, and labels permuted among specimens, which must score at chance.
-    With --test, models trained on all of DIR are also scored on DIR2.
+    With --test, models trained on all of DIR are also scored on DIR2; --speed concerns DIR2 alone.
 
       raceway benchmark corpus -o report
       raceway benchmark corpus --test cwru -o report --by rig
@@ -54,7 +66,7 @@ def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int
     from features.report.page import write_report
 
     table = table_of(corpus)
-    other = None if test is None else table_of(test)
+    other = None if test is None else table_of(test, speed)
     with progress("scoring", "baselines") as report:
         results = run(table, other, by=by, folds=folds, seed=seed, progress=report)
     warn_of_severities(results, next(iter(results.baselines.values())).test)

@@ -7,11 +7,12 @@ import click
 
 from raceway.commands.feature_tables import table_of
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, file_option, json_option
+from raceway.console.options import A_PATH, corpus_argument, file_option, json_option, speed_option
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
     from features.baselines import Results, Scores
+    from features.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
@@ -79,8 +80,9 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
 @click.command()
 @corpus_argument
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
+@speed_option
 @json_option
-def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
+def evaluate(corpus: Path, model: Path, speed: "Speed", as_json: bool) -> None:
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
@@ -92,7 +94,7 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
     from features.baselines import load_model
 
     loaded = load_model(model)
-    scores = score(table_of(corpus), loaded)
+    scores = score(table_of(corpus, speed), loaded)
     warn_of_severities(scores)
     if scores.seen:
         notice(

@@ -48,6 +48,15 @@ record_option: Decorator = click.option(
 seed_option: Decorator = click.option("--seed", type=int, metavar="S", help="Replaces the seed of the recipe.")
 records_option: Decorator = click.option("--records", type=int, metavar="N", help="Make only the first N records.")
 
+speed_option: Decorator = click.option(
+    "--speed",
+    type=click.Choice(["off", "check", "correct"]),
+    default="check",
+    show_default=True,
+    help="Compare the labelled shaft speeds of real recordings with their lines and warn (check), or use the speed found "
+    "where it is clear (correct).",
+)
+
 
 def folder_option(metavar: str, what: str) -> Decorator:
     """Make the option that names the folder for the result."""

@@ -34,7 +34,7 @@ def folder(tmp_path, monkeypatch):
 
     def returning(made):
         for module in (feature_tables, models, benchmarking):
-            monkeypatch.setattr(module, "table_of", lambda _: made)
+            monkeypatch.setattr(module, "table_of", lambda *_: made)
         return tmp_path / "corpus"
 
     return returning
@@ -42,7 +42,7 @@ def folder(tmp_path, monkeypatch):
 
 def test_parquet_without_pyarrow_is_refused_before_any_feature_is_computed(run, folder, tmp_path, monkeypatch):
     corpus = folder(None)
-    monkeypatch.setattr(feature_tables, "table_of", lambda _: pytest.fail("features were computed"))
+    monkeypatch.setattr(feature_tables, "table_of", lambda *_: pytest.fail("features were computed"))
     monkeypatch.setitem(sys.modules, "pyarrow", None)
     result = run("features", corpus, "-o", tmp_path / "x.parquet")
     assert result.exit_code != 0
