@@ -16,13 +16,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from benchmarks.realism import import_uestc
+from benchmarks.realism import UESTC_LABELLED
 from benchmarks.transfer_pages import RESULTS, write_pages
 from features import feature_table
 from features.baselines import Model, Scores, cross_validate, evaluate, predict, train
 from gen import generate
 from gen.corpus import FAULTS
-from gen.importers import import_cwru, import_mfpt
+from gen.importers import import_cwru, import_generic, import_mfpt
 from raceway.studies.timing import machine
 
 RECIPE = "domain_randomised"
@@ -47,7 +47,7 @@ def real_tables(real: Path, folder: Path) -> tuple[Tables, Tables]:
     import_cwru(real / "cwru", folder / "wang", subset="wang")
     import_cwru(real / "cwru", folder / "cwru")
     import_mfpt(real / "mfpt", folder / "mfpt")
-    import_uestc(real / "uestc", folder)
+    import_generic(UESTC_LABELLED, folder / "uestc", folder=real / "uestc")
     names = ("wang", "cwru", "mfpt", "uestc")
     labelled = {name: feature_table(folder / name, GROUPS) for name in names}
     return labelled, {name: feature_table(folder / name, GROUPS, speed="correct") for name in names}
