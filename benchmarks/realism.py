@@ -10,7 +10,7 @@ import json
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 from ruamel.yaml import YAML
@@ -21,17 +21,9 @@ from gen import generate
 from gen.importers import import_cwru, import_generic, import_mfpt
 
 UESTC = Path(__file__).with_name("uestc.yaml")
-UESTC_SPEED_ERROR_PERCENT = {
-    "I_800": -2.9,
-    "I_1000": -1.9,
-    "I_1200": -1.9,
-    "I_1400": -0.2,
-    "O_800": -2.7,
-    "O_1000": -0.2,
-    "O_1200": 4.4,
-    "O_1400": 6.1,
-}
-"""True speed over the labelled one, less 100 %, measured on the first three harmonics of the line of the fault."""
+"""Mapping of the recordings, with speeds as measured on the first three harmonics of the line of the fault."""
+UESTC_LABELLED = UESTC.with_name("uestc_labelled.yaml")
+"""The same with speeds as labelled."""
 
 RACES = ("inner", "outer")
 COLOUR = ("energy_above_3500_hz", "roll_off", "centroid")
@@ -42,16 +34,6 @@ TARGETS = (
     ("cage line of balls", ("cage_line",), ("ball",), 0.35, 1.0),
 )
 """Name, measures, classes, and lowest and highest AUC that is wanted."""
-
-
-def import_uestc(source: Path, folder: Path, error_percent: Mapping[str, float] = UESTC_SPEED_ERROR_PERCENT) -> Path:
-    """Bring the recordings of UESTC into a corpus, with corrected speeds."""
-    mapping = YAML(typ="safe").load(UESTC)
-    for name, labelled in mapping["shaft_rpm"].items():
-        mapping["shaft_rpm"][name] = labelled * (1 + error_percent.get(name, 0.0) / 100)
-    folder.mkdir(parents=True, exist_ok=True)
-    YAML().dump(mapping, folder / "uestc.yaml")
-    return import_generic(folder / "uestc.yaml", folder / "uestc", folder=source).directory
 
 
 def real_corpora(real: Path, folder: Path) -> list[Path]:

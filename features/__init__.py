@@ -2,7 +2,7 @@
 
 It uses the format of a corpus and not the simulator, so that recordings of real machines are treated in the same way.
 
-``corpus -> feature_table -> evaluate -> report``
+``corpus -> feature_table -> evaluate -> report``, and ``one recording -> diagnose -> report``
 
 ================ =================================================================================
 module           responsibility
@@ -12,12 +12,14 @@ signal           spectra, envelope spectra, levels of fault lines, statistics of
 indicators       the feature vector of records, in four groups [pure]
 speed            shaft speed of a recording, from its windows [pure]
 transformer      the feature vector as a scikit-learn transformer
+recording_table  feature table of one recording that lies in no corpus
 recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels
 table            corpus -> feature table (record, feature), part by part
 table_files      feature tables on disk
 auditing         splits of real recordings that can leak
 baselines        classifiers on a feature table, scored by specimen or rig beside their controls
 realism          synthetic records against real ones: AUC of measures, class by class
+diagnosis        class of one recording, and the lines that speak for it
 report           figures of records, corpora and scores, and one page with all of them
 ================ =================================================================================
 """

@@ -8,6 +8,8 @@ module            responsibility
 records           labelled rows of a feature table, and the groups that they belong to
 estimators        the registry of baselines, from majority class to ensemble
 calibration       calibrated probabilities, and thresholds of answers
+references        features relative to healthy records of the same rig
+reference_choice  records tested against a reference, without those that belong to it
 predictions       classes predicted for the records of a table and for whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 severities        fault widths that a test contains and its training does not
@@ -24,6 +26,7 @@ benchmark         scores of every baseline with controls, and on another corpus
 """
 
 from features.baselines.benchmark import Baseline, Results, benchmark
+from features.baselines.calibration import Calibration
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
 from features.baselines.predictions import UNSURE, Predictions, predict
@@ -38,6 +41,7 @@ __all__ = [
     "ESTIMATORS",
     "UNSURE",
     "Baseline",
+    "Calibration",
     "Model",
     "Predictions",
     "Results",

@@ -4,6 +4,7 @@ A specimen is identified by its rig and its number, a recording by its specimen,
 may restart either number on each rig, or number all of them consecutively.
 """
 
+import hashlib
 from collections.abc import Hashable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
@@ -120,6 +121,19 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
 def recording_numbers(table: xr.Dataset) -> IntArray:
     """Number of the recording of each record, from 0 and without a gap, shape (record,)."""
     return _numbered(*(table[name].values for name in ("rig", "specimen", "fault", "recording")))
+
+
+def record_digests(features: FloatArray) -> NDArray[np.uint64]:
+    """Digest each row of features to 64 bits, shape (record, feature) to (record,)."""
+    rows = (np.ascontiguousarray(row, dtype="<f8").tobytes() for row in features)
+    digests = (int.from_bytes(hashlib.blake2b(row, digest_size=8).digest(), "little") for row in rows)
+    return np.fromiter(digests, dtype=np.uint64, count=len(features))
+
+
+def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
+    """Number of records whose digest is known; records without any feature are not counted."""
+    known = np.isfinite(features).any(axis=1)
+    return int(np.isin(record_digests(features[known]), digests).sum())
 
 
 def check_classes(records: Records) -> IntArray:

@@ -12,9 +12,9 @@ import numpy as np
 import xarray as xr
 from sklearn.model_selection import StratifiedGroupKFold
 
-from features.baselines.calibration import UNCALIBRATED
-from features.baselines.estimators import class_probabilities, make_estimator
-from features.baselines.predictions import class_names, predictions
+from features.baselines.calibration import UNCALIBRATED, fit_calibration
+from features.baselines.estimators import UNTRAINED, class_probabilities, make_estimator
+from features.baselines.predictions import Predictions, class_names, predictions
 from features.baselines.records import (
     DEFAULT_GROUPS,
     FloatArray,
@@ -156,9 +156,18 @@ def score_splits(records: Records, labels: IntArray, estimator: str, splits: Seq
         probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, unknown)
         classes = np.union1d(classes, fitted.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
-    found = predictions(probabilities[:, classes], class_names(classes), records.recording, UNCALIBRATED)
+    found = _pooled(probabilities[:, classes], classes, labels, records.recording, estimator)
     pooled = score(records._replace(fault=labels), found, seed)
     return replace(pooled, folds=tuple(folds))
+
+
+def _pooled(
+    probabilities: FloatArray, classes: IntArray, labels: IntArray, recording: IntArray, estimator: str
+) -> Predictions:
+    """Predictions of all folds, with the one calibration that fits all of them; an untrained baseline stays uncalibrated."""
+    truth = np.searchsorted(classes, labels)
+    calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth, recording)
+    return predictions(probabilities, class_names(classes), recording, calibration)
 
 
 def _balanced_accuracy(fault: IntArray, probabilities: FloatArray) -> float:

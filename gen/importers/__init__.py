@@ -14,6 +14,7 @@ paths          patterns of paths with groups
 listing        files that a mapping names, and the recordings that they make up
 assumptions    sentences on what labels and units rest on
 resampling     recordings brought to another sample rate
+bearing_text   a bearing on the command line
 signals        one recording of the user, in m/s^2
 conversion     from the unit of a file to m/s^2
 wav            WAV files
@@ -31,10 +32,27 @@ An importer lists its files with a function that reads each (:class:`~gen.import
 after the other. A file that cannot be used is skipped as a whole, with a sentence.
 """
 
-from gen.importers.assemble import Import
-from gen.importers.cwru import import_cwru
-from gen.importers.generic import import_generic
-from gen.importers.mfpt import import_mfpt
-from gen.importers.signals import Signal, read_signal
+from typing import TYPE_CHECKING
+
+from gen.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from gen.importers.assemble import Import
+    from gen.importers.cwru import import_cwru
+    from gen.importers.generic import import_generic
+    from gen.importers.mfpt import import_mfpt
+    from gen.importers.signals import Signal, read_signal
 
 __all__ = ["Import", "Signal", "import_cwru", "import_generic", "import_mfpt", "read_signal"]
+
+# a single recording needs neither dask nor the corpus format
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "gen.importers.assemble": ("Import",),
+        "gen.importers.cwru": ("import_cwru",),
+        "gen.importers.generic": ("import_generic",),
+        "gen.importers.mfpt": ("import_mfpt",),
+        "gen.importers.signals": ("Signal", "read_signal"),
+    },
+)

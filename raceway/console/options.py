@@ -11,7 +11,7 @@ Decorator = Callable[[Any], Any]
 A_PATH = click.Path(path_type=Path)
 
 
-def corpus_folder(_context: click.Context, _parameter: click.Parameter, path: Path | None) -> Path | None:
+def corpus_folder(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
     """Folder of a corpus; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
     if path is None or not path.is_file():
         return path
