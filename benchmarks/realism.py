@@ -13,8 +13,6 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from ruamel.yaml import YAML
-
 from features.realism import Comparison, compare
 from features.realism.measures import MEASURES
 from gen import generate
@@ -44,7 +42,7 @@ def real_corpora(real: Path, folder: Path) -> list[Path]:
     if (real / "mfpt").is_dir():
         found.append(import_mfpt(real / "mfpt", folder / "mfpt").directory)
     if (real / "uestc").is_dir():
-        found.append(import_uestc(real / "uestc", folder))
+        found.append(import_generic(UESTC, folder / "uestc", folder=real / "uestc").directory)
     return found
 
 

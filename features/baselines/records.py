@@ -49,22 +49,11 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     CorpusError
         As :func:`all_records`, or if all records are of class ``unknown``.
     """
-    return all_records(labelled_rows(table), features)
-
-
-def labelled_rows(table: xr.Dataset) -> xr.Dataset:
-    """Records of a feature table whose class is known.
-
-    Raises
-    ------
-    CorpusError
-        If all records are of class ``unknown``.
-    """
     unknown = count_unknown(table)
     if unknown and unknown == table.sizes["record"]:
         message = f"{title_of(table)}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
         raise CorpusError(message)
-    return table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table
+    return all_records(table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table, features)
 
 
 def count_unknown(table: xr.Dataset) -> int:
