@@ -34,6 +34,8 @@ TEACHERS = {
     "cwru": (("synthetic",), ("uestc",), ("uestc", "mfpt"), ("synthetic", "uestc", "mfpt")),
 }
 """For each test set the sets that teach, alone or together."""
+TAUGHT = ("features", "fault", "rig", "specimen", "recording", "width")
+"""Variables that training reads."""
 
 Tables = dict[str, xr.Dataset]
 Figures = dict[str, float | None]
@@ -81,12 +83,12 @@ def with_reference(table: xr.Dataset, model: Model) -> Figures | None:
 
 
 def pooled(tables: list[xr.Dataset]) -> xr.Dataset:
-    """One table of several, with the variables that all have; the rigs of each keep numbers of their own."""
-    names = set.intersection(*(set(map(str, table.data_vars)) for table in tables))
+    """One table of several, with what training needs; the rigs of each keep numbers of their own."""
     first, parts = 0, []
     for table in tables:
-        parts.append(table[sorted(names)].assign(rig=table["rig"] + first))
-        first += int(table["rig"].max()) + 1
+        kept = table[[*TAUGHT]].reset_coords(drop=True)
+        parts.append(kept.assign(rig=kept["rig"] + first).assign_coords(group=table["group"]))
+        first += int(kept["rig"].max()) + 1
     return xr.concat(parts, "record", combine_attrs="drop_conflicts", join="exact")
 
 
