@@ -281,11 +281,13 @@ def _contradiction(diagnosis: Diagnosis) -> str:
 
 
 def _doubt(diagnosis: Diagnosis) -> str:
+    """Why the classifier does not answer, and what the strongest lines tell."""
     families = by_family(diagnosis.evidence)
-    least = f"the classifier answers from {diagnosis.threshold:.2f}"
+    least = f"no class reaches the probability of {diagnosis.threshold:.2f} from which the classifier answers"
     if not families:
         return f"{least}, and no line stands out"
-    return f"{least}, although {family_in_words(next(iter(families.values())))}"
+    fault, lines = next(iter(families.items()))
+    return f"{least}; {family_in_words(lines)}, which tells of {fault}"
 
 
 def _advice(duration: float, compared: bool) -> tuple[str, ...]:
