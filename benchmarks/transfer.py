@@ -52,7 +52,7 @@ def main() -> None:
                 for test, other in tests.items():
                     found.setdefault(test, []).append(evaluate(other, model))
                 if seed == 0:
-                    found["own"] = [cross_validate(table, estimator, by="rig", seed=seed)]
+                    found["own"] = [cross_validate(table, estimator, track="rig", seed=seed)]
             print(f"seed {seed} done", file=sys.stderr, flush=True)
     print(
         f"| {options.seeds} seeds, mean (lowest) | "

@@ -13,6 +13,7 @@ indicators  the feature vector of records, in four groups [pure]
 transformer the feature vector as a scikit-learn transformer
 table       corpus -> feature table (record, feature), part by part
 table_files feature tables on disk
+waveforms   signals of a corpus as an array that is read when it is indexed
 baselines   classifiers on a feature table, scored by specimen or rig beside their controls
 realism     synthetic records against real ones: AUC of measures, class by class
 report      figures of records, corpora and scores, and one page with all of them
@@ -26,7 +27,15 @@ from gen.lazy import lazy_names
 if TYPE_CHECKING:
     from features.baselines import evaluate
     from features.table import feature_table
+    from features.waveforms import open_waveforms
 
-__all__ = ["evaluate", "feature_table"]
+__all__ = ["evaluate", "feature_table", "open_waveforms"]
 
-__getattr__, __dir__ = lazy_names(__name__, {"features.baselines": ("evaluate",), "features.table": ("feature_table",)})
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "features.baselines": ("evaluate",),
+        "features.table": ("feature_table",),
+        "features.waveforms": ("open_waveforms",),
+    },
+)

@@ -24,6 +24,7 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 from sklearn.utils.validation import check_is_fitted, validate_data
 
+from features.baselines.own import Maker, OwnClassifier
 from features.baselines.records import FloatArray, IntArray
 from features.faults import CLASSES, COMBS, EVIDENCE, HEALTHY
 from gen.corpus import FAULTS
@@ -187,14 +188,18 @@ UNTRAINED = ("majority", "envelope_rule")
 DEFAULT_ESTIMATOR = "ensemble"
 
 
-def make_estimator(name: str, seed: int) -> Estimator:
-    """Unfitted baseline.
+def make_estimator(name: str | Maker, seed: int) -> Estimator:
+    """Unfitted baseline of the registry, or classifier of the user, of indices into ``gen.corpus.FAULTS``.
 
     Raises
     ------
     ValueError
         For a name that is not in the registry.
+    EstimatorError
+        For a classifier that cannot be made.
     """
+    if not isinstance(name, str):
+        return OwnClassifier(name, seed)
     if name not in ESTIMATORS:
         message = f"estimator: {name!r} is no baseline; choose from {', '.join(ESTIMATORS)}."
         raise ValueError(message)

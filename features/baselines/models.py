@@ -28,6 +28,7 @@ from features.baselines.model_check import check_estimator
 from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
 from features.baselines.model_states import Known, State, plain
+from features.baselines.own import Maker, maker_name
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
@@ -80,12 +81,12 @@ class Model:
 
 def train(
     table: xr.Dataset,
-    estimator: str = DEFAULT_ESTIMATOR,
+    estimator: str | Maker = DEFAULT_ESTIMATOR,
     *,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
 ) -> Model:
-    """Fit a baseline to all records of a feature table.
+    """Fit a baseline or a classifier of the user to all records of a feature table.
 
     Raises
     ------
@@ -100,7 +101,7 @@ def train(
     fitted = make_estimator(estimator, seed).fit(records.features, records.fault)
     return Model(
         estimator=fitted,
-        name=estimator,
+        name=estimator if isinstance(estimator, str) else maker_name(estimator),
         classes=tuple(FAULTS[c] for c in fitted.classes_),
         features=names,
         groups=tuple(groups),
@@ -190,8 +191,12 @@ def save_model(model: Model, path: Path | str) -> None:
     Raises
     ------
     CorpusError
-        If the disk refuses the file.
+        If the disk refuses the file, or the model is not one of the baselines: only those can be read without running code.
     """
+    if model.name not in ESTIMATORS:
+        raise CorpusError(
+            f"{path}: {model.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
+        )
     content = {field.name: getattr(model, field.name) for field in fields(model)}
     write_durably(pack({"raceway_model": FORMAT, **content}), Path(path))
 

@@ -17,27 +17,42 @@ from gen.errors import CorpusError
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from features.waveforms import Waveforms
+
 IntArray = NDArray[np.integer[Any]]
 FloatArray = NDArray[np.floating[Any]]
 
 DEFAULT_GROUPS = ("lines", "shape")  # independent of gain and spectral colour
 
+SHAPES = ("pit", "several", "extended", "worn")
+EXTENDED = 1.5e-3  # m, width from which a single spall is extended
+
 
 class Records(NamedTuple):
-    """Labelled rows; ``features`` is a data frame, because estimators identify its columns by name.
+    """Labelled rows; ``features`` is a data frame, because estimators identify its columns by name, or waveforms.
 
     ``fault`` is an index into ``gen.corpus.FAULTS``; ``rig``, ``specimen`` and ``recording`` are numbers from 0, unique
-    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown. All are of shape
-    (record,), ``features`` of shape (record, feature).
+    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown; ``shaft_rate`` is the
+    labelled one [Hz], NaN if unknown; ``bearing`` is the number of the type, from 0 (see `_bearing_type`); ``shape`` is
+    an index into `SHAPES`, -1 if healthy or unknown. All are of shape (record,), ``features`` of shape (record,
+    feature) or (record, time).
     """
 
     title: str
-    features: "DataFrame"
+    features: Any
     fault: IntArray
     rig: IntArray
     specimen: IntArray
     recording: IntArray
     width: FloatArray
+    shaft_rate: FloatArray
+    bearing: IntArray
+    shape: IntArray
+
+    def at(self, rows: IntArray) -> "Records":
+        """Some of the rows, in the order given."""
+        columns: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._fields[2:]}
+        return Records(self.title, self.features.take(rows), **columns)
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
@@ -49,8 +64,27 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         If the table has no records, or lacks a feature, the fault, or the number of rig, specimen or recording.
     """
     title = title_of(table)
-    _require(title, ("features", "fault", "rig", "specimen", "recording"), table.variables)
+    _require(title, ("features",), table.variables)
     _require(title, features, table["feature"].values)
+    return _records(table, cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas()))
+
+
+def records_of(data: "xr.Dataset | Waveforms", groups: Sequence[str]) -> Records:
+    """Rows of a feature table with the features of some groups, or waveforms with their labels.
+
+    Raises
+    ------
+    CorpusError
+        As `labelled_records`, or if the table has no feature of one of the groups.
+    """
+    if isinstance(data, xr.Dataset):
+        return labelled_records(data, features_of(data, groups))
+    return _records(data.labels, data)
+
+
+def _records(table: xr.Dataset, features: "DataFrame | Waveforms") -> Records:
+    title = title_of(table)
+    _require(title, ("fault", "rig", "specimen", "recording"), table.variables)
     if table.sizes["record"] == 0:
         message = f"{title}: the feature table holds no record; give a corpus with at least one."
         raise CorpusError(message)
@@ -61,13 +95,39 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     rig, specimen, recording = (table[name].values for name in ("rig", "specimen", "recording"))
     return Records(
         title=title,
-        features=cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas()),
+        features=features,
         fault=fault,
         rig=_numbered(rig),
         specimen=_numbered(rig, specimen),
         recording=_numbered(rig, specimen, fault, recording),
-        width=np.asarray(table["width"].values, dtype=float) if "width" in table else np.full(len(fault), np.nan),
+        width=_column(table, "width"),
+        shaft_rate=_column(table, "shaft_rate"),
+        bearing=_bearing_type(table),
+        shape=_shape(table),
     )
+
+
+def _column(table: xr.Dataset, name: str) -> FloatArray:
+    """Values of a variable, shape (record,); NaN if the table lacks it."""
+    return np.asarray(table[name].values, dtype=float) if name in table else np.full(table.sizes["record"], np.nan)
+
+
+def _bearing_type(table: xr.Dataset) -> IntArray:
+    """Number of the bearing type, shape (record,): a type has one designation and one number of balls.
+
+    The number of balls is the sum of the nominal orders BPFO and BPFI. Corpora of drawn geometries have one designation
+    for all bearings.
+    """
+    balls = np.rint(_column(table, "bpfo") + _column(table, "bpfi"))
+    named = table["bearing"].values.astype(str) if "bearing" in table else np.full(len(balls), "")
+    return _numbered(np.unique(named, return_inverse=True)[1], np.nan_to_num(balls))
+
+
+def _shape(table: xr.Dataset) -> IntArray:
+    """Index into `SHAPES`, shape (record,): of one or of several spalls, or of a worn race; else -1."""
+    spalls, width = _column(table, "n_spalls"), _column(table, "width")
+    cases = [spalls > 1, (spalls == 1) & (width >= EXTENDED), (spalls == 1) & (width > 0), _column(table, "wear") > 0]
+    return np.select(cases, [SHAPES.index(name) for name in ("several", "extended", "pit", "worn")], -1)
 
 
 def check_classes(records: Records) -> IntArray:
