@@ -10,8 +10,10 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
+from features.baselines.calibration import UNCALIBRATED
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import Maker
+from features.baselines.predictions import class_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
 from features.baselines.scores import Scores, confusion_matrix, figures, score
 from features.baselines.severities import uncovered_in_splits
@@ -131,7 +133,10 @@ def score_splits(
         classes = np.union1d(classes, fitted.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
     tested = np.sort(np.concatenate([test for _, test in splits]))
-    pooled = score(records._replace(fault=labels).at(tested), probabilities[np.ix_(tested, classes)], classes, seed)
+    chosen = records._replace(fault=labels).at(tested)
+    _, recording = np.unique(chosen.recording, return_inverse=True)
+    found = predictions(probabilities[np.ix_(tested, classes)], class_names(classes), recording, UNCALIBRATED)
+    pooled = score(chosen, found, seed)
     return replace(pooled, folds=tuple(folds))
 
 
