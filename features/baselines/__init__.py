@@ -2,7 +2,6 @@
 
 ``feature table -> labelled_records -> splits by specimen or rig -> Predictions -> Scores``
 
-=======
 ================= ==================================================================================
 module            responsibility
 ================= ==================================================================================
@@ -33,7 +32,7 @@ from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
 from features.baselines.own import EstimatorError, load_maker
 from features.baselines.predictions import UNSURE, Predictions, predict
-from features.baselines.records import DEFAULT_GROUPS
+from features.baselines.records import DEFAULT_GROUPS, count_unknown
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import severity_warning
 from features.baselines.splits import controls, cross_validate
@@ -55,6 +54,7 @@ __all__ = [
     "TrackResults",
     "benchmark",
     "controls",
+    "count_unknown",
     "cross_validate",
     "evaluate",
     "interval_text",

@@ -20,7 +20,14 @@ from features.baselines.curves import CurvePoint, curve_points, curve_sizes
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, UNTRAINED
 from features.baselines.models import evaluate, record_digests, seen_records, train
 from features.baselines.own import Maker
-from features.baselines.records import DEFAULT_GROUPS, Records, features_of, labelled_records, records_of
+from features.baselines.records import (
+    DEFAULT_GROUPS,
+    Records,
+    count_unknown,
+    features_of,
+    labelled_records,
+    records_of,
+)
 from features.baselines.scores import Scores
 from features.baselines.severities import Widths, uncovered_in_splits
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
@@ -37,7 +44,7 @@ BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 
 @dataclass(frozen=True)
 class Content:
-    """Title and counts of a benchmarked corpus; ``classes`` counts records."""
+    """Title and counts of a benchmarked corpus; ``classes`` counts records, ``unknown`` those left out because their class is not known."""
 
     title: str
     records: int
@@ -45,6 +52,7 @@ class Content:
     specimens: int
     rigs: int
     classes: dict[str, int]
+    unknown: int = 0
 
 
 @dataclass(frozen=True)
@@ -199,8 +207,8 @@ def benchmark(
             scored[track][name] = Baseline(**scores, test=tested)
             steps.done()
     return Results(
-        corpus=_content(records),
-        test=None if other is None else _content(other),
+        corpus=_content(records, count_unknown(table)),
+        test=None if test is None or other is None else _content(other, count_unknown(test)),
         track=first,
         folds=len(splits),
         seed=seed,
@@ -267,7 +275,7 @@ def _check_apart(records: Records, test: Records) -> None:
         raise CorpusError(message)
 
 
-def _content(records: Records) -> Content:
+def _content(records: Records, unknown: int) -> Content:
     counts = np.bincount(records.fault, minlength=len(FAULTS))
     return Content(
         title=records.title,
@@ -276,6 +284,7 @@ def _content(records: Records) -> Content:
         specimens=len(np.unique(records.specimen)),
         rigs=len(np.unique(records.rig)),
         classes={fault: int(count) for fault, count in zip(FAULTS, counts, strict=True) if count},
+        unknown=unknown,
     )
 
 

@@ -36,7 +36,7 @@ from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
 from features.table import feature_table
-from gen.corpus import FAULTS, write_durably
+from gen.corpus import FAULTS, UNKNOWN_CODE, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -143,6 +143,7 @@ def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: 
     model = model if isinstance(model, Model) else load_model(model)
     table = data if isinstance(data, xr.Dataset) else _features_for(model, data)
     records = labelled_records(table, model.features)
+    table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
     scores = score(records, predict(table, model), seed)
     seen = seen_records(records.features.to_numpy(), model.digests)
     return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))

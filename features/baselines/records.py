@@ -4,14 +4,15 @@ A specimen is identified by its rig and its number, a recording by its specimen,
 may restart either number on each rig, or number all of them consecutively.
 """
 
-from collections.abc import Hashable, Iterable, Sequence
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import FAULTS
+from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.errors import CorpusError
 
 if TYPE_CHECKING:
@@ -32,10 +33,10 @@ class Records(NamedTuple):
     """Labelled rows; ``features`` is a data frame, because estimators identify its columns by name, or waveforms.
 
     ``fault`` is an index into ``gen.corpus.FAULTS``; ``rig``, ``specimen`` and ``recording`` are numbers from 0, unique
-    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown; ``shaft_rate`` is the
-    labelled one [Hz], NaN if unknown; ``bearing`` is the number of the type, from 0 (see `_bearing_type`); ``shape`` is
-    an index into `SHAPES`, -1 if healthy or unknown. All are of shape (record,), ``features`` of shape (record,
-    feature) or (record, time).
+    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown; ``conditions`` holds
+    what tracks split by: ``shaft_rate``, the labelled one [Hz], NaN if unknown, ``bearing``, the number of the type
+    from 0, and ``shape``, an index into `SHAPES`, -1 if healthy or unknown. All are of shape (record,), ``features`` of
+    shape (record, feature) or (record, time).
     """
 
     title: str
@@ -45,18 +46,39 @@ class Records(NamedTuple):
     specimen: IntArray
     recording: IntArray
     width: FloatArray
-    shaft_rate: FloatArray
-    bearing: IntArray
-    shape: IntArray
+    conditions: Mapping[str, NDArray[Any]] = MappingProxyType({})
 
     def at(self, rows: IntArray) -> "Records":
         """Some of the rows, in the order given."""
-        columns: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._fields[2:]}
-        return Records(self.title, self.features.take(rows), **columns)
+        columns: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._fields[2:-1]}
+        conditions = {name: values[rows] for name, values in self.conditions.items()}
+        return Records(self.title, self.features.take(rows), **columns, conditions=conditions)
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
+    """Rows of a feature table whose class is known; see :func:`all_records`.
+
+    Raises
+    ------
+    CorpusError
+        As :func:`all_records`, or if all records are of class ``unknown``.
+    """
+    unknown = count_unknown(table)
+    if unknown and unknown == table.sizes["record"]:
+        message = f"{title_of(table)}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
+        raise CorpusError(message)
+    return all_records(table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table, features)
+
+
+def count_unknown(table: xr.Dataset) -> int:
+    """Number of records of a feature table whose class is not known."""
+    return int((table["fault"].values == UNKNOWN_CODE).sum()) if "fault" in table else 0
+
+
+def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     """Rows of a feature table with some of its features, in the order given; the width is NaN if the table lacks it.
+
+    ``fault`` of a record whose class is not known is ``gen.corpus.UNKNOWN_CODE``.
 
     Raises
     ------
@@ -66,8 +88,9 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     title = title_of(table)
     rows = feature_rows(table, features)
     fault = np.asarray(table["fault"].values, dtype=np.intp)
-    if fault.min() < 0 or fault.max() >= len(FAULTS):
-        message = f"{title}: fault has values outside 0..{len(FAULTS) - 1} ({', '.join(FAULTS)})."
+    if not np.isin(fault, [*FAULT_NAMES]).all():
+        known = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
+        message = f"{title}: fault has values other than {known}."
         raise CorpusError(message)
     rig, specimen = (table[name].values for name in ("rig", "specimen"))
     return Records(
@@ -78,9 +101,11 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         specimen=_numbered(rig, specimen),
         recording=recording_numbers(table),
         width=_column(table, "width"),
-        shaft_rate=_column(table, "shaft_rate"),
-        bearing=_bearing_type(table),
-        shape=_shape(table),
+        conditions={
+            "shaft_rate": _column(table, "shaft_rate"),
+            "bearing": _bearing_type(table),
+            "shape": _shape(table),
+        },
     )
 
 

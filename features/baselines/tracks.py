@@ -66,7 +66,7 @@ def track_splits(records: Records, labels: IntArray, track: Track, folds: int, s
     if track in ("specimen", "rig"):
         splits = grouped_splits(labels, getattr(records, track), folds, seed)
     elif track == "bearing":
-        bearing = _of_first_record(records.bearing, records.specimen)
+        bearing = _of_first_record(records.conditions["bearing"], records.specimen)
         splits = grouped_splits(labels, bearing, min(folds, len(np.unique(bearing))), seed)
     else:
         splits = _one_group_per_fold(*held_out_groups(records, track, folds, seed))
@@ -89,7 +89,7 @@ def check_track(records: Records, track: Track, folds: int) -> None:
         raise CorpusError(f"{where}: {folds} folds are too few; use 2 or more.")
     if track not in ("specimen", "rig", "bearing"):
         return
-    group = getattr(records, track)
+    group = records.conditions[track] if track == "bearing" else getattr(records, track)
     count, name = len(np.unique(group)), "bearing type" if track == "bearing" else track
     if count < (2 if track == "bearing" else folds):
         advice = f"use at most {count} folds" if count > 1 else "test on another corpus instead"
@@ -156,21 +156,23 @@ def _one_group_per_fold(group: IntArray, tested: IntArray) -> list[Split]:
 
 
 def _speed_ranges(records: Records, folds: int) -> IntArray:
-    known = records.shaft_rate > 0
+    shaft_rate = records.conditions["shaft_rate"]
+    known = shaft_rate > 0
     group = np.full(len(known), LEFT_OUT)
-    group[known] = ranges(records.shaft_rate[known], folds)
+    group[known] = ranges(shaft_rate[known], folds)
     return group
 
 
 def _fault_groups(records: Records, track: Track, folds: int) -> IntArray:
     """Range of widths within its class, or shape, of each record; `DEALT` for a class with fewer than two of them."""
+    shape = records.conditions["shape"]
     group = np.full(len(records.fault), LEFT_OUT)
     group[records.width == 0] = DEALT
     group[records.fault == FAULTS.index("healthy")] = DEALT
     for c in np.unique(records.fault):
-        known = (records.fault == c) & ((records.width > 0) if track == "severity" else (records.shape >= 0))
+        known = (records.fault == c) & ((records.width > 0) if track == "severity" else (shape >= 0))
         if known.any():
-            found = ranges(records.width[known], folds) if track == "severity" else records.shape[known]
+            found = ranges(records.width[known], folds) if track == "severity" else shape[known]
             group[known] = found if len(np.unique(found)) > 1 else DEALT
     return group
 

@@ -18,11 +18,11 @@ from features.baselines import Results, Scores, interval_text, severity_warning
 from features.baselines.benchmark import write_results
 from features.baselines.estimators import UNTRAINED
 from features.baselines.tracks import NOVELTY
-from features.faults import CLASSES, HEALTHY
+from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve
 from features.report.examples import draw_examples
 from features.report.pictures import Quantity, draw_content, draw_scores, picture
-from gen.corpus import FAULTS, SPLITS, Manifest, open_corpus, read_manifest, write_text_durably
+from gen.corpus import FAULT_NAMES, FAULTS, SPLITS, Manifest, open_corpus, read_manifest, write_text_durably
 from gen.errors import CorpusError
 
 LONGEST_TEXT = 300
@@ -131,8 +131,8 @@ def _class_count(corpus: xr.Dataset, code: int) -> ClassCount:
     of_class = corpus["fault"].values == code
     rig, specimen, split = (corpus[name].values[of_class] for name in ("rig", "specimen", "split"))
     return ClassCount(
-        fault=FAULTS[code],
-        colour=CLASSES[FAULTS[code]].colour,
+        fault=FAULT_NAMES[code],
+        colour=LOOKS[FAULT_NAMES[code]].colour,
         records=len(rig),
         specimens=np.unique(np.stack([rig, specimen]), axis=1).shape[1],
         rigs=len(np.unique(rig)),
@@ -191,6 +191,8 @@ def _findings(results: Results, chance: float) -> list[str]:
         f"With a random split of records, which leaks, it reaches {found.leaky.balanced_accuracy:.3f}.",
         f"With labels permuted among specimens it reaches {_with_interval(found.null)}{_verdict(found.null, chance)}.",
     ]
+    if results.corpus.unknown:
+        sentences.append(f"{results.corpus.unknown} records whose class is not known are left out of all scores.")
     if results.uncovered_widths:
         sentences.append(f"Cross-validation: {severity_warning(results.uncovered_widths)}")
     if found.test is not None and results.test is not None and rule.test is not None:

@@ -19,12 +19,12 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.baselines import Baseline, Scores
 from features.baselines.records import IntArray
-from features.faults import CLASSES, FUNDAMENTALS, SHAFT
+from features.faults import FUNDAMENTALS, LOOKS, SHAFT
 from features.indicators import BROAD, WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients, psd, psd_whitened
-from gen.corpus import FAULTS
+from gen.corpus import FAULT_NAMES
 
 PictureFormat = Literal["png", "svg", "pdf"]
 
@@ -88,7 +88,7 @@ def picture(figure: Figure, suffix: PictureFormat) -> bytes:
 def draw_record(shown: Shown) -> Figure:
     """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
     figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=CLASSES[shown.fault].colour)
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     _draw_waveform(waveform, shown)
     _draw_density(density, shown)
@@ -132,7 +132,7 @@ def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
     own, others = fault_lines(shown.orders, shown.fault)
     top = _highest_drawn_order(own, others)
     visible = order <= top
-    colour = CLASSES[shown.fault].colour
+    colour = LOOKS[shown.fault].colour
     for line in own.values():
         axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=colour, alpha=0.2, linewidth=0)
     for line in others.values():
@@ -168,7 +168,7 @@ def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
 def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str, float]]:
     """Orders of the lines of a fault class, and of the fundamental lines of the others and the shaft, by label."""
     nominal = {"shaft": 1.0} | {base: float(order) for base, order in orders._asdict().items()}
-    own = {line.label: line.multiple * nominal[line.base] for line in CLASSES[fault].lines}
+    own = {line.label: line.multiple * nominal[line.base] for line in LOOKS[fault].lines}
     compared = {line.label: line.multiple * nominal[line.base] for line in (SHAFT, *FUNDAMENTALS)}
     return own, {label: order for label, order in compared.items() if label not in own}
 
@@ -211,7 +211,7 @@ def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity])
     for axes in panels[1 + len(quantities) :]:
         axes.remove()
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=len(FAULTS))
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(FAULT_NAMES))
     return figure
 
 
@@ -220,7 +220,7 @@ def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) ->
     bottom = np.zeros(len(rigs))
     for c in present:
         count = np.bincount(number[fault == c], minlength=len(rigs))
-        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=CLASSES[FAULTS[c]].colour, label=FAULTS[c])
+        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=LOOKS[FAULT_NAMES[c]].colour, label=FAULT_NAMES[c])
         bottom += count
     step = max(1, len(rigs) // 10)
     axes.set_xticks(np.arange(0, len(rigs), step), [str(name) for name in rigs[::step]])
@@ -242,7 +242,7 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
         [values[fault[finite] == c] for c in present],
         bins=edges.tolist(),
         stacked=True,
-        color=[CLASSES[FAULTS[c]].colour for c in present],
+        color=[LOOKS[FAULT_NAMES[c]].colour for c in present],
     )
     axes.set(xlabel=quantity.label, ylabel="records")
     axes.locator_params(axis="x", nbins=5)

@@ -28,7 +28,7 @@ _COLLECTION = Collection(
     title="MFPT fault data set",
     origin="E. Bechhoefer, NRG Systems; Machinery Failure Prevention Technology Society. CC BY-NC-SA 4.0.",
     fs=FS,
-    channel="accelerometer",
+    channels=("accelerometer",),
 )
 _NOTE = "all files: the shaft rate is nominal; where it was measured, it is 0.6 to 1.3 % lower."
 

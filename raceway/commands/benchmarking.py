@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.feature_tables import table_of
+from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.models import ESTIMATORS, warn_of_severities
 from raceway.console import show
 from raceway.console.options import A_PATH, corpus_argument, corpus_folder, folder_option, json_option, recipe_argument
@@ -116,6 +116,9 @@ def benchmark(
     options = {"tracks": asked, "estimators": chosen, "waveforms": signals, "curve": learning_curve}
     with progress("scoring", "scores") as report:
         results = run(table, other, **options, folds=folds, seed=seed, progress=report)
+    notice_of_unknown(corpus, results.corpus.unknown)
+    if test is not None and results.test is not None:
+        notice_of_unknown(test, results.test.unknown)
     warn_of_severities(results, next(iter(results.baselines.values())).test)
     page = write_report(corpus, results, output)
     if as_json:

@@ -7,7 +7,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import corpus_argument, file_option, json_option, record_option
-from raceway.console.progress import progress
+from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -55,6 +55,12 @@ def features(corpus: Path, output: Path, as_json: bool) -> None:
         return
     lacking = f"; some are missing in {show.counted(missing, 'record')}" if missing else ""
     show.text(f"{output}: {columns} features of {show.counted(records, 'record')}{lacking}.")
+
+
+def notice_of_unknown(corpus: Path, unknown: int) -> None:
+    """Say how many records of a corpus are left out because their class is not known."""
+    if unknown:
+        notice(f"{corpus}: {show.counted(unknown, 'record')} of class unknown left out.")
 
 
 def table_of(corpus: Path) -> "xr.Dataset":

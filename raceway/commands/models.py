@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from raceway.commands.feature_tables import table_of
+from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.console import show
 from raceway.console.options import A_PATH, corpus_argument, file_option, json_option
 from raceway.console.progress import notice
@@ -49,12 +49,13 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
 
     Next: raceway evaluate OTHER --model MODEL
     """
+    from features.baselines import count_unknown, save_model
     from features.baselines import evaluate as score
-    from features.baselines import save_model
     from features.baselines import train as fit
     from gen.corpus import SPLITS
 
     table = table_of(corpus)
+    notice_of_unknown(corpus, count_unknown(table))
     test = table["split"].values == SPLITS.index("test")
     honest = bool(test.any() and not test.all())
     model = fit(table.isel(record=~test) if honest else table, estimator)
@@ -88,11 +89,13 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
 
       raceway evaluate cwru --model model.skops
     """
+    from features.baselines import count_unknown, load_model
     from features.baselines import evaluate as score
-    from features.baselines import load_model
 
     loaded = load_model(model)
-    scores = score(table_of(corpus), loaded)
+    table = table_of(corpus)
+    notice_of_unknown(corpus, count_unknown(table))
+    scores = score(table, loaded)
     warn_of_severities(scores)
     if scores.seen:
         notice(

@@ -369,7 +369,7 @@ def without(table: xr.Dataset, name: str) -> xr.Dataset:
         (make_table(8, 2).isel(record=[]), "holds no record"),
         (without(make_table(), "specimen"), "lacks 'specimen'; make it again with raceway features"),
         (make_table().isel(feature=slice(0, 8)), "lacks 'shape'"),
-        (make_table().assign(fault=("record", np.full(80, 9))), "values outside 0..5"),
+        (make_table().assign(fault=("record", np.full(80, 9))), "fault has values other than 0 healthy, 1 inner"),
     ],
 )
 def test_a_table_that_cannot_be_cross_validated_is_refused_in_one_sentence(table, sentence):

@@ -148,11 +148,14 @@ UNUSABLE = {
         "is not a readable NumPy file",
     ),
     "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is not a readable NumPy file"),
-    "sound.wav": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy"),
-    "a.mat": (lambda path: scipy.io.savemat(path, {"x": SIGNAL}), "is a MATLAB file; give the key variable"),
+    "notes.doc": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy, .wav"),
+    "two.mat": (
+        lambda path: scipy.io.savemat(path, {"x": SIGNAL, "y": SIGNAL, "rpm": 5}),
+        "holds x, y, more than one variable with 100 numbers or more; name one with variable",
+    ),
     "broken_7_3.mat": (
         lambda path: (write_matlab_7_3(path), path.write_bytes(path.read_bytes()[:900])),
-        "is a MATLAB file; give the key variable",
+        "is not a readable MATLAB 7.3 file",
     ),
 }
 
