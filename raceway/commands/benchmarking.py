@@ -147,7 +147,7 @@ def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
 def _show_curve(results: "Results") -> None:
     from features.baselines import interval_text
 
-    show.text("", f"Learning curve of the {results.leading}, by {results.track}:", "")
+    show.text("", f"Learning curve of {results.leading}, by {results.track}:", "")
     rows = [(p.specimens, f"{p.records:.0f}", p.scores) for p in results.curve]
     show.table(
         ("training specimens", "records", "score", "95 %"),
