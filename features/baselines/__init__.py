@@ -9,6 +9,8 @@ records           labelled rows of a feature table, and the groups that they bel
 own               classifiers of the user, taught by class names
 estimators        the registry of baselines, from majority class to ensemble
 calibration       calibrated probabilities, and thresholds of answers
+references        features relative to healthy records of the same rig
+reference_choice  records tested against a reference, without those that belong to it
 predictions       classes predicted for the records of a table and for whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 severities        fault widths that a test contains and its training does not
@@ -27,6 +29,7 @@ benchmark         scores of every baseline with controls, and on another corpus
 """
 
 from features.baselines.benchmark import Baseline, Results, TrackResults, benchmark
+from features.baselines.calibration import Calibration
 from features.baselines.curves import CurvePoint, learning_curve
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
@@ -45,6 +48,7 @@ __all__ = [
     "TRACKS",
     "UNSURE",
     "Baseline",
+    "Calibration",
     "CurvePoint",
     "EstimatorError",
     "Model",

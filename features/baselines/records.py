@@ -4,6 +4,7 @@ A specimen is identified by its rig and its number, a recording by its specimen,
 may restart either number on each rig, or number all of them consecutively.
 """
 
+import hashlib
 from collections.abc import Hashable, Iterable, Mapping, Sequence
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
@@ -167,6 +168,19 @@ def _shape(table: xr.Dataset) -> IntArray:
     spalls, width = _column(table, "n_spalls"), _column(table, "width")
     cases = [spalls > 1, (spalls == 1) & (width >= EXTENDED), (spalls == 1) & (width > 0), _column(table, "wear") > 0]
     return np.select(cases, [SHAPES.index(name) for name in ("several", "extended", "pit", "worn")], -1)
+
+
+def record_digests(features: FloatArray) -> NDArray[np.uint64]:
+    """Digest each row of features to 64 bits, shape (record, feature) to (record,)."""
+    rows = (np.ascontiguousarray(row, dtype="<f8").tobytes() for row in features)
+    digests = (int.from_bytes(hashlib.blake2b(row, digest_size=8).digest(), "little") for row in rows)
+    return np.fromiter(digests, dtype=np.uint64, count=len(features))
+
+
+def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
+    """Number of records whose digest is known; records without any feature are not counted."""
+    known = np.isfinite(features).any(axis=1)
+    return int(np.isin(record_digests(features[known]), digests).sum())
 
 
 def check_classes(records: Records) -> IntArray:

@@ -10,10 +10,10 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from features.baselines.calibration import UNCALIBRATED
-from features.baselines.estimators import class_probabilities, make_estimator
+from features.baselines.calibration import UNCALIBRATED, fit_calibration
+from features.baselines.estimators import UNTRAINED, class_probabilities, make_estimator
 from features.baselines.own import Maker
-from features.baselines.predictions import class_names, predictions
+from features.baselines.predictions import Predictions, class_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
 from features.baselines.scores import Scores, confusion_matrix, figures, score
 from features.baselines.severities import uncovered_in_splits
@@ -135,9 +135,18 @@ def score_splits(
     tested = np.sort(np.concatenate([test for _, test in splits]))
     chosen = records._replace(fault=labels).at(tested)
     _, recording = np.unique(chosen.recording, return_inverse=True)
-    found = predictions(probabilities[np.ix_(tested, classes)], class_names(classes), recording, UNCALIBRATED)
+    found = _pooled(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
     pooled = score(chosen, found, seed)
     return replace(pooled, folds=tuple(folds))
+
+
+def _pooled(
+    probabilities: FloatArray, classes: IntArray, labels: IntArray, recording: IntArray, estimator: str | Maker
+) -> Predictions:
+    """Predictions of all folds, with the one calibration that fits all of them; an untrained baseline stays uncalibrated."""
+    truth = np.searchsorted(classes, labels)
+    calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth, recording)
+    return predictions(probabilities, class_names(classes), recording, calibration)
 
 
 def _balanced_accuracy(fault: IntArray, probabilities: FloatArray) -> float:

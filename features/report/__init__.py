@@ -1,4 +1,4 @@
-"""Pictures of records and of scores, one page of a corpus and its benchmark, and one of a comparison.
+"""Pictures of records and of scores, one page of a corpus and its benchmark, one of a comparison, and one of a diagnosis.
 
 ========== ======================================================================
 module     responsibility
@@ -10,5 +10,6 @@ sides      drawings of several sets side by side: examples, and distributions
 examples   records of a corpus as pictures
 page       a corpus and its benchmark on one page
 comparison a synthetic corpus and real ones on one page
+diagnosis  a diagnosis on one page
 ========== ======================================================================
 """

@@ -21,7 +21,7 @@ from features.baselines.tracks import NOVELTY
 from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve
 from features.report.examples import draw_examples
-from features.report.pictures import Quantity, draw_content, draw_scores, picture
+from features.report.pictures import Quantity, draw_content, draw_reliability, draw_scores, picture
 from gen.corpus import FAULT_NAMES, FAULTS, SPLITS, Manifest, open_corpus, read_manifest, write_text_durably
 from gen.errors import CorpusError
 
@@ -84,7 +84,7 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
 
 
 def template(name: str) -> jinja2.Template:
-    """Template of this package; its filter ``image`` makes an address of a picture in SVG."""
+    """Template of this package; filter ``image`` makes an address of a picture in SVG, ``figure`` three decimals or a dash."""
     folder = files("features.report")
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(lambda wanted: folder.joinpath(wanted).read_text(encoding="utf-8")),
@@ -93,6 +93,7 @@ def template(name: str) -> jinja2.Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["figure"] = lambda value: "–" if value is None else f"{value:.3f}"
     environment.filters["image"] = lambda svg: f"data:image/svg+xml;base64,{base64.b64encode(svg).decode()}"
     return environment.get_template(name)
 
@@ -151,12 +152,15 @@ def _of_faults(name: str, corpus: xr.Dataset) -> np.ndarray:
 def _scores(results: Results) -> dict[str, Any]:
     """Variables of the template that describe the baselines."""
     chance = 1 / len(results.corpus.classes)
+    quality = _quality(results)
     return {
         "results": results,
         "chance": chance,
         "unseen": NOVELTY[results.track],
         "scores": picture(draw_scores(results.baselines, chance, NOVELTY[results.track]), "svg"),
         "spreads": {name: float(np.std(found.grouped.folds)) for name, found in results.baselines.items()},
+        "quality": quality,
+        "reliability": picture(draw_reliability({title: rows[results.leading] for title, rows in quality}), "svg"),
         "findings": _findings(results, chance),
         "untrained": UNTRAINED,
         "unfolded": results.leading,
@@ -177,6 +181,19 @@ def _tracks(results: Results, chance: float) -> dict[str, Any]:
     return {"tracks": None, "curve": None, "interval_text": interval_text, "novelty": NOVELTY} | drawn
 
 
+def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
+    """Scores by baseline under a title each: of the cross-validation, and by record and recording of the other corpus."""
+    found = results.baselines.items()
+    tested = {name: one.test for name, one in found if one.test is not None}
+    whole = {name: one.by_recording for name, one in tested.items() if one.by_recording is not None}
+    tables = {
+        f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in found},
+        "Other corpus, by record": tested,
+        "Other corpus, by recording": whole,
+    }
+    return [(title, rows) for title, rows in tables.items() if rows]
+
+
 def _findings(results: Results, chance: float) -> list[str]:
     """Findings on the default baseline, one sentence each."""
     found, rule = results.baselines[results.leading], results.baselines["envelope_rule"]
@@ -188,6 +205,7 @@ def _findings(results: Results, chance: float) -> list[str]:
     )
     sentences = [
         grouped,
+        _false_alarms(found.grouped),
         f"With a random split of records, which leaks, it reaches {found.leaky.balanced_accuracy:.3f}.",
         f"With labels permuted among specimens it reaches {_with_interval(found.null)}{_verdict(found.null, chance)}.",
     ]
@@ -205,6 +223,18 @@ def _findings(results: Results, chance: float) -> list[str]:
         if found.test.uncovered_widths:
             sentences.append(f"Other corpus: {severity_warning(found.test.uncovered_widths)}")
     return sentences
+
+
+def _false_alarms(scores: Scores) -> str:
+    """Sentence on false alarms and on the answers of a baseline."""
+    alarms = (
+        ""
+        if scores.false_alarms is None
+        else f"It predicts a fault for {scores.false_alarms:.1%} of the healthy records. "
+    )
+    accuracy = scores.answered_accuracy
+    right = "" if accuracy is None else f", and {accuracy:.1%} of these answers are right"
+    return f"{alarms}It answers {scores.coverage:.1%} of all records{right}; for the others it is unsure."
 
 
 def _with_interval(scores: Scores) -> str:

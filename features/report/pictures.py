@@ -90,14 +90,15 @@ def draw_record(shown: Shown) -> Figure:
     figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
     figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
-    _draw_waveform(waveform, shown)
-    _draw_density(density, shown)
+    draw_waveform(waveform, shown)
+    draw_density(density, shown, BROAD)
     _draw_envelope_spectrum(envelope, shown)
     figure.align_ylabels()
     return figure
 
 
-def _draw_waveform(axes: Axes, shown: Shown) -> None:
+def draw_waveform(axes: Axes, shown: Shown) -> None:
+    """Draw the first revolutions of the shaft."""
     duration = shown.signal.size / shown.fs
     visible = min(duration, TURNS / shown.shaft_rate)
     x = shown.signal[: max(2, round(visible * shown.fs))]
@@ -117,14 +118,15 @@ def thinned(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArra
     return np.repeat(time[::step], 2), extremes
 
 
-def _draw_density(axes: Axes, shown: Shown) -> None:
+def draw_density(axes: Axes, shown: Shown, band: tuple[float, float]) -> None:
+    """Power spectral density, with a band [Hz] shaded."""
     frequencies, density = psd(shown.signal[None], shown.fs, SEGMENT)
     faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
     axes.plot(frequencies / 1e3, 10 * np.log10(np.maximum(density[0], faintest)), color=INK, linewidth=0.8)
-    low, high = BROAD[0] / 1e3, min(BROAD[1], shown.fs / 2) / 1e3
+    low, high = band[0] / 1e3, min(band[1], shown.fs / 2) / 1e3
     axes.axvspan(low, high, color=FAINT, alpha=0.12, linewidth=0)
     axes.set(xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, shown.fs / 2e3))
-    axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:g}-{high:g} kHz shaded")
+    axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
 
 
 def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
@@ -139,7 +141,7 @@ def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
         axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.8)
     axes.set(xlabel="order of the shaft", ylabel="squared envelope [1]", xlim=(0, top), ylim=(0, None))
-    _name_lines(axes, own, others, colour, top)
+    name_lines(axes, own, others, colour, top)
     axes.set_title("Squared envelope spectrum of the whitened band", pad=30)
 
 
@@ -173,7 +175,7 @@ def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str,
     return own, {label: order for label, order in compared.items() if label not in own}
 
 
-def _name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
+def name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
     """Write the label of each line above the axes, in the lower of two rows if there is room."""
     ends = [-np.inf, -np.inf]
     per_letter = top / 78
@@ -288,3 +290,24 @@ def _draw_intervals(
         if found.interval is not None:
             axes.hlines(row, *found.interval, color=colour, linewidth=1.6)
     axes.plot([found.balanced_accuracy for found in scores], rows, marker, color=colour, markersize=5.5, label=label)
+
+
+@rc_context(STYLE)
+def draw_reliability(scores: Mapping[str, Scores]) -> Figure:
+    """Accuracy against largest probability in bins, one panel for each of some scores by title."""
+    figure = Figure(figsize=(WIDTH, 2.7), layout="constrained")
+    panels = figure.subplots(1, max(len(scores), 2), sharey=True, squeeze=False)[0]
+    for axes, (title, found) in zip(panels, scores.items(), strict=False):
+        probability, accuracy = (
+            [getattr(bin_, name) for bin_ in found.reliability] for name in ("probability", "accuracy")
+        )
+        area = 260 * np.array([bin_.records for bin_ in found.reliability]) / found.records
+        axes.plot([0, 1], [0, 1], color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
+        axes.plot(probability, accuracy, color=BLUE, linewidth=0.8)
+        axes.scatter(probability, accuracy, area + 4, color=BLUE, linewidth=0, zorder=3)
+        axes.set(xlabel="largest probability", xlim=(0, 1.04), ylim=(-0.02, 1.06), aspect="equal")
+        axes.set_title(f"{title}\ncalibration error {found.ece:.3f}")
+    panels[0].set_ylabel("accuracy")
+    for axes in panels[len(scores) :]:
+        axes.remove()
+    return figure

@@ -7,11 +7,12 @@ where each fact comes from.
 from collections.abc import Iterator, Mapping, Sequence
 
 from gen.importers.entry import bearing_of, sensors
-from gen.importers.section import STAND_INS, Section
+from gen.importers.paths import groups_in
+from gen.importers.section import Section
 from gen.physics.bearing import orders
 
-_TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed [rpm]", "load_n": "Load [N]"}
-_MOST_SHOWN = 12
+_TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed (rpm)", "load_n": "Load (N)"}
+_MOST_TEXTS, _MOST_PATHS = 12, 3  # shown of a table, and of the patterns that a sentence holds for
 
 
 def assumptions(sections: Sequence[Section], fs: float) -> tuple[str, ...]:
@@ -21,14 +22,13 @@ def assumptions(sections: Sequence[Section], fs: float) -> tuple[str, ...]:
         for sentence in _of_section(section, fs):
             found.setdefault(sentence, []).append(section.pattern.text)
     return tuple(
-        f"{sentence}." if len(paths) == len(sections) else f"{sentence} ({_listed(paths)})."
+        f"{sentence}." if len(paths) == len(sections) else f"{sentence} ({_listed(paths, _MOST_PATHS)})."
         for sentence, paths in sorted(found.items(), key=lambda item: item[0].partition(":")[0])
     )
 
 
 def _of_section(section: Section, fs: float) -> Iterator[str]:
-    stand_ins: dict[str, str] = {group: str(STAND_INS.get(group, "x")) for group in section.pattern.groups}
-    entry = section.entry(stand_ins | {key: next(iter(table)) for key, table in section.tables.items()})
+    entry = next(section.examples())
     for sensor in sensors(entry, ""):
         yield f"Unit{f' of channel {sensor.name}' if sensor.name else ''}: {sensor.scale}"
     bearing = bearing_of(entry)
@@ -61,14 +61,15 @@ def _source(section: Section, key: str) -> str:
         times = section.readings[key].times if key in section.readings else 1.0
         return f"from the path, {section.pattern.text}" + ("" if times == 1 else f", times {times:g}")
     value = section.given.get(key)
-    return "not known" if value is None else f"given as {value}"
+    if value is None:
+        return "not known"
+    return f"{value} with the texts of the path" if groups_in(str(value)) else f"given as {value}"
 
 
 def _table(table: Mapping[str, object]) -> str:
-    return _listed([f"{text} is {value}" for text, value in table.items()])
+    return _listed([f"{text} is {value}" for text, value in table.items()], _MOST_TEXTS)
 
 
-def _listed(items: Sequence[str]) -> str:
+def _listed(items: Sequence[str], most: int) -> str:
     """First items of a list, and the number of the others."""
-    more = f" and {len(items) - _MOST_SHOWN} more" if len(items) > _MOST_SHOWN else ""
-    return ", ".join(items[:_MOST_SHOWN]) + more
+    return ", ".join(items[:most]) + (f" and {len(items) - most} more" if len(items) > most else "")

@@ -149,7 +149,11 @@ def bearing_of(entry: Entry) -> Bearing:
     """Bearing of an entry, in SI units."""
     if isinstance(entry.bearing, str):
         return CATALOGUE[entry.bearing]
-    geometry = entry.bearing
+    return bearing_of_geometry(entry.bearing)
+
+
+def bearing_of_geometry(geometry: Geometry) -> Bearing:
+    """Bearing of a geometry, in SI units."""
     return Bearing(
         geometry.designation,
         geometry.n_balls,

@@ -4,7 +4,7 @@
 """
 
 import math
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -20,7 +20,7 @@ from gen.importers.conversion import accelerations, doubts
 from gen.importers.entry import Entry, bearing_of, sensors
 from gen.importers.files import FloatArray, UnusableError, one_column
 from gen.importers.listing import File, listed_recordings, name_of_recording
-from gen.importers.mapping import read_mapping, sentence_of
+from gen.importers.mapping import MappingFile, read_mapping, sentence_of
 from gen.importers.matlab import read_matlab
 from gen.importers.recordings import Candidate, Recording
 from gen.importers.resampling import resampled
@@ -70,7 +70,7 @@ def import_generic(
     """
     mapping = read_mapping(source)
     found, skipped = listed_recordings(source, source.parent if folder is None else folder, mapping)
-    fs = _common_rate(source, mapping.resample, found)
+    fs = _common_rate(source, mapping, found)
     target = _Target(fs, resample=mapping.resample is not None)
     rigs = _numbered(files[0].entry.rig for files in found)
     specimens = _numbered((files[0].entry.rig, files[0].entry.specimen) for files in found)
@@ -91,7 +91,7 @@ def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
     return {key: number for number, key in enumerate(dict.fromkeys(keys))}
 
 
-def _common_rate(source: Path, wanted: float | None, recordings: list[tuple[File, ...]]) -> float:
+def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File, ...]]) -> float:
     """Sample rate of the corpus [Hz]: the one asked for, or that of all recordings; 1 if no file tells any, and so none can be used.
 
     Raises
@@ -99,16 +99,14 @@ def _common_rate(source: Path, wanted: float | None, recordings: list[tuple[File
     CorpusError
         If the mapping gives different rates and asks for none.
     """
-    if wanted is not None:
-        return wanted
-    given = [(file, rate) for (file, *_) in recordings if (rate := _given_rate(file)) is not None]
-    for file, rate in given:
+    if mapping.resample is not None:
+        return mapping.resample
+    given = list(_given_rates(mapping, recordings))
+    for place, rate in given:
         if rate != given[0][1]:
-            first, position = given[0][0], file.section.position
             message = (
-                f"{source}: files[{position}] ({file.name}) is at {rate:g} Hz and files[{first.section.position}] "
-                f"({first.name}) at {given[0][1]:g} Hz; a corpus has one sample rate: give resample_hz at the top, or make "
-                f"a corpus of each."
+                f"{source}: {place} is at {rate:g} Hz and {given[0][0]} at {given[0][1]:g} Hz; a corpus has one sample rate: "
+                f"give resample_hz at the top, or make a corpus of each."
             )
             raise CorpusError(message)
     if given:
@@ -121,9 +119,15 @@ def _common_rate(source: Path, wanted: float | None, recordings: list[tuple[File
     return 1.0
 
 
-def _given_rate(file: File) -> float | None:
-    """Sample rate in the mapping or the path of a file."""
-    return None if "sample_rate_hz" in file.section.in_file else file.entry.sample_rate_hz
+def _given_rates(mapping: MappingFile, recordings: list[tuple[File, ...]]) -> Iterator[tuple[str, float]]:
+    """Sample rates in the mapping and in the paths of files, with the places where they are given."""
+    for section in mapping.sections:
+        rate = next(section.examples()).sample_rate_hz
+        if rate is not None and "sample_rate_hz" in section.given:
+            yield f"files[{section.position}] ({section.pattern.text})", rate
+    for file, *_ in recordings:
+        if file.entry.sample_rate_hz is not None and "sample_rate_hz" in file.section.from_path:
+            yield file.name, file.entry.sample_rate_hz
 
 
 def _measured(file: File) -> dict[str, float]:
@@ -155,7 +159,7 @@ def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, speci
         told = doubts(column, signals[-1], sensor.scale, absolute=absolute)
         warnings += [f"channel {sensor.name}: {doubt}" if sensor.name else doubt for doubt in told]
     if len({signal.size for signal in signals}) > 1:
-        sizes = ", ".join(str(signal.size) for signal in signals)
+        sizes = " and ".join(str(signal.size) for signal in signals)
         message = f"has channels of {sizes} samples; give channels of one length"
         raise UnusableError(message)
     signal = np.stack(signals)

@@ -139,13 +139,8 @@ def _section(number: int, common: Mapping[str, Any], own: Mapping[str, Any]) -> 
         raise ValueError(message)
     readings = {key: _checked(Reading, value, key) for key, value in raw_readings.items()}
     section = Section(number, pattern, given, tables, readings)
-    stand_ins = {group: str(STAND_INS.get(group, "x")) for group in pattern.groups}
-    firsts = {key: next(iter(table)) for key, table in tables.items()}
-    entry = section.entry(stand_ins | firsts)
-    for key, table in tables.items():
-        for text in table:
-            section.entry(stand_ins | firsts | {key: text})
-    return section, entry
+    first, *_ = section.examples()
+    return section, first
 
 
 def _checked(model: type[Reading], value: Any, key: str) -> Reading:
@@ -162,9 +157,9 @@ def sentence_of(error: ValidationError, where: str, common: Mapping[str, Any], o
     """Sentence about the first cause, at the place where the user wrote the value."""
     # an unknown key comes before the missing key that it causes, a key of the geometry before "not a string"
     complaint = max(error.errors(), key=lambda one: (one["type"] == "extra_forbidden", len(one["loc"])))
-    keys = [str(part) for part in complaint["loc"] if part not in ("name", "geometry", "int", "str")]
-    if complaint["loc"][:1] == ("channels",):
-        keys = [str(part) for part in complaint["loc"] if part not in ("int", "str")]
+    place = complaint["loc"]
+    tags = ("name", "geometry") if place[:1] == ("bearing",) else ("int", "str")  # of the kinds of a value, not keys
+    keys = [*map(str, place[:1]), *(str(part) for part in place[1:] if part not in tags)]
     key = ".".join(keys)
     if own is not None and keys and keys[0] in common and keys[0] not in own:
         where = ""

@@ -113,7 +113,7 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
         "sample_rate": fs,
         "split": SPLITS.index("test"),
     }
-    signal = recording.signal.astype(np.float32)
+    signal = np.atleast_2d(recording.signal).astype(np.float32)
     starts = range(0, signal.shape[-1] - length + 1, length)
     return [Record(signal[:, start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
 

@@ -1,11 +1,11 @@
 """A section of ``files`` in a mapping file: a pattern of paths, and the keys that come from the path or from the file itself.
 
 A group of the pattern with the name of a key, such as ``{shaft_rpm}``, gives that key. The key can then be a table from the text in the
-path to its value (``fault: {N: healthy}``). ``{variable: RPM, times: 60}`` is a number in the file, and ``{group}`` within a text is filled in.
+path to its value (``fault: {N: healthy}``). ``{variable: RPM, times: 60}`` is a number in the file, and ``{group}`` in a text is filled in.
 """
 
 import reprlib
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any, NamedTuple
 
 from pydantic import BaseModel, ConfigDict, Field
@@ -84,6 +84,14 @@ class Section(NamedTuple):
         if "fault" in self.from_path and found["fault"] in WITHOUT_SPALL:
             found = {key: value for key, value in found.items() if key not in SPALL_KEYS}
         return found
+
+    def examples(self) -> Iterator[Entry]:
+        """Description with stand-ins for all that only a file or its path gives, for each value of each table; at least one."""
+        first: dict[str, str] = {group: str(STAND_INS.get(group, "x")) for group in self.pattern.groups}
+        first |= {key: next(iter(table)) for key, table in self.tables.items()}
+        yield self.entry(first)
+        for key, table in self.tables.items():
+            yield from (self.entry(first | {key: text}) for text in table)
 
     def entry(self, groups: Mapping[str, str], measured: Mapping[str, float] | None = None) -> Entry:
         """Description of a file; ValidationError if the path or the file gives a value that is not allowed."""

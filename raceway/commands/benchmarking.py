@@ -9,12 +9,21 @@ import click
 from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.models import ESTIMATORS, warn_of_severities
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, corpus_folder, folder_option, json_option, recipe_argument
+from raceway.console.options import (
+    A_PATH,
+    corpus_argument,
+    corpus_folder,
+    folder_option,
+    json_option,
+    recipe_argument,
+    speed_option,
+)
 from raceway.console.progress import compilation_noticed, progress
 
 if TYPE_CHECKING:
     from features.baselines import Baseline, Results
     from features.baselines.own import Maker
+    from features.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
 TRACKS = ("specimen", "rig", "bearing", "speed", "severity", "shape")
@@ -71,6 +80,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 @click.option(
     "--seed", type=int, default=0, show_default=True, metavar="S", help="Seed of splits, classifiers and bootstrap."
 )
+@speed_option
 @json_option
 def benchmark(
     corpus: Path,
@@ -83,6 +93,7 @@ def benchmark(
     learning_curve: bool,
     folds: int,
     seed: int,
+    speed: "Speed",
     as_json: bool,
 ) -> None:
     """Measure the scores of all baselines on DIR.
@@ -90,7 +101,7 @@ def benchmark(
     (raceway bench measures speed.) Cross-validation keeps all records of a specimen on one side of each split, and all of a rig, bearing
     type, speed range, fault width or fault shape with --track. Two controls are shown beside each score: a split of random records,
     which leaks, and labels permuted among specimens, which must score at chance. With --test, models trained on all of DIR are also
-    scored on DIR2.
+    scored on DIR2; --speed concerns DIR2 alone.
 
     MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the
     current folder, without .py, or an installed module. With --estimator or several tracks, the other baselines are left out.
@@ -111,7 +122,7 @@ def benchmark(
 
     signals = open_waveforms(corpus, normalise=True, per_turn=per_turn) if waveforms else None
     table = table_of(corpus)
-    other = None if test is None else table_of(test)
+    other = None if test is None else table_of(test, speed)
     asked = "all" if "all" in tracks else tracks
     options = {"tracks": asked, "estimators": chosen, "waveforms": signals, "curve": learning_curve}
     with progress("scoring", "scores") as report:
