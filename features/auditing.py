@@ -20,7 +20,7 @@ from scipy import fft
 from features.signal.rows import FloatArray
 from gen.corpus import FAULT_NAMES, SIGNAL, UNKNOWN_CODE, open_corpus
 
-COPY = 0.25  # phase correlation; of 2100 pairs of recordings of different bearings in CWRU, MFPT and UESTC, none reaches 0.11
+COPY = 0.25  # phase correlation; no two recordings of different bearings in CWRU, MFPT or UESTC reach 0.11
 _LONGEST = 32_768  # samples of a recording that are compared
 _MOST_PAIRS = 20_000  # of recordings, those with the most similar spectra; a pair takes about 1 ms
 _BANDS = 24

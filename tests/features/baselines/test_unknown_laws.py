@@ -7,7 +7,7 @@ import pytest
 from click.testing import CliRunner
 
 from features import feature_table
-from features.baselines import DEFAULT_GROUPS, benchmark, count_unknown, train
+from features.baselines import DEFAULT_GROUPS, benchmark, count_unknown, evaluate, train
 from features.baselines.records import all_records, features_of, labelled_records
 from features.realism.windows import common_ground, measured_windows
 from features.report.examples import draw_examples
@@ -93,3 +93,10 @@ def test_train_says_how_many_records_are_left_out(corpus, tmp_path):
     assert done.exit_code == 0, done.output
     assert f"{corpus}: 4 records of class unknown left out." in " ".join(done.stderr.split())
     assert "trained on 12 records, classes healthy, inner." in done.stdout
+
+
+def test_scores_are_those_of_the_records_whose_class_is_known(table):
+    model = train(table, "majority")
+    shuffled = table.isel(record=np.random.default_rng(0).permutation(table.sizes["record"]))
+    assert evaluate(shuffled, model).records == 12
+    assert evaluate(shuffled, model).accuracy == evaluate(table.isel(record=slice(12)), model).accuracy
