@@ -132,7 +132,7 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
                     scores = evaluate(labelled[test], train(taught, BEST, seed=seed))
                     teachers[test].setdefault(" + ".join(teaching), []).append(figures(scores))
             if seed == 0:
-                own = {name: figures(cross_validate(table, name, by="rig", seed=seed)) for name in ESTIMATORS}
+                own = {name: figures(cross_validate(table, name, track="rig", seed=seed)) for name in ESTIMATORS}
             print(f"seed {seed} done", file=sys.stderr, flush=True)
     return {
         "machine": machine(),

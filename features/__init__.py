@@ -17,6 +17,7 @@ recording_speeds shaft speed of every recording of a corpus, and warnings of wro
 table            corpus -> feature table (record, feature), part by part
 table_files      feature tables on disk
 auditing         splits of real recordings that can leak
+waveforms        signals of a corpus as an array that is read when it is indexed
 baselines        classifiers on a feature table, scored by specimen or rig beside their controls
 realism          synthetic records against real ones: AUC of measures, class by class
 diagnosis        class of one recording, and the lines that speak for it
@@ -33,8 +34,9 @@ if TYPE_CHECKING:
     from features.baselines import evaluate
     from features.speed import shaft_speed
     from features.table import feature_table
+    from features.waveforms import open_waveforms
 
-__all__ = ["audit_splits", "evaluate", "feature_table", "shaft_speed"]
+__all__ = ["audit_splits", "evaluate", "feature_table", "open_waveforms", "shaft_speed"]
 
 __getattr__, __dir__ = lazy_names(
     __name__,
@@ -43,5 +45,6 @@ __getattr__, __dir__ = lazy_names(
         "features.baselines": ("evaluate",),
         "features.speed": ("shaft_speed",),
         "features.table": ("feature_table",),
+        "features.waveforms": ("open_waveforms",),
     },
 )

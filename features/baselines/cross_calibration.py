@@ -6,13 +6,14 @@ import numpy as np
 
 from features.baselines.calibration import UNCALIBRATED, Calibration, fit_calibration
 from features.baselines.estimators import UNTRAINED, class_probabilities, make_estimator
+from features.baselines.own import Maker
 from features.baselines.records import Records
-from features.baselines.splits import Split, grouped_splits
+from features.baselines.tracks import Split, grouped_splits
 
 FOLDS = 3  # at most; each costs a training on two thirds of the records
 
 
-def cross_calibration(records: Records, estimator: str, seed: int) -> Calibration:
+def cross_calibration(records: Records, estimator: str | Maker, seed: int) -> Calibration:
     """Calibration from the predictions of a cross-validation by rig, or by specimen if there are too few rigs.
 
     An untrained baseline, and one whose classes are on too few specimens, stays uncalibrated.
@@ -24,8 +25,8 @@ def cross_calibration(records: Records, estimator: str, seed: int) -> Calibratio
     classes, truth = np.unique(records.fault, return_inverse=True)
     probabilities = np.zeros((len(truth), len(classes)))
     for train, test in splits:
-        fitted = make_estimator(estimator, seed).fit(records.features.iloc[train], records.fault[train])
-        probabilities[test] = class_probabilities(fitted, records.features.iloc[test])
+        fitted = make_estimator(estimator, seed).fit(records.features.take(train), records.fault[train])
+        probabilities[test] = class_probabilities(fitted, records.features.take(test))
     return fit_calibration(probabilities, truth, records.recording, by)
 
 

@@ -24,6 +24,7 @@ from sklearn.preprocessing import StandardScaler
 from sklearn.svm import SVC
 from sklearn.utils.validation import check_is_fitted, validate_data
 
+from features.baselines.own import Maker, OwnClassifier
 from features.baselines.records import FloatArray, IntArray
 from features.faults import CLASSES, COMBS, EVIDENCE, HEALTHY
 from gen.corpus import FAULTS
@@ -222,14 +223,20 @@ def relative_name(name: str) -> str:
     return f"relative_{name}" if f"relative_{name}" in RELATIVE_ESTIMATORS else name
 
 
-def make_estimator(name: str, seed: int) -> Estimator:
-    """Unfitted baseline, or estimator for records relative to a reference.
+def make_estimator(name: str | Maker, seed: int) -> Estimator:
+    """Unfitted baseline, estimator for records relative to a reference, or classifier of the user.
+
+    It is one of indices into ``gen.corpus.FAULTS``.
 
     Raises
     ------
     ValueError
         For a name that is not in the registry.
+    EstimatorError
+        For a classifier that cannot be made.
     """
+    if not isinstance(name, str):
+        return OwnClassifier(name, seed)
     known = ESTIMATORS | RELATIVE_ESTIMATORS
     if name not in known:
         message = f"estimator: {name!r} is no baseline; choose from {', '.join(ESTIMATORS)}."

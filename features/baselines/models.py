@@ -31,6 +31,7 @@ from features.baselines.model_check import check_estimator
 from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
 from features.baselines.model_states import Known, State, plain
+from features.baselines.own import Maker, maker_name
 from features.baselines.predictions import class_names, estimator_probabilities, predict
 from features.baselines.records import (
     DEFAULT_GROUPS,
@@ -102,12 +103,12 @@ _OWN = tuple(field.name for field in fields(Model) if field.name != "relative")
 
 def train(
     table: xr.Dataset,
-    estimator: str = DEFAULT_ESTIMATOR,
+    estimator: str | Maker = DEFAULT_ESTIMATOR,
     *,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
 ) -> Model:
-    """Fit a baseline to all records of a feature table, and calibrate it on records outside the training.
+    """Fit a baseline or a classifier of the user to all records of a feature table, and calibrate it on records outside the training.
 
     It is calibrated by a cross-validation that keeps each rig together, or each specimen if there are too few rigs. If there are too few
     specimens too, or if the baseline is untrained, the probabilities stay as they are and every record is answered.
@@ -123,20 +124,22 @@ def train(
         For an unknown estimator.
     """
     model = _train(table, estimator, groups, seed)
-    paired = None if estimator in UNTRAINED else paired_table(table, model.features, seed)
+    if not isinstance(estimator, str) or estimator in UNTRAINED:
+        return model
+    paired = paired_table(table, model.features, seed)
     return replace(
         model, relative=None if paired is None else _train(paired, relative_name(estimator), (RELATIVE,), seed)
     )
 
 
-def _train(table: xr.Dataset, estimator: str, groups: Sequence[str], seed: int) -> Model:
+def _train(table: xr.Dataset, estimator: str | Maker, groups: Sequence[str], seed: int) -> Model:
     names = features_of(table, groups)
     records = labelled_records(table, names)
     check_classes(records)
     fitted = make_estimator(estimator, seed).fit(records.features, records.fault)
     return Model(
         estimator=fitted,
-        name=estimator,
+        name=estimator if isinstance(estimator, str) else maker_name(estimator),
         classes=class_names(fitted.classes_),
         features=names,
         groups=tuple(groups),
@@ -217,8 +220,12 @@ def save_model(model: Model, path: Path | str) -> None:
     Raises
     ------
     CorpusError
-        If the disk refuses the file.
+        If the disk refuses the file, or the model is not one of the baselines: only those can be read without running code.
     """
+    if model.name not in ESTIMATORS:
+        raise CorpusError(
+            f"{path}: {model.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
+        )
     content = _content(model) | {"relative": None if model.relative is None else _content(model.relative)}
     write_durably(pack({"raceway_model": FORMAT, **content}), Path(path))
 

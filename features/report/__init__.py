@@ -5,6 +5,7 @@ module     responsibility
 ========== ======================================================================
 pictures   drawings of one record, of the contents of a corpus, and of scores
 envelopes  drawings of several envelope spectra: a grid, and a waterfall
+curves     drawing of a learning curve
 sides      drawings of several sets side by side: examples, and distributions
 examples   records of a corpus as pictures
 page       a corpus and its benchmark on one page

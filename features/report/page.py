@@ -14,10 +14,12 @@ import jinja2
 import numpy as np
 import xarray as xr
 
-from features.baselines import DEFAULT_ESTIMATOR, Results, Scores, interval_text, severity_warning
+from features.baselines import Results, Scores, interval_text, severity_warning
 from features.baselines.benchmark import write_results
 from features.baselines.estimators import UNTRAINED
+from features.baselines.tracks import NOVELTY
 from features.faults import HEALTHY, LOOKS
+from features.report.curves import draw_curve
 from features.report.examples import draw_examples
 from features.report.pictures import Quantity, draw_content, draw_reliability, draw_scores, picture
 from gen.corpus import FAULT_NAMES, FAULTS, SPLITS, Manifest, open_corpus, read_manifest, write_text_durably
@@ -154,14 +156,29 @@ def _scores(results: Results) -> dict[str, Any]:
     return {
         "results": results,
         "chance": chance,
-        "scores": picture(draw_scores(results.baselines, chance, results.by), "svg"),
+        "unseen": NOVELTY[results.track],
+        "scores": picture(draw_scores(results.baselines, chance, NOVELTY[results.track]), "svg"),
         "spreads": {name: float(np.std(found.grouped.folds)) for name, found in results.baselines.items()},
         "quality": quality,
-        "reliability": picture(draw_reliability({title: rows[DEFAULT_ESTIMATOR] for title, rows in quality}), "svg"),
+        "reliability": picture(draw_reliability({title: rows[results.leading] for title, rows in quality}), "svg"),
         "findings": _findings(results, chance),
         "untrained": UNTRAINED,
-        "unfolded": DEFAULT_ESTIMATOR,
+        "unfolded": results.leading,
+        **_tracks(results, chance),
     }
+
+
+def _tracks(results: Results, chance: float) -> dict[str, Any]:
+    """Variables of the template that describe further tracks and the learning curve; None without them."""
+    leading, drawn = results.leading, {}
+    if results.further:
+        led = {results.track: results.baselines[leading]}
+        led |= {track: found.baselines[leading] for track, found in results.further.items()}
+        drawn["tracks"] = picture(draw_scores(led, chance, "groups"), "svg")
+    if results.curve:
+        rule = results.baselines["envelope_rule"].grouped
+        drawn["curve"] = picture(draw_curve(results.curve, chance, rule), "svg")
+    return {"tracks": None, "curve": None, "interval_text": interval_text, "novelty": NOVELTY} | drawn
 
 
 def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
@@ -170,7 +187,7 @@ def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
     tested = {name: one.test for name, one in found if one.test is not None}
     whole = {name: one.by_recording for name, one in tested.items() if one.by_recording is not None}
     tables = {
-        f"Unseen {results.by}s": {name: one.grouped for name, one in found},
+        f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in found},
         "Other corpus, by record": tested,
         "Other corpus, by recording": whole,
     }
@@ -179,10 +196,10 @@ def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
 
 def _findings(results: Results, chance: float) -> list[str]:
     """Findings on the default baseline, one sentence each."""
-    found, rule = results.baselines[DEFAULT_ESTIMATOR], results.baselines["envelope_rule"]
-    name = f"the {DEFAULT_ESTIMATOR.replace('_', ' ')}"
+    found, rule = results.baselines[results.leading], results.baselines["envelope_rule"]
+    name = f"the {results.leading.replace('_', ' ')}"
     grouped = (
-        f"On {results.by}s outside its training, {name} reaches a balanced accuracy of "
+        f"On {NOVELTY[results.track]} outside its training, {name} reaches a balanced accuracy of "
         f"{_with_interval(found.grouped)}; chance is {chance:.3f}, and the untrained envelope rule reaches "
         f"{rule.grouped.balanced_accuracy:.3f}."
     )
@@ -236,7 +253,7 @@ def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Origin of the numbers: the manifest without its parts, and the settings of the benchmark."""
     facts = manifest.model_dump(exclude={"parts_", "index", "complete", "records", "title"}, exclude_unset=True)
     benchmark = {
-        "cross-validation": f"{results.folds} folds by {results.by}",
+        "cross-validation": f"{results.folds} folds by {results.track}",
         "features": f"{results.features} ({', '.join(results.groups)})",
         "benchmark seed": results.seed,
         "benchmark versions": results.versions,

@@ -256,8 +256,8 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
 
 
 @rc_context(STYLE)
-def draw_scores(baselines: Mapping[str, Baseline], chance: float, by: str) -> Figure:
-    """Balanced accuracy of every baseline beside its controls; bars are 95 % intervals."""
+def draw_scores(baselines: Mapping[str, Baseline], chance: float, unseen: str) -> Figure:
+    """Balanced accuracy on unseen groups beside its controls, one row per baseline or track; bars are 95 % intervals."""
     figure = Figure(figsize=(WIDTH, 1.2 + 0.45 * len(baselines)), layout="constrained")
     axes = figure.subplots()
     rows = np.arange(len(baselines))[::-1]
@@ -266,7 +266,7 @@ def draw_scores(baselines: Mapping[str, Baseline], chance: float, by: str) -> Fi
     axes.hlines(rows, 0, 1, color=FAINT, linewidth=0.4, alpha=0.5)
     axes.vlines(chance, -0.6, len(rows) - 0.45, color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
     axes.text(chance, len(rows) - 0.4, "chance", color=INK, fontsize=8, va="bottom", ha="center")
-    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {by}s")
+    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {unseen}")
     if test:
         _draw_intervals(axes, test, rows - 0.18, VERMILION, "s", "other corpus")
     null, leaky = ([getattr(b, kind).balanced_accuracy for b in scored] for kind in ("null", "leaky"))
