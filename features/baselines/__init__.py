@@ -24,6 +24,7 @@ model_file        the only module that reads and writes skops archives
 model_rules       allowed values of the attributes that training sets
 model_check       comparison of the estimator in a model file with one trained in this process
 models            training, saving, loading, evaluation
+unlabelled        answers for recordings whose class is not known
 benchmark         scores of every baseline with controls, and on another corpus
 ================= ==================================================================================
 """
@@ -40,6 +41,7 @@ from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import severity_warning
 from features.baselines.splits import controls, cross_validate
 from features.baselines.tracks import TRACKS
+from features.baselines.unlabelled import Answer, unlabelled_answers
 
 __all__ = [
     "DEFAULT_ESTIMATOR",
@@ -47,6 +49,7 @@ __all__ = [
     "ESTIMATORS",
     "TRACKS",
     "UNSURE",
+    "Answer",
     "Baseline",
     "Calibration",
     "CurvePoint",
@@ -69,4 +72,5 @@ __all__ = [
     "save_model",
     "severity_warning",
     "train",
+    "unlabelled_answers",
 ]

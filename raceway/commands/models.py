@@ -1,5 +1,6 @@
 """Commands that train a model and score it on another corpus."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +13,7 @@ from raceway.console.options import A_PATH, corpus_argument, corpus_folder, file
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
-    from features.baselines import Calibration, Results, Scores
+    from features.baselines import Answer, Calibration, Results, Scores
     from features.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
@@ -108,7 +109,8 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", 
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
     scored together, by the geometric mean of their probabilities. The interval is a bootstrap over specimens. A record is answered if
-    its largest probability reaches the threshold of the model, and otherwise the answer is "unsure".
+    its largest probability reaches the threshold of the model, and otherwise the answer is "unsure". Recordings of class unknown are not
+    scored; the answer for each of them is listed.
 
     With --reference, records are compared with healthy records of their rig: those of a corpus, which may be DIR itself, or a recording
     (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores.
@@ -117,13 +119,16 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", 
       raceway evaluate pump --model model.skops --reference pump
       raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
-    from features.baselines import count_unknown, load_model
+    from features.baselines import count_unknown, load_model, unlabelled_answers
     from features.baselines import evaluate as score
 
     loaded = load_model(model)
     table = table_of(corpus, speed)
-    notice_of_unknown(corpus, count_unknown(table))
     healthy = None if reference is None else reference_table(reference, corpus, table, speed, **reading)
+    answers = unlabelled_answers(table, loaded, healthy)
+    if count_unknown(table) == table.sizes["record"]:
+        _show_answers_alone(corpus, model, loaded.name, answers, as_json=as_json)
+        return
     scores = score(table, loaded, reference=healthy)
     warn_of_severities(scores)
     if scores.seen:
@@ -131,12 +136,38 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", 
             f"warning: the model was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
         )
     if as_json:
-        show.as_json({"corpus": corpus, "model": model, "estimator": loaded.name, **show.plain(scores)})
+        facts = {"corpus": corpus, "model": model, "estimator": loaded.name, **show.plain(scores)}
+        show.as_json(facts | {"unknown": show.plain(answers)})
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")
     if scores.reference:
         show.text(scores.reference, "")
     _show_scores(scores)
+    if answers:
+        show.text("")
+        _show_answers(answers)
+
+
+def _show_answers_alone(
+    corpus: Path, model: Path, estimator: str, answers: "Sequence[Answer]", *, as_json: bool
+) -> None:
+    """Show the answers for a corpus without any known class."""
+    if as_json:
+        show.as_json({"corpus": corpus, "model": model, "estimator": estimator, "unknown": show.plain(answers)})
+        return
+    show.text(f"{corpus}: no record has a known class, so there is no score.", "")
+    _show_answers(answers)
+
+
+def _show_answers(answers: "Sequence[Answer]") -> None:
+    classes = tuple(answers[0].probabilities)
+    show.table(
+        ("class unknown", "records", "answer", *classes),
+        (
+            (one.source, f"{one.records}", one.answer, *(f"{p:.2f}" for p in one.probabilities.values()))
+            for one in answers
+        ),
+    )
 
 
 def calibration_text(calibration: "Calibration") -> str:

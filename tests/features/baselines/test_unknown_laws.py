@@ -7,7 +7,16 @@ import pytest
 from click.testing import CliRunner
 
 from features import feature_table
-from features.baselines import DEFAULT_GROUPS, benchmark, count_unknown, evaluate, train
+from features.baselines import (
+    DEFAULT_GROUPS,
+    benchmark,
+    count_unknown,
+    evaluate,
+    predict,
+    save_model,
+    train,
+    unlabelled_answers,
+)
 from features.baselines.records import all_records, features_of, labelled_records
 from features.realism.windows import common_ground, measured_windows
 from features.report.examples import draw_examples
@@ -16,6 +25,7 @@ from gen.corpus import FAULT_NAMES, UNKNOWN_CODE, open_corpus, validate_corpus
 from gen.errors import CorpusError
 from gen.importers import import_generic
 from raceway.cli import cli
+from raceway.commands import models
 from raceway.console.summary import describe
 
 FS = 12_000
@@ -100,3 +110,32 @@ def test_scores_are_those_of_the_records_whose_class_is_known(table):
     shuffled = table.isel(record=np.random.default_rng(0).permutation(table.sizes["record"]))
     assert evaluate(shuffled, model).records == 12
     assert evaluate(shuffled, model).accuracy == evaluate(table.isel(record=slice(12)), model).accuracy
+
+
+def test_recordings_of_unknown_class_are_answered_and_not_scored(table):
+    model = train(table, "logistic_regression")
+    answers = unlabelled_answers(table, model)
+    assert [(one.source, one.records) for one in answers] == [("6.npy", 2), ("7.npy", 2)]
+    found = predict(table.isel(record=slice(12, None)), model).by_recording
+    assert found is not None
+    assert [one.answer for one in answers] == list(found.answers)
+    assert [[*one.probabilities.values()] for one in answers] == found.probabilities.tolist()
+    assert unlabelled_answers(table.isel(record=slice(12)), model) == ()
+
+
+def test_evaluate_lists_the_answers_for_recordings_of_unknown_class(corpus, table, tmp_path, monkeypatch):
+    save_model(train(table, "logistic_regression"), tmp_path / "m.skops")
+    command = ["evaluate", str(corpus), "--model", str(tmp_path / "m.skops")]
+    done = CliRunner().invoke(cli, [*command, "--json"], prog_name="raceway")
+    assert done.exit_code == 0, done.output
+    held = json.loads(done.stdout)
+    assert held["records"] == 12
+    assert [set(one) for one in held["unknown"]] == [{"source", "records", "answer", "probabilities"}] * 2
+    monkeypatch.setattr(models, "table_of", lambda *_: table.isel(record=slice(12, None)))
+    alone = CliRunner().invoke(cli, command, prog_name="raceway")
+    assert alone.exit_code == 0, alone.output
+    assert "no record has a known class, so there is no score." in alone.stdout
+    assert "6.npy" in alone.stdout
+    only = json.loads(CliRunner().invoke(cli, [*command, "--json"], prog_name="raceway").stdout)
+    assert only["unknown"] == held["unknown"]
+    assert "balanced_accuracy" not in only
