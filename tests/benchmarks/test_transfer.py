@@ -1,0 +1,97 @@
+"""The tables of the pages are those of the file of results, and the figures of the benchmark those of its parts."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from benchmarks import transfer
+from benchmarks.transfer import RECIPE, TEACHERS, figures, pooled, recalls, with_reference
+from benchmarks.transfer_pages import PAGES, ROOT, TABLES, mean, read_results, spread, with_tables
+from features import feature_table
+from features.baselines import evaluate, train
+from gen.corpus import FAULTS
+from tests.pulses import write_pulses
+
+
+@pytest.fixture(scope="module")
+def tables(tmp_path_factory) -> tuple[xr.Dataset, xr.Dataset]:
+    """Two sets on two rigs each, with every class on both."""
+    folder = tmp_path_factory.mktemp("sets")
+    halves = np.tile(np.repeat([0, 1], 6), 4)
+    made = [
+        write_pulses(folder / "taught", rig=halves),
+        write_pulses(folder / "tested", rig=halves, seed=1, recording=np.arange(48) // 3),
+    ]
+    first, second = (feature_table(corpus, ("lines", "shape", "bands")) for corpus in made)
+    return first, second
+
+
+@pytest.mark.parametrize("page", PAGES)
+def test_the_tables_of_a_page_are_those_of_the_results(page):
+    text = (ROOT / page).read_text(encoding="utf-8")
+    assert with_tables(text, read_results()) == text, "run python -m benchmarks.transfer --pages"
+    assert text.count("<!-- table: ") == text.count("<!-- end of table -->") > 0
+
+
+def test_every_table_stands_in_a_page():
+    pages = "".join((ROOT / page).read_text(encoding="utf-8") for page in PAGES)
+    assert [name for name in TABLES if f"<!-- table: {name} -->" not in pages] == []
+
+
+def test_the_results_have_every_figure_of_every_seed():
+    results = read_results()
+    assert results["recipe"] == RECIPE
+    found = [*results["zero_shot"].values(), results["speed_corrected"], results["reference"]]
+    assert {len(values) for sets in found for values in sets.values()} == {results["seeds"]}
+    assert {test: len(sets) for test, sets in results["teachers"].items()} == {t: len(s) for t, s in TEACHERS.items()}
+
+
+def test_a_changed_result_changes_its_table():
+    results = read_results()
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    for found in results["zero_shot"]["ensemble"]["uestc"]:
+        found["window"] = 0.1234
+    assert "0.123 (0.123)" in with_tables(text, results)
+
+
+def test_a_spread_is_the_mean_and_the_lowest_of_what_is_known():
+    found = [{"auc": 0.5}, {"auc": None}, {"auc": 1.0}]
+    assert spread(found, "auc") == "0.750 (0.500)"
+    assert mean(found, "auc") == "0.750"
+    assert spread([{"auc": None}], "auc") == "-"
+
+
+def test_pooled_tables_keep_their_rigs_apart(tables):
+    first, second = tables
+    both = pooled([first, second, first])
+    assert both.sizes["record"] == 2 * first.sizes["record"] + second.sizes["record"]
+    assert len(np.unique(both["rig"].values)) == 6
+    np.testing.assert_array_equal(both["features"].values[: first.sizes["record"]], first["features"].values)
+
+
+def test_figures_and_recalls_are_those_of_the_model(tables):
+    first, second = tables
+    model = train(first, "logistic_regression")
+    scores = evaluate(second, model)
+    assert scores.by_recording is not None
+    found = figures(scores)
+    assert (found["window"], found["recording"]) == (scores.balanced_accuracy, scores.by_recording.balanced_accuracy)
+    named = second.assign(source=("record", [f"{number}.mat#0" for number in second["recording"].values]))
+    shares = recalls(named, model)
+    assert len(shares) == 16
+    assert 3 * sum(shares.values()) == pytest.approx(scores.accuracy * scores.records)
+
+
+def test_every_healthy_recording_is_the_reference_in_turn(tables, monkeypatch):
+    first, second = tables
+    used: list[set[int]] = []
+
+    def seen(table, model, *, reference):
+        used.append(set(reference["recording"].values.tolist()))
+        return evaluate(table, model)
+
+    monkeypatch.setattr(transfer, "evaluate", seen)
+    model = train(first, "majority")
+    assert with_reference(second, model) == figures(evaluate(second, model))
+    assert used == [{0}, {1}, {2}, {3}]
+    assert with_reference(second.isel(record=second["fault"].values != FAULTS.index("healthy")), model) is None
