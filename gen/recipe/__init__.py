@@ -38,11 +38,12 @@ from gen.recipe.operation import ProfileSection
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
 from gen.recipe.section import Section
 from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
-from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, quantities
+from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, LEAST_AXIAL_LOAD, STATIC_RATING, quantities
 
 __all__ = [
     "BALL_SPACING",
     "FREE_ANGLE",
+    "LEAST_AXIAL_LOAD",
     "MAX_OVERSAMPLING",
     "BallFault",
     "CageFault",
@@ -57,6 +58,7 @@ __all__ = [
     "ProfileSection",
     "RaceFault",
     "Recipe",
+    "STATIC_RATING",
     "Section",
     "fault_class",
     "find_recipe",
