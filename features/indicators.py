@@ -20,7 +20,16 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len
 
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted, running_median
-from features.signal.lines import FAMILIES, LINE_NAMES, Orders, highest_order, read_lines
+from features.signal.lines import (
+    FAMILIES,
+    FITTED_NAMES,
+    LINE_NAMES,
+    Orders,
+    families,
+    fitted_combs,
+    highest_order,
+    read_lines,
+)
 from features.signal.rows import ComplexArray, FloatArray, centred, squared_modulus
 from features.signal.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
 from features.signal.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
@@ -48,6 +57,7 @@ NAMES = {
     "lines": (
         *(f"{view}_{line}" for view in VIEWS for line in LINE_NAMES),
         *(f"{view}_{FAMILIES[a]}_over_{FAMILIES[b]}" for view in VIEWS for a, b in RIVALS),
+        *FITTED_NAMES,
     ),
     "shape": (
         *(f"{view}_{shape}" for view in VIEWS for shape in SHAPE_NAMES),
@@ -152,10 +162,10 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
         return found
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
     coefficients = fourier_coefficients(x[long_enough], fs, TOP)
-    read = _read(_bands(coefficients, duration, fs), duration, shaft_rate, orders)
+    *read, fitted = _read(_bands(coefficients, duration, fs), duration, shaft_rate, orders)
     line_views, shape_views = map(_views, read)
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
-    lines[long_enough] = np.concatenate([_flat(line_views), _flat(over)], axis=-1)
+    lines[long_enough] = np.concatenate([_flat(line_views), _flat(over), fitted], axis=-1)
     shape[long_enough] = np.concatenate([_flat(shape_views), _raw_shape(coefficients)], axis=-1)
     return found
 
@@ -171,8 +181,8 @@ def _bands(coefficients: ComplexArray, duration: float, fs: float) -> list[Compl
 
 def _read(
     bands: list[ComplexArray], duration: float, shaft_rate: FloatArray, orders: Orders
-) -> tuple[FloatArray, FloatArray]:
-    """Lines and shape of the envelope of each band, shapes (record, band, value)."""
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Lines and shape of the envelope of each band, shapes (record, band, value), and combs of their mean level."""
     resolution = 1 / (ZERO_PADDING * duration)
     bins = int(np.max(highest_order(orders) * shaft_rate) / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
@@ -187,8 +197,10 @@ def _read(
         level[:, number, :end] = log_level(spectrum, width, min(bins, end))
         shape[:, number] = envelope_shape(power, weighted, spectrum, z.shape[-1] / duration, shaft_rate)
     each = Orders(*(np.repeat(order, len(bands)) for order in orders))
-    lines = read_lines(level.reshape(-1, bins), np.repeat(shaft_rate / resolution, len(bands)), each)
-    return lines.reshape(*level.shape[:2], -1), shape
+    bins_per_order = shaft_rate / resolution
+    lines = read_lines(level.reshape(-1, bins), np.repeat(bins_per_order, len(bands)), each)
+    fitted = fitted_combs(level.mean(axis=1), families(orders) * bins_per_order[:, None])
+    return lines.reshape(*level.shape[:2], -1), shape, fitted
 
 
 def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:

@@ -1,28 +1,32 @@
 """Baseline classifiers on a feature table, scored without leakage and together with controls.
 
-``feature table -> labelled_records -> splits by specimen or rig -> probabilities -> Scores``
+``feature table -> labelled_records -> splits by specimen or rig -> Predictions -> Scores``
 
-============= ==================================================================================
-module        responsibility
-============= ==================================================================================
-records       labelled rows of a feature table, and the groups that they belong to
-estimators    the registry of baselines, from majority class to ensemble
-scores        figures of merit by record and by recording, with confidence intervals
-severities    fault widths that a test contains and its training does not
-splits        grouped cross-validation, and the checks of its splits
-model_members the zip archive of a model file and its arrays, checked before they are read
-model_states  content of a model file as plain values
-model_file    the only module that reads and writes skops archives
-model_rules   allowed values of the attributes that training sets
-model_check   comparison of the estimator in a model file with one trained in this process
-models        training, saving, loading, evaluation
-benchmark     scores of every baseline with controls, and on another corpus
-============= ==================================================================================
+================= ==================================================================================
+module            responsibility
+================= ==================================================================================
+records           labelled rows of a feature table, and the groups that they belong to
+estimators        the registry of baselines, from majority class to ensemble
+calibration       calibrated probabilities, and thresholds of answers
+predictions       classes predicted for the records of a table and for whole recordings
+scores            figures of merit by record and by recording, with confidence intervals
+severities        fault widths that a test contains and its training does not
+splits            grouped cross-validation, and the checks of its splits
+cross_calibration calibration on rigs or specimens outside the training
+model_members     the zip archive of a model file and its arrays, checked before they are read
+model_states      content of a model file as plain values
+model_file        the only module that reads and writes skops archives
+model_rules       allowed values of the attributes that training sets
+model_check       comparison of the estimator in a model file with one trained in this process
+models            training, saving, loading, evaluation
+benchmark         scores of every baseline with controls, and on another corpus
+================= ==================================================================================
 """
 
 from features.baselines.benchmark import Baseline, Results, benchmark
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
+from features.baselines.predictions import UNSURE, Predictions, predict
 from features.baselines.records import DEFAULT_GROUPS
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import severity_warning
@@ -32,8 +36,10 @@ __all__ = [
     "DEFAULT_ESTIMATOR",
     "DEFAULT_GROUPS",
     "ESTIMATORS",
+    "UNSURE",
     "Baseline",
     "Model",
+    "Predictions",
     "Results",
     "Scores",
     "benchmark",
@@ -41,6 +47,7 @@ __all__ = [
     "evaluate",
     "interval_text",
     "load_model",
+    "predict",
     "save_model",
     "severity_warning",
     "train",

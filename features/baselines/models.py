@@ -17,17 +17,19 @@ from numpy.typing import NDArray
 from pandas import DataFrame, Index
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from features.baselines.calibration import Calibration
+from features.baselines.cross_calibration import cross_calibration
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
     ESTIMATORS,
     Estimator,
-    class_probabilities,
     make_estimator,
 )
 from features.baselines.model_check import check_estimator
 from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
 from features.baselines.model_states import Known, State, plain
+from features.baselines.predictions import class_names, estimator_probabilities, predict
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
@@ -37,7 +39,7 @@ from gen.corpus import FAULTS, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
-FORMAT = 2
+FORMAT = 3
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 
 
@@ -63,6 +65,8 @@ class Model:
         One 64-bit digest per training record, shape (record,), to detect a test on training records.
     versions
         Of the libraries it was trained with.
+    calibration
+        Temperature of its probabilities and thresholds of its answers.
     """
 
     estimator: Estimator
@@ -76,6 +80,7 @@ class Model:
     widths: Covered
     digests: NDArray[np.uint64]
     versions: Mapping[str, str]
+    calibration: Calibration
 
 
 def train(
@@ -85,7 +90,10 @@ def train(
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
 ) -> Model:
-    """Fit a baseline to all records of a feature table.
+    """Fit a baseline to all records of a feature table, and calibrate it on records outside the training.
+
+    It is calibrated by a cross-validation that keeps each rig together, or each specimen if there are too few rigs. If there are too few
+    specimens too, or if the baseline is untrained, the probabilities stay as they are and every record is answered.
 
     Raises
     ------
@@ -101,7 +109,7 @@ def train(
     return Model(
         estimator=fitted,
         name=estimator,
-        classes=tuple(FAULTS[c] for c in fitted.classes_),
+        classes=class_names(fitted.classes_),
         features=names,
         groups=tuple(groups),
         corpus=records.title,
@@ -110,6 +118,7 @@ def train(
         widths=covered_widths(records),
         digests=record_digests(records.features.to_numpy()),
         versions={library: version(library) for library in _LIBRARIES},
+        calibration=cross_calibration(records, estimator, seed),
     )
 
 
@@ -133,8 +142,7 @@ def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: 
     model = model if isinstance(model, Model) else load_model(model)
     table = data if isinstance(data, xr.Dataset) else _features_for(model, data)
     records = labelled_records(table, model.features)
-    probabilities = _probabilities(model, records.features, records.title)
-    scores = score(records, probabilities, model.estimator.classes_, seed)
+    scores = score(records, predict(table, model), seed)
     seen = seen_records(records.features.to_numpy(), model.digests)
     return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))
 
@@ -148,27 +156,6 @@ def _features_for(model: Model, corpus: Path | str) -> xr.Dataset:
         )
         raise CorpusError(message)
     return feature_table(corpus, model.groups)
-
-
-def _probabilities(model: Model, features: DataFrame, where: str) -> FloatArray:
-    """Probability of each class, shape (record, class).
-
-    Raises
-    ------
-    CorpusError
-        If features or model contain numbers too large to compute with.
-    """
-    try:
-        with np.errstate(all="ignore"):
-            found = class_probabilities(model.estimator, features)
-    except ValueError as error:  # scikit-learn refuses numbers that are infinite, or too large for single precision
-        reason = str(error).splitlines()[0]
-        raise CorpusError(
-            f"{where}: {model.name} cannot classify these records ({reason}); train the model again."
-        ) from error
-    if not np.isfinite(found).all():
-        raise CorpusError(f"{where}: {model.name} gives probabilities that are not finite; train the model again.")
-    return found
 
 
 def record_digests(features: FloatArray) -> NDArray[np.uint64]:
@@ -193,6 +180,7 @@ def save_model(model: Model, path: Path | str) -> None:
         If the disk refuses the file.
     """
     content = {field.name: getattr(model, field.name) for field in fields(model)}
+    content["calibration"] = model.calibration.model_dump()
     write_durably(pack({"raceway_model": FORMAT, **content}), Path(path))
 
 
@@ -217,9 +205,11 @@ def load_model(path: Path | str) -> Model:
     expected = {"name": about.name, "seed": about.seed, "classes": about.classes, "features": about.features}
     check_estimator(str(path), held["estimator"], known, **expected)
     model = Model(estimator=unpack(held["estimator"]), digests=digests, **dict(about))
-    if tuple(FAULTS[c] for c in model.estimator.classes_) != model.classes:
+    if class_names(model.estimator.classes_) != model.classes:
         refuse(f"{path}: classes", "are not those of the estimator")
-    _probabilities(model, _trial_records(len(model.features)).set_axis(Index(model.features), axis=1), str(path))
+    estimator_probabilities(
+        model, _trial_records(len(model.features)).set_axis(Index(model.features), axis=1), str(path)
+    )
     return model
 
 
@@ -253,6 +243,7 @@ class _About(BaseModel):
     seed: Annotated[int, Field(ge=0, lt=2**32)]
     widths: dict[FaultName, Annotated[tuple[tuple[Width, Width], ...], Field(min_length=1)]]
     versions: dict[Text, Text]
+    calibration: Calibration
 
     @field_validator("name")
     @classmethod

@@ -49,25 +49,43 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         If the table has no records, or lacks a feature, the fault, or the number of rig, specimen or recording.
     """
     title = title_of(table)
+    rows = feature_rows(table, features)
+    fault = np.asarray(table["fault"].values, dtype=np.intp)
+    if fault.min() < 0 or fault.max() >= len(FAULTS):
+        message = f"{title}: fault has values outside 0..{len(FAULTS) - 1} ({', '.join(FAULTS)})."
+        raise CorpusError(message)
+    rig, specimen = (table[name].values for name in ("rig", "specimen"))
+    return Records(
+        title=title,
+        features=rows,
+        fault=fault,
+        rig=_numbered(rig),
+        specimen=_numbered(rig, specimen),
+        recording=recording_numbers(table),
+        width=np.asarray(table["width"].values, dtype=float) if "width" in table else np.full(len(fault), np.nan),
+    )
+
+
+def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
+    """Rows of a feature table with some of its features, in the order given, whatever their labels.
+
+    Raises
+    ------
+    CorpusError
+        If the table has no records, or lacks a feature, the fault, or the number of rig, specimen or recording.
+    """
+    title = title_of(table)
     _require(title, ("features", "fault", "rig", "specimen", "recording"), table.variables)
     _require(title, features, table["feature"].values)
     if table.sizes["record"] == 0:
         message = f"{title}: the feature table holds no record; give a corpus with at least one."
         raise CorpusError(message)
-    fault = np.asarray(table["fault"].values, dtype=np.intp)
-    if fault.min() < 0 or fault.max() >= len(FAULTS):
-        message = f"{title}: fault has values outside 0..{len(FAULTS) - 1} ({', '.join(FAULTS)})."
-        raise CorpusError(message)
-    rig, specimen, recording = (table[name].values for name in ("rig", "specimen", "recording"))
-    return Records(
-        title=title,
-        features=cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas()),
-        fault=fault,
-        rig=_numbered(rig),
-        specimen=_numbered(rig, specimen),
-        recording=_numbered(rig, specimen, fault, recording),
-        width=np.asarray(table["width"].values, dtype=float) if "width" in table else np.full(len(fault), np.nan),
-    )
+    return cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas())
+
+
+def recording_numbers(table: xr.Dataset) -> IntArray:
+    """Number of the recording of each record, from 0 and without a gap, shape (record,)."""
+    return _numbered(*(table[name].values for name in ("rig", "specimen", "fault", "recording")))
 
 
 def check_classes(records: Records) -> IntArray:

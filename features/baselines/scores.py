@@ -7,18 +7,33 @@ from a bootstrap [1]_ over specimens, because the records of one specimen are st
 .. [1] B. Efron, R. J. Tibshirani, *An Introduction to the Bootstrap*, Chapman & Hall, 1993, chapter 8.
 """
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import rankdata
 
+from features.baselines.calibration import SMALLEST
+from features.baselines.predictions import Predictions
 from features.baselines.records import FloatArray, IntArray, Records
+from features.faults import HEALTHY
 from gen.corpus import FAULTS
 
+HEALTHY_CODE = FAULTS.index(HEALTHY)
+BINS = 10  # of the reliability diagram
 RESAMPLES = 1000
 INTERVAL = (0.025, 0.975)  # quantiles of a 95 % interval
 Interval = tuple[float, float]
+
+
+class Bin(NamedTuple):
+    """Records whose largest probability lies in one interval: their number, mean probability, and share of right ones."""
+
+    records: int
+    probability: float
+    accuracy: float
 
 
 @dataclass(frozen=True)
@@ -43,7 +58,20 @@ class Scores:
     folds
         Balanced accuracy of each fold of a cross-validation, else empty.
     by_recording
-        Scores after averaging the probabilities of all records of a recording.
+        Scores after combining the probabilities of all records of a recording.
+    false_alarms
+        Share of the healthy records that are predicted to be faulty; None without a healthy record.
+    log_loss
+        Mean of minus the logarithm of the probability of the true class, with the same total weight for each class.
+    auc
+        Mean over the classes present of the area under the curve of this class against the rest; None with one class.
+    ece
+        Expected calibration error: mean difference between largest probability and accuracy over the ``reliability``
+        bins, weighted by their records.
+    reliability
+        Records by their largest probability, in bins of equal width.
+    coverage, answered_accuracy
+        Share of the records that are answered, and the accuracy of these; None without any.
     seen
         Number of tested records that the model was trained on, 0 in a fair test.
     uncovered_widths
@@ -60,6 +88,13 @@ class Scores:
     interval: Interval | None
     folds: tuple[float, ...] = ()
     by_recording: "Scores | None" = None
+    false_alarms: float | None = None
+    log_loss: float | None = None
+    auc: float | None = None
+    ece: float | None = None
+    reliability: tuple[Bin, ...] = ()
+    coverage: float = 1.0
+    answered_accuracy: float | None = None
     seen: int = 0
     uncovered_widths: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
@@ -72,42 +107,99 @@ class Figures(NamedTuple):
     accuracy: float
 
 
-def score(records: Records, probabilities: FloatArray, model_classes: IntArray, seed: int = 0) -> Scores:
+def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
     """Scores by record and by recording.
 
     Parameters
     ----------
     records
         The tested records.
-    probabilities
-        Shape (record, class), a column for each of ``model_classes``.
-    model_classes
-        Indices into ``gen.corpus.FAULTS``, shape (class,).
+    predictions
+        Their predictions, with the recordings of ``records``.
     seed
         Of the bootstrap.
     """
-    _, first, number = np.unique(records.recording, return_index=True, return_inverse=True)
-    total = np.zeros((len(first), probabilities.shape[1]))
-    np.add.at(total, number, probabilities)
-    by_recording = _score(records.fault[first], records.specimen[first], total, model_classes, seed)
-    by_record = _score(records.fault, records.specimen, probabilities, model_classes, seed)
-    return replace(by_record, by_recording=by_recording)
+    _, first = np.unique(predictions.recording, return_index=True)
+    whole = predictions.by_recording
+    by_recording = None if whole is None else _score(records.fault[first], records.specimen[first], whole, seed)
+    return replace(_score(records.fault, records.specimen, predictions, seed), by_recording=by_recording)
 
 
-def _score(
-    fault: IntArray, specimen: IntArray, probabilities: FloatArray, model_classes: IntArray, seed: int
-) -> Scores:
+def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: int) -> Scores:
+    probabilities, model_classes = predictions.probabilities, np.array([FAULTS.index(c) for c in predictions.classes])
     predicted = model_classes[probabilities.argmax(axis=1)]
-    present = np.unique(fault)
+    present, right, answered = np.unique(fault), predicted == fault, predictions.answered
     matrix = confusion_matrix(fault, predicted, present, model_classes)
+    bins = reliability_bins(probabilities.max(axis=1), right)
     return Scores(
         *figures(matrix, present, model_classes),
         classes=tuple(FAULTS[c] for c in present),
-        model_classes=tuple(FAULTS[c] for c in model_classes),
+        model_classes=predictions.classes,
         confusion=tuple(tuple(row) for row in matrix.tolist()),
         records=len(fault),
-        interval=bootstrap_interval(fault, predicted == fault, specimen, seed),
+        interval=bootstrap_interval(fault, right, specimen, seed),
+        false_alarms=_share(predicted[fault == HEALTHY_CODE] != HEALTHY_CODE),
+        log_loss=log_loss(fault, probabilities, model_classes),
+        auc=area(fault, probabilities, model_classes),
+        ece=expected_calibration_error(bins),
+        reliability=bins,
+        coverage=float(answered.mean()),
+        answered_accuracy=_share(right[answered]),
     )
+
+
+def _share(true: np.ndarray) -> float | None:
+    return float(true.mean()) if len(true) else None
+
+
+def _mean(values: FloatArray) -> float:
+    """Exactly rounded mean, which does not depend on the order of the values."""
+    return math.fsum(values) / len(values)
+
+
+def log_loss(fault: IntArray, probabilities: FloatArray, model_classes: IntArray) -> float:
+    """Mean over the classes present of the mean of minus the logarithm of the probability of the true class.
+
+    A class that the model cannot predict has the smallest probability that is counted, ``SMALLEST``.
+    """
+    of_truth = (probabilities * (model_classes == fault[:, None])).sum(axis=1)
+    losses = -np.log(np.maximum(of_truth, SMALLEST))
+    return float(np.mean([_mean(losses[fault == c]) for c in np.unique(fault)]))
+
+
+def area(fault: IntArray, probabilities: FloatArray, model_classes: IntArray) -> float | None:
+    """Mean over the classes present of the area under the curve of one class against the rest; None with one class.
+
+    The area is the share of pairs of a record of the class and another record in which the first has the higher
+    probability of the class, relative to the classes present; ties count half.
+    """
+    present = np.unique(fault)
+    if len(present) < 2:
+        return None
+    of_class = [probabilities[:, model_classes == c].sum(axis=1) for c in present]
+    total = np.maximum(np.sum(of_class, axis=0), np.finfo(float).tiny)
+    areas = []
+    for c, values in zip(present, of_class, strict=True):
+        mine = fault == c
+        ranks = rankdata(values / total)[mine].sum()
+        count = int(mine.sum())
+        areas.append((ranks - count * (count + 1) / 2) / (count * (len(fault) - count)))
+    return float(np.mean(areas))
+
+
+def reliability_bins(largest: FloatArray, right: np.ndarray) -> tuple[Bin, ...]:
+    """Bins of equal width over 0..1 that hold a record, by the largest probability of each, shape (record,)."""
+    number = np.minimum((largest * BINS).astype(int), BINS - 1)
+    return tuple(
+        Bin(int(held.sum()), _mean(largest[held]), float(right[held].mean()))
+        for held in (number == k for k in np.unique(number))
+    )
+
+
+def expected_calibration_error(bins: Sequence[Bin]) -> float:
+    """Mean difference between probability and accuracy of some bins, weighted by their records."""
+    records = sum(found.records for found in bins)
+    return sum(found.records * abs(found.probability - found.accuracy) for found in bins) / records
 
 
 def confusion_matrix(fault: IntArray, predicted: IntArray, rows: IntArray, columns: IntArray) -> IntArray:

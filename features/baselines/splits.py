@@ -12,7 +12,9 @@ import numpy as np
 import xarray as xr
 from sklearn.model_selection import StratifiedGroupKFold
 
+from features.baselines.calibration import UNCALIBRATED
 from features.baselines.estimators import class_probabilities, make_estimator
+from features.baselines.predictions import class_names, predictions
 from features.baselines.records import (
     DEFAULT_GROUPS,
     FloatArray,
@@ -154,7 +156,8 @@ def score_splits(records: Records, labels: IntArray, estimator: str, splits: Seq
         probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, unknown)
         classes = np.union1d(classes, fitted.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
-    pooled = score(records._replace(fault=labels), probabilities[:, classes], classes, seed)
+    found = predictions(probabilities[:, classes], class_names(classes), records.recording, UNCALIBRATED)
+    pooled = score(records._replace(fault=labels), found, seed)
     return replace(pooled, folds=tuple(folds))
 
 

@@ -3,6 +3,7 @@
 A spall modulates the envelope periodically at its fault order. The spectrum then has a line there, its harmonics, and
 sidebands at the rate at which the spall passes the load zone [1]_. Speed labels and nominal orders of real machines are
 wrong by one or two per cent, so a single line is the highest level within a tolerance, and a comb may shift as a whole.
+A few labels are wrong by more; `fitted_combs` are read at the speed that fits the lines best.
 
 .. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
        Process.* 25 (2011) 485-520.
@@ -17,6 +18,9 @@ from features.signal.rows import FloatArray, row_kernel
 LINE_TOLERANCE = 0.015  # relative, of a single line
 COMB_TOLERANCE = 0.02  # relative, shared by the harmonics of a comb
 COMB_HARMONICS = 3
+FITTED_TOLERANCE = 0.08  # relative, of the speed that `fitted_combs` search
+FITTED_PENALTY = 7.5  # levels per unit of speed error beyond the tolerance of a comb
+FITTED_SPREAD = 0.004  # relative, between families at the fitted speed: slip and contact angle move them apart
 HIGHEST_LINE_ORDERS = (0.25, 12.0)  # orders between which the highest line is searched
 
 FAMILIES = ("bpfo", "bpfi", "2bsf")
@@ -25,6 +29,7 @@ LINE_NAMES = (
     *("bsf", "fr", "2fr", "ftf", "2ftf", "fr-ftf"),
     "highest_line",
 )
+FITTED_NAMES = (*(f"fitted_{family}_comb" for family in FAMILIES), "fitted_speed_error")
 
 
 class Orders(NamedTuple):
@@ -45,8 +50,9 @@ def families(orders: Orders) -> FloatArray:
 
 
 def highest_order(orders: Orders) -> FloatArray:
-    """Highest order that `read_lines` reads, shape (record,)."""
-    comb = COMB_HARMONICS * (1 + COMB_TOLERANCE) * families(orders).max(axis=-1)
+    """Highest order that `read_lines` and `fitted_combs` read, shape (record,)."""
+    reach = 1 + FITTED_TOLERANCE + FITTED_SPREAD
+    comb = COMB_HARMONICS * reach * families(orders).max(axis=-1)
     return np.maximum(comb, HIGHEST_LINE_ORDERS[1])
 
 
@@ -111,12 +117,56 @@ def combs(level: FloatArray, bins: FloatArray) -> FloatArray:
             highest = -np.inf
             for number in range(int(np.ceil(2 * COMB_TOLERANCE / step)) + 1):
                 error = min(-COMB_TOLERANCE + step * number, COMB_TOLERANCE)
-                total = 0.0
-                for harmonic in range(1, COMB_HARMONICS + 1):
-                    total += _at(level[row], int(np.rint(harmonic * bins[row, family] * (1 + error))))
-                highest = max(highest, total)
-            out[row, family] = highest / COMB_HARMONICS
+                highest = max(highest, _comb(level[row], bins[row, family] * (1 + error)))
+            out[row, family] = highest
     return out
+
+
+@row_kernel
+def fitted_combs(level: FloatArray, bins: FloatArray) -> FloatArray:
+    """Combs of all families at one common speed, and the modulus of its relative error, shape (record, family + 1).
+
+    The speed is that within 8 % of the label at which the highest comb of any family is largest, less a penalty that
+    grows with the error beyond 2 %. The families are read at this speed within 0.4 %. All have one speed, because a
+    tolerance of 8 % of their own would let each find some line.
+
+    Parameters
+    ----------
+    level
+        As for `read_lines`, one row per record.
+    bins
+        Place of the fundamental line of each family, in bins, shape (record, family).
+    """
+    out = np.empty((bins.shape[0], bins.shape[1] + 1))
+    for row in range(bins.shape[0]):
+        steps = int(np.ceil(FITTED_TOLERANCE * COMB_HARMONICS * bins[row].max()))
+        step = FITTED_TOLERANCE / steps
+        highest, fitted = -np.inf, 0.0
+        for number in range(-steps, steps + 1):
+            error = step * number
+            penalty = FITTED_PENALTY * max(0.0, abs(error) - COMB_TOLERANCE)
+            for family in range(bins.shape[1]):
+                comb = _comb(level[row], bins[row, family] * (1 + error)) - penalty
+                if comb > highest:
+                    highest, fitted = comb, error
+        around = int(np.ceil(FITTED_SPREAD / step))
+        for family in range(bins.shape[1]):
+            highest = -np.inf
+            for number in range(-around, around + 1):
+                error = fitted + FITTED_SPREAD * number / around
+                highest = max(highest, _comb(level[row], bins[row, family] * (1 + error)))
+            out[row, family] = highest
+        out[row, -1] = abs(fitted)
+    return out
+
+
+@row_kernel
+def _comb(level: FloatArray, place: float) -> float:
+    """Mean level of the harmonics of a line at ``place`` bins."""
+    total = 0.0
+    for harmonic in range(1, COMB_HARMONICS + 1):
+        total += _at(level, int(np.rint(harmonic * place)))
+    return total / COMB_HARMONICS
 
 
 @row_kernel

@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 from sklearn.metrics import f1_score, recall_score
 
+from features.baselines.calibration import UNCALIBRATED
+from features.baselines.predictions import predictions
 from features.baselines.records import Records
 from features.baselines.scores import bootstrap_interval, interval_text, score
 from gen.corpus import FAULTS
@@ -32,7 +34,8 @@ def made_records(fault, specimen, recording):
 
 
 def scores_of(fault, predicted, specimen):
-    return score(made_records(fault, specimen, np.arange(len(fault))), np.eye(4)[predicted], np.arange(4))
+    records = made_records(fault, specimen, np.arange(len(fault)))
+    return score(records, predictions(np.eye(4)[predicted], FAULTS[:4], records.recording, UNCALIBRATED))
 
 
 @given(labelled())
@@ -71,14 +74,20 @@ def test_scores_do_not_depend_on_the_order_of_the_records(case, random):
 @settings(deadline=None)
 def test_recordings_of_one_record_score_like_records(case):
     found = scores_of(*case)
-    assert found.by_recording == replace(found, by_recording=None)
+    whole = found.by_recording
+    assert whole is not None
+    assert whole.log_loss == pytest.approx(found.log_loss)
+    assert whole.ece == pytest.approx(found.ece)
+    same = {"log_loss": None, "ece": None, "reliability": ()}
+    assert replace(whole, **same) == replace(found, by_recording=None, **same)
 
 
-def test_a_recording_is_decided_by_the_mean_of_its_windows():
+def test_a_recording_is_decided_by_the_geometric_mean_of_its_windows():
     fault = np.array([1, 1, 1, 2])
     records = made_records(fault, np.array([0, 0, 0, 1]), np.array([0, 0, 0, 1]))
     unsure, sure = [0.4, 0.6], [1.0, 0.0]
-    found = score(records, np.array([unsure, unsure, sure, [0.0, 1.0]]), np.array([1, 2]))
+    probabilities = np.array([unsure, unsure, sure, [0.0, 1.0]])
+    found = score(records, predictions(probabilities, FAULTS[1:3], records.recording, UNCALIBRATED))
     assert found.by_recording is not None
     assert found.balanced_accuracy == pytest.approx((1 / 3 + 1) / 2)
     assert found.by_recording.balanced_accuracy == 1.0

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.signal.lines import LINE_NAMES, Orders, combs, read_lines, single_lines
+from features.signal.lines import FAMILIES, LINE_NAMES, Orders, combs, families, fitted_combs, read_lines, single_lines
 
 law = settings(deadline=None, max_examples=40)
 ORDERS = Orders(*(np.array([order]) for order in (0.3983, 3.5848, 5.4152, 2.3567)))
@@ -84,3 +84,38 @@ def test_a_line_beyond_the_end_of_the_spectrum_has_the_level_of_the_floor():
     values = read(np.full((1, 100), 3.0))
     assert values["fr"] == 3.0
     assert values["bpfo_h1"] == values["bpfi_comb"] == 0.0
+
+
+PLACES = families(ORDERS) * BINS_PER_ORDER
+
+
+def harmonics_of(family, error):
+    """Three harmonics of a family at a speed error, three bins wide, so that rounding misses none."""
+    middle = np.arange(1, 4) * PLACES[0, family] * (1 + error)
+    return np.concatenate([middle - 1, middle, middle + 1])
+
+
+@law
+@given(st.integers(0, 2), st.floats(-0.055, 0.055))
+def test_the_combs_at_the_fitted_speed_find_a_family_beside_a_wrong_label(family, error):
+    """Beyond 5.5 % BPFI of this bearing is at the place of 2 BSF at another speed, and no comb tells the two apart."""
+    found = fitted_combs(level_with(*harmonics_of(family, error)), PLACES)[0]
+    assert found[family] == pytest.approx(2.0)
+    assert found[-1] == pytest.approx(abs(error), abs=0.01)
+
+
+@law
+@given(st.integers(0, 2), st.sampled_from([-1, 1]))
+def test_all_families_are_read_at_one_speed(first, sign):
+    """The second family alone would be found: its lines stand at another speed, where no line of the first stands."""
+    second = (first + 1) % len(FAMILIES)
+    level = level_with(*harmonics_of(first, sign * 0.02)) * 1.5
+    level = np.maximum(level, level_with(*harmonics_of(second, -sign * 0.03)))
+    found = fitted_combs(level, PLACES)[0]
+    assert found[first] == pytest.approx(3.0)
+    assert found[second] < 1.5
+
+
+def test_of_two_speeds_with_equal_combs_the_one_nearer_to_the_label_is_fitted():
+    level = np.maximum(level_with(*harmonics_of(1, 0.01)), level_with(*harmonics_of(1, -0.07)))
+    assert fitted_combs(level, PLACES)[0, -1] < 0.02

@@ -1,0 +1,128 @@
+"""Classes that a model predicts for the records of a feature table and for whole recordings, with calibrated probabilities.
+
+``feature table -> probabilities of the estimator -> calibrated by record -> combined by recording -> answers``
+"""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from features.baselines.calibration import Calibration, calibrated, combined
+from features.baselines.estimators import class_probabilities
+from features.baselines.records import FloatArray, IntArray, feature_rows, recording_numbers, title_of
+from gen.corpus import FAULTS
+from gen.errors import CorpusError
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+    from features.baselines.models import Model
+
+UNSURE = "unsure"
+
+
+@dataclass(frozen=True, eq=False)
+class Predictions:
+    """Calibrated probabilities of some records, or of some recordings.
+
+    Attributes
+    ----------
+    classes
+        The classes that the model can predict.
+    probabilities
+        Shape (record, class) or (recording, class).
+    threshold
+        Smallest of the largest probability that is answered.
+    recording
+        Number of the recording of each record, from 0 and without a gap; in ``by_recording``, 0, 1, 2, ....
+    by_recording
+        The same by recording, with the records of each combined; None in itself.
+    """
+
+    classes: tuple[str, ...]
+    probabilities: FloatArray
+    threshold: float
+    recording: IntArray
+    by_recording: "Predictions | None" = None
+
+    @property
+    def predicted(self) -> tuple[str, ...]:
+        """The class with the largest probability, for each record."""
+        return tuple(self.classes[column] for column in self.probabilities.argmax(axis=1))
+
+    @property
+    def answered(self) -> np.ndarray:
+        """Whether the largest probability is at least the threshold, shape (record,)."""
+        return self.probabilities.max(axis=1) >= self.threshold
+
+    @property
+    def answers(self) -> tuple[str, ...]:
+        """The predicted class of each record, or "unsure" if it is not answered."""
+        return tuple(name if answered else UNSURE for name, answered in zip(self.predicted, self.answered, strict=True))
+
+
+def predict(table: xr.Dataset, model: "Model", reference: xr.Dataset | None = None) -> Predictions:
+    """Predictions of a model for all records of a feature table, labelled or not.
+
+    Parameters
+    ----------
+    table
+        A feature table.
+    model
+        A trained model.
+    reference
+        Not yet supported; must be None.
+
+    Raises
+    ------
+    CorpusError
+        If the table lacks a feature of the model, or features or model contain numbers too large to compute with.
+    """
+    if reference is not None:
+        raise CorpusError(f"{title_of(reference)}: this model takes no reference; leave it out.")
+    rows = feature_rows(table, model.features)
+    found = estimator_probabilities(model, rows, title_of(table))
+    return predictions(found, model.classes, recording_numbers(table), model.calibration)
+
+
+def predictions(
+    probabilities: FloatArray, classes: tuple[str, ...], recording: IntArray, calibration: Calibration
+) -> Predictions:
+    """Predictions from the probabilities of an estimator, shape (record, class), which are calibrated here."""
+    records = calibrated(probabilities, calibration.temperature)
+    whole = combined(records, recording)
+    return Predictions(
+        classes=classes,
+        probabilities=records,
+        threshold=calibration.threshold,
+        recording=recording,
+        by_recording=Predictions(classes, whole, calibration.recording_threshold, np.arange(len(whole))),
+    )
+
+
+def class_names(codes: IntArray) -> tuple[str, ...]:
+    """Names of some classes, given as indices into ``gen.corpus.FAULTS``."""
+    return tuple(FAULTS[code] for code in codes)
+
+
+def estimator_probabilities(model: "Model", features: "DataFrame", where: str) -> FloatArray:
+    """Probability of each class as the estimator of a model gives it, shape (record, class).
+
+    Raises
+    ------
+    CorpusError
+        If features or model contain numbers too large to compute with.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            found = class_probabilities(model.estimator, features)
+    except ValueError as error:  # scikit-learn refuses numbers that are infinite, or too large for single precision
+        reason = str(error).splitlines()[0]
+        raise CorpusError(
+            f"{where}: {model.name} cannot classify these records ({reason}); train the model again."
+        ) from error
+    if not np.isfinite(found).all():
+        raise CorpusError(f"{where}: {model.name} gives probabilities that are not finite; train the model again.")
+    return found
