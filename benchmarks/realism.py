@@ -10,7 +10,7 @@ import json
 import os
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -54,7 +54,7 @@ TARGETS = (
 """Name, measures, classes, and lowest and highest AUC that is wanted."""
 
 
-def import_uestc(source: Path, folder: Path) -> Path:
+def import_uestc(source: Path, folder: Path, errors_percent: Mapping[str, float] = UESTC_SPEED_ERROR_PERCENT) -> Path:
     """Bring the recordings of UESTC into a corpus: parts of a recording joined, volts converted, speeds corrected."""
     scratch = folder / "uestc-joined"
     scratch.mkdir(parents=True)
@@ -63,7 +63,7 @@ def import_uestc(source: Path, folder: Path) -> Path:
         parts = [np.asarray(read_matlab(path, "Data")).ravel() for path in sorted(recording.glob("*.mat"))]
         np.save(scratch / f"{recording.name}.npy", np.concatenate(parts) / UESTC_VOLTS_PER_M_S2)
         letter, rpm = recording.name.split("_")
-        true = float(rpm) * (1 + UESTC_SPEED_ERROR_PERCENT.get(recording.name, 0.0) / 100)
+        true = float(rpm) * (1 + errors_percent.get(recording.name, 0.0) / 100)
         fault = UESTC_CLASSES[letter]
         files.append({"path": f"{recording.name}.npy", "fault": fault, "specimen": fault, "shaft_rpm": true})
     mapping = {"title": "UESTC", "bearing": UESTC_BEARING, "unit": "m/s2", "sample_rate_hz": 20000, "files": files}

@@ -1,0 +1,188 @@
+"""Mechanisms of ``domain_randomised``, each tried alone and in the whole: scores on recordings of real machines.
+
+``python -m benchmarks.ablation REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them.
+ablation.yaml beside this file lists the mechanisms: the keys that take one out of the recipe (``without``), or that bring in one that the
+recipe does not have (``with``). Each variant of the recipe is generated, and a classifier trained on it, once per seed. docs/ablation.md
+holds the table.
+"""
+
+import argparse
+import copy
+import json
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from ruamel.yaml import YAML
+
+from benchmarks.realism import UESTC_SPEED_ERROR_PERCENT, import_uestc
+from features import feature_table
+from features.baselines import DEFAULT_ESTIMATOR, Scores, evaluate, train
+from gen import generate
+from gen.importers import import_cwru, import_mfpt
+from gen.recipe import find_recipe
+
+MECHANISMS = Path(__file__).with_suffix(".yaml")
+GROUPS = ("lines", "shape")
+FIRST_SEED = 20260
+NO_ERROR = dict.fromkeys(UESTC_SPEED_ERROR_PERCENT, 0.0)
+
+Changes = Mapping[str, Any]
+"""New values by key, with dots between sections; None removes a key. ``faults.KIND.KEY`` changes every entry of that kind."""
+
+
+class Mechanism(NamedTuple):
+    """One part of the recipe, or one that was tried and left out."""
+
+    name: str
+    changes: Changes
+    is_kept: bool
+    """Whether the recipe has it, so that ``changes`` take it out; otherwise they bring it in."""
+
+
+def read_mechanisms(path: Path = MECHANISMS) -> list[Mechanism]:
+    """Mechanisms of a file, in its order."""
+    listed = YAML(typ="safe").load(path)
+    return [Mechanism(one["name"], one.get("without") or one["with"], "without" in one) for one in listed]
+
+
+def variants(mechanisms: Sequence[Mechanism]) -> dict[str, Changes]:
+    """Changes of the recipe by the name of the variant: none of the mechanisms, each alone, all that are kept, all but one."""
+    kept = [one for one in mechanisms if one.is_kept]
+    none = {key: value for one in kept for key, value in one.changes.items()}
+    found: dict[str, Changes] = {"none of these": none}
+    for one in mechanisms:
+        others = {key: value for other in kept if other != one for key, value in other.changes.items()}
+        found[f"only {one.name}"] = others if one.is_kept else {**none, **one.changes}
+    found["the recipe"] = {}
+    for one in mechanisms:
+        found[f"{'without' if one.is_kept else 'with'} {one.name}"] = one.changes
+    return found
+
+
+def changed(recipe: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
+    """Copy of a recipe with some changes."""
+    made = copy.deepcopy(dict(recipe))
+    for path, value in changes.items():
+        section, *keys = path.split(".")
+        if section == "faults" and keys:
+            kind, *below = keys
+            for entry in made["faults"]:
+                if entry["kind"] == kind:
+                    _set(entry, below, value)
+        else:
+            _set(made, [section, *keys], value)
+    return made
+
+
+def _set(section: dict[str, Any], keys: list[str], value: Any) -> None:
+    for key in keys[:-1]:
+        section = section.setdefault(key, {})
+    if value is None:
+        section.pop(keys[-1], None)
+    else:
+        section[keys[-1]] = copy.deepcopy(value)
+
+
+def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
+    """Feature tables of the sets in ``real``; UESTC with its labelled speeds and with the true ones."""
+    found = {}
+    if (real / "cwru").is_dir():
+        found["wang"] = import_cwru(real / "cwru", folder / "wang", subset="wang").directory
+        found["cwru"] = import_cwru(real / "cwru", folder / "cwru").directory
+    if (real / "mfpt").is_dir():
+        found["mfpt"] = import_mfpt(real / "mfpt", folder / "mfpt").directory
+    if (real / "uestc").is_dir():
+        found["uestc"] = import_uestc(real / "uestc", folder / "labelled", NO_ERROR)
+        found["uestc, true speeds"] = import_uestc(real / "uestc", folder / "true")
+    return {name: feature_table(path, groups=GROUPS) for name, path in found.items()}
+
+
+def scores_of(recipe: Mapping[str, Any], seed: int, tests: Mapping[str, xr.Dataset], workers: int) -> dict[str, Scores]:
+    """Scores on each test of a classifier that is trained on a corpus of a recipe."""
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "recipe.yaml"
+        YAML().dump(dict(recipe), path)
+        corpus = generate(path, Path(name) / "corpus", workers=workers, seed=seed).directory
+        model = train(feature_table(corpus, groups=GROUPS), DEFAULT_ESTIMATOR, seed=seed)
+    return {test: evaluate(table, model) for test, table in tests.items()}
+
+
+def plain(scores: Scores) -> dict[str, float]:
+    """Figures of one test that the table and the JSON file hold."""
+    recalls = {
+        f"recall of {name}": row[scores.model_classes.index(name)] / sum(row)
+        for name, row in zip(scores.classes, scores.confusion, strict=True)
+    }
+    whole = scores.by_recording or scores
+    figures = {
+        "balanced accuracy": scores.balanced_accuracy,
+        "by recording": whole.balanced_accuracy,
+        "AUC": scores.auc,
+        "log-loss": scores.log_loss,
+        "false alarms": scores.false_alarms,
+    }
+    return {name: float(value) for name, value in figures.items() if value is not None} | recalls
+
+
+COLUMNS = {"balanced accuracy": "BA", "AUC": "AUC", "log-loss": "log-loss", "false alarms": "false alarms"}
+
+
+def table(found: Mapping[str, Mapping[str, Sequence[Mapping[str, float]]]]) -> Iterator[str]:
+    """Markdown table of means over the seeds, one row per variant.
+
+    ``found`` has the figures by variant and test, one mapping per seed.
+    """
+    columns = [
+        (test, figure)
+        for test, figures in next(iter(found.values())).items()
+        for figure in COLUMNS
+        if figure in figures[0]
+    ]
+    yield "| variant | " + " | ".join(f"{test} {COLUMNS[figure]}" for test, figure in columns) + " |"
+    yield "|---|" + "---:|" * len(columns)
+    for variant, tests in found.items():
+        cells = [f"{np.mean([figures[figure] for figures in tests[test]]):.3f}" for test, figure in columns]
+        yield f"| {variant} | " + " | ".join(cells) + " |"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.ablation", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("real", type=Path)
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--records", type=int, help="records of each corpus; those of the recipe if left out")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--only", metavar="TEXT", help="the variants whose name has this text")
+    parser.add_argument("--json", type=Path, help="also write every figure to this file")
+    options = parser.parse_args()
+    recipe = YAML(typ="safe").load(Path(find_recipe("domain_randomised")))
+    if options.records:
+        recipe["records"] = options.records
+    found = {}
+    with tempfile.TemporaryDirectory() as name:
+        tests = real_tables(options.real, Path(name))
+        if not tests:
+            parser.error(f"{options.real}: holds none of cwru, mfpt and uestc; give the folder that holds them.")
+        for variant, changes in variants(read_mechanisms()).items():
+            if options.only and options.only not in variant:
+                continue
+            made = [
+                scores_of(changed(recipe, changes), seed, tests, options.workers)
+                for seed in range(FIRST_SEED, FIRST_SEED + options.seeds)
+            ]
+            found[variant] = {test: [plain(scores[test]) for scores in made] for test in tests}
+            print(f"{variant} done", file=sys.stderr, flush=True)
+            if options.json:
+                options.json.write_text(json.dumps(found, indent=1), encoding="utf-8")
+    print("\n".join(table(found)))
+
+
+if __name__ == "__main__":
+    main()
