@@ -3,12 +3,13 @@
 ``python -m benchmarks.ablation REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them.
 ablation.yaml beside this file lists the mechanisms: the keys that take one out of the recipe (``without``), or that bring in one that the
 recipe does not have (``with``). Each variant of the recipe is generated, and a classifier trained on it, once per seed. docs/ablation.md
-holds the table.
+holds the tables. ``--cost`` tells what the variants cost.
 """
 
 import argparse
 import copy
 import json
+import os
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -24,15 +25,23 @@ from features import feature_table
 from features.baselines import DEFAULT_ESTIMATOR, Scores, evaluate, train
 from gen import generate
 from gen.importers import import_cwru, import_mfpt
-from gen.recipe import find_recipe
+from gen.physics.kernel.compiling import LANES
+from gen.recipe import Recipe, find_recipe
+from gen.scenarios import draw_scenarios
+from gen.simulation.simulate import integrations, laid_out
 
 MECHANISMS = Path(__file__).with_suffix(".yaml")
 GROUPS = ("lines", "shape")
 FIRST_SEED = 20260
+SMALL = {"corpus.rigs": 60, "corpus.records_per_specimen": 1}
+"""480 specimens with a record each: scores change little beyond 300 specimens, and hardly with the records of a specimen."""
 NO_ERROR = dict.fromkeys(UESTC_SPEED_ERROR_PERCENT, 0.0)
 
 Changes = Mapping[str, Any]
-"""New values by key, with dots between sections; None removes a key. ``faults.KIND.KEY`` changes every entry of that kind."""
+"""New values by key, with dots between sections; None removes a key.
+
+``faults.KIND.KEY`` changes every entry of that kind, ``faults.+`` adds a list of entries.
+"""
 
 
 class Mechanism(NamedTuple):
@@ -69,7 +78,9 @@ def changed(recipe: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
     made = copy.deepcopy(dict(recipe))
     for path, value in changes.items():
         section, *keys = path.split(".")
-        if section == "faults" and keys:
+        if path == "faults.+":
+            made["faults"] += copy.deepcopy(value)
+        elif section == "faults":
             kind, *below = keys
             for entry in made["faults"]:
                 if entry["kind"] == kind:
@@ -115,7 +126,7 @@ def scores_of(recipe: Mapping[str, Any], seed: int, tests: Mapping[str, xr.Datas
 def plain(scores: Scores) -> dict[str, float]:
     """Figures of one test that the table and the JSON file hold."""
     recalls = {
-        f"recall of {name}": row[scores.model_classes.index(name)] / sum(row)
+        f"recall of {name}": dict(zip(scores.model_classes, row, strict=True)).get(name, 0) / sum(row)
         for name, row in zip(scores.classes, scores.confusion, strict=True)
     }
     whole = scores.by_recording or scores
@@ -127,6 +138,39 @@ def plain(scores: Scores) -> dict[str, float]:
         "false alarms": scores.false_alarms,
     }
     return {name: float(value) for name, value in figures.items() if value is not None} | recalls
+
+
+class Cost(NamedTuple):
+    """What determines the time of the kernel for one part."""
+
+    kernels: int
+    lane_steps: float
+    """Steps per sample in all lanes, filled or not, for each record."""
+    filled: float
+    """Share of the lanes that hold a record or its twin."""
+
+
+def cost_of(recipe: Recipe) -> Cost:
+    """Cost of the first part of a recipe, without the faults that are drawn again."""
+    scenarios = draw_scenarios(recipe, 0, min(recipe.corpus.records_per_part, recipe.n_records))
+    groups = [group for group, _ in laid_out(scenarios, recipe)]
+    return Cost(
+        kernels=len({group.shape for group in groups}),
+        lane_steps=LANES * sum(group.steps for group in groups) / len(scenarios),
+        filled=integrations(scenarios, recipe) / (LANES * len(groups)),
+    )
+
+
+def costs(recipe: Mapping[str, Any], mechanisms: Sequence[Mechanism]) -> Iterator[str]:
+    """Markdown table of the cost of every variant, in the parts of the recipe and in smaller ones."""
+    sizes = (480, recipe["corpus"]["records_per_part"])
+    yield "| variant | kernels | " + " | ".join(f"lane-steps, parts of {n} | lanes filled" for n in sizes) + " |"
+    yield "|---|---:|" + "---:|---:|" * len(sizes)
+    for variant, changes in variants(mechanisms).items():
+        made = changed(recipe, changes)
+        found = [cost_of(Recipe.model_validate(changed(made, {"corpus.records_per_part": n}))) for n in sizes]
+        cells = [f"{one.lane_steps:.1f} | {one.filled:.0%}" for one in found]
+        yield f"| {variant} | {found[-1].kernels} | " + " | ".join(cells) + " |"
 
 
 COLUMNS = {"balanced accuracy": "BA", "AUC": "AUC", "log-loss": "log-loss", "false alarms": "false alarms"}
@@ -155,16 +199,21 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         prog="python -m benchmarks.ablation", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("real", type=Path)
+    parser.add_argument("real", type=Path, nargs="?", default=os.environ.get("RACEWAY_REAL"))
+    parser.add_argument("--cost", action="store_true", help="print what the variants cost instead; needs no recordings")
     parser.add_argument("--seeds", type=int, default=3)
-    parser.add_argument("--records", type=int, help="records of each corpus; those of the recipe if left out")
+    parser.add_argument("--full", action="store_true", help="as many records as the recipe has, in place of 480")
     parser.add_argument("--workers", type=int, default=2)
     parser.add_argument("--only", metavar="TEXT", help="the variants whose name has this text")
     parser.add_argument("--json", type=Path, help="also write every figure to this file")
     options = parser.parse_args()
-    recipe = YAML(typ="safe").load(Path(find_recipe("domain_randomised")))
-    if options.records:
-        recipe["records"] = options.records
+    shipped = YAML(typ="safe").load(Path(find_recipe("domain_randomised")))
+    if options.cost:
+        print("\n".join(costs(shipped, read_mechanisms())))
+        return
+    if options.real is None:
+        parser.error("give the folder that holds cwru, mfpt and uestc, or name it in RACEWAY_REAL.")
+    recipe = changed(shipped, {} if options.full else SMALL)
     found = {}
     with tempfile.TemporaryDirectory() as name:
         tests = real_tables(options.real, Path(name))
