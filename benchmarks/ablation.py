@@ -20,11 +20,11 @@ import numpy as np
 import xarray as xr
 from ruamel.yaml import YAML
 
-from benchmarks.realism import UESTC_SPEED_ERROR_PERCENT, import_uestc
+from benchmarks.realism import UESTC, UESTC_LABELLED
 from features import feature_table
 from features.baselines import DEFAULT_ESTIMATOR, Scores, evaluate, train
 from gen import generate
-from gen.importers import import_cwru, import_mfpt
+from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe, find_recipe
 from gen.scenarios import draw_scenarios
@@ -35,7 +35,6 @@ GROUPS = ("lines", "shape")
 FIRST_SEED = 20260
 SMALL = {"corpus.rigs": 60, "corpus.records_per_specimen": 1}
 """480 specimens with a record each: scores change little beyond 300 specimens, and hardly with the records of a specimen."""
-NO_ERROR = dict.fromkeys(UESTC_SPEED_ERROR_PERCENT, 0.0)
 
 Changes = Mapping[str, Any]
 """New values by key, with dots between sections; None removes a key.
@@ -108,8 +107,8 @@ def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
     if (real / "mfpt").is_dir():
         found["mfpt"] = import_mfpt(real / "mfpt", folder / "mfpt").directory
     if (real / "uestc").is_dir():
-        found["uestc"] = import_uestc(real / "uestc", folder / "labelled", NO_ERROR)
-        found["uestc, true speeds"] = import_uestc(real / "uestc", folder / "true")
+        for name, mapping in (("uestc", UESTC_LABELLED), ("uestc, true speeds", UESTC)):
+            found[name] = import_generic(mapping, folder / mapping.stem, folder=real / "uestc").directory
     return {name: feature_table(path, groups=GROUPS) for name, path in found.items()}
 
 

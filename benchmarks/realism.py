@@ -10,38 +10,18 @@ import json
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
-
-import numpy as np
-from ruamel.yaml import YAML
 
 from features.realism import Comparison, compare
 from features.realism.measures import MEASURES
 from gen import generate
 from gen.importers import import_cwru, import_generic, import_mfpt
-from gen.importers.matlab import read_matlab
 
-UESTC_CLASSES = {"N": "healthy", "I": "inner", "O": "outer", "B": "ball"}
-UESTC_VOLTS_PER_M_S2 = 0.01022
-UESTC_BEARING = {
-    "designation": "UC204",
-    "n_balls": 8,
-    "pitch_diameter_mm": 33.5,
-    "ball_diameter_mm": 7.938,
-    "contact_angle_deg": 0,
-}
-UESTC_SPEED_ERROR_PERCENT = {
-    "I_800": -2.9,
-    "I_1000": -1.9,
-    "I_1200": -1.9,
-    "I_1400": -0.2,
-    "O_800": -2.7,
-    "O_1000": -0.2,
-    "O_1200": 4.4,
-    "O_1400": 6.1,
-}
-"""True speed over the labelled one, less 100 %, measured on the first three harmonics of the line of the fault."""
+UESTC = Path(__file__).with_name("uestc.yaml")
+"""Mapping of the recordings, with speeds as measured on the first three harmonics of the line of the fault."""
+UESTC_LABELLED = UESTC.with_name("uestc_labelled.yaml")
+"""The same with speeds as labelled."""
 
 RACES = ("inner", "outer")
 COLOUR = ("energy_above_3500_hz", "roll_off", "centroid")
@@ -54,23 +34,6 @@ TARGETS = (
 """Name, measures, classes, and lowest and highest AUC that is wanted."""
 
 
-def import_uestc(source: Path, folder: Path, errors_percent: Mapping[str, float] = UESTC_SPEED_ERROR_PERCENT) -> Path:
-    """Bring the recordings of UESTC into a corpus: parts of a recording joined, volts converted, speeds corrected."""
-    scratch = folder / "uestc-joined"
-    scratch.mkdir(parents=True)
-    files = []
-    for recording in sorted(path for path in (source / "Data").iterdir() if path.is_dir()):
-        parts = [np.asarray(read_matlab(path, "Data")).ravel() for path in sorted(recording.glob("*.mat"))]
-        np.save(scratch / f"{recording.name}.npy", np.concatenate(parts) / UESTC_VOLTS_PER_M_S2)
-        letter, rpm = recording.name.split("_")
-        true = float(rpm) * (1 + errors_percent.get(recording.name, 0.0) / 100)
-        fault = UESTC_CLASSES[letter]
-        files.append({"path": f"{recording.name}.npy", "fault": fault, "specimen": fault, "shaft_rpm": true})
-    mapping = {"title": "UESTC", "bearing": UESTC_BEARING, "unit": "m/s2", "sample_rate_hz": 20000, "files": files}
-    YAML().dump(mapping, scratch / "mapping.yaml")
-    return import_generic(scratch / "mapping.yaml", folder / "uestc").directory
-
-
 def real_corpora(real: Path, folder: Path) -> list[Path]:
     """Import the sets that are in ``real``."""
     found = []
@@ -79,7 +42,7 @@ def real_corpora(real: Path, folder: Path) -> list[Path]:
     if (real / "mfpt").is_dir():
         found.append(import_mfpt(real / "mfpt", folder / "mfpt").directory)
     if (real / "uestc").is_dir():
-        found.append(import_uestc(real / "uestc", folder))
+        found.append(import_generic(UESTC, folder / "uestc", folder=real / "uestc").directory)
     return found
 
 

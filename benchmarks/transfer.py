@@ -1,82 +1,202 @@
-"""Train on ``domain_randomised`` alone and test on recordings of real machines.
+"""Train on ``domain_randomised`` alone, test on recordings of real machines, and renew the numbers in the docs.
 
-``python -m benchmarks.transfer REAL`` with REAL a folder that holds ``cwru`` and ``mfpt`` as their providers publish them. Each seed gives
-another corpus. Scores are balanced accuracies over the classes present, by half-second window and by recording.
+``python -m benchmarks.transfer REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them. Each
+seed gives another corpus. The scores are written to ``benchmarks/transfer.json``, and the tables of README.md and docs/transfer.md are made
+from that file. ``--pages`` only makes the tables.
 """
 
 import argparse
 import json
 import sys
 import tempfile
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from benchmarks.realism import UESTC_LABELLED
+from benchmarks.transfer_pages import RESULTS, write_pages
 from features import feature_table
-from features.baselines import Scores, cross_validate, evaluate, train
+from features.baselines import Model, Scores, cross_validate, evaluate, predict, train
 from gen import generate
-from gen.importers import import_cwru, import_mfpt
+from gen.corpus import FAULTS
+from gen.importers import import_cwru, import_generic, import_mfpt
+from raceway.studies.timing import machine
 
+RECIPE = "domain_randomised"
 ESTIMATORS = ("envelope_rule", "logistic_regression", "random_forest", "extra_trees", "ensemble")
-GROUPS = ("lines", "shape")
+BEST = "ensemble"
+GROUPS = ("lines", "shape", "bands")
+TEACHERS = {
+    "uestc": (("synthetic",), ("cwru",), ("cwru", "mfpt"), ("synthetic", "cwru", "mfpt")),
+    "cwru": (("synthetic",), ("uestc",), ("uestc", "mfpt"), ("synthetic", "uestc", "mfpt")),
+}
+"""For each test set the sets that teach, alone or together."""
+TAUGHT = ("features", "fault", "rig", "specimen", "recording", "width")
+"""Variables that training reads."""
+
+Tables = dict[str, xr.Dataset]
+Figures = dict[str, float | None]
 
 
-def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
-    """Feature tables of the recordings: the subset of Wang, Taal and Fink (2021), all of CWRU, and MFPT."""
+def real_tables(real: Path, folder: Path) -> tuple[Tables, Tables]:
+    """Feature tables of the recordings at their labelled speeds, and at the speeds found in them.
+
+    ``wang`` is the subset of CWRU of Wang, Taal and Fink (2021).
+    """
     import_cwru(real / "cwru", folder / "wang", subset="wang")
     import_cwru(real / "cwru", folder / "cwru")
     import_mfpt(real / "mfpt", folder / "mfpt")
-    return {name: feature_table(folder / name, groups=GROUPS) for name in ("wang", "cwru", "mfpt")}
+    import_generic(UESTC_LABELLED, folder / "uestc", folder=real / "uestc")
+    names = ("wang", "cwru", "mfpt", "uestc")
+    labelled = {name: feature_table(folder / name, GROUPS) for name in names}
+    return labelled, {name: feature_table(folder / name, GROUPS, speed="correct") for name in names}
+
+
+def figures(scores: Scores) -> Figures:
+    """Figures of merit by window, and by recording where their name says so."""
+    whole = scores.by_recording or scores
+    return {
+        "window": scores.balanced_accuracy,
+        "recording": whole.balanced_accuracy,
+        "false_alarms": scores.false_alarms,
+        "recording_false_alarms": whole.false_alarms,
+        "auc": scores.auc,
+        "log_loss": scores.log_loss,
+        "ece": scores.ece,
+        "coverage": scores.coverage,
+        "answered_accuracy": scores.answered_accuracy,
+    }
+
+
+def with_reference(table: xr.Dataset, model: Model) -> Figures | None:
+    """Mean figures with each healthy recording in turn as the reference; None for a set without one."""
+    healthy = table["fault"].values == FAULTS.index("healthy")
+    recordings = np.unique(table["recording"].values[healthy])
+    if not len(recordings):
+        return None
+    chosen = (healthy & (table["recording"].values == number) for number in recordings)
+    found = [figures(evaluate(table, model, reference=table.isel(record=rows))) for rows in chosen]
+    return {name: _mean([each[name] for each in found]) for name in found[0]}
+
+
+def pooled(tables: list[xr.Dataset]) -> xr.Dataset:
+    """One table of several, with what training needs; the rigs of each keep numbers of their own."""
+    first, parts = 0, []
+    for table in tables:
+        kept = table[[*TAUGHT]].reset_coords(drop=True)
+        parts.append(kept.assign(rig=kept["rig"] + first).assign_coords(group=table["group"]))
+        first += int(kept["rig"].max()) + 1
+    return xr.concat(parts, "record", combine_attrs="drop_conflicts", join="exact")
+
+
+def recalls(table: xr.Dataset, model: Model) -> dict[str, float]:
+    """Share of the windows of each recording that are predicted as labelled, by the name of its file."""
+    right = np.array(predict(table, model).predicted) == np.array(FAULTS)[table["fault"].values]
+    files = np.array([str(source).partition("#")[0] for source in table["source"].values])
+    return {str(name): float(right[files == name].mean()) for name in np.unique(files)}
+
+
+def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]:
+    """All figures, one value per seed."""
+    zero_shot: dict[str, dict[str, list[Figures]]] = {name: {} for name in ESTIMATORS}
+    corrected: dict[str, list[Figures]] = {}
+    reference: dict[str, list[Figures]] = {}
+    teachers: dict[str, dict[str, list[Figures]]] = {test: {} for test in TEACHERS}
+    confusion: dict[str, Any] = {}
+    recordings: dict[str, list[dict[str, float]]] = {}
+    own: dict[str, Figures] = {}
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        labelled, found = real_tables(real, folder)
+        for seed, table in enumerate(_corpora(recipe, seeds, folder, workers)):
+            models = {estimator: train(table, estimator, seed=seed) for estimator in ESTIMATORS}
+            for test, other in labelled.items():
+                for estimator, model in models.items():
+                    scores = evaluate(other, model)
+                    zero_shot[estimator].setdefault(test, []).append(figures(scores))
+                    if estimator == BEST:
+                        held = confusion.setdefault(test, {"true": scores.classes, "predicted": scores.model_classes})
+                        held["windows"] = np.add(held.get("windows", 0), scores.confusion).tolist()
+                corrected.setdefault(test, []).append(figures(evaluate(found[test], models[BEST])))
+                recordings.setdefault(test, []).append(recalls(other, models[BEST]))
+                if (referred := with_reference(other, models[BEST])) is not None:
+                    reference.setdefault(test, []).append(referred)
+            for test, sets in TEACHERS.items():
+                for teaching in sets:
+                    if "synthetic" not in teaching and seed > 0:
+                        continue
+                    taught = pooled([labelled.get(one, table) for one in teaching])
+                    scores = evaluate(labelled[test], train(taught, BEST, seed=seed))
+                    teachers[test].setdefault(" + ".join(teaching), []).append(figures(scores))
+            if seed == 0:
+                own = {name: figures(cross_validate(table, name, track="rig", seed=seed)) for name in ESTIMATORS}
+            print(f"seed {seed} done", file=sys.stderr, flush=True)
+    return {
+        "machine": machine(),
+        "recipe": recipe,
+        "seeds": seeds,
+        "zero_shot": zero_shot,
+        "speed_corrected": corrected,
+        "reference": reference,
+        "teachers": teachers,
+        "confusion": confusion,
+        "recordings": {test: _means(found) for test, found in recordings.items()},
+        "own_rigs": own,
+    }
+
+
+def _corpora(recipe: str, seeds: int, folder: Path, workers: int) -> Iterator[xr.Dataset]:
+    for seed in range(seeds):
+        corpus = folder / f"seed-{seed}"
+        generate(recipe, corpus, workers=workers, seed=20260 + seed)
+        yield feature_table(corpus, GROUPS)
+
+
+def _means(found: list[dict[str, float]]) -> dict[str, float]:
+    return {name: float(np.mean([each[name] for each in found])) for name in found[0]}
+
+
+def _mean(values: list[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return float(np.mean(known)) if known else None
+
+
+def _plain(value: Any) -> Any:
+    """The same with numbers rounded to four decimals, so that the file is easy to read."""
+    match value:
+        case Mapping():
+            return {key: _plain(item) for key, item in value.items()}
+        case list() | tuple():
+            return [_plain(item) for item in value]
+        case float():
+            return round(value, 4)
+        case _:
+            return value
 
 
 def main() -> None:
-    """Print one row per estimator and test set, and the confusion of the best on Wang's subset."""
+    """Measure, write the file of results, and renew the tables."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("real", type=Path)
+    parser.add_argument("real", type=Path, nargs="?", help="folder of the recordings; not needed with --pages")
     parser.add_argument("--seeds", type=int, default=5)
     parser.add_argument("--workers", type=int, default=2)
-    parser.add_argument("--recipe", default="domain_randomised")
-    parser.add_argument("--json", type=Path, help="also write every score to this file")
+    parser.add_argument("--recipe", default=RECIPE, help="another recipe; its results are printed and not kept")
+    parser.add_argument("--pages", action="store_true", help="only renew the tables from benchmarks/transfer.json")
     options = parser.parse_args()
-    scores: dict[str, dict[str, list[Scores]]] = {name: {} for name in ESTIMATORS}
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        tests = real_tables(options.real, folder)
-        for seed in range(options.seeds):
-            corpus = folder / f"seed-{seed}"
-            generate(options.recipe, corpus, workers=options.workers, seed=20260 + seed)
-            table = feature_table(corpus, groups=GROUPS)
-            for estimator, found in scores.items():
-                model = train(table, estimator, seed=seed)
-                for test, other in tests.items():
-                    found.setdefault(test, []).append(evaluate(other, model))
-                if seed == 0:
-                    found["own"] = [cross_validate(table, estimator, by="rig", seed=seed)]
-            print(f"seed {seed} done", file=sys.stderr, flush=True)
-    print(
-        f"| {options.seeds} seeds, mean (lowest) | "
-        + " | ".join(f"{t} window | {t} recording" for t in tests)
-        + " | own rigs, CV, first seed |"
-    )
-    print("|---|" + "---:|" * (2 * len(tests) + 1))
-    for estimator, found in scores.items():
-        cells = [
-            cell
-            for test in tests
-            for cell in (_spread(found[test]), _spread([s.by_recording or s for s in found[test]]))
-        ]
-        print(f"| {estimator} | " + " | ".join(cells) + f" | {_spread(found['own'])} |")
-    total = np.sum([s.confusion for s in scores["ensemble"]["wang"]], axis=0)
-    print("\nensemble on wang, windows of all seeds:", scores["ensemble"]["wang"][0].classes, total.tolist())
-    if options.json:
-        plain = {e: {t: [s.balanced_accuracy for s in found[t]] for t in found} for e, found in scores.items()}
-        options.json.write_text(json.dumps(plain, indent=1))
-
-
-def _spread(scores: list[Scores]) -> str:
-    values = [score.balanced_accuracy for score in scores]
-    return f"{np.mean(values):.3f} ({min(values):.3f})"
+    if not options.pages:
+        if options.real is None:
+            parser.error("give the folder of the recordings, or --pages.")
+        text = (
+            json.dumps(_plain(measure(options.real, options.seeds, options.recipe, options.workers)), indent=1) + "\n"
+        )
+        if options.recipe != RECIPE:
+            print(text)
+            return
+        RESULTS.write_text(text, encoding="utf-8")
+    write_pages()
 
 
 if __name__ == "__main__":

@@ -2,21 +2,27 @@
 
 It uses the format of a corpus and not the simulator, so that recordings of real machines are treated in the same way.
 
-``corpus -> feature_table -> evaluate -> report``
+``corpus -> feature_table -> evaluate -> report``, and ``one recording -> diagnose -> report``
 
-=========== =================================================================================
-module      responsibility
-=========== =================================================================================
-faults      the fault classes: colour, lines and telling features of each, in one table
-signal      spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
-indicators  the feature vector of records, in four groups [pure]
-transformer the feature vector as a scikit-learn transformer
-table       corpus -> feature table (record, feature), part by part
-table_files feature tables on disk
-baselines   classifiers on a feature table, scored by specimen or rig beside their controls
-realism     synthetic records against real ones: AUC of measures, class by class
-report      figures of records, corpora and scores, and one page with all of them
-=========== =================================================================================
+================ =================================================================================
+module           responsibility
+================ =================================================================================
+faults           the fault classes: colour, lines and telling features of each, in one table
+signal           spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
+indicators       the feature vector of records, in four groups [pure]
+speed            shaft speed of a recording, from its windows [pure]
+transformer      the feature vector as a scikit-learn transformer
+recording_table  feature table of one recording that lies in no corpus
+recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels
+table            corpus -> feature table (record, feature), part by part
+table_files      feature tables on disk
+auditing         splits of real recordings that can leak
+waveforms        signals of a corpus as an array that is read when it is indexed
+baselines        classifiers on a feature table, scored by specimen or rig beside their controls
+realism          synthetic records against real ones: AUC of measures, class by class
+diagnosis        class of one recording, and the lines that speak for it
+report           figures of records, corpora and scores, and one page with all of them
+================ =================================================================================
 """
 
 from typing import TYPE_CHECKING
@@ -24,9 +30,21 @@ from typing import TYPE_CHECKING
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from features.auditing import audit_splits
     from features.baselines import evaluate
+    from features.speed import shaft_speed
     from features.table import feature_table
+    from features.waveforms import open_waveforms
 
-__all__ = ["evaluate", "feature_table"]
+__all__ = ["audit_splits", "evaluate", "feature_table", "open_waveforms", "shaft_speed"]
 
-__getattr__, __dir__ = lazy_names(__name__, {"features.baselines": ("evaluate",), "features.table": ("feature_table",)})
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "features.auditing": ("audit_splits",),
+        "features.baselines": ("evaluate",),
+        "features.speed": ("shaft_speed",),
+        "features.table": ("feature_table",),
+        "features.waveforms": ("open_waveforms",),
+    },
+)

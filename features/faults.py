@@ -58,7 +58,7 @@ BPFI, BPFO = _harmonics("bpfi", 1, 2, 3), _harmonics("bpfo", 1, 2, 3)
 BSF, FTF = _harmonics("bsf", 2, 4, 6), _harmonics("ftf", 1, 2, 3)
 SHAFT = Line("shaft", "shaft", 1)
 
-HEALTHY = "healthy"
+HEALTHY, UNKNOWN = "healthy", "unknown"
 CLASSES: Mapping[str, FaultClass] = {
     row.name: row
     for row in (
@@ -72,6 +72,9 @@ CLASSES: Mapping[str, FaultClass] = {
     )
 }
 """Rows by name, in the order of the codes of the format. Colours: see `features.report.pictures`."""
+
+LOOKS: Mapping[str, FaultClass] = {**CLASSES, UNKNOWN: FaultClass(UNKNOWN, "#444444")}
+"""Rows for pictures: of the classes, and of records whose class is not known."""
 
 COMBS: Mapping[str, str] = {name: row.comb for name, row in CLASSES.items() if row.comb}
 """Comb of each class that has one of its own."""

@@ -129,7 +129,7 @@ def indicators(
     """
     names = feature_names(groups)
     values = np.full((len(x), len(names)), np.nan)
-    usable = np.flatnonzero(_usable(x, shaft_rate, orders))
+    usable = np.flatnonzero(usable_records(x, shaft_rate, orders))
     for start in range(0, len(usable), BATCH):
         rows = usable[start : start + BATCH]
         batch = centred(x[rows])
@@ -138,7 +138,7 @@ def indicators(
     return values, names
 
 
-def _usable(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.ndarray:
+def usable_records(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.ndarray:
     known = [np.isfinite(values) & (values > 0) for values in (shaft_rate, *orders)]
     highest, lowest = x.max(axis=-1), x.min(axis=-1)
     return np.isfinite(highest) & np.isfinite(lowest) & (highest > lowest) & np.logical_and.reduce(known)
@@ -162,7 +162,7 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
         return found
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
     coefficients = fourier_coefficients(x[long_enough], fs, TOP)
-    *read, fitted = _read(_bands(coefficients, duration, fs), duration, shaft_rate, orders)
+    *read, fitted = _read(bands_of(coefficients, duration, fs), duration, shaft_rate, orders)
     line_views, shape_views = map(_views, read)
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
     lines[long_enough] = np.concatenate([_flat(line_views), _flat(over), fitted], axis=-1)
@@ -170,7 +170,7 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
     return found
 
 
-def _bands(coefficients: ComplexArray, duration: float, fs: float) -> list[ComplexArray]:
+def bands_of(coefficients: ComplexArray, duration: float, fs: float) -> list[ComplexArray]:
     """Both broad bands of whitened coefficients, and the narrow bands with more than half below the Nyquist frequency."""
     cepstral = cepstrally_whitened(coefficients)
     whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))

@@ -4,25 +4,39 @@
 
 Features are computed from the signal and the ``operating`` variables only; labels, simulator truth and provenance are
 copied unchanged. A task returns features and no signals, so that memory does not grow with the signals of a corpus. A
-task is one part, so the features do not depend on the number of workers.
+task is one part, so the features do not depend on the number of workers. If shaft speeds are wanted, a pass over all
+parts before that of the features estimates them, since the records of a recording may lie in several parts.
 """
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from functools import partial
+from itertools import count
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 import xarray as xr
 from distributed import Client
 
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
+from features.recording_speeds import (
+    Speed,
+    checked_speed,
+    part_sums,
+    rates_to_use,
+    recording_numbers,
+    recording_speeds,
+    with_speeds,
+)
 from features.signal.rows import FloatArray
 from gen.cluster import client_of, local_client, run_tasks
 from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
+Item = TypeVar("Item")
+Result = TypeVar("Result")
 
 INLINE_RECORDS = 2000  # their features take about as long as a local cluster takes to start
 
@@ -31,6 +45,7 @@ def feature_table(
     corpus: Path | str,
     groups: Sequence[str] = GROUPS,
     *,
+    speed: Speed = "off",
     channel: int = 0,
     scheduler: Client | str | None = None,
     progress: Progress | None = None,
@@ -43,27 +58,32 @@ def feature_table(
         The folder of the corpus.
     groups
         Some of ``features.indicators.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
+    speed
+        ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does so too and
+        computes the features at the found speed where it is clear. Simulated corpora are not checked.
     channel
         Number of the channel, from 0.
     scheduler
         A dask client, the address of a dask scheduler, or ``"local"`` for a cluster with one process per core, which
         is not started for a small corpus; by default this process.
     progress
-        Called after each part with the number of parts done and of all parts.
+        Called after each part with the number of parts done and of all parts; speeds count every part twice.
 
     Returns
     -------
     Dataset
         ``features (record, feature)``, coordinates ``feature`` (names) and ``group``, all variables of the records
         except ``draws``, which is larger than the rest of the table, and the attributes of the corpus with
-        ``records_with_missing_features``, the number of rows with a NaN.
+        ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_found`` and
+        ``shaft_rate_uncertainty`` [Hz], ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of
+        ``recordings_with_other_speed``.
 
     Raises
     ------
     CorpusError
         If the corpus is unfinished, altered or has no such channel.
     ValueError
-        For a group that does not exist.
+        For a group or a treatment of speeds that does not exist.
     """
     names = feature_names(groups)
     with open_corpus(corpus) as opened:
@@ -73,23 +93,37 @@ def feature_table(
             raise CorpusError(message)
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
+    treatment = checked_speed(speed, table)
     paths = part_paths(corpus, check="size")
     small = len(paths) == 1 or table.sizes["record"] <= INLINE_RECORDS
-    values = np.empty((table.sizes["record"], len(names)))
-    counts = [row.records for row in read_manifest(Path(corpus)).parts]
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    compute = partial(part_features, groups=tuple(groups), channel=channel)
-    runs = _run(compute, paths, None if scheduler == "local" and small else scheduler)
-    for done, (number, block) in enumerate(runs, start=1):
-        values[starts[number] : starts[number + 1]] = block
-        if progress is not None:
-            progress(done, len(paths))
+    starts = np.cumsum([0, *(row.records for row in read_manifest(Path(corpus)).parts)])
+    report = _counted(progress, len(paths) * (1 if treatment == "off" else 2))
+    with _client(None if scheduler == "local" and small else scheduler) as client:
+        paths = paths if client is None else [path.absolute() for path in paths]
+        if treatment != "off":
+            recording = recording_numbers(table)
+            tasks = list(zip(paths, np.split(recording, starts[1:-1]), strict=True))
+            sums = _run(partial(part_sums, channel=channel), tasks, client, report)
+            found = recording_speeds(recording, table["shaft_rate"].values, sums)
+            table = with_speeds(table, recording, found, treatment)
+        rates = rates_to_use(table) if treatment == "correct" else table["shaft_rate"].values
+        values = np.empty((table.sizes["record"], len(names)))
+        compute = partial(_features_of_part, groups=tuple(groups), channel=channel)
+        tasks = list(zip(paths, np.split(rates, starts[1:-1]), strict=True))
+        for number, block in _run(compute, tasks, client, report):
+            values[starts[number] : starts[number + 1]] = block
     return _assemble(table, values, groups)
 
 
-def part_features(path: Path, groups: Sequence[str] = GROUPS, channel: int = 0) -> FloatArray:
-    """Features of the records of one part, shape (record, feature); NaN as in `features.indicators`."""
-    x, (fs, shaft_rate, *nominal) = read_channel(path, channel, ("sample_rate", "shaft_rate", *Orders._fields))
+def part_features(
+    path: Path, groups: Sequence[str] = GROUPS, channel: int = 0, shaft_rate: FloatArray | None = None
+) -> FloatArray:
+    """Features of the records of one part, shape (record, feature); NaN as in `features.indicators`.
+
+    ``shaft_rate`` [Hz], shape (record,), replaces the labelled rates.
+    """
+    x, (fs, labelled, *nominal) = read_channel(path, channel, ("sample_rate", "shaft_rate", *Orders._fields))
+    shaft_rate = labelled if shaft_rate is None else shaft_rate
     orders = Orders(*nominal)
     values = np.full((len(x), len(feature_names(groups))), np.nan)
     for rate in np.unique(fs[fs > 0]):
@@ -99,25 +133,35 @@ def part_features(path: Path, groups: Sequence[str] = GROUPS, channel: int = 0) 
     return values
 
 
+def _features_of_part(task: tuple[Path, FloatArray], groups: Sequence[str], channel: int) -> FloatArray:
+    path, shaft_rate = task
+    return part_features(path, groups, channel, shaft_rate)
+
+
+def _counted(progress: Progress | None, tasks: int) -> Callable[[], None]:
+    """Call ``progress`` with the number of tasks done and of all tasks, once per task."""
+    done = count(1)
+    return lambda: None if progress is None else progress(next(done), tasks)
+
+
 def _run(
-    compute: Callable[[Path], FloatArray], paths: list[Path], scheduler: Client | str | None
-) -> Iterator[tuple[int, FloatArray]]:
-    """Yield number and features of each part as they are completed."""
+    compute: Callable[[Item], Result], items: Sequence[Item], client: Client | None, report: Callable[[], None]
+) -> Iterator[tuple[int, Result]]:
+    """Yield the number of each item and its result as they are completed."""
     numbered = partial(_numbered, compute)
-    if scheduler is None:
-        yield from map(numbered, enumerate(paths))
-        return
-    with _client(scheduler) as client:
-        yield from run_tasks(client, numbered, enumerate(path.absolute() for path in paths))
+    tasks = enumerate(items)
+    for result in map(numbered, tasks) if client is None else run_tasks(client, numbered, tasks):
+        yield result
+        report()
 
 
-def _numbered(compute: Callable[[Path], FloatArray], task: tuple[int, Path]) -> tuple[int, FloatArray]:
-    number, path = task
-    return number, compute(path)
+def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> tuple[int, Result]:
+    number, item = task
+    return number, compute(item)
 
 
-def _client(scheduler: Client | str) -> AbstractContextManager[Client]:
-    if isinstance(scheduler, Client):
+def _client(scheduler: Client | str | None) -> AbstractContextManager[Client | None]:
+    if scheduler is None or isinstance(scheduler, Client):
         return nullcontext(scheduler)
     return local_client() if scheduler == "local" else client_of(scheduler)
 

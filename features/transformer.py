@@ -5,7 +5,7 @@ have the same sample rate, shaft rate and bearing.
 """
 
 from collections.abc import Sequence
-from typing import Any, Self
+from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +15,7 @@ from sklearn.utils.validation import check_is_fitted, validate_data
 
 from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.signal.rows import FloatArray
+from features.speed import shaft_speed
 
 
 class IndicatorTransformer(TransformerMixin, BaseEstimator):
@@ -33,6 +34,9 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         Nominal fault orders, by default those of a 6205; ``bsf`` is the ball spin frequency.
     groups
         Some of ``features.indicators.GROUPS``.
+    speed
+        ``off``, or ``correct``: estimate the shaft speed of each signal by itself (`features.shaft_speed`), and use it
+        where it is clear. Signals of one recording are not joined, because a transformer treats each row alone.
     """
 
     def __init__(
@@ -44,6 +48,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         bpfi: float = 5.4152,
         bsf: float = 2.3567,
         groups: Sequence[str] = GROUPS,
+        speed: Literal["off", "correct"] = "off",
     ) -> None:
         self.fs = fs
         self.shaft_rate = shaft_rate
@@ -52,6 +57,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         self.bpfi = bpfi
         self.bsf = bsf
         self.groups = groups
+        self.speed = speed
 
     def fit(self, X: ArrayLike, y: object = None) -> Self:  # noqa: ARG002
         """Store the number of samples of X, shape (record, time)."""
@@ -63,8 +69,19 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         x = self._signals(X, reset=False)
         records = np.ones(len(x))
         orders = Orders(*(order * records for order in (self.ftf, self.bpfo, self.bpfi, self.bsf)))
-        values, _ = indicators(x, self.fs, self.shaft_rate * records, orders, self.groups)
+        values, _ = indicators(x, self.fs, self._shaft_rates(x), orders, self.groups)
         return values
+
+    def _shaft_rates(self, x: FloatArray) -> FloatArray:
+        """Shaft rate of each signal [Hz], shape (record,)."""
+        if self.speed == "off":
+            return np.full(len(x), float(self.shaft_rate))
+        if self.speed != "correct":
+            message = f"speed: {self.speed!r} is no treatment of shaft speeds; choose off or correct."
+            raise ValueError(message)
+        orders = (self.ftf, self.bpfo, self.bpfi, self.bsf)
+        found = (shaft_speed(signal, self.fs, self.shaft_rate, orders) for signal in x)
+        return np.array([speed.rate if speed.clear else self.shaft_rate for speed in found], dtype=float)
 
     def _signals(self, X: ArrayLike, *, reset: bool) -> FloatArray:
         x: Any = X

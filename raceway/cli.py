@@ -10,7 +10,17 @@ from typing import Any, NoReturn
 
 import click
 
-from raceway.commands import benchmarking, comparing, corpora, feature_tables, gallery, importing, models, reproduce
+from raceway.commands import (
+    benchmarking,
+    comparing,
+    corpora,
+    diagnosing,
+    feature_tables,
+    gallery,
+    importing,
+    models,
+    reproduce,
+)
 from raceway.console.ending import NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 
@@ -96,6 +106,7 @@ for command in (
     feature_tables.features,
     models.train,
     models.evaluate,
+    diagnosing.diagnose,
     benchmarking.benchmark,
     comparing.compare,
     benchmarking.bench,

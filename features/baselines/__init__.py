@@ -6,12 +6,17 @@
 module            responsibility
 ================= ==================================================================================
 records           labelled rows of a feature table, and the groups that they belong to
+own               classifiers of the user, taught by class names
 estimators        the registry of baselines, from majority class to ensemble
 calibration       calibrated probabilities, and thresholds of answers
+references        features relative to healthy records of the same rig
+reference_choice  records tested against a reference, without those that belong to it
 predictions       classes predicted for the records of a table and for whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 severities        fault widths that a test contains and its training does not
-splits            grouped cross-validation, and the checks of its splits
+tracks            splits by specimen, rig, bearing type, speed, severity and fault shape, and their checks
+splits            cross-validation on a track, with its two controls
+curves            score against the number of training specimens
 cross_calibration calibration on rigs or specimens outside the training
 model_members     the zip archive of a model file and its arrays, checked before they are read
 model_states      content of a model file as plain values
@@ -23,29 +28,42 @@ benchmark         scores of every baseline with controls, and on another corpus
 ================= ==================================================================================
 """
 
-from features.baselines.benchmark import Baseline, Results, benchmark
+from features.baselines.benchmark import Baseline, Results, TrackResults, benchmark
+from features.baselines.calibration import Calibration
+from features.baselines.curves import CurvePoint, learning_curve
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.baselines.models import Model, evaluate, load_model, save_model, train
+from features.baselines.own import EstimatorError, load_maker
 from features.baselines.predictions import UNSURE, Predictions, predict
-from features.baselines.records import DEFAULT_GROUPS
+from features.baselines.records import DEFAULT_GROUPS, count_unknown
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import severity_warning
-from features.baselines.splits import cross_validate
+from features.baselines.splits import controls, cross_validate
+from features.baselines.tracks import TRACKS
 
 __all__ = [
     "DEFAULT_ESTIMATOR",
     "DEFAULT_GROUPS",
     "ESTIMATORS",
+    "TRACKS",
     "UNSURE",
     "Baseline",
+    "Calibration",
+    "CurvePoint",
+    "EstimatorError",
     "Model",
     "Predictions",
     "Results",
     "Scores",
+    "TrackResults",
     "benchmark",
+    "controls",
+    "count_unknown",
     "cross_validate",
     "evaluate",
     "interval_text",
+    "learning_curve",
+    "load_maker",
     "load_model",
     "predict",
     "save_model",

@@ -1,40 +1,50 @@
-"""Scores of every baseline on one corpus, with the controls that a reader needs to judge them.
+"""Scores of classifiers on one corpus, with the controls that a reader needs to judge them.
 
-The score on specimens (or rigs) outside the training is reported with three others: the score of a random split of
-records, which leaks; the grouped score with labels permuted among specimens, which must be at chance; and the score on
-another corpus.
+The score on specimens (or rigs, or other groups of a track) outside the training is reported with three others: the
+score of a random split of records, which leaks; the grouped score with labels permuted among specimens, which must be
+at chance; and the score on another corpus.
 """
 
 import json
-from collections.abc import Callable, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 import xarray as xr
+from pandas import DataFrame
 
-from features.baselines.estimators import ESTIMATORS
+from features.baselines.curves import CurvePoint, curve_points, curve_sizes
+from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, UNTRAINED
 from features.baselines.models import evaluate, record_digests, seen_records, train
+from features.baselines.own import Maker
 from features.baselines.records import (
     DEFAULT_GROUPS,
-    IntArray,
     Records,
+    count_unknown,
     features_of,
     labelled_records,
+    records_of,
 )
 from features.baselines.scores import Scores
 from features.baselines.severities import Widths, uncovered_in_splits
-from features.baselines.splits import Grouping, Split, check_groups, check_taught, grouped_splits, score_splits
+from features.baselines.splits import Case, control_cases, grouped_case, score_splits
+from features.baselines.tracks import TRACKS, Track
+from features.waveforms import Waveforms
 from gen.corpus import FAULTS, write_text_durably
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
 
+BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
+"""Baselines that are scored on several tracks, because all would take several times as long."""
+
 
 @dataclass(frozen=True)
 class Content:
-    """Title and counts of a benchmarked corpus; ``classes`` counts records."""
+    """Title and counts of a benchmarked corpus; ``classes`` counts records, ``unknown`` those left out because their class is not known."""
 
     title: str
     records: int
@@ -42,16 +52,37 @@ class Content:
     specimens: int
     rigs: int
     classes: dict[str, int]
+    unknown: int = 0
 
 
 @dataclass(frozen=True)
 class Baseline:
-    """Scores of one estimator: cross-validated by group, of both controls, and on the other corpus if there is one."""
+    """Scores of one classifier: cross-validated on a track, of both controls, and on the other corpus if there is one."""
 
     grouped: Scores
     leaky: Scores
     null: Scores
     test: Scores | None
+
+
+@dataclass(frozen=True)
+class TrackResults:
+    """Scores on a further track, by name of the classifier.
+
+    Attributes
+    ----------
+    folds
+        Number of its splits.
+    tested, records
+        Numbers of records that are tested, and of all.
+    baselines
+        Scores by name of the classifier.
+    """
+
+    folds: int
+    tested: int
+    records: int
+    baselines: dict[str, Baseline]
 
 
 @dataclass(frozen=True)
@@ -62,44 +93,59 @@ class Results:
     ----------
     corpus, test
         The corpus, and the other corpus if there is one.
-    by, folds
-        Of the grouped cross-validation.
+    track, folds
+        Of the grouped cross-validation: the first track, and the number of its splits.
     seed
         Of splits, estimators, permutation and bootstrap.
     groups, features
         Groups and number of the features.
     versions
         Of the libraries.
+    leading
+        Name of the classifier that the findings and the learning curve are about.
     baselines
-        Scores by name of the estimator.
+        Scores by name of the classifier.
     uncovered_widths
         Fault widths [m] by class that a fold of the grouped cross-validation tests and does not train. Those of the
         other corpus are in its scores.
+    further
+        Results on further tracks, by name of the track.
+    left_out
+        Reason for each track that the corpus cannot be split on, if all tracks were asked for.
+    curve
+        Learning curve of the leading classifier on the first track, empty unless asked for.
     """
 
     corpus: Content
     test: Content | None
-    by: str
+    track: str
     folds: int
     seed: int
     groups: tuple[str, ...]
     features: int
     versions: dict[str, str]
+    leading: str
     baselines: dict[str, Baseline]
     uncovered_widths: Widths
+    further: dict[str, TrackResults] = field(default_factory=dict)
+    left_out: dict[str, str] = field(default_factory=dict)
+    curve: tuple[CurvePoint, ...] = ()
 
 
 def benchmark(
     table: xr.Dataset,
     test: xr.Dataset | None = None,
     *,
-    by: Grouping = "specimen",
+    tracks: Sequence[Track] | Literal["all"] = ("specimen",),
+    estimators: Mapping[str, str | Maker] | None = None,
+    waveforms: Waveforms | None = None,
+    curve: bool = False,
     folds: int = 5,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
     progress: Progress | None = None,
 ) -> Results:
-    """Cross-validate every baseline with its controls, and test it on another corpus.
+    """Cross-validate classifiers with their controls, and test them on another corpus.
 
     Parameters
     ----------
@@ -107,8 +153,16 @@ def benchmark(
         Feature table of the corpus.
     test
         Feature table of another corpus, such as recordings of a real machine, without records of ``table``.
-    by
-        Groups that a split must not divide.
+    tracks
+        Respects in which the tested records are new; ``"all"`` omits those that the corpus cannot be split on.
+    estimators
+        Classifiers by the name to show, as for `cross_validate`; the first one leads. The untrained baselines are
+        always scored too. By default all baselines, or those of `BRIEF` if there are several tracks.
+    waveforms
+        Waveforms of the same corpus, for the classifiers of the user in place of the features. These are not tested on
+        another corpus.
+    curve
+        Also compute the learning curve of the leading classifier.
     folds
         Number of splits.
     groups
@@ -116,60 +170,99 @@ def benchmark(
     seed
         Of splits, estimators, permutation and bootstrap.
     progress
-        Called after each baseline with the number of baselines done and of all.
+        Called after each score with the number of scores done and of all.
 
     Raises
     ------
     CorpusError
         If the table cannot be cross-validated (see ``cross_validate``), or shares records with ``test``.
+    EstimatorError
+        If a classifier of the user fails.
     """
     names = features_of(table, groups)
     records = labelled_records(table, names)
-    check_groups(records, by, folds)
+    cases, left_out = _cases(records, tracks, folds, seed)
     other = None if test is None else labelled_records(test, names)
     if other is not None:
         _check_apart(records, other)
-    cases = _cases(records, by, folds, seed)
-    baselines: dict[str, Baseline] = {}
-    for done, name in enumerate(ESTIMATORS, start=1):
-        scores = {case: score_splits(records, labels, name, splits, seed) for case, (labels, splits) in cases.items()}
-        tested = None if test is None else evaluate(test, train(table, name, groups=groups, seed=seed), seed=seed)
-        baselines[name] = Baseline(**scores, test=tested)
-        if progress is not None:
-            progress(done, len(ESTIMATORS))
+    chosen = _chosen(estimators, several=len(cases) > 1)
+    leading = DEFAULT_ESTIMATOR if estimators is None else next(iter(estimators))
+    first, splits = next(iter(cases)), next(iter(cases.values()))["grouped"][1]
+    own = records if waveforms is None else records_of(waveforms, groups)
+    led = records if isinstance(chosen[leading], str) else own
+    steps = _Steps(progress, len(chosen) * len(cases) + (len(curve_sizes(records, splits)) if curve else 0))
+    scored: dict[str, dict[str, Baseline]] = {track: {} for track in cases}
+    for name, estimator in chosen.items():
+        given = records if isinstance(estimator, str) else own
+        for track, of_track in cases.items():
+            known = {"leaky": scored[first][name].leaky} if track != first else {}
+            scores = known | {
+                case: score_splits(given, labels, estimator, found, seed)
+                for case, (labels, found) in of_track.items()
+                if case not in known
+            }
+            tested = None
+            if test is not None and track == first and isinstance(given.features, DataFrame):
+                tested = evaluate(test, train(table, estimator, groups=groups, seed=seed), seed=seed)
+            scored[track][name] = Baseline(**scores, test=tested)
+            steps.done()
     return Results(
-        corpus=_content(records),
-        test=None if other is None else _content(other),
-        by=by,
-        folds=folds,
+        corpus=_content(records, count_unknown(table)),
+        test=None if test is None or other is None else _content(other, count_unknown(test)),
+        track=first,
+        folds=len(splits),
         seed=seed,
         groups=tuple(groups),
         features=len(names),
         versions={library: version(library) for library in ("raceway", "scikit-learn", "numpy", "scipy")},
-        baselines=baselines,
-        uncovered_widths=uncovered_in_splits(records, cases["grouped"][1]),
+        leading=leading,
+        baselines=scored[first],
+        uncovered_widths=uncovered_in_splits(records, splits),
+        further={track: _further(records, cases[track], scored[track]) for track in list(cases)[1:]},
+        left_out=left_out,
+        curve=curve_points(led, chosen[leading], splits, seed, steps.done) if curve else (),
     )
 
 
-def _cases(records: Records, by: Grouping, folds: int, seed: int) -> dict[str, tuple[IntArray, list[Split]]]:
-    """Labels and splits of the cross-validation by group, of the leaky one, and of the one with permuted labels."""
-    fault, group, permuted = records.fault, getattr(records, by), permuted_labels(records, seed)
-    grouped = grouped_splits(fault, group, folds, seed)
-    leaky = grouped_splits(fault, np.arange(len(group)), folds, seed)
-    for splits in (grouped, leaky):
-        check_taught(fault, splits)
-    null = grouped_splits(permuted, group, folds, seed)
-    return {"grouped": (fault, grouped), "leaky": (fault, leaky), "null": (permuted, null)}
+class _Steps:
+    """Number of scores done and of all, told to whoever shows the progress."""
+
+    def __init__(self, progress: Progress | None, total: int) -> None:
+        self.progress, self.total, self.count = progress, total, 0
+
+    def done(self) -> None:
+        self.count += 1
+        if self.progress is not None:
+            self.progress(self.count, self.total)
 
 
-def permuted_labels(records: Records, seed: int) -> IntArray:
-    """Labels permuted among specimens, so that all records of a specimen still share one label, shape (record,).
+def _chosen(estimators: Mapping[str, str | Maker] | None, *, several: bool) -> dict[str, str | Maker]:
+    """Classifiers to score by name, the untrained baselines first."""
+    if estimators is None:
+        return {name: name for name in (BRIEF if several else ESTIMATORS)}
+    return {name: name for name in UNTRAINED} | dict(estimators)
 
-    A specimen that was recorded healthy and faulty counts as two.
-    """
-    rng = np.random.default_rng(seed)
-    units, number = np.unique(np.stack([records.specimen, records.fault]), axis=1, return_inverse=True)
-    return rng.permutation(units[1])[number.reshape(-1)]
+
+def _cases(
+    records: Records, tracks: Sequence[Track] | Literal["all"], folds: int, seed: int
+) -> tuple[dict[str, dict[str, Case]], dict[str, str]]:
+    """Labels and splits by track and case: ``grouped``, ``leaky`` and ``null``; and tracks left out, with the reason."""
+    cases: dict[str, dict[str, Case]] = {}
+    left_out: dict[str, str] = {}
+    for track in TRACKS if tracks == "all" else dict.fromkeys(tracks):
+        try:
+            grouped = grouped_case(records, track, folds, seed)
+            cases[track] = {"grouped": grouped, **control_cases(records, track, folds, seed)}
+        except CorpusError as error:
+            if tracks != "all" or track == TRACKS[0]:
+                raise
+            left_out[track] = str(error)
+    return cases, left_out
+
+
+def _further(records: Records, cases: dict[str, Case], baselines: dict[str, Baseline]) -> TrackResults:
+    _, splits = cases["grouped"]
+    return TrackResults(len(splits), sum(len(test) for _, test in splits), len(records.fault), baselines)
 
 
 def _check_apart(records: Records, test: Records) -> None:
@@ -182,7 +275,7 @@ def _check_apart(records: Records, test: Records) -> None:
         raise CorpusError(message)
 
 
-def _content(records: Records) -> Content:
+def _content(records: Records, unknown: int) -> Content:
     counts = np.bincount(records.fault, minlength=len(FAULTS))
     return Content(
         title=records.title,
@@ -191,6 +284,7 @@ def _content(records: Records) -> Content:
         specimens=len(np.unique(records.specimen)),
         rigs=len(np.unique(records.rig)),
         classes={fault: int(count) for fault, count in zip(FAULTS, counts, strict=True) if count},
+        unknown=unknown,
     )
 
 

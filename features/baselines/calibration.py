@@ -9,6 +9,7 @@ of the classes of a record does not change.
 .. [1] C. Guo, G. Pleiss, Y. Sun, K. Q. Weinberger, "On calibration of modern neural networks", ICML 2017.
 """
 
+from collections.abc import Callable
 from typing import Annotated, Literal
 
 import numpy as np
@@ -20,9 +21,10 @@ from features.baselines.records import FloatArray, IntArray
 
 COVERAGE = 0.9  # share of records outside the training that a model answers
 SMALLEST = 1e-6  # probabilities below it count as this: a forest can give 0
-TEMPERATURES = (0.05, 20.0)
+TEMPERATURES = (0.2, 5.0)  # lowest and highest: records that are all right would make any probability certain
 
-Positive = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Groups = Literal["rig", "specimen", "record", "nothing"]
+Temperature = Annotated[float, Field(ge=TEMPERATURES[0], le=TEMPERATURES[1])]
 Share = Annotated[float, Field(ge=0, le=1, allow_inf_nan=False)]
 
 
@@ -32,9 +34,12 @@ class Calibration(BaseModel):
     Attributes
     ----------
     by
-        Groups that its cross-validation kept together: rigs, specimens, or ``nothing`` if it was not calibrated.
+        Groups that its cross-validation kept together: rigs or specimens, single records if it kept none together, or ``nothing`` if it
+        was not calibrated.
     temperature
         Divides the logarithms of the probabilities.
+    dependence
+        Correlation of the errors of two records of one recording, as in ``combined``: 0 if they are independent, 1 if they are the same.
     threshold, recording_threshold
         Smallest of the largest probability at which a record, and a recording of several records, is answered.
     coverage
@@ -43,14 +48,17 @@ class Calibration(BaseModel):
 
     model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
 
-    by: Literal["rig", "specimen", "nothing"]
-    temperature: Positive
+    by: Groups
+    temperature: Temperature
+    dependence: Share
     threshold: Share
     recording_threshold: Share
     coverage: Share
 
 
-UNCALIBRATED = Calibration(by="nothing", temperature=1.0, threshold=0.0, recording_threshold=0.0, coverage=1.0)
+UNCALIBRATED = Calibration(
+    by="nothing", temperature=1.0, dependence=1.0, threshold=0.0, recording_threshold=0.0, coverage=1.0
+)
 
 
 def calibrated(probabilities: FloatArray, temperature: float) -> FloatArray:
@@ -62,11 +70,11 @@ def calibrated(probabilities: FloatArray, temperature: float) -> FloatArray:
     return softmax(_logarithms(probabilities) / temperature, axis=1)
 
 
-def combined(probabilities: FloatArray, recording: IntArray) -> FloatArray:
-    """Probabilities of each recording: the normalised geometric mean of those of its records.
+def combined(probabilities: FloatArray, recording: IntArray, dependence: float) -> FloatArray:
+    """Probabilities of each recording from those of its records.
 
-    The records of a recording share their machine and sensor, so that their errors are alike: the mean of the logarithms counts them as
-    one record, and their sum would count them as independent.
+    The logarithms of the ``n`` records of a recording are averaged, multiplied by the number of independent records that they are worth,
+    ``n / (1 + (n - 1) * dependence)``, and normalised. With a dependence of 1, the result is the geometric mean; with 0, the product.
 
     Parameters
     ----------
@@ -74,23 +82,24 @@ def combined(probabilities: FloatArray, recording: IntArray) -> FloatArray:
         Shape (record, class).
     recording
         Numbers from 0, without a gap, shape (record,).
+    dependence
+        Correlation of the errors of two records of one recording.
 
     Returns
     -------
     Shape (recording, class).
     """
-    total = np.zeros((int(recording.max()) + 1, probabilities.shape[1]))
-    np.add.at(total, recording, np.log(np.maximum(probabilities, np.finfo(float).tiny)))
-    return softmax(total / np.bincount(recording)[:, None], axis=1)
+    total, count = _summed(probabilities, recording)
+    return softmax(total / (1 + (count - 1) * dependence)[:, None], axis=1)
 
 
 def fit_calibration(
-    probabilities: FloatArray, truth: IntArray, recording: IntArray, by: Literal["rig", "specimen"]
+    probabilities: FloatArray, truth: IntArray, recording: IntArray, by: Groups = "record"
 ) -> Calibration:
     """Calibration from the probabilities of records outside the training.
 
-    The temperature minimises the log-loss, with the same total weight for each class, as in training. The thresholds are those at which
-    a share of ``COVERAGE`` is answered.
+    Temperature and dependence minimise the log-loss of records and recordings, with the same total weight for each class, as in training.
+    The thresholds are those at which a share of ``COVERAGE`` is answered.
 
     Parameters
     ----------
@@ -103,24 +112,49 @@ def fit_calibration(
     by
         Groups that the cross-validation kept together.
     """
-    logarithms, weights = _logarithms(probabilities), 1 / np.bincount(truth)[truth]
-
-    def loss(log_temperature: float) -> float:
-        found = log_softmax(logarithms / np.exp(log_temperature), axis=1)
-        return -float(np.average(found[np.arange(len(truth)), truth], weights=weights))
-
-    low, high = np.log(TEMPERATURES).tolist()
-    best = minimize_scalar(loss, bounds=(low, high), method="bounded")
-    temperature = float(np.exp(best.x))
+    logarithms = _logarithms(probabilities)
+    temperature = float(
+        np.exp(_lowest(lambda log: _loss(logarithms / np.exp(log), truth), *np.log(TEMPERATURES).tolist()))
+    )
     records = calibrated(probabilities, temperature)
-    threshold, recording_threshold = (answering(found) for found in (records, combined(records, recording)))
+    dependence = _fit_dependence(records, truth, recording)
+    threshold, recording_threshold = (answering(found) for found in (records, combined(records, recording, dependence)))
     return Calibration(
         by=by,
         temperature=temperature,
+        dependence=dependence,
         threshold=threshold,
         recording_threshold=recording_threshold,
         coverage=float(np.mean(records.max(axis=1) >= threshold)),
     )
+
+
+def _fit_dependence(probabilities: FloatArray, truth: IntArray, recording: IntArray) -> float:
+    """Dependence with the lowest log-loss of recordings; 1, the most cautious, if no recording has several records."""
+    total, count = _summed(probabilities, recording)
+    if count.max() < 2:
+        return 1.0
+    _, first = np.unique(recording, return_index=True)
+    return _lowest(lambda dependence: _loss(total / (1 + (count - 1) * dependence)[:, None], truth[first]), 0.0, 1.0)
+
+
+def _summed(probabilities: FloatArray, recording: IntArray) -> tuple[FloatArray, FloatArray]:
+    """Sum of the logarithms of the records of each recording, shape (recording, class), and their number."""
+    count = np.bincount(recording).astype(float)
+    total = np.zeros((len(count), probabilities.shape[1]))
+    np.add.at(total, recording, np.log(np.maximum(probabilities, np.finfo(float).tiny)))
+    return total, count
+
+
+def _loss(logarithms: FloatArray, truth: IntArray) -> float:
+    """Log-loss of the softmax of some rows, with the same total weight for each class."""
+    found = log_softmax(logarithms, axis=1)[np.arange(len(truth)), truth]
+    return -float(np.average(found, weights=1 / np.bincount(truth)[truth]))
+
+
+def _lowest(function: Callable[[float], float], low: float, high: float) -> float:
+    """Place of the lowest value of a function between two bounds."""
+    return float(minimize_scalar(function, bounds=(low, high), method="bounded").x)
 
 
 def answering(probabilities: FloatArray, coverage: float = COVERAGE) -> float:

@@ -4,7 +4,6 @@ Model files contain no pickle, and loading one runs no code from it. `load_model
 see `features.baselines.model_file` and `features.baselines.model_check`.
 """
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
@@ -22,20 +21,32 @@ from features.baselines.cross_calibration import cross_calibration
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
     ESTIMATORS,
+    RELATIVE_ESTIMATORS,
+    UNTRAINED,
     Estimator,
     make_estimator,
+    relative_name,
 )
 from features.baselines.model_check import check_estimator
 from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
 from features.baselines.model_states import Known, State, plain
+from features.baselines.own import Maker, maker_name
 from features.baselines.predictions import class_names, estimator_probabilities, predict
-from features.baselines.records import DEFAULT_GROUPS, FloatArray, check_classes, features_of, labelled_records
+from features.baselines.records import (
+    DEFAULT_GROUPS,
+    check_classes,
+    features_of,
+    labelled_records,
+    record_digests,
+    seen_records,
+)
+from features.baselines.reference_choice import check_durations, compared
+from features.baselines.references import RELATIVE, paired_table, relative_names, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
-from features.table import feature_table
-from gen.corpus import FAULTS, write_durably
+from gen.corpus import FAULTS, UNKNOWN_CODE, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -67,6 +78,9 @@ class Model:
         Of the libraries it was trained with.
     calibration
         Temperature of its probabilities and thresholds of its answers.
+    relative
+        The same for records relative to healthy records of their rig, as in `features.baselines.references`; None if the
+        training corpus has no virtual references.
     """
 
     estimator: Estimator
@@ -81,19 +95,26 @@ class Model:
     digests: NDArray[np.uint64]
     versions: Mapping[str, str]
     calibration: Calibration
+    relative: "Model | None" = None
+
+
+_OWN = tuple(field.name for field in fields(Model) if field.name != "relative")
 
 
 def train(
     table: xr.Dataset,
-    estimator: str = DEFAULT_ESTIMATOR,
+    estimator: str | Maker = DEFAULT_ESTIMATOR,
     *,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
 ) -> Model:
-    """Fit a baseline to all records of a feature table, and calibrate it on records outside the training.
+    """Fit a baseline or a classifier of the user to all records of a feature table, and calibrate it on records outside the training.
 
     It is calibrated by a cross-validation that keeps each rig together, or each specimen if there are too few rigs. If there are too few
     specimens too, or if the baseline is untrained, the probabilities stay as they are and every record is answered.
+
+    If each class has records on rigs with two healthy recordings, and the table has shaft rates and the group ``bands``, a second baseline
+    is fitted to the records relative to another healthy recording of their rig: see `features.baselines.references`.
 
     Raises
     ------
@@ -102,13 +123,23 @@ def train(
     ValueError
         For an unknown estimator.
     """
+    model = _train(table, estimator, groups, seed)
+    if not isinstance(estimator, str) or estimator in UNTRAINED:
+        return model
+    paired = paired_table(table, model.features, seed)
+    return replace(
+        model, relative=None if paired is None else _train(paired, relative_name(estimator), (RELATIVE,), seed)
+    )
+
+
+def _train(table: xr.Dataset, estimator: str | Maker, groups: Sequence[str], seed: int) -> Model:
     names = features_of(table, groups)
     records = labelled_records(table, names)
     check_classes(records)
     fitted = make_estimator(estimator, seed).fit(records.features, records.fault)
     return Model(
         estimator=fitted,
-        name=estimator,
+        name=estimator if isinstance(estimator, str) else maker_name(estimator),
         classes=class_names(fitted.classes_),
         features=names,
         groups=tuple(groups),
@@ -122,7 +153,13 @@ def train(
     )
 
 
-def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: int = 0) -> Scores:
+def evaluate(
+    data: xr.Dataset | Path | str,
+    model: Model | Path | str,
+    *,
+    reference: xr.Dataset | Path | str | None = None,
+    seed: int = 0,
+) -> Scores:
     """Scores of a model on all records of a feature table or corpus, over the classes present there.
 
     Parameters
@@ -131,23 +168,40 @@ def evaluate(data: xr.Dataset | Path | str, model: Model | Path | str, *, seed: 
         A feature table, or the folder of a corpus to compute features of.
     model
         A model, or the path of a model file.
+    reference
+        A feature table or corpus with healthy records of the tested rigs, which records are compared with. Records whose class is unknown
+        count as healthy if there are no others. If it holds the records of ``data``, the first healthy recording of each rig is the
+        reference. Tested records that belong to the reference are left out.
     seed
         Of the bootstrap.
 
     Raises
     ------
     CorpusError
-        If corpus or model cannot be read, or the table lacks a feature of the model.
+        If corpus or model cannot be read, the table lacks a feature of the model, or the reference cannot be used.
     """
     model = model if isinstance(model, Model) else load_model(model)
-    table = data if isinstance(data, xr.Dataset) else _features_for(model, data)
+    table = data if isinstance(data, xr.Dataset) else _features_for(model, data, reference)
+    if reference is None:
+        return _evaluate(table, model, None, seed)
+    if not isinstance(reference, xr.Dataset):
+        if not isinstance(data, xr.Dataset):
+            check_durations(data, reference)
+        reference = _features_for(model, reference, reference)
+    chosen = compared(table, reference, model.features)
+    return replace(_evaluate(chosen.table, model, chosen.reference, seed), reference=chosen.sentence)
+
+
+def _evaluate(table: xr.Dataset, model: Model, reference: xr.Dataset | None, seed: int) -> Scores:
     records = labelled_records(table, model.features)
-    scores = score(records, predict(table, model), seed)
+    table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
+    scores = score(records, predict(table, model, reference), seed)
     seen = seen_records(records.features.to_numpy(), model.digests)
     return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))
 
 
-def _features_for(model: Model, corpus: Path | str) -> xr.Dataset:
+def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dataset:
+    """Feature table of a corpus with the groups of a model, and with ``bands`` if there is a reference."""
     unknown = [group for group in model.groups if group not in GROUPS]
     if unknown:
         message = (
@@ -155,20 +209,9 @@ def _features_for(model: Model, corpus: Path | str) -> xr.Dataset:
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
-    return feature_table(corpus, model.groups)
+    from features.table import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
 
-
-def record_digests(features: FloatArray) -> NDArray[np.uint64]:
-    """Digest each row of features to 64 bits, shape (record, feature) to (record,)."""
-    rows = (np.ascontiguousarray(row, dtype="<f8").tobytes() for row in features)
-    digests = (int.from_bytes(hashlib.blake2b(row, digest_size=8).digest(), "little") for row in rows)
-    return np.fromiter(digests, dtype=np.uint64, count=len(features))
-
-
-def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
-    """Number of records whose digest is known; records without any feature are not counted."""
-    known = np.isfinite(features).any(axis=1)
-    return int(np.isin(record_digests(features[known]), digests).sum())
+    return feature_table(corpus, model.groups if reference is None else with_energies(model.groups))
 
 
 def save_model(model: Model, path: Path | str) -> None:
@@ -177,11 +220,19 @@ def save_model(model: Model, path: Path | str) -> None:
     Raises
     ------
     CorpusError
-        If the disk refuses the file.
+        If the disk refuses the file, or the model is not one of the baselines: only those can be read without running code.
     """
-    content = {field.name: getattr(model, field.name) for field in fields(model)}
-    content["calibration"] = model.calibration.model_dump()
+    if model.name not in ESTIMATORS:
+        raise CorpusError(
+            f"{path}: {model.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
+        )
+    content = _content(model) | {"relative": None if model.relative is None else _content(model.relative)}
     write_durably(pack({"raceway_model": FORMAT, **content}), Path(path))
+
+
+def _content(model: Model) -> dict[str, Any]:
+    """Fields of a model without its relative part."""
+    return {name: getattr(model, name) for name in _OWN} | {"calibration": model.calibration.model_dump()}
 
 
 def load_model(path: Path | str) -> Model:
@@ -194,22 +245,44 @@ def load_model(path: Path | str) -> Model:
     """
     path, known = Path(path), Known()
     held = _contents(path, read_state(path, known))
-    about = _about(path, {name: plain(held[name]) for name in _About.model_fields})
+    about = _checked(str(path), held, known)
+    inner, part = held["relative"], None
+    if inner.kind[2] != "JsonNode" or plain(inner) is not None:
+        part = inner.parts["content"] if inner.kind[2] == "DictNode" else {}
+        if set(part) != set(_OWN):
+            raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
+        its = _checked(f"{path}: relative", part, known)
+        own = {"records": its.records, "widths": its.widths, "calibration": its.calibration}
+        named = {"name": relative_name(about.name), "features": relative_names(about.features), "groups": (RELATIVE,)}
+        if its != about.model_copy(update=own | named):
+            refuse(f"{path}: relative:", "is not of the same estimator, seed, classes, features and corpus")
+        part = _created(f"{path}: relative", part, its)
+    return replace(_created(str(path), held, about), relative=part)
+
+
+def _checked(where: str, held: Mapping[str, State], known: Known) -> "_About":
+    """Plain values of a model, or of its relative part, after a check of all its content."""
+    about = _about(where, {name: plain(held[name]) for name in _About.model_fields})
     theirs, mine = about.versions.get("scikit-learn", "of another version"), version("scikit-learn")
     if theirs != mine:
-        refuse(f"{path}:", f"was trained with scikit-learn {brief(theirs)}, and {mine} is installed")
-    check_limit("model_features", len(about.features), f"{path}: has", CorpusError)
+        refuse(f"{where}:", f"was trained with scikit-learn {brief(theirs)}, and {mine} is installed")
+    check_limit("model_features", len(about.features), f"{where}: has", CorpusError)
     digests = held["digests"].array
     if digests is None or digests.dtype != np.uint64 or digests.shape != (about.records,):
-        refuse(f"{path}: digests", f"must be {about.records} of 64 bits, one per record")
+        refuse(f"{where}: digests", f"must be {about.records} of 64 bits, one per record")
     expected = {"name": about.name, "seed": about.seed, "classes": about.classes, "features": about.features}
-    check_estimator(str(path), held["estimator"], known, **expected)
+    check_estimator(where, held["estimator"], known, **expected)
+    return about
+
+
+def _created(where: str, held: Mapping[str, State], about: "_About") -> Model:
+    """Create a model from checked content, and try it."""
+    digests: Any = held["digests"].array
     model = Model(estimator=unpack(held["estimator"]), digests=digests, **dict(about))
     if class_names(model.estimator.classes_) != model.classes:
-        refuse(f"{path}: classes", "are not those of the estimator")
-    estimator_probabilities(
-        model, _trial_records(len(model.features)).set_axis(Index(model.features), axis=1), str(path)
-    )
+        refuse(f"{where}: classes", "are not those of the estimator")
+    trial = _trial_records(len(model.features)).set_axis(Index(model.features), axis=1)
+    estimator_probabilities(model, trial, where)
     return model
 
 
@@ -248,7 +321,7 @@ class _About(BaseModel):
     @field_validator("name")
     @classmethod
     def _is_a_baseline(cls, name: str) -> str:
-        if name not in ESTIMATORS:
+        if name not in ESTIMATORS | RELATIVE_ESTIMATORS:
             raise ValueError(f"{brief(name)!r} is no baseline; the baselines are {', '.join(ESTIMATORS)}")
         return name
 
@@ -260,13 +333,13 @@ class _About(BaseModel):
         return names
 
 
-def _about(path: Path, values: dict[str, Any]) -> _About:
+def _about(where: str, values: dict[str, Any]) -> _About:
     try:
         return _About.model_validate(values)
     except ValidationError as error:
         first = error.errors()[0]
-        place = "".join(f"[{part}]" if isinstance(part, int) else str(part) for part in first["loc"])
-        refuse(f"{path}: {place}:", f"{first['msg'].removeprefix('Value error, ')}")
+        place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in first["loc"]).removeprefix(".")
+        refuse(f"{where}: {place}:", f"{first['msg'].removeprefix('Value error, ')}")
 
 
 def _contents(path: Path, root: State) -> Mapping[str, State]:

@@ -1,6 +1,6 @@
 """Classes that a model predicts for the records of a feature table and for whole recordings, with calibrated probabilities.
 
-``feature table -> probabilities of the estimator -> calibrated by record -> combined by recording -> answers``
+``feature table -> relative to a reference, if any -> probabilities -> calibrated -> combined by recording -> answers``
 """
 
 from dataclasses import dataclass
@@ -12,6 +12,7 @@ import xarray as xr
 from features.baselines.calibration import Calibration, calibrated, combined
 from features.baselines.estimators import class_probabilities
 from features.baselines.records import FloatArray, IntArray, feature_rows, recording_numbers, title_of
+from features.baselines.references import relative_to
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
@@ -73,15 +74,23 @@ def predict(table: xr.Dataset, model: "Model", reference: xr.Dataset | None = No
     model
         A trained model.
     reference
-        Not yet supported; must be None.
+        Feature table with healthy records of the same rigs, which the records are compared with: see `relative_to`. Its records of
+        other classes are not used.
 
     Raises
     ------
     CorpusError
-        If the table lacks a feature of the model, or features or model contain numbers too large to compute with.
+        If the table lacks a feature of the model, features or model contain numbers too large to compute with, or the model or the
+        records cannot be used with the reference.
     """
     if reference is not None:
-        raise CorpusError(f"{title_of(reference)}: this model takes no reference; leave it out.")
+        if model.relative is None:
+            message = (
+                f"{title_of(reference)}: the model takes no reference, because {model.corpus} has no rig with two healthy "
+                "recordings and records of each other class; leave the reference out, or train on another corpus."
+            )
+            raise CorpusError(message)
+        return predict(relative_to(table, reference, model.features), model.relative)
     rows = feature_rows(table, model.features)
     found = estimator_probabilities(model, rows, title_of(table))
     return predictions(found, model.classes, recording_numbers(table), model.calibration)
@@ -92,7 +101,7 @@ def predictions(
 ) -> Predictions:
     """Predictions from the probabilities of an estimator, shape (record, class), which are calibrated here."""
     records = calibrated(probabilities, calibration.temperature)
-    whole = combined(records, recording)
+    whole = combined(records, recording, calibration.dependence)
     return Predictions(
         classes=classes,
         probabilities=records,

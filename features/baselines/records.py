@@ -4,44 +4,82 @@ A specimen is identified by its rig and its number, a recording by its specimen,
 may restart either number on each rig, or number all of them consecutively.
 """
 
-from collections.abc import Hashable, Iterable, Sequence
+import hashlib
+from collections.abc import Hashable, Iterable, Mapping, Sequence
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple, cast
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import FAULTS
+from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.errors import CorpusError
 
 if TYPE_CHECKING:
     from pandas import DataFrame
+
+    from features.waveforms import Waveforms
 
 IntArray = NDArray[np.integer[Any]]
 FloatArray = NDArray[np.floating[Any]]
 
 DEFAULT_GROUPS = ("lines", "shape")  # independent of gain and spectral colour
 
+SHAPES = ("pit", "several", "extended", "worn")
+EXTENDED = 1.5e-3  # m, width from which a single spall is extended
+
 
 class Records(NamedTuple):
-    """Labelled rows; ``features`` is a data frame, because estimators identify its columns by name.
+    """Labelled rows; ``features`` is a data frame, because estimators identify its columns by name, or waveforms.
 
     ``fault`` is an index into ``gen.corpus.FAULTS``; ``rig``, ``specimen`` and ``recording`` are numbers from 0, unique
-    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown. All are of shape
-    (record,), ``features`` of shape (record, feature).
+    in the table; ``width`` is that of the widest spall [m], 0 without a spall and NaN if unknown; ``conditions`` holds
+    what tracks split by: ``shaft_rate``, the labelled one [Hz], NaN if unknown, ``bearing``, the number of the type
+    from 0, and ``shape``, an index into `SHAPES`, -1 if healthy or unknown. All are of shape (record,), ``features`` of
+    shape (record, feature) or (record, time).
     """
 
     title: str
-    features: "DataFrame"
+    features: Any
     fault: IntArray
     rig: IntArray
     specimen: IntArray
     recording: IntArray
     width: FloatArray
+    conditions: Mapping[str, NDArray[Any]] = MappingProxyType({})
+
+    def at(self, rows: IntArray) -> "Records":
+        """Some of the rows, in the order given."""
+        columns: dict[str, Any] = {name: getattr(self, name)[rows] for name in self._fields[2:-1]}
+        conditions = {name: values[rows] for name, values in self.conditions.items()}
+        return Records(self.title, self.features.take(rows), **columns, conditions=conditions)
 
 
 def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
+    """Rows of a feature table whose class is known; see :func:`all_records`.
+
+    Raises
+    ------
+    CorpusError
+        As :func:`all_records`, or if all records are of class ``unknown``.
+    """
+    unknown = count_unknown(table)
+    if unknown and unknown == table.sizes["record"]:
+        message = f"{title_of(table)}: all records are of class {UNKNOWN}; label some of them, or give another corpus."
+        raise CorpusError(message)
+    return all_records(table.isel(record=table["fault"].values != UNKNOWN_CODE) if unknown else table, features)
+
+
+def count_unknown(table: xr.Dataset) -> int:
+    """Number of records of a feature table whose class is not known."""
+    return int((table["fault"].values == UNKNOWN_CODE).sum()) if "fault" in table else 0
+
+
+def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     """Rows of a feature table with some of its features, in the order given; the width is NaN if the table lacks it.
+
+    ``fault`` of a record whose class is not known is ``gen.corpus.UNKNOWN_CODE``.
 
     Raises
     ------
@@ -51,8 +89,9 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     title = title_of(table)
     rows = feature_rows(table, features)
     fault = np.asarray(table["fault"].values, dtype=np.intp)
-    if fault.min() < 0 or fault.max() >= len(FAULTS):
-        message = f"{title}: fault has values outside 0..{len(FAULTS) - 1} ({', '.join(FAULTS)})."
+    if not np.isin(fault, [*FAULT_NAMES]).all():
+        known = ", ".join(f"{code} {name}" for code, name in FAULT_NAMES.items())
+        message = f"{title}: fault has values other than {known}."
         raise CorpusError(message)
     rig, specimen = (table[name].values for name in ("rig", "specimen"))
     return Records(
@@ -62,8 +101,28 @@ def labelled_records(table: xr.Dataset, features: Sequence[str]) -> Records:
         rig=_numbered(rig),
         specimen=_numbered(rig, specimen),
         recording=recording_numbers(table),
-        width=np.asarray(table["width"].values, dtype=float) if "width" in table else np.full(len(fault), np.nan),
+        width=_column(table, "width"),
+        conditions={
+            "shaft_rate": _column(table, "shaft_rate"),
+            "bearing": _bearing_type(table),
+            "shape": _shape(table),
+        },
     )
+
+
+def records_of(data: "xr.Dataset | Waveforms", groups: Sequence[str]) -> Records:
+    """Rows of a feature table with the features of some groups, or waveforms with their labels.
+
+    Raises
+    ------
+    CorpusError
+        As `labelled_records`, or if the table has no feature of one of the groups.
+    """
+    if isinstance(data, xr.Dataset):
+        return labelled_records(data, features_of(data, groups))
+    none = data.labels.assign(features=(("record", "feature"), np.empty((len(data), 0))))
+    records = labelled_records(none.assign_coords(feature=[], record=np.arange(len(data))), ())
+    return records._replace(features=data.take(records.features.index))
 
 
 def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
@@ -86,6 +145,42 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
 def recording_numbers(table: xr.Dataset) -> IntArray:
     """Number of the recording of each record, from 0 and without a gap, shape (record,)."""
     return _numbered(*(table[name].values for name in ("rig", "specimen", "fault", "recording")))
+
+
+def _column(table: xr.Dataset, name: str) -> FloatArray:
+    """Values of a variable, shape (record,); NaN if the table lacks it."""
+    return np.asarray(table[name].values, dtype=float) if name in table else np.full(table.sizes["record"], np.nan)
+
+
+def _bearing_type(table: xr.Dataset) -> IntArray:
+    """Number of the bearing type, shape (record,): a type has one designation and one number of balls.
+
+    The number of balls is the sum of the nominal orders BPFO and BPFI. Corpora of drawn geometries have one designation
+    for all bearings.
+    """
+    balls = np.rint(_column(table, "bpfo") + _column(table, "bpfi"))
+    named = table["bearing"].values.astype(str) if "bearing" in table else np.full(len(balls), "")
+    return _numbered(np.unique(named, return_inverse=True)[1], np.nan_to_num(balls))
+
+
+def _shape(table: xr.Dataset) -> IntArray:
+    """Index into `SHAPES`, shape (record,): of one or of several spalls, or of a worn race; else -1."""
+    spalls, width = _column(table, "n_spalls"), _column(table, "width")
+    cases = [spalls > 1, (spalls == 1) & (width >= EXTENDED), (spalls == 1) & (width > 0), _column(table, "wear") > 0]
+    return np.select(cases, [SHAPES.index(name) for name in ("several", "extended", "pit", "worn")], -1)
+
+
+def record_digests(features: FloatArray) -> NDArray[np.uint64]:
+    """Digest each row of features to 64 bits, shape (record, feature) to (record,)."""
+    rows = (np.ascontiguousarray(row, dtype="<f8").tobytes() for row in features)
+    digests = (int.from_bytes(hashlib.blake2b(row, digest_size=8).digest(), "little") for row in rows)
+    return np.fromiter(digests, dtype=np.uint64, count=len(features))
+
+
+def seen_records(features: FloatArray, digests: NDArray[np.uint64]) -> int:
+    """Number of records whose digest is known; records without any feature are not counted."""
+    known = np.isfinite(features).any(axis=1)
+    return int(np.isin(record_digests(features[known]), digests).sum())
 
 
 def check_classes(records: Records) -> IntArray:

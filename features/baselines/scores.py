@@ -28,7 +28,8 @@ INTERVAL = (0.025, 0.975)  # quantiles of a 95 % interval
 Interval = tuple[float, float]
 
 
-class Bin(NamedTuple):
+@dataclass(frozen=True)
+class Bin:
     """Records whose largest probability lies in one interval: their number, mean probability, and share of right ones."""
 
     records: int
@@ -72,6 +73,8 @@ class Scores:
         Records by their largest probability, in bins of equal width.
     coverage, answered_accuracy
         Share of the records that are answered, and the accuracy of these; None without any.
+    reference
+        What the records were compared with, in one sentence; empty without a reference.
     seen
         Number of tested records that the model was trained on, 0 in a fair test.
     uncovered_widths
@@ -95,6 +98,7 @@ class Scores:
     reliability: tuple[Bin, ...] = ()
     coverage: float = 1.0
     answered_accuracy: float | None = None
+    reference: str = ""
     seen: int = 0
     uncovered_widths: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
 
@@ -139,7 +143,7 @@ def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: 
         records=len(fault),
         interval=bootstrap_interval(fault, right, specimen, seed),
         false_alarms=_share(predicted[fault == HEALTHY_CODE] != HEALTHY_CODE),
-        log_loss=log_loss(fault, probabilities, model_classes),
+        log_loss=balanced_log_loss(fault, probabilities, model_classes),
         auc=area(fault, probabilities, model_classes),
         ece=expected_calibration_error(bins),
         reliability=bins,
@@ -157,7 +161,7 @@ def _mean(values: FloatArray) -> float:
     return math.fsum(values) / len(values)
 
 
-def log_loss(fault: IntArray, probabilities: FloatArray, model_classes: IntArray) -> float:
+def balanced_log_loss(fault: IntArray, probabilities: FloatArray, model_classes: IntArray) -> float:
     """Mean over the classes present of the mean of minus the logarithm of the probability of the true class.
 
     A class that the model cannot predict has the smallest probability that is counted, ``SMALLEST``.
@@ -171,17 +175,15 @@ def area(fault: IntArray, probabilities: FloatArray, model_classes: IntArray) ->
     """Mean over the classes present of the area under the curve of one class against the rest; None with one class.
 
     The area is the share of pairs of a record of the class and another record in which the first has the higher
-    probability of the class, relative to the classes present; ties count half.
+    probability of the class; ties count half.
     """
     present = np.unique(fault)
     if len(present) < 2:
         return None
-    of_class = [probabilities[:, model_classes == c].sum(axis=1) for c in present]
-    total = np.maximum(np.sum(of_class, axis=0), np.finfo(float).tiny)
     areas = []
-    for c, values in zip(present, of_class, strict=True):
+    for c in present:
         mine = fault == c
-        ranks = rankdata(values / total)[mine].sum()
+        ranks = rankdata(probabilities[:, model_classes == c].sum(axis=1))[mine].sum()
         count = int(mine.sum())
         areas.append((ranks - count * (count + 1) / 2) / (count * (len(fault) - count)))
     return float(np.mean(areas))

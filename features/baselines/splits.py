@@ -1,4 +1,4 @@
-"""Cross-validation that keeps all records of a specimen, or of a rig, on one side of every split.
+"""Cross-validation on a track: no split has a specimen on both sides, and the tested records are new in a stated way.
 
 Records of one specimen share its geometry, transfer path and background. So a random split of records measures how
 well a classifier recognises specimens, and its score can be 1.00 even if the labels are random.
@@ -6,52 +6,45 @@ well a classifier recognises specimens, and its score can be 1.00 even if the la
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
-from sklearn.model_selection import StratifiedGroupKFold
 
-from features.baselines.calibration import UNCALIBRATED
-from features.baselines.estimators import class_probabilities, make_estimator
-from features.baselines.predictions import class_names, predictions
-from features.baselines.records import (
-    DEFAULT_GROUPS,
-    FloatArray,
-    IntArray,
-    Records,
-    check_classes,
-    features_of,
-    labelled_records,
-)
+from features.baselines.calibration import UNCALIBRATED, fit_calibration
+from features.baselines.estimators import UNTRAINED, class_probabilities, make_estimator
+from features.baselines.own import Maker
+from features.baselines.predictions import Predictions, class_names, predictions
+from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
 from features.baselines.scores import Scores, confusion_matrix, figures, score
 from features.baselines.severities import uncovered_in_splits
+from features.baselines.tracks import Split, Track, check_taught, grouped_splits, track_splits
+from features.waveforms import Waveforms
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
 
-Grouping = Literal["specimen", "rig"]
-Split = tuple[IntArray, IntArray]
+Case = tuple[IntArray, list[Split]]
+"""Labels, shape (record,), and splits to score a classifier with."""
 
 
 def cross_validate(
-    table: xr.Dataset,
-    estimator: str,
+    data: xr.Dataset | Waveforms,
+    estimator: str | Maker,
     *,
-    by: Grouping = "specimen",
+    track: Track = "specimen",
     folds: int = 5,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
 ) -> Scores:
-    """Scores of a baseline on specimens or rigs it was not trained on.
+    """Scores of a classifier on specimens, rigs or other groups that it was not trained on.
 
     Parameters
     ----------
-    table
-        A feature table.
+    data
+        A feature table, or the waveforms of a corpus (`features.open_waveforms`).
     estimator
-        A name of ``ESTIMATORS``.
-    by
-        Groups that a split must not divide.
+        A name of ``ESTIMATORS``, a classifier with ``fit`` and ``predict``, which is copied for each fold, or a class
+        or function that makes one. See `features.baselines.own`.
+    track
+        A name of `TRACKS`: the respect in which the tested records are new.
     folds
         Number of splits. Their predictions are pooled; the balanced accuracy of each split is returned too.
     groups
@@ -62,103 +55,98 @@ def cross_validate(
     Raises
     ------
     CorpusError
-        If the table has only one class, or too few specimens or rigs for the folds.
+        If the table has only one class, or too few specimens or other groups for the folds.
+    EstimatorError
+        If the classifier fails.
     ValueError
         For an unknown estimator.
     """
-    records = labelled_records(table, features_of(table, groups))
-    check_groups(records, by, folds)
-    splits = grouped_splits(records.fault, getattr(records, by), folds, seed)
-    check_taught(records.fault, splits)
-    scores = score_splits(records, records.fault, estimator, splits, seed)
+    records = records_of(data, groups)
+    labels, splits = grouped_case(records, track, folds, seed)
+    scores = score_splits(records, labels, estimator, splits, seed)
     return replace(scores, uncovered_widths=uncovered_in_splits(records, splits))
 
 
-def check_groups(records: Records, by: Grouping, folds: int) -> None:
-    """Refuse records that cannot be cross-validated by group.
+def controls(
+    data: xr.Dataset | Waveforms,
+    estimator: str | Maker,
+    *,
+    track: Track = "specimen",
+    folds: int = 5,
+    groups: Sequence[str] = DEFAULT_GROUPS,
+    seed: int = 0,
+) -> dict[str, Scores]:
+    """Scores of both controls of a classifier: ``leaky`` and ``null``, as in `control_cases`.
+
+    The parameters are those of `cross_validate`.
+    """
+    records = records_of(data, groups)
+    cases = control_cases(records, track, folds, seed)
+    return {name: score_splits(records, labels, estimator, splits, seed) for name, (labels, splits) in cases.items()}
+
+
+def grouped_case(records: Records, track: Track, folds: int, seed: int) -> Case:
+    """Classes, and the splits of a track.
 
     Raises
     ------
     CorpusError
-        If there are too few folds, groups or classes, or too few groups or records of a class.
+        If the records cannot be split so.
     """
-    group = getattr(records, by)
-    present = check_classes(records)
-    where = f"{records.title}, cross-validation"
-    if folds < 2:
-        message = f"{where}: {folds} folds are too few; use 2 or more."
-        raise CorpusError(message)
-    count = len(np.unique(group))
-    if count < folds:
-        advice = f"use at most {count} folds" if count > 1 else "test on another corpus instead"
-        message = f"{where}: {count} {by}(s) cannot fill {folds} folds; {advice}."
-        raise CorpusError(message)
-    for c in present:
-        fault, of_class = FAULTS[c], group[records.fault == c]
-        if len(np.unique(of_class)) < 2:
-            message = (
-                f"{where}: all {fault} records are of one {by}, so that the fold that tests it has none to train on; "
-                f"give a corpus with two or more, or test on another corpus instead."
-            )
-            raise CorpusError(message)
-        if len(of_class) < folds:
-            message = f"{where}: {len(of_class)} {fault} record(s) for {folds} folds; use fewer folds."
-            raise CorpusError(message)
+    splits = track_splits(records, records.fault, track, folds, seed)
+    check_taught(records.fault, splits)
+    return records.fault, splits
 
 
-def grouped_splits(fault: IntArray, group: IntArray, folds: int, seed: int) -> list[Split]:
-    """Training and test records of each fold, with classes balanced as evenly as the groups allow."""
-    splitter = StratifiedGroupKFold(folds, shuffle=True, random_state=seed)
-    splits: list[Any] = list(splitter.split(np.zeros((len(fault), 1)), fault, group))
-    for train, test in splits:
-        check_disjoint(group, train, test)
-    return splits
+def control_cases(records: Records, track: Track, folds: int, seed: int) -> dict[str, Case]:
+    """Labels and splits of the two controls of a track.
 
-
-def check_taught(fault: IntArray, splits: Sequence[Split]) -> None:
-    """Refuse splits if one of them has a class without a training record.
-
-    Raises
-    ------
-    CorpusError
-        With the name of the first such class.
+    ``leaky`` splits random records. ``null`` splits as the track does and permutes the labels among specimens: it must
+    be at chance, because all else that could tell the label of a specimen is on one side of each split.
     """
-    for train, _ in splits:
-        untaught = np.setdiff1d(fault, fault[train])
-        if len(untaught):
-            name = FAULTS[untaught[0]]
-            message = f"cross-validation: a fold has no {name} record to train on; use fewer folds."
-            raise CorpusError(message)
+    leaky = grouped_splits(records.fault, np.arange(len(records.fault)), folds, seed)
+    check_taught(records.fault, leaky)
+    permuted = permuted_labels(records, seed)
+    return {"leaky": (records.fault, leaky), "null": (permuted, track_splits(records, permuted, track, folds, seed))}
 
 
-def check_disjoint(group: IntArray, train: IntArray, test: IntArray) -> None:
-    """Refuse a split that has a group on both sides.
+def permuted_labels(records: Records, seed: int) -> IntArray:
+    """Labels permuted among specimens, so that all records of a specimen still share one label, shape (record,).
 
-    Raises
-    ------
-    CorpusError
-        With the number of the first such group.
+    A specimen that was recorded healthy and faulty counts as two.
     """
-    shared = np.intersect1d(group[train], group[test])
-    if len(shared):
-        message = f"split: group {shared[0]} is in training and in test; keep all its records on one side."
-        raise CorpusError(message)
+    rng = np.random.default_rng(seed)
+    units, number = np.unique(np.stack([records.specimen, records.fault]), axis=1, return_inverse=True)
+    return rng.permutation(units[1])[number.reshape(-1)]
 
 
-def score_splits(records: Records, labels: IntArray, estimator: str, splits: Sequence[Split], seed: int) -> Scores:
-    """Scores against ``labels`` of the predictions of all splits, which together test each record once."""
+def score_splits(
+    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int
+) -> Scores:
+    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once."""
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
     for train, test in splits:
-        known, unknown = records.features.iloc[train], records.features.iloc[test]
-        fitted = make_estimator(estimator, seed).fit(known, labels[train])
-        probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, unknown)
+        fitted = make_estimator(estimator, seed).fit(records.features.take(train), labels[train])
+        probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, records.features.take(test))
         classes = np.union1d(classes, fitted.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
-    found = predictions(probabilities[:, classes], class_names(classes), records.recording, UNCALIBRATED)
-    pooled = score(records._replace(fault=labels), found, seed)
+    tested = np.sort(np.concatenate([test for _, test in splits]))
+    chosen = records._replace(fault=labels).at(tested)
+    _, recording = np.unique(chosen.recording, return_inverse=True)
+    found = _pooled(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
+    pooled = score(chosen, found, seed)
     return replace(pooled, folds=tuple(folds))
+
+
+def _pooled(
+    probabilities: FloatArray, classes: IntArray, labels: IntArray, recording: IntArray, estimator: str | Maker
+) -> Predictions:
+    """Predictions of all folds, with the one calibration that fits all of them; an untrained baseline stays uncalibrated."""
+    truth = np.searchsorted(classes, labels)
+    calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth, recording)
+    return predictions(probabilities, class_names(classes), recording, calibration)
 
 
 def _balanced_accuracy(fault: IntArray, probabilities: FloatArray) -> float:

@@ -13,7 +13,7 @@ import xarray as xr
 from features.indicators import Orders
 from features.realism.measures import NAMES, band_limited, measured
 from features.signal.rows import FloatArray
-from gen.corpus import FAULTS, SIGNAL, open_corpus
+from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
 from gen.errors import CorpusError
 
 BLOCK = 32  # windows read and measured together
@@ -43,6 +43,8 @@ class Windows(NamedTuple):
         Code of the class, shape (window,).
     values
         Measures, shape (window, measure).
+    unknown
+        Number of records left out because their class is not known.
     """
 
     name: str
@@ -51,6 +53,7 @@ class Windows(NamedTuple):
     start: np.ndarray
     fault: np.ndarray
     values: FloatArray
+    unknown: int = 0
 
 
 def common_ground(folders: list[Path], top: float, window: float | None) -> Common:
@@ -87,7 +90,7 @@ def common_ground(folders: list[Path], top: float, window: float | None) -> Comm
 def measured_windows(folder: Path, name: str, common: Common, most: int) -> Windows:
     """Measure at most ``most`` windows of each class of a corpus, spread evenly over its rigs and specimens.
 
-    Windows without a finite, varying signal are left out.
+    Windows without a finite, varying signal are left out, and records whose class is not known.
 
     Raises
     ------
@@ -107,12 +110,14 @@ def measured_windows(folder: Path, name: str, common: Common, most: int) -> Wind
                 f"{folder}: no record has a shaft rate and fault orders above 0, which are needed to find its lines."
             )
             raise CorpusError(message)
-        record, start = _chosen(columns, known, corpus.sizes["elapsed_time"], common.window, most)
+        labelled = columns["fault"] != UNKNOWN_CODE
+        record, start = _chosen(columns, known & labelled, corpus.sizes["elapsed_time"], common.window, most)
         values = np.full((len(record), len(NAMES)), np.nan)
         for fault, fs, block in _blocks(columns, record):
             values[block] = _measured(corpus, columns, common, record[block], start[block], fault, fs)
     usable = np.isfinite(values).any(axis=1)
-    return Windows(name, folder, record[usable], start[usable], columns["fault"][record][usable], values[usable])
+    fault, unknown = columns["fault"][record], int((~labelled).sum())
+    return Windows(name, folder, record[usable], start[usable], fault[usable], values[usable], unknown)
 
 
 def _chosen(

@@ -10,7 +10,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.faults import CLASSES
+from features.faults import LOOKS
 from features.report.pictures import (
     FAINT,
     INK,
@@ -39,7 +39,7 @@ def draw_envelope(axes: Axes, shown: Shown) -> None:
     own, others = fault_lines(shown.orders, shown.fault)
     for line in own.values():
         span = line * (1 - TOLERANCE), line * (1 + TOLERANCE)
-        axes.axvspan(*span, color=CLASSES[shown.fault].colour, alpha=0.25, linewidth=0)
+        axes.axvspan(*span, color=LOOKS[shown.fault].colour, alpha=0.25, linewidth=0)
     for line in others.values():
         axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
@@ -54,7 +54,7 @@ def draw_envelopes(records: Sequence[Shown]) -> Figure:
     panels = figure.subplots(rows, 2, squeeze=False, sharex=True).ravel()
     for axes, shown in zip(panels, records, strict=False):
         draw_envelope(axes, shown)
-        axes.set_title(shown.title, color=CLASSES[shown.fault].colour, fontweight="bold")
+        axes.set_title(shown.title, color=LOOKS[shown.fault].colour, fontweight="bold")
     for axes in panels[len(records) :]:
         axes.remove()
     figure.supxlabel("order of the shaft", fontsize=9)

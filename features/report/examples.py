@@ -6,10 +6,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.faults import CLASSES, COMBS
+from features.faults import COMBS, LOOKS
 from features.indicators import Orders, feature_names, indicators
 from features.report.pictures import PictureFormat, Shown, draw_record, picture
-from gen.corpus import FAULTS, SIGNAL, open_corpus, write_durably
+from gen.corpus import FAULT_NAMES, SIGNAL, open_corpus, write_durably
 from gen.errors import CorpusError
 
 CANDIDATES = 15  # records of a class among which its example is chosen
@@ -65,12 +65,12 @@ def plot_record(corpus: Path | str, record: int, path: Path | str, *, channel: i
 
 def draw_examples(corpus: xr.Dataset) -> list[Example]:
     """Example of each class that the corpus contains."""
-    return [_example(corpus, FAULTS[code]) for code in np.unique(corpus["fault"].values)]
+    return [_example(corpus, code) for code in np.unique(corpus["fault"].values)]
 
 
-def _example(corpus: xr.Dataset, fault: str) -> Example:
+def _example(corpus: xr.Dataset, code: int) -> Example:
     """Draw the record whose level at the fault lines is the median over some records of the class."""
-    numbers = np.flatnonzero(corpus["fault"].values == FAULTS.index(fault))
+    fault, numbers = FAULT_NAMES[code], np.flatnonzero(corpus["fault"].values == code)
     numbers = numbers[np.linspace(0, len(numbers) - 1, min(CANDIDATES, len(numbers))).astype(int)]
     shown = {int(n): _shown(corpus.isel(record=n), int(n), 0) for n in numbers}
     levels = {n: _line_level(record) for n, record in shown.items() if _can_be_drawn(record)}
@@ -95,7 +95,7 @@ def _conditions(record: xr.Dataset) -> str:
 
 
 def _shown(record: xr.Dataset, number: int, channel: int) -> Shown:
-    fault, shaft_rate = FAULTS[int(record["fault"])], float(record["shaft_rate"])
+    fault, shaft_rate = FAULT_NAMES[int(record["fault"])], float(record["shaft_rate"])
     return Shown(
         title=f"Record {number}: {fault}, {60 * shaft_rate:.0f} rpm",
         signal=record[SIGNAL].isel(channel=channel).values.astype(float),
@@ -119,5 +119,5 @@ def _line_level(shown: Shown) -> float:
     names = feature_names(("lines",))
     orders = Orders(*(order.reshape(1) for order in shown.orders))
     values, _ = indicators(shown.signal[None], shown.fs, np.array([shown.shaft_rate]), orders, ("lines",))
-    columns = [names.index(name) for name in CLASSES[shown.fault].evidence or COMBS.values()]
+    columns = [names.index(name) for name in LOOKS[shown.fault].evidence or COMBS.values()]
     return float(np.nan_to_num(values[0, columns], nan=-np.inf).max())

@@ -14,13 +14,15 @@ import jinja2
 import numpy as np
 import xarray as xr
 
-from features.baselines import DEFAULT_ESTIMATOR, Results, Scores, interval_text, severity_warning
+from features.baselines import Results, Scores, interval_text, severity_warning
 from features.baselines.benchmark import write_results
 from features.baselines.estimators import UNTRAINED
-from features.faults import CLASSES, HEALTHY
+from features.baselines.tracks import NOVELTY
+from features.faults import HEALTHY, LOOKS
+from features.report.curves import draw_curve
 from features.report.examples import draw_examples
-from features.report.pictures import Quantity, draw_content, draw_scores, picture
-from gen.corpus import FAULTS, SPLITS, Manifest, open_corpus, read_manifest, write_text_durably
+from features.report.pictures import Quantity, draw_content, draw_reliability, draw_scores, picture
+from gen.corpus import FAULT_NAMES, FAULTS, SPLITS, Manifest, open_corpus, read_manifest, write_text_durably
 from gen.errors import CorpusError
 
 LONGEST_TEXT = 300
@@ -82,7 +84,7 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
 
 
 def template(name: str) -> jinja2.Template:
-    """Template of this package; its filter ``image`` makes an address of a picture in SVG."""
+    """Template of this package; filter ``image`` makes an address of a picture in SVG, ``figure`` three decimals or a dash."""
     folder = files("features.report")
     environment = jinja2.Environment(
         loader=jinja2.FunctionLoader(lambda wanted: folder.joinpath(wanted).read_text(encoding="utf-8")),
@@ -91,6 +93,7 @@ def template(name: str) -> jinja2.Template:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+    environment.filters["figure"] = lambda value: "–" if value is None else f"{value:.3f}"
     environment.filters["image"] = lambda svg: f"data:image/svg+xml;base64,{base64.b64encode(svg).decode()}"
     return environment.get_template(name)
 
@@ -129,8 +132,8 @@ def _class_count(corpus: xr.Dataset, code: int) -> ClassCount:
     of_class = corpus["fault"].values == code
     rig, specimen, split = (corpus[name].values[of_class] for name in ("rig", "specimen", "split"))
     return ClassCount(
-        fault=FAULTS[code],
-        colour=CLASSES[FAULTS[code]].colour,
+        fault=FAULT_NAMES[code],
+        colour=LOOKS[FAULT_NAMES[code]].colour,
         records=len(rig),
         specimens=np.unique(np.stack([rig, specimen]), axis=1).shape[1],
         rigs=len(np.unique(rig)),
@@ -149,31 +152,65 @@ def _of_faults(name: str, corpus: xr.Dataset) -> np.ndarray:
 def _scores(results: Results) -> dict[str, Any]:
     """Variables of the template that describe the baselines."""
     chance = 1 / len(results.corpus.classes)
+    quality = _quality(results)
     return {
         "results": results,
         "chance": chance,
-        "scores": picture(draw_scores(results.baselines, chance, results.by), "svg"),
+        "unseen": NOVELTY[results.track],
+        "scores": picture(draw_scores(results.baselines, chance, NOVELTY[results.track]), "svg"),
         "spreads": {name: float(np.std(found.grouped.folds)) for name, found in results.baselines.items()},
+        "quality": quality,
+        "reliability": picture(draw_reliability({title: rows[results.leading] for title, rows in quality}), "svg"),
         "findings": _findings(results, chance),
         "untrained": UNTRAINED,
-        "unfolded": DEFAULT_ESTIMATOR,
+        "unfolded": results.leading,
+        **_tracks(results, chance),
     }
+
+
+def _tracks(results: Results, chance: float) -> dict[str, Any]:
+    """Variables of the template that describe further tracks and the learning curve; None without them."""
+    leading, drawn = results.leading, {}
+    if results.further:
+        led = {results.track: results.baselines[leading]}
+        led |= {track: found.baselines[leading] for track, found in results.further.items()}
+        drawn["tracks"] = picture(draw_scores(led, chance, "groups"), "svg")
+    if results.curve:
+        rule = results.baselines["envelope_rule"].grouped
+        drawn["curve"] = picture(draw_curve(results.curve, chance, rule), "svg")
+    return {"tracks": None, "curve": None, "interval_text": interval_text, "novelty": NOVELTY} | drawn
+
+
+def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
+    """Scores by baseline under a title each: of the cross-validation, and by record and recording of the other corpus."""
+    found = results.baselines.items()
+    tested = {name: one.test for name, one in found if one.test is not None}
+    whole = {name: one.by_recording for name, one in tested.items() if one.by_recording is not None}
+    tables = {
+        f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in found},
+        "Other corpus, by record": tested,
+        "Other corpus, by recording": whole,
+    }
+    return [(title, rows) for title, rows in tables.items() if rows]
 
 
 def _findings(results: Results, chance: float) -> list[str]:
     """Findings on the default baseline, one sentence each."""
-    found, rule = results.baselines[DEFAULT_ESTIMATOR], results.baselines["envelope_rule"]
-    name = f"the {DEFAULT_ESTIMATOR.replace('_', ' ')}"
+    found, rule = results.baselines[results.leading], results.baselines["envelope_rule"]
+    name = f"the {results.leading.replace('_', ' ')}"
     grouped = (
-        f"On {results.by}s outside its training, {name} reaches a balanced accuracy of "
+        f"On {NOVELTY[results.track]} outside its training, {name} reaches a balanced accuracy of "
         f"{_with_interval(found.grouped)}; chance is {chance:.3f}, and the untrained envelope rule reaches "
         f"{rule.grouped.balanced_accuracy:.3f}."
     )
     sentences = [
         grouped,
+        _false_alarms(found.grouped),
         f"With a random split of records, which leaks, it reaches {found.leaky.balanced_accuracy:.3f}.",
         f"With labels permuted among specimens it reaches {_with_interval(found.null)}{_verdict(found.null, chance)}.",
     ]
+    if results.corpus.unknown:
+        sentences.append(f"{results.corpus.unknown} records whose class is not known are left out of all scores.")
     if results.uncovered_widths:
         sentences.append(f"Cross-validation: {severity_warning(results.uncovered_widths)}")
     if found.test is not None and results.test is not None and rule.test is not None:
@@ -186,6 +223,18 @@ def _findings(results: Results, chance: float) -> list[str]:
         if found.test.uncovered_widths:
             sentences.append(f"Other corpus: {severity_warning(found.test.uncovered_widths)}")
     return sentences
+
+
+def _false_alarms(scores: Scores) -> str:
+    """Sentence on false alarms and on the answers of a baseline."""
+    alarms = (
+        ""
+        if scores.false_alarms is None
+        else f"It predicts a fault for {scores.false_alarms:.1%} of the healthy records. "
+    )
+    accuracy = scores.answered_accuracy
+    right = "" if accuracy is None else f", and {accuracy:.1%} of these answers are right"
+    return f"{alarms}It answers {scores.coverage:.1%} of all records{right}; for the others it is unsure."
 
 
 def _with_interval(scores: Scores) -> str:
@@ -204,7 +253,7 @@ def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Origin of the numbers: the manifest without its parts, and the settings of the benchmark."""
     facts = manifest.model_dump(exclude={"parts_", "index", "complete", "records", "title"}, exclude_unset=True)
     benchmark = {
-        "cross-validation": f"{results.folds} folds by {results.by}",
+        "cross-validation": f"{results.folds} folds by {results.track}",
         "features": f"{results.features} ({', '.join(results.groups)})",
         "benchmark seed": results.seed,
         "benchmark versions": results.versions,

@@ -19,12 +19,12 @@ from matplotlib.ticker import LogLocator, NullLocator
 
 from features.baselines import Baseline, Scores
 from features.baselines.records import IntArray
-from features.faults import CLASSES, FUNDAMENTALS, SHAFT
+from features.faults import FUNDAMENTALS, LOOKS, SHAFT
 from features.indicators import BROAD, WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients, psd, psd_whitened
-from gen.corpus import FAULTS
+from gen.corpus import FAULT_NAMES
 
 PictureFormat = Literal["png", "svg", "pdf"]
 
@@ -88,16 +88,17 @@ def picture(figure: Figure, suffix: PictureFormat) -> bytes:
 def draw_record(shown: Shown) -> Figure:
     """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
     figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
-    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=CLASSES[shown.fault].colour)
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
-    _draw_waveform(waveform, shown)
-    _draw_density(density, shown)
+    draw_waveform(waveform, shown)
+    draw_density(density, shown, BROAD)
     _draw_envelope_spectrum(envelope, shown)
     figure.align_ylabels()
     return figure
 
 
-def _draw_waveform(axes: Axes, shown: Shown) -> None:
+def draw_waveform(axes: Axes, shown: Shown) -> None:
+    """Draw the first revolutions of the shaft."""
     duration = shown.signal.size / shown.fs
     visible = min(duration, TURNS / shown.shaft_rate)
     x = shown.signal[: max(2, round(visible * shown.fs))]
@@ -117,14 +118,15 @@ def thinned(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArra
     return np.repeat(time[::step], 2), extremes
 
 
-def _draw_density(axes: Axes, shown: Shown) -> None:
+def draw_density(axes: Axes, shown: Shown, band: tuple[float, float]) -> None:
+    """Power spectral density, with a band [Hz] shaded."""
     frequencies, density = psd(shown.signal[None], shown.fs, SEGMENT)
     faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
     axes.plot(frequencies / 1e3, 10 * np.log10(np.maximum(density[0], faintest)), color=INK, linewidth=0.8)
-    low, high = BROAD[0] / 1e3, min(BROAD[1], shown.fs / 2) / 1e3
+    low, high = band[0] / 1e3, min(band[1], shown.fs / 2) / 1e3
     axes.axvspan(low, high, color=FAINT, alpha=0.12, linewidth=0)
     axes.set(xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, shown.fs / 2e3))
-    axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:g}-{high:g} kHz shaded")
+    axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
 
 
 def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
@@ -132,14 +134,14 @@ def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
     own, others = fault_lines(shown.orders, shown.fault)
     top = _highest_drawn_order(own, others)
     visible = order <= top
-    colour = CLASSES[shown.fault].colour
+    colour = LOOKS[shown.fault].colour
     for line in own.values():
         axes.axvspan(line * (1 - TOLERANCE), line * (1 + TOLERANCE), color=colour, alpha=0.2, linewidth=0)
     for line in others.values():
         axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.8)
     axes.set(xlabel="order of the shaft", ylabel="squared envelope [1]", xlim=(0, top), ylim=(0, None))
-    _name_lines(axes, own, others, colour, top)
+    name_lines(axes, own, others, colour, top)
     axes.set_title("Squared envelope spectrum of the whitened band", pad=30)
 
 
@@ -168,12 +170,12 @@ def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
 def fault_lines(orders: Orders, fault: str) -> tuple[dict[str, float], dict[str, float]]:
     """Orders of the lines of a fault class, and of the fundamental lines of the others and the shaft, by label."""
     nominal = {"shaft": 1.0} | {base: float(order) for base, order in orders._asdict().items()}
-    own = {line.label: line.multiple * nominal[line.base] for line in CLASSES[fault].lines}
+    own = {line.label: line.multiple * nominal[line.base] for line in LOOKS[fault].lines}
     compared = {line.label: line.multiple * nominal[line.base] for line in (SHAFT, *FUNDAMENTALS)}
     return own, {label: order for label, order in compared.items() if label not in own}
 
 
-def _name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
+def name_lines(axes: Axes, own: Mapping[str, float], others: Mapping[str, float], colour: str, top: float) -> None:
     """Write the label of each line above the axes, in the lower of two rows if there is room."""
     ends = [-np.inf, -np.inf]
     per_letter = top / 78
@@ -211,7 +213,7 @@ def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity])
     for axes in panels[1 + len(quantities) :]:
         axes.remove()
     handles, labels = panels[0].get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=len(FAULTS))
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(FAULT_NAMES))
     return figure
 
 
@@ -220,7 +222,7 @@ def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) ->
     bottom = np.zeros(len(rigs))
     for c in present:
         count = np.bincount(number[fault == c], minlength=len(rigs))
-        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=CLASSES[FAULTS[c]].colour, label=FAULTS[c])
+        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=LOOKS[FAULT_NAMES[c]].colour, label=FAULT_NAMES[c])
         bottom += count
     step = max(1, len(rigs) // 10)
     axes.set_xticks(np.arange(0, len(rigs), step), [str(name) for name in rigs[::step]])
@@ -242,7 +244,7 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
         [values[fault[finite] == c] for c in present],
         bins=edges.tolist(),
         stacked=True,
-        color=[CLASSES[FAULTS[c]].colour for c in present],
+        color=[LOOKS[FAULT_NAMES[c]].colour for c in present],
     )
     axes.set(xlabel=quantity.label, ylabel="records")
     axes.locator_params(axis="x", nbins=5)
@@ -254,8 +256,8 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
 
 
 @rc_context(STYLE)
-def draw_scores(baselines: Mapping[str, Baseline], chance: float, by: str) -> Figure:
-    """Balanced accuracy of every baseline beside its controls; bars are 95 % intervals."""
+def draw_scores(baselines: Mapping[str, Baseline], chance: float, unseen: str) -> Figure:
+    """Balanced accuracy on unseen groups beside its controls, one row per baseline or track; bars are 95 % intervals."""
     figure = Figure(figsize=(WIDTH, 1.2 + 0.45 * len(baselines)), layout="constrained")
     axes = figure.subplots()
     rows = np.arange(len(baselines))[::-1]
@@ -264,7 +266,7 @@ def draw_scores(baselines: Mapping[str, Baseline], chance: float, by: str) -> Fi
     axes.hlines(rows, 0, 1, color=FAINT, linewidth=0.4, alpha=0.5)
     axes.vlines(chance, -0.6, len(rows) - 0.45, color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
     axes.text(chance, len(rows) - 0.4, "chance", color=INK, fontsize=8, va="bottom", ha="center")
-    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {by}s")
+    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {unseen}")
     if test:
         _draw_intervals(axes, test, rows - 0.18, VERMILION, "s", "other corpus")
     null, leaky = ([getattr(b, kind).balanced_accuracy for b in scored] for kind in ("null", "leaky"))
@@ -288,3 +290,24 @@ def _draw_intervals(
         if found.interval is not None:
             axes.hlines(row, *found.interval, color=colour, linewidth=1.6)
     axes.plot([found.balanced_accuracy for found in scores], rows, marker, color=colour, markersize=5.5, label=label)
+
+
+@rc_context(STYLE)
+def draw_reliability(scores: Mapping[str, Scores]) -> Figure:
+    """Accuracy against largest probability in bins, one panel for each of some scores by title."""
+    figure = Figure(figsize=(WIDTH, 2.7), layout="constrained")
+    panels = figure.subplots(1, max(len(scores), 2), sharey=True, squeeze=False)[0]
+    for axes, (title, found) in zip(panels, scores.items(), strict=False):
+        probability, accuracy = (
+            [getattr(bin_, name) for bin_ in found.reliability] for name in ("probability", "accuracy")
+        )
+        area = 260 * np.array([bin_.records for bin_ in found.reliability]) / found.records
+        axes.plot([0, 1], [0, 1], color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
+        axes.plot(probability, accuracy, color=BLUE, linewidth=0.8)
+        axes.scatter(probability, accuracy, area + 4, color=BLUE, linewidth=0, zorder=3)
+        axes.set(xlabel="largest probability", xlim=(0, 1.04), ylim=(-0.02, 1.06), aspect="equal")
+        axes.set_title(f"{title}\ncalibration error {found.ece:.3f}")
+    panels[0].set_ylabel("accuracy")
+    for axes in panels[len(scores) :]:
+        axes.remove()
+    return figure

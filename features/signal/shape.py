@@ -99,10 +99,21 @@ def highest_spectral_kurtosis(coefficients: ComplexArray, levels: tuple[int, ...
     levels
         Each divides the spectrum into that number of equal bands.
     """
-    n = coefficients.shape[-1]
-    cuts = [np.linspace(0, n, level + 1).round().astype(int) for level in levels]
-    bands = [(low, high) for edges in cuts for low, high in pairwise(edges)]
-    return np.max([_band_kurtosis(coefficients, int(low), int(high)) for low, high in bands], axis=0)
+    return np.max([_band_kurtosis(coefficients, *band) for band in _equal_bands(coefficients, levels)], axis=0)
+
+
+def most_impulsive_band(coefficients: ComplexArray, levels: tuple[int, ...]) -> tuple[int, int]:
+    """First bin of the band of highest spectral kurtosis, averaged over the records, and the bin after its last.
+
+    Arguments as of `highest_spectral_kurtosis`.
+    """
+    return max(_equal_bands(coefficients, levels), key=lambda band: _band_kurtosis(coefficients, *band).mean())
+
+
+def _equal_bands(coefficients: ComplexArray, levels: tuple[int, ...]) -> list[tuple[int, int]]:
+    """First bin of each band, and the bin after its last."""
+    cuts = [np.linspace(0, coefficients.shape[-1], level + 1).round().astype(int).tolist() for level in levels]
+    return [band for edges in cuts for band in pairwise(edges)]
 
 
 def _band_kurtosis(coefficients: ComplexArray, low: int, high: int) -> FloatArray:

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from gen.corpus.reading import open_part, read_channel
     from gen.corpus.schema import (
         DRAWS,
+        FAULT_NAMES,
         FAULTS,
         FORMAT,
         MISSING_COUNT,
@@ -54,6 +55,8 @@ if TYPE_CHECKING:
         SCHEMA,
         SIGNAL,
         SPLITS,
+        UNKNOWN,
+        UNKNOWN_CODE,
         Variable,
         make_dataset,
     )
@@ -66,6 +69,7 @@ __all__ = [
     "CODECS",
     "DRAWS",
     "FAULTS",
+    "FAULT_NAMES",
     "FORMAT",
     "LIBRARY_LOCK",
     "MISSING_COUNT",
@@ -74,6 +78,8 @@ __all__ = [
     "SIGNAL",
     "SIMULATED",
     "SPLITS",
+    "UNKNOWN",
+    "UNKNOWN_CODE",
     "Codec",
     "FaultCounts",
     "Manifest",
@@ -124,7 +130,8 @@ __getattr__, __dir__ = lazy_names(
         "gen.corpus.part": ("PartRow", "part_name", "write_part"),
         "gen.corpus.reading": ("open_part", "read_channel"),
         "gen.corpus.schema": (
-            "DRAWS", "FAULTS", "FORMAT", "MISSING_COUNT", "ROLES", "SCHEMA", "SIGNAL", "SPLITS", "Variable", "make_dataset",
+            "DRAWS", "FAULT_NAMES", "FAULTS", "FORMAT", "MISSING_COUNT", "ROLES", "SCHEMA", "SIGNAL", "SPLITS", "UNKNOWN", "UNKNOWN_CODE",
+            "Variable", "make_dataset",
         ),
         "gen.corpus.signals": ("SignalCounts", "complaint", "described", "summed"),
         "gen.corpus.simulated": ("SIMULATED",),

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from gen.corpus.recoverable import NUMBERS, recoveries
-from gen.corpus.schema import FAULTS, SIGNAL, SPLITS
+from gen.corpus.schema import FAULT_NAMES, SIGNAL, SPLITS
 from gen.corpus.signals import SignalCounts, described
 from gen.corpus.visible import fault_counts
 
@@ -29,7 +29,7 @@ def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
         "| fault | records | specimens | rigs | " + " | ".join(SPLITS) + " |",
         "|---|---:|---:|---:|" + "---:|" * len(SPLITS),
     ]
-    for code, name in enumerate(FAULTS):
+    for code, name in FAULT_NAMES.items():
         of_class = fault == code
         if of_class.any():
             units = (np.unique(corpus[unit].values[of_class]).size for unit in ("specimen", "rig"))

@@ -1,6 +1,6 @@
 """Page in Markdown about the format, with tables generated from its schema."""
 
-from gen.corpus.schema import FORMAT, SCHEMA, SIGNAL, Variable
+from gen.corpus.schema import FORMAT, SCHEMA, SIGNAL, Variable, listed_flags
 from gen.corpus.signals import CLIPPED_SHARE
 from gen.corpus.simulated import SIMULATED
 
@@ -35,6 +35,9 @@ variable has one value per record, and a `role`:
 - `latent`: known to the simulator alone,
 - `provenance`: origin of the record.
 
+`fault` is 127 (`unknown`) where the class of a recording is not known. That is no class: `raceway train`, `benchmark`
+and `compare` leave such records out.
+
 Every corpus has the variables below. It can have further ones, numbers that are not packed or text, with a
 `long_name` and a `role`:
 
@@ -56,9 +59,7 @@ def format_page() -> str:
 def _table(variables: tuple[Variable, ...]) -> str:
     rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
     for variable in variables:
-        flags = (
-            f" ({', '.join(f'{code} {name}' for code, name in enumerate(variable.flags))})" if variable.flags else ""
-        )
+        flags = f" ({listed_flags(variable)})" if variable.flags else ""
         cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
         rows.append(f"| {' | '.join(cells)} |")
     return "\n".join(rows) + "\n"

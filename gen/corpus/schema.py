@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
 FORMAT = 2
 FAULTS = ("healthy", "inner", "outer", "ball", "cage", "compound")
+UNKNOWN, UNKNOWN_CODE = "unknown", 127  # recording whose class is not known: a value of ``fault``, not a class
+FAULT_NAMES: Mapping[int, str] = {**dict(enumerate(FAULTS)), UNKNOWN_CODE: UNKNOWN}
 SPLITS = ("train", "validation", "test")
 ROLES = ("operating", "label", "latent", "provenance")
 SIGNAL = "acceleration"
@@ -27,14 +29,14 @@ MISSING_COUNT = -32768  # value that a missing part reads as; the converter neve
 
 
 class Variable(NamedTuple):
-    """One per-record variable of the format."""
+    """One per-record variable of the format; ``flags`` names the values of a class by their codes."""
 
     name: str
     dtype: str
     units: str
     role: str
     long_name: str
-    flags: tuple[str, ...] = ()
+    flags: Mapping[int, str] = {}
 
 
 SCHEMA = (
@@ -46,8 +48,8 @@ SCHEMA = (
     Variable("bpfi", "f8", "1", "operating", "nominal ball pass frequency of the inner race in shaft orders"),
     Variable("bsf", "f8", "1", "operating", "nominal ball spin frequency in shaft orders"),
     Variable("bearing", "str", "1", "operating", "designation of the bearing"),
-    Variable("fault", "i1", "1", "label", "fault class", FAULTS),
-    Variable("n_spalls", "i2", "1", "label", "number of spalls"),
+    Variable("fault", "i1", "1", "label", "fault class", FAULT_NAMES),
+    Variable("n_spalls", "i2", "1", "label", "number of spalls, -1 if unknown"),
     Variable(
         "width",
         "f8",
@@ -66,7 +68,7 @@ SCHEMA = (
     Variable("rig", "i4", "1", "provenance", "number of the machine"),
     Variable("specimen", "i4", "1", "provenance", "number of the physical bearing"),
     Variable("recording", "i4", "1", "provenance", "number of the recording that the record was cut from"),
-    Variable("split", "i1", "1", "provenance", "split that the record belongs to", SPLITS),
+    Variable("split", "i1", "1", "provenance", "split that the record belongs to", dict(enumerate(SPLITS))),
     Variable("source", "str", "1", "provenance", "file or recipe that the record comes from, and its place there"),
 )
 
@@ -95,9 +97,18 @@ def variable_attributes(variable: Variable) -> dict[str, Any]:
         "role": variable.role,
     }
     if variable.flags:
-        attributes["flag_values"] = np.arange(len(variable.flags), dtype=variable.dtype)
-        attributes["flag_meanings"] = " ".join(variable.flags)
+        attributes["flag_values"] = np.array([*variable.flags], dtype=variable.dtype)
+        attributes["flag_meanings"] = " ".join(variable.flags.values())
     return attributes
+
+
+def listed_flags(variable: Variable) -> str:
+    """Codes of a class with their names.
+
+    >>> listed_flags(Variable("split", "i1", "1", "provenance", "", {0: "train", 1: "test"}))
+    '0 train, 1 test'
+    """
+    return ", ".join(f"{code} {name}" for code, name in variable.flags.items())
 
 
 def make_dataset(
@@ -191,6 +202,6 @@ def _values_problems(variable: Variable, array: "xr.Variable") -> list[str]:
         return [f"{variable.name} is of type {array.dtype}, not {np.dtype(variable.dtype)}."]
     if array.attrs.get("units") != variable.units:
         return [f"{variable.name} is in {array.attrs.get('units')!r}, not {variable.units!r}."]
-    if variable.flags and not np.isin(array.values, np.arange(len(variable.flags))).all():
-        return [f"{variable.name} has values outside 0..{len(variable.flags) - 1} ({', '.join(variable.flags)})."]
+    if variable.flags and not np.isin(array.values, [*variable.flags]).all():
+        return [f"{variable.name} has values other than {listed_flags(variable)}."]
     return []

@@ -25,7 +25,7 @@ SIMULATED = (
     Variable("fault_snr", "f8", "dB", "latent", "what the fault adds over all else of the record, NaN without a fault or if not known"),
     Variable("fault_share", "f8", "1", "latent", "power of what the fault adds over its sum with that of all else, NaN if not known"),
     Variable("loaded_hits", "i4", "1", "latent", "expected number of passages of loaded balls over spalls, -1 if not known"),
-    Variable("detectable", "i1", "1", "latent", "whether the fault can be seen in the record", ("no", "yes", "unjudged")),
+    Variable("detectable", "i1", "1", "latent", "whether the fault can be seen in the record", {0: "no", 1: "yes", 2: "unjudged"}),
     Variable("gain", "f8", "1", "operating", "factor of the sensor on the acceleration, NaN if unknown"),
     Variable("background_rms", "f8", "m s-2", "latent", "rms of the noise of the machine, before the gain; NaN if drawn per record"),
     Variable("diametral_clearance", "f8", "m", "latent", "diametral internal clearance as built, negative if preloaded"),

@@ -1,29 +1,58 @@
 """Importers: recordings of real machines, converted into the corpus format.
 
-========== ===================================================================
-module     responsibility
-========== ===================================================================
-cwru       Case Western Reserve University set, drive end, 12 kHz
-mfpt       MFPT fault data set of Bechhoefer
-generic    recordings of the user, described by a mapping file
-mapping    the mapping file: keys, units, checks
-matlab     one variable of a MATLAB file
-level_7_3  MATLAB files of level 7.3, which are HDF5 files
-level_5    MATLAB files of level 5
-apart      reading in a child process, which a library may crash
-unfolding  decompression within bounds
-files      columns of text and NumPy files
-recordings recordings, their checks, their division into records
-assemble   recordings written as a corpus
-========== ===================================================================
+============== ==================================================================
+module         responsibility
+============== ==================================================================
+cwru           Case Western Reserve University set, drive end, 12 kHz
+mfpt           MFPT fault data set of Bechhoefer
+generic        recordings of the user, described by a mapping file
+mapping        the mapping file as a whole, and its error sentences
+section        a section of its files: keys from the path, from tables and from the file
+entry          description of one recording: place, unit, bearing, speed, fault
+mapping_values types of the values in a mapping file
+paths          patterns of paths with groups
+listing        files that a mapping names, and the recordings that they make up
+assumptions    sentences on what labels and units rest on
+resampling     recordings brought to another sample rate
+bearing_text   a bearing on the command line
+signals        one recording of the user, in m/s^2
+conversion     from the unit of a file to m/s^2
+wav            WAV files
+matlab         one variable of a MATLAB file
+level_7_3      MATLAB files of level 7.3, which are HDF5 files
+level_5        MATLAB files of level 5
+apart          reading in a child process, which a library may crash
+unfolding      decompression within bounds
+files          columns of text and NumPy files
+recordings     recordings, their checks, their division into records
+assemble       recordings written as a corpus
+============== ==================================================================
 
 An importer lists its files with a function that reads each (:class:`~gen.importers.recordings.Candidate`); ``assemble`` reads them one
 after the other. A file that cannot be used is skipped as a whole, with a sentence.
 """
 
-from gen.importers.assemble import Import
-from gen.importers.cwru import import_cwru
-from gen.importers.generic import import_generic
-from gen.importers.mfpt import import_mfpt
+from typing import TYPE_CHECKING
 
-__all__ = ["Import", "import_cwru", "import_generic", "import_mfpt"]
+from gen.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from gen.importers.assemble import Import
+    from gen.importers.cwru import import_cwru
+    from gen.importers.generic import import_generic
+    from gen.importers.mfpt import import_mfpt
+    from gen.importers.signals import Signal, read_signal
+
+__all__ = ["Import", "Signal", "import_cwru", "import_generic", "import_mfpt", "read_signal"]
+
+# a single recording needs neither dask nor the corpus format
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "gen.importers.assemble": ("Import",),
+        "gen.importers.cwru": ("import_cwru",),
+        "gen.importers.generic": ("import_generic",),
+        "gen.importers.mfpt": ("import_mfpt",),
+        "gen.importers.signals": ("Signal", "read_signal"),
+    },
+)

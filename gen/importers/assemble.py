@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.corpus import (
-    FAULTS,
+    FAULT_NAMES,
     PartRow,
     SignalCounts,
     Variable,
@@ -41,13 +41,17 @@ _PART_BYTES = 64_000_000
 
 
 class Collection(NamedTuple):
-    """Facts that all recordings of a set share; ``origin`` is their owner and licence."""
+    """Facts that all recordings of a set share.
+
+    ``origin`` is their owner and licence; ``facts`` are sentences on what labels and units rest on.
+    """
 
     importer: str
     title: str
     origin: str
     fs: float
-    channel: str
+    channels: tuple[str, ...]
+    facts: tuple[str, ...] = ()
     extra: tuple[Variable, ...] = ()
 
 
@@ -113,7 +117,7 @@ def import_recordings(
             f"window: {window} s is shorter than two samples; give the length of a record in seconds, such as 0.5."
         )
         raise CorpusError(message)
-    check_limit("record_samples", length, f"window: {window:g} s are", CorpusError)
+    check_limit("record_samples", length * len(collection.channels), f"window: {window:g} s are", CorpusError)
     log = _Log(Counter(), Counter(), list(skipped), list(warnings))
     try:
         with temporary_beside(output) as temporary:
@@ -135,7 +139,7 @@ def _records(
 ) -> Iterator[Record]:
     for done, candidate in enumerate(candidates, start=1):
         try:
-            recording = read_recording(candidate, length, collection.fs)
+            recording = read_recording(candidate, length, collection.fs, collection.channels)
         except UnusableError as reason:
             log.skipped.append(f"{candidate.source}: {reason}; skipped.")
         else:
@@ -154,9 +158,9 @@ def _write_parts(records: Iterator[Record], collection: Collection, folder: Path
         size = max(1, min(_PART_RECORDS, _PART_BYTES // first.signal.nbytes))
         batch = [first, *islice(records, size - 1)]
         dataset = make_dataset(
-            np.stack([record.signal for record in batch])[:, np.newaxis],
+            np.stack([record.signal for record in batch]),
             collection.fs,
-            (collection.channel,),
+            collection.channels,
             {name: [record.columns[name] for record in batch] for name in first.columns},
             extra=collection.extra,
             attributes={
@@ -192,18 +196,26 @@ def _nothing_usable(importer: str, skipped: list[str]) -> str:
 
 def _data_card(collection: Collection, log: _Log, length: int, signals: SignalCounts) -> str:
     fs = collection.fs
+    names = ", ".join(plain_text(name) for name in collection.channels)
     lines = [
         f"# {plain_text(collection.title)}",
         "",
         f"Origin: {plain_text(collection.origin)}",
         "",
-        f"Records of {length / fs:g} s at {fs:g} Hz, channel {plain_text(collection.channel)}, in m/s^2.",
+        f"Records of {length / fs:g} s at {fs:g} Hz, channel{'s' if len(collection.channels) > 1 else ''} {names}, in m/s^2.",
         f"Records that cannot be used: {described(signals)}.",
         "",
         "| fault | recordings | records |",
         "|---|---|---|",
-        *(f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |" for fault in FAULTS if log.recordings[fault]),
+        *(
+            f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |"
+            for fault in FAULT_NAMES.values()
+            if log.recordings[fault]
+        ),
     ]
-    for heading, sentences in (("Assumptions and changes", log.warnings), ("Skipped files", log.skipped)):
+    sections = [("Assumptions and changes", log.warnings), ("Skipped files", log.skipped)]
+    if collection.facts:
+        sections.insert(0, ("What labels and units rest on", [*collection.facts]))
+    for heading, sentences in sections:
         lines += ["", f"## {heading}", "", *(f"- {plain_text(sentence)}" for sentence in sentences or ("Nothing.",))]
     return "\n".join(lines) + "\n"

@@ -81,7 +81,7 @@ _COLLECTION = Collection(
         "The provider asks for acknowledgement; no licence text is stated."
     ),
     fs=FS,
-    channel="drive end",
+    channels=("drive end",),
     extra=(Variable("motor_load", "f8", "W", "operating", "labelled power of the motor"),),
 )
 

@@ -111,7 +111,7 @@ def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
         raise UnusableError(message)
     chosen = column or 0
     if not 0 <= chosen < columns.shape[0]:
-        message = f"has columns 0 to {columns.shape[0] - 1}, not {chosen}"
+        message = f"has columns 0 to {columns.shape[0] - 1}, not {chosen}; give another column"
         raise UnusableError(message)
     return columns[chosen].astype(np.float64, copy=False)
 

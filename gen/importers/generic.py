@@ -1,29 +1,53 @@
 """Recordings of the user, described by a mapping file: paths, variables, units, bearing, speed and fault.
 
-Files are MATLAB, delimited text or NumPy. Paths are relative to the folder of the mapping file and cannot leave it.
+``mapping file -> sections -> files with the facts of their paths -> recordings -> corpus``
 """
 
 import math
-from collections.abc import Hashable, Iterable
+from collections.abc import Hashable, Iterable, Iterator
 from functools import partial
 from pathlib import Path
+from typing import NamedTuple
 
+import numpy as np
+from pydantic import ValidationError
+
+from gen.corpus import UNKNOWN
 from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, Progress, import_recordings
-from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text
-from gen.importers.mapping import Entry, bearing_of, read_mapping
+from gen.importers.assumptions import assumptions
+from gen.importers.conversion import accelerations, doubts
+from gen.importers.entry import Entry, bearing_of, sensors
+from gen.importers.files import FloatArray, UnusableError, one_column
+from gen.importers.listing import File, listed_recordings, name_of_recording
+from gen.importers.mapping import MappingFile, read_mapping, sentence_of
 from gen.importers.matlab import read_matlab
-from gen.importers.recordings import Candidate, Recording, name_of, some_files
-from gen.units import STANDARD_GRAVITY, rpm_to_hertz, to_si
+from gen.importers.recordings import Candidate, Recording
+from gen.importers.resampling import resampled
+from gen.importers.signals import read_values, stated_rate
+from gen.units import rpm_to_hertz, to_si
 
-_METRES_PER_SECOND_SQUARED = {"g": STANDARD_GRAVITY, "m/s2": 1.0}
-_TEXT = (".csv", ".txt", ".tsv", ".dat")
+_SPALLS = {"healthy": 0, "cage": 0, "compound": 2, UNKNOWN: -1}
 
 
-def import_generic(source: Path, output: Path, *, window: float = 0.5, progress: Progress | None = None) -> Import:
-    """Bring the recordings that the mapping file ``source`` describes into a corpus at their sample rate.
+class _Target(NamedTuple):
+    """Sample rate of the corpus [Hz], and whether recordings at other rates are resampled."""
 
-    Rigs and specimens are numbered in the order in which the mapping names them.
+    fs: float
+    resample: bool
+
+
+def import_generic(
+    source: Path,
+    output: Path,
+    *,
+    window: float = 0.5,
+    folder: Path | None = None,
+    progress: Progress | None = None,
+) -> Import:
+    """Bring the recordings that the mapping file ``source`` describes into a corpus.
+
+    Rigs and specimens are numbered in the order in which they are found.
 
     Parameters
     ----------
@@ -33,8 +57,10 @@ def import_generic(source: Path, output: Path, *, window: float = 0.5, progress:
         Folder of the new corpus.
     window : float
         Length of a record [s].
+    folder : Path, optional
+        Folder of the recordings, which paths are relative to; by default that of the mapping file.
     progress : callable, optional
-        Called with the number of files done and the number of all.
+        Called with the number of recordings done and the number of all.
 
     Raises
     ------
@@ -43,40 +69,21 @@ def import_generic(source: Path, output: Path, *, window: float = 0.5, progress:
         range.
     """
     mapping = read_mapping(source)
-    fs = _common_sample_rate(source, mapping.entries)
-    rigs = _numbered(entry.rig for entry in mapping.entries)
-    specimens = _numbered((entry.rig, entry.specimen) for entry in mapping.entries)
-    candidates: dict[str, Candidate] = {}
-    skipped: list[str] = []
-    looked_at = 0
-    for position, entry in enumerate(mapping.entries):
-        paths = _matches(source, position, entry.path, looked_at)
-        looked_at += len(paths)
-        if not paths:
-            skipped.append(f"{entry.path}: no file beside {source.name} matches; skipped.")
-        for path in paths:
-            name = _name(name_of(path, source.parent), entry)
-            if name in candidates:
-                skipped.append(f"{name}: is listed again by files[{position}]; skipped.")
-                continue
-            places = len(candidates), rigs[entry.rig], specimens[entry.rig, entry.specimen]
-            candidates[name] = Candidate(path, name, partial(_read, path, entry, *places))
-    collection = Collection("generic", mapping.title, mapping.origin, fs, mapping.channel)
-    return import_recordings(
-        collection, list(candidates.values()), output, window=window, skipped=skipped, progress=progress
+    found, skipped = listed_recordings(source, source.parent if folder is None else folder, mapping)
+    fs = _common_rate(source, mapping, found)
+    target = _Target(fs, resample=mapping.resample is not None)
+    rigs = _numbered(files[0].entry.rig for files in found)
+    specimens = _numbered((files[0].entry.rig, files[0].entry.specimen) for files in found)
+    candidates = []
+    for number, files in enumerate(found):
+        entry = files[0].entry
+        places = number, rigs[entry.rig], specimens[entry.rig, entry.specimen]
+        read = partial(_read, files, target, *places)
+        candidates.append(Candidate(files[0].path, name_of_recording(files), read))
+    collection = Collection(
+        "generic", mapping.title, mapping.origin, fs, mapping.channels, facts=assumptions(mapping.sections, fs)
     )
-
-
-def _common_sample_rate(source: Path, entries: tuple[Entry, ...]) -> float:
-    first = entries[0]
-    for position, other in enumerate(entries):
-        if other.sample_rate_hz != first.sample_rate_hz:
-            message = (
-                f"{source}: files[{position}] ({other.path}) is at {other.sample_rate_hz:g} Hz and files[0] "
-                f"({first.path}) at {first.sample_rate_hz:g} Hz; a corpus has one sample rate: make a corpus of each."
-            )
-            raise CorpusError(message)
-    return first.sample_rate_hz
+    return import_recordings(collection, candidates, output, window=window, skipped=skipped, progress=progress)
 
 
 def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
@@ -84,42 +91,121 @@ def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
     return {key: number for number, key in enumerate(dict.fromkeys(keys))}
 
 
-def _matches(source: Path, position: int, pattern: str, looked_at: int) -> list[Path]:
-    """Files that a pattern names, sorted; none may lie outside the folder of the mapping file."""
-    folder, where = source.parent, f"{source}: files[{position}].path: {pattern}"
-    parts = Path(pattern).parts
-    if Path(pattern).is_absolute() or ".." in parts:
-        message = (
-            f"{where} leads out of the folder of the mapping file; put the mapping file in a folder above the data."
-        )
-        raise CorpusError(message)
-    beside_names = any("**" in part for part in parts if part != "**")  # Python 3.13 takes it for a single *
-    if not parts or parts.count("**") > 1 or beside_names:  # each further ** looks at every folder once more
-        message = f"{where} is not a pattern of file names; write it like data/*.mat, with ** at most once."
-        raise CorpusError(message)
-    exact = folder / pattern
-    try:
-        found = [exact] if exact.is_file() else filter(Path.is_file, folder.glob(pattern))
-        paths = some_files(found, looked_at, f"{where} and the patterns before match")
-    except (ValueError, OSError) as error:
-        message = f"{where} is not a pattern of file names ({error}); write it like data/*.mat."
-        raise CorpusError(message) from None
-    root = folder.resolve()
-    for path in paths:
-        if not path.resolve().is_relative_to(root):
-            message = f"{where} matches a link that leads out of the folder; copy the files into it."
+def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File, ...]]) -> float:
+    """Sample rate of the corpus [Hz]: the one asked for, or that of all recordings; 1 if no file tells any, and so none can be used.
+
+    Raises
+    ------
+    CorpusError
+        If the mapping gives different rates and asks for none.
+    """
+    if mapping.resample is not None:
+        return mapping.resample
+    given = list(_given_rates(mapping, recordings))
+    for place, rate in given:
+        if rate != given[0][1]:
+            message = (
+                f"{source}: {place} is at {rate:g} Hz and {given[0][0]} at {given[0][1]:g} Hz; a corpus has one sample rate: "
+                f"give resample_hz at the top, or make a corpus of each."
+            )
             raise CorpusError(message)
-    return paths
+    if given:
+        return given[0][1]
+    for file, *_ in recordings:
+        try:
+            return _measured(file).get("sample_rate_hz") or stated_rate(file.path) or 1.0
+        except (UnusableError, OSError):
+            continue
+    return 1.0
 
 
-def _name(path: str, entry: Entry) -> str:
-    """Name of a recording: its file, and its variable and column where the mapping names them."""
-    return ":".join([path, *(str(part) for part in (entry.variable, entry.column) if part is not None)])
+def _given_rates(mapping: MappingFile, recordings: list[tuple[File, ...]]) -> Iterator[tuple[str, float]]:
+    """Sample rates in the mapping and in the paths of files, with the places where they are given."""
+    for section in mapping.sections:
+        rate = next(section.examples()).sample_rate_hz
+        if rate is not None and "sample_rate_hz" in section.given:
+            yield f"files[{section.position}] ({section.pattern.text})", rate
+    for file, *_ in recordings:
+        if file.entry.sample_rate_hz is not None and "sample_rate_hz" in file.section.from_path:
+            yield file.name, file.entry.sample_rate_hz
 
 
-def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Recording:
-    spalled = entry.fault not in ("healthy", "cage")
-    unknown = math.nan if spalled else 0.0
+def _measured(file: File) -> dict[str, float]:
+    """Numbers that a file holds for keys of the mapping, in the units of the keys."""
+    found = {}
+    for key, reading in file.section.in_file.items():
+        if file.path.suffix.lower() != ".mat":
+            message = f"has no variables, and {key} is to be read from {reading.variable}; give {key} as a number"
+            raise UnusableError(message)
+        value = read_matlab(file.path, reading.variable)
+        try:
+            number = float(value.item() if value.size == 1 else one_column(value)[0])
+        except ValueError:
+            number = math.nan
+        if not math.isfinite(number):
+            message = f"holds {reading.variable}, which is no number for {key}"
+            raise UnusableError(message)
+        found[key] = number * reading.times
+    return found
+
+
+def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, specimen: int) -> Recording:
+    entry = _entry_of(files[0])
+    values, rate, absolute = _joined(files)
+    warnings: list[str] = []
+    signals: list[FloatArray] = []
+    for sensor, column in zip(sensors(entry, ""), values, strict=True):
+        signals.append(accelerations(column, sensor.scale))
+        told = doubts(column, signals[-1], sensor.scale, absolute=absolute)
+        warnings += [f"channel {sensor.name}: {doubt}" if sensor.name else doubt for doubt in told]
+    if len({signal.size for signal in signals}) > 1:
+        sizes = " and ".join(str(signal.size) for signal in signals)
+        message = f"has channels of {sizes} samples; give channels of one length"
+        raise UnusableError(message)
+    signal = np.stack(signals)
+    stated = stated_rate(files[0].path) if entry.sample_rate_hz is not None else None
+    if stated not in (None, rate):
+        warnings.append(f"states a sample rate of {stated:g} Hz; the given {rate:g} Hz are used")
+    if rate != target.fs:
+        if not target.resample:
+            message = f"is at {rate:g} Hz and the corpus at {target.fs:g} Hz; give resample_hz at the top, or make a corpus of each"
+            raise UnusableError(message)
+        signal, sentence = resampled(signal, rate, target.fs)
+        warnings.append(sentence)
+    return _recording(entry, signal, number, rig, specimen)._replace(warnings=tuple(warnings))
+
+
+def _joined(files: tuple[File, ...]) -> tuple[list[FloatArray], float, bool]:
+    """Values of each channel in the unit of the files, shape (time,), their sample rate [Hz], and whether they have a unit."""
+    parts: list[list[FloatArray]] = []
+    rates: set[float] = set()
+    absolute = True
+    for file in files:
+        entry = _entry_of(file)
+        found = [read_values(file.path, sensor.place) for sensor in sensors(entry, "")]
+        rate = entry.sample_rate_hz or found[0].fs
+        if rate is None:
+            raise UnusableError("states no sample rate; give sample_rate_hz")
+        rates.add(rate)
+        parts.append([values.values for values in found])
+        absolute = absolute and found[0].absolute
+    if len(rates) > 1:
+        raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
+    return [np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), absolute
+
+
+def _entry_of(file: File) -> Entry:
+    """Description of a file with the numbers that it holds."""
+    if not file.section.in_file:
+        return file.entry
+    try:
+        return file.section.entry(file.groups, _measured(file))
+    except ValidationError as error:
+        raise UnusableError(sentence_of(error, "", {}, None).removesuffix(".")) from None
+
+
+def _recording(entry: Entry, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:
+    unknown = 0.0 if entry.fault in ("healthy", "cage") else math.nan
     return Recording(
         number=number,
         rig=rig,
@@ -127,28 +213,10 @@ def _read(path: Path, entry: Entry, number: int, rig: int, specimen: int) -> Rec
         bearing=bearing_of(entry),
         shaft_rate=rpm_to_hertz(entry.shaft_rpm),
         fault=entry.fault,
-        signal=_column(path, entry) * _METRES_PER_SECOND_SQUARED[entry.unit],
+        signal=signal,
         load=math.nan if entry.load_n is None else entry.load_n,
-        n_spalls=entry.n_spalls or (2 if entry.fault == "compound" else int(spalled)),
+        n_spalls=entry.n_spalls or _SPALLS.get(entry.fault, 1),
         width=unknown if entry.width_mm is None else to_si(entry.width_mm, "mm"),
         depth=unknown if entry.depth_um is None else to_si(entry.depth_um, "um"),
         angle=math.nan if entry.angle_deg is None else to_si(entry.angle_deg, "deg"),
     )
-
-
-def _column(path: Path, entry: Entry) -> FloatArray:
-    """Values of the recording in the unit of the file."""
-    suffix = path.suffix.lower()
-    if suffix in _TEXT:
-        return one_column(read_text(path, entry.column, entry.delimiter))
-    if isinstance(entry.column, str):
-        message = f"has columns without names, so none is called {entry.column}; give the number of the column, from 0"
-        raise UnusableError(message)
-    if suffix == ".npy":
-        return one_column(read_numpy(path), entry.column)
-    if suffix != ".mat":
-        message = f"is of no known type; known are .mat, .npy, {', '.join(_TEXT)}"
-        raise UnusableError(message)
-    if entry.variable is None:
-        raise UnusableError("is a MATLAB file; give the key variable, the name of the variable that holds the signal")
-    return one_column(read_matlab(path, entry.variable), entry.column)

@@ -63,12 +63,43 @@ def read_level_5(stream: BinaryIO, variable: str) -> NDArray[Any]:
     for kind, start, length in list(_variables(stream, order)):
         stream.seek(start)
         head = stream.read(min(length, _HEAD))
-        name = _named(kind, head, order)
+        _, _, name = _header(kind, head, order)
         if name == wanted:
             return _values(_field(_whole(stream, kind, start, length, order), fields, order), variable, order)
         names.append(name)
     message = f"holds {listing(names)}, not {wanted}"
     raise UnusableError(message)
+
+
+def names_level_5(stream: BinaryIO) -> list[tuple[str, int]]:
+    """Names of the real numeric arrays and of those in structures, as ``"bearing.gs"``, with their numbers of values.
+
+    Raises
+    ------
+    UnusableError
+        If the file is truncated or damaged.
+    """
+    stream.seek(HEADER - 2)
+    order = BYTE_ORDERS[stream.read(2)]
+    found: list[tuple[str, int]] = []
+    for kind, start, length in list(_variables(stream, order)):
+        stream.seek(start)
+        about, sides, name = _header(kind, stream.read(min(length, _HEAD)), order)
+        if about & 0xFF == _STRUCTURE:
+            found += _numeric(_whole(stream, kind, start, length, order), order)
+        elif about & 0xFF in _NUMERIC and not about & _COMPLEX_FLAG:
+            found.append((name, math.prod(sides)))
+    return found
+
+
+def _numeric(array: _Array, order: str, depth: int = 3) -> Iterator[tuple[str, int]]:
+    """Names and sizes of the real numeric arrays that are an array or are in a structure, at most ``depth`` deep."""
+    if array.kind in _NUMERIC and not array.is_complex:
+        yield array.name, math.prod(array.shape)
+    elif array.kind == _STRUCTURE and math.prod(array.shape) == 1 and depth:
+        for field, (kind, data) in _fields(array, order).items():
+            for name, size in _numeric(_array(kind, data, order)._replace(name=field), order, depth - 1):
+                yield f"{array.name}.{name}", size
 
 
 def _variables(stream: BinaryIO, order: str) -> Iterator[tuple[int, int, int]]:
@@ -90,8 +121,8 @@ def _variables(stream: BinaryIO, order: str) -> Iterator[tuple[int, int, int]]:
     raise UnusableError(message)
 
 
-def _named(kind: int, head: bytes, order: str) -> str:
-    """Name of a variable, from its first bytes."""
+def _header(kind: int, head: bytes, order: str) -> tuple[int, tuple[int, ...], str]:
+    """Class with flags, shape and name of a variable, from its first bytes."""
     if kind == _COMPRESSED:
         head = first_bytes(head, _HEAD)
         kind, start, _ = _tag(head[:8], order)
@@ -99,8 +130,9 @@ def _named(kind: int, head: bytes, order: str) -> str:
     if kind != _MATRIX:
         message = f"is damaged: an element of type {kind} where an array should be"
         raise UnusableError(message)
-    _, _, (_, name) = islice(_elements(memoryview(head), order), 3)
-    return bytes(name).decode("latin-1")
+    (_, flags), (_, shape), (_, name) = islice(_elements(memoryview(head), order), 3)
+    sides = tuple(np.frombuffer(shape, order + "i4").tolist())
+    return int(np.frombuffer(flags, order + "u4")[0]), sides, bytes(name).decode("latin-1")
 
 
 def _whole(stream: BinaryIO, kind: int, start: int, length: int, order: str) -> _Array:
@@ -153,17 +185,23 @@ def _field(array: _Array, fields: list[str], order: str) -> _Array:
         if array.kind != _STRUCTURE or math.prod(array.shape) != 1:
             message = f"holds {array.name or 'a field'}, but it is not one structure with the field {field}"
             raise UnusableError(message)
-        (_, width), (_, text), *values = array.parts
-        (size,) = np.frombuffer(width, order + "i4").tolist()
-        if not 0 < size <= _LONGEST_FIELD or len(text) > size * _MOST:
-            message = f"is damaged: {len(text)} bytes of field names of {size} each"
+        held = _fields(array, order)
+        if field not in held:
+            message = f"holds a structure of {listing([*held])}, not {field}"
             raise UnusableError(message)
-        names = [bytes(text[at : at + size]).rstrip(b"\0").decode("latin-1") for at in range(0, len(text), size)]
-        if field not in names:
-            message = f"holds a structure of {listing(names)}, not {field}"
-            raise UnusableError(message)
-        array = _array(*values[names.index(field)], order)
+        array = _array(*held[field], order)
     return array
+
+
+def _fields(array: _Array, order: str) -> dict[str, tuple[int, memoryview]]:
+    """Type and bytes of each field of a structure of one element, by name."""
+    (_, width), (_, text), *values = array.parts
+    (size,) = np.frombuffer(width, order + "i4").tolist()
+    if not 0 < size <= _LONGEST_FIELD or len(text) > size * _MOST:
+        message = f"is damaged: {len(text)} bytes of field names of {size} each"
+        raise UnusableError(message)
+    names = [bytes(text[at : at + size]).rstrip(b"\0").decode("latin-1") for at in range(0, len(text), size)]
+    return dict(zip(names, values, strict=True))
 
 
 def _values(array: _Array, variable: str, order: str) -> NDArray[Any]:

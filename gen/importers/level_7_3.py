@@ -5,6 +5,7 @@ follows links to other files. So sizes and storage are checked first, and compre
 """
 
 import math
+from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -21,6 +22,7 @@ from gen.importers.unfolding import check_size, unfold
 _DEFLATE, _SHUFFLE, _FLETCHER_32 = 1, 2, 3  # numbers of the filters in HDF5
 _CHECKSUM = 4  # bytes
 _MOST_CHUNKS = 100_000
+_MOST_NAMES = 1000
 
 
 def read_level_7_3(path: Path, variable: str) -> NDArray[Any]:
@@ -51,6 +53,30 @@ def read_level_7_3(path: Path, variable: str) -> NDArray[Any]:
         if dataset.chunks is None:
             return np.asarray(dataset)
         return _from_chunks(dataset, stored, path.stat().st_size)
+
+
+def names_level_7_3(path: Path) -> list[tuple[str, int]]:
+    """Names of the datasets of real numbers in the file and in its groups, as ``"bearing.gs"``, with their numbers of values."""
+    found: list[tuple[str, int]] = []
+    with LIBRARY_LOCK, h5py.File(path, "r") as file:
+        for name in _paths(file):
+            try:
+                dataset = own_dataset(file, name)
+            except (KeyError, ForeignStorageError):
+                continue
+            if dataset.dtype.kind in "iuf":
+                found.append((name.replace("/", "."), int(dataset.size or 0)))
+    return found
+
+
+def _paths(file: h5py.File) -> Iterator[str]:
+    """Paths of the members of the file and of its groups; ``#refs#`` holds the contents of cells."""
+    for name in islice(file, _MOST_NAMES):
+        yield name
+        linked: Any = file.get(name, getclass=True, getlink=True)
+        group: Any = file[name] if linked is h5py.HardLink and name != "#refs#" else None
+        if isinstance(group, h5py.Group):
+            yield from (f"{name}/{inner}" for inner in islice(group, _MOST_NAMES))
 
 
 def _from_chunks(dataset: h5py.Dataset, stored: int, file_size: int) -> NDArray[Any]:

@@ -5,145 +5,26 @@ has is spelt as in a recipe, with the unit at the end of the key.
 """
 
 import difflib
-import math
 import reprlib
-import unicodedata
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, Self
+from typing import Annotated, Any, NamedTuple
 
-from pydantic import (
-    AfterValidator,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Discriminator,
-    Field,
-    Tag,
-    ValidationError,
-    model_validator,
-)
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from gen.corpus import FAULTS
 from gen.errors import CorpusError
-from gen.physics.bearing import Bearing
-from gen.physics.catalogue import CATALOGUE
-from gen.units import to_si
+from gen.importers.entry import Channel, Entry
+from gen.importers.mapping_values import Geometry, Name, Text
+from gen.importers.paths import groups_in, parse_pattern
+from gen.importers.section import STAND_INS, Reading, Section, split_keys
 from gen.yaml_files import read_yaml
 
-if TYPE_CHECKING:
-    FaultClass = str
-else:
-    FaultClass = Literal[FAULTS]
-_MOST_COLUMNS = 1_000_000
-_RENAMED = {"depth_mm": "depth_um, in micrometres"}
-Millimetres = Annotated[float, Field(gt=0, le=10_000, allow_inf_nan=False)]
-Micrometres = Annotated[float, Field(gt=0, le=10_000_000, allow_inf_nan=False)]
-
-
-def _checked(text: str) -> str:
-    """Return text without control characters; ValueError if it has one."""
-    odd = next(
-        (letter for letter in text if unicodedata.category(letter) in ("Cc", "Cs") and letter not in "\t\n\r"), None
-    )
-    if odd is not None:
-        message = f"{odd!r} is a control character; leave it out"
-        raise ValueError(message)
-    return text
-
-
-def _on_one_line(text: str) -> str:
-    if set(text) & set("\t\n\r"):
-        message = f"{text[:60]!r} has a tab or a line break; write it on one line"
-        raise ValueError(message)
-    return text
-
-
-def _as_text(value: Any) -> Any:
-    return str(value) if type(value) is int else value
-
-
-def _column(column: int | str | None) -> int | str | None:
-    if isinstance(column, int) and not 0 <= column < _MOST_COLUMNS:
-        message = f"is not in 0 to {_MOST_COLUMNS - 1}"
-        raise ValueError(message)
-    return _on_one_line(_checked(column)) if isinstance(column, str) else column
-
-
-Text = Annotated[str, BeforeValidator(_as_text), Field(min_length=1, max_length=5000), AfterValidator(_checked)]
-Line = Annotated[str, BeforeValidator(_as_text), AfterValidator(_checked), AfterValidator(_on_one_line)]
-Name = Annotated[Line, Field(min_length=1, max_length=200)]
-Pattern = Annotated[Line, Field(min_length=1, max_length=1000)]
-
-
-def _separates(mark: str) -> str:
-    if mark in '\r\n#"' or mark.isalnum() or mark in "+-." or unicodedata.category(mark) == "Cs":
-        message = f"{mark!r} cannot separate columns; give one character such as a comma, a semicolon or a tab"
-        raise ValueError(message)
-    return mark
-
-
-Delimiter = Annotated[str, Field(min_length=1, max_length=1), AfterValidator(_separates)]
-
-
-class Geometry(BaseModel):
-    """A bearing that is not in the catalogue."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    designation: Name = "own"
-    n_balls: Annotated[int, Field(ge=3, le=1000)]
-    pitch_diameter_mm: Annotated[Millimetres, Field(ge=1)]
-    ball_diameter_mm: Annotated[Millimetres, Field(ge=0.01)]
-    contact_angle_deg: Annotated[float, Field(ge=0, lt=90)] = 0.0
-
-    @model_validator(mode="after")
-    def _balls_fit(self) -> Self:
-        if self.ball_diameter_mm >= self.pitch_diameter_mm * math.sin(math.pi / self.n_balls):
-            message = f"{self.n_balls} balls of {self.ball_diameter_mm:g} mm do not fit on the pitch circle"
-            raise ValueError(message)
-        return self
-
-
-class Entry(BaseModel):
-    """Description of a file, or of all files that match a pattern."""
-
-    model_config = ConfigDict(extra="forbid", frozen=True)
-
-    path: Pattern
-    bearing: Annotated[
-        Annotated[Name, Tag("name")] | Annotated[Geometry, Tag("geometry")],
-        Discriminator(lambda value: "geometry" if isinstance(value, dict) else "name"),
-    ]
-    unit: Literal["g", "m/s2"]
-    sample_rate_hz: Annotated[float, Field(ge=1, le=1e8, allow_inf_nan=False)]
-    shaft_rpm: Annotated[float, Field(ge=0.001, le=1e7, allow_inf_nan=False)]
-    fault: FaultClass
-    specimen: Name
-    rig: Name = "1"
-    variable: Name | None = None
-    column: Annotated[int | str | None, AfterValidator(_column)] = None
-    delimiter: Delimiter | None = None
-    load_n: Annotated[float, Field(ge=0, le=1e9, allow_inf_nan=False)] | None = None
-    width_mm: Millimetres | None = None
-    depth_um: Micrometres | None = None
-    angle_deg: Annotated[float, Field(ge=-360, le=360, allow_inf_nan=False)] | None = None
-    n_spalls: Annotated[int, Field(ge=1, le=1000)] | None = None
-
-    @model_validator(mode="after")
-    def _bearing_is_known(self) -> Self:
-        if isinstance(self.bearing, str) and self.bearing not in CATALOGUE:
-            known = ", ".join(CATALOGUE)
-            message = f"bearing {self.bearing} is not in the catalogue ({known}); give its geometry instead"
-            raise ValueError(message)
-        return self
-
-    @model_validator(mode="after")
-    def _spall_keys_need_a_spall(self) -> Self:
-        spall = [key for key in ("width_mm", "depth_um", "angle_deg", "n_spalls") if getattr(self, key) is not None]
-        if self.fault in ("healthy", "cage") and spall:
-            message = f"{spall[0]} describes a spall, and fault is {self.fault}; remove one of the two"
-            raise ValueError(message)
-        return self
+_RENAMED = {
+    "depth_mm": "depth_um, in micrometres",
+    "sensitivity": "sensitivity_mv_per_g or sensitivity_mv_per_m_s2",
+    "resample": "resample_hz at the top",
+    "shaft_hz": "shaft_rpm, which is 60 times as large",
+}
 
 
 class _Top(BaseModel):
@@ -154,16 +35,18 @@ class _Top(BaseModel):
     title: Text = "Own recordings"
     origin: Text = "Origin and licence are not stated."
     channel: Name = "sensor"
+    resample_hz: Annotated[float, Field(ge=1, le=1e8, allow_inf_nan=False)] | None = None
     files: Annotated[list[dict[str, Any]], Field(min_length=1)]
 
 
 class MappingFile(NamedTuple):
-    """A mapping file, read and checked."""
+    """A mapping file, read and checked; ``channels`` are the names of the channels of all recordings."""
 
     title: str
     origin: str
-    channel: str
-    entries: tuple[Entry, ...]
+    channels: tuple[str, ...]
+    resample: float | None
+    sections: tuple[Section, ...]
 
 
 def read_mapping(path: Path) -> MappingFile:
@@ -174,6 +57,37 @@ def read_mapping(path: Path) -> MappingFile:
     CorpusError
         If it is missing, is not YAML, or has a wrong key or value; the first of them is named.
     """
+    raw = _read(path)
+    try:
+        top = _Top.model_validate(raw)
+    except ValidationError as error:
+        message = f"{path}: {sentence_of(error, '', raw, None)}"
+        raise CorpusError(message) from None
+    common = top.model_extra or {}
+    sections: list[Section] = []
+    names: list[tuple[str, ...]] = []
+    for number, own in enumerate(top.files):
+        where = f"files[{number}]"
+        try:
+            section, entry = _section(number, common, own)
+        except ValidationError as error:
+            message = f"{path}: {sentence_of(error, f'{where}.', common, own)}"
+            raise CorpusError(message) from None
+        except ValueError as error:
+            message = f"{path}: {where}.{error}."
+            raise CorpusError(message) from None
+        sections.append(section)
+        names.append(tuple(channel.name for channel in entry.channels or ()) or (top.channel,))
+        if names[-1] != names[0]:
+            message = (
+                f"{path}: {where} has the channels {', '.join(names[-1])}, and files[0] has {', '.join(names[0])}; "
+                f"give all files the same channels, or make a corpus of each."
+            )
+            raise CorpusError(message)
+    return MappingFile(top.title, top.origin, names[0], top.resample_hz, tuple(sections))
+
+
+def _read(path: Path) -> dict[str, Any]:
     if path.is_dir():
         raise CorpusError(
             f"{path}: is a folder; give the YAML file that describes the recordings, such as {path / 'mapping.yaml'}."
@@ -185,41 +99,67 @@ def read_mapping(path: Path) -> MappingFile:
         raise CorpusError(
             f"{path}: holds no keys; give files, a list of sections with path, fault, specimen and further keys."
         )
+    return raw
+
+
+def _section(number: int, common: Mapping[str, Any], own: Mapping[str, Any]) -> tuple[Section, Entry]:
+    """A section, and the description of a file that has stand-ins for all that only the file or its path gives.
+
+    Raises
+    ------
+    ValidationError
+        If a value is not allowed.
+    ValueError
+        If path and keys do not belong together, with the end of a sentence.
+    """
+    text = own.get("path", common.get("path"))
     try:
-        top = _Top.model_validate(raw)
-    except ValidationError as error:
-        message = f"{path}: {_sentence(error, '', raw, None)}"
-        raise CorpusError(message) from None
-    common = top.model_extra or {}
-    entries: list[Entry] = []
-    for number, own in enumerate(top.files):
-        try:
-            entries.append(Entry.model_validate(common | own))
-        except ValidationError as error:
-            message = f"{path}: {_sentence(error, f'files[{number}].', common, own)}"
-            raise CorpusError(message) from None
-    return MappingFile(top.title, top.origin, top.channel, tuple(entries))
-
-
-def bearing_of(entry: Entry) -> Bearing:
-    """Bearing of an entry, in SI units."""
-    if isinstance(entry.bearing, str):
-        return CATALOGUE[entry.bearing]
-    geometry = entry.bearing
-    return Bearing(
-        geometry.designation,
-        geometry.n_balls,
-        to_si(geometry.pitch_diameter_mm, "mm"),
-        to_si(geometry.ball_diameter_mm, "mm"),
-        to_si(geometry.contact_angle_deg, "deg"),
+        pattern = parse_pattern(text if isinstance(text, str) and text else "x.wav")
+    except ValueError as error:
+        message = f"path: {error}"
+        raise ValueError(message) from None
+    keys = {key: value for key, value in common.items() if key not in pattern.groups or isinstance(value, dict)}
+    keys |= own
+    given, tables, raw_readings = split_keys(keys, pattern)
+    twice = next(
+        (
+            key
+            for key in pattern.groups
+            if key in STAND_INS and (key in given or raw_readings.get(key, {}).get("variable"))
+        ),
+        None,
     )
+    if twice is not None:
+        message = f"{twice} is given, and {{{twice}}} in the path tells it too; remove one of the two"
+        raise ValueError(message)
+    lost = next((name for key in ("specimen", "rig", "recording", "variable") if isinstance(given.get(key), str)
+                 for name in groups_in(given[key]) if name not in pattern.groups), None)  # fmt: skip
+    if lost is not None:
+        message = f"path has no group {{{lost}}}, which another key refers to; write {{{lost}}} in the path"
+        raise ValueError(message)
+    readings = {key: _checked(Reading, value, key) for key, value in raw_readings.items()}
+    section = Section(number, pattern, given, tables, readings)
+    first, *_ = section.examples()
+    return section, first
 
 
-def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: dict[str, Any] | None) -> str:
+def _checked(model: type[Reading], value: Any, key: str) -> Reading:
+    try:
+        return model.model_validate(value)
+    except ValidationError as error:
+        first = error.errors()[0]
+        place = ".".join([key, *(str(part) for part in first["loc"])])
+        message = f"{place}: {reprlib.repr(first['input'])} is not allowed; {first['msg'][0].lower()}{first['msg'][1:]}"
+        raise ValueError(message) from None
+
+
+def sentence_of(error: ValidationError, where: str, common: Mapping[str, Any], own: Mapping[str, Any] | None) -> str:
     """Sentence about the first cause, at the place where the user wrote the value."""
     # an unknown key comes before the missing key that it causes, a key of the geometry before "not a string"
     complaint = max(error.errors(), key=lambda one: (one["type"] == "extra_forbidden", len(one["loc"])))
-    keys = [str(part) for part in complaint["loc"] if part not in ("name", "geometry", "int", "str")]
+    place = complaint["loc"]
+    tags = ("name", "geometry") if place[:1] == ("bearing",) else ("int", "str")  # of the kinds of a value, not keys
+    keys = [*map(str, place[:1]), *(str(part) for part in place[1:] if part not in tags)]
     key = ".".join(keys)
     if own is not None and keys and keys[0] in common and keys[0] not in own:
         where = ""
@@ -232,7 +172,8 @@ def _sentence(error: ValidationError, where: str, common: dict[str, Any], own: d
         case "extra_forbidden":
             if keys[-1] in _RENAMED:
                 return f"{where}{key} is not a key here; give {_RENAMED[keys[-1]]}."
-            near = difflib.get_close_matches(keys[-1], [*Entry.model_fields, *Geometry.model_fields], n=1)
+            known = [*Entry.model_fields, *Geometry.model_fields, *Channel.model_fields, *_Top.model_fields]
+            near = difflib.get_close_matches(keys[-1], known, n=1)
             return f"{where}{key} is not a key here; " + (f"did you mean {near[0]}?" if near else "remove it.")
         case "value_error":
             return f"{where}{key}{': ' if key else ''}{message}."

@@ -16,6 +16,7 @@ from gen.importers.assemble import Collection, Import, Progress, import_recordin
 from gen.importers.files import UnusableError, one_column
 from gen.importers.matlab import read_matlab
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
+from gen.importers.resampling import resampled
 from gen.physics.catalogue import CATALOGUE
 from gen.units import POUND_FORCE, STANDARD_GRAVITY
 
@@ -28,7 +29,7 @@ _COLLECTION = Collection(
     title="MFPT fault data set",
     origin="E. Bechhoefer, NRG Systems; Machinery Failure Prevention Technology Society. CC BY-NC-SA 4.0.",
     fs=FS,
-    channel="accelerometer",
+    channels=("accelerometer",),
 )
 _NOTE = "all files: the shaft rate is nominal; where it was measured, it is 0.6 to 1.3 % lower."
 
@@ -85,10 +86,8 @@ def _read(path: Path, fault: str, number: int) -> Recording:
         raise UnusableError(message)
     warnings: list[str] = []
     if factor > 1:
-        from scipy.signal import resample_poly  # loads scipy.stats
-
-        signal = resample_poly(signal, 1, factor)
-        warnings.append(f"resampled from {fs:g} to {FS:g} Hz with scipy.signal.resample_poly(x, 1, {factor})")
+        signal, sentence = resampled(signal, fs, FS)
+        warnings.append(sentence)
     rate, load = _number(path, "bearing.rate"), _number(path, "bearing.load") * POUND_FORCE
     if not rate > 0:
         rate = _NOMINAL_RATE

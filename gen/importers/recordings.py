@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus import FAULTS, SPLITS
+from gen.corpus import FAULTS, SPLITS, UNKNOWN, UNKNOWN_CODE
 from gen.errors import CorpusError
 from gen.importers.files import FloatArray, UnusableError
 from gen.limits import check_limit, limit
@@ -26,7 +26,8 @@ _AS_RECORDED = ("rig", "specimen", "shaft_rate", "load", "n_spalls", "width", "d
 class Recording(NamedTuple):
     """A recording with its facts, in SI units; NaN stands for an unknown value.
 
-    ``signal`` is of shape (time,) [m s-2]; ``number`` identifies the recording in its set; ``extra`` holds variables beyond the schema;
+    ``signal`` is of shape (time,) or (channel, time) [m s-2]; ``number`` identifies the recording in its set; ``extra`` holds
+    variables beyond the schema;
     ``warnings`` has a sentence for each assumption and each change of the signal.
     """
 
@@ -55,14 +56,14 @@ class Candidate(NamedTuple):
 
 
 class Record(NamedTuple):
-    """A window of a recording, shape (elapsed_time,) [m s-2], and the values of its per-record variables."""
+    """A window of a recording, shape (channel, elapsed_time) [m s-2], and the values of its per-record variables."""
 
     signal: NDArray[np.float32]
     columns: dict[str, Any]
 
 
-def read_recording(candidate: Candidate, length: int, fs: float) -> Recording:
-    """Read a candidate that must hold at least ``length`` samples at ``fs`` [Hz].
+def read_recording(candidate: Candidate, length: int, fs: float, channels: tuple[str, ...] = ("",)) -> Recording:
+    """Read a candidate that must hold at least ``length`` samples at ``fs`` [Hz]; the signal is then of shape (channel, time).
 
     Raises
     ------
@@ -77,10 +78,12 @@ def read_recording(candidate: Candidate, length: int, fs: float) -> Recording:
     except OSError as error:
         message = f"could not be read ({error.strerror or error})"
         raise UnusableError(message) from error
-    flaw = _flaw(recording.signal, length, fs)
-    if flaw is not None:
-        raise UnusableError(flaw)
-    return recording
+    signal = np.atleast_2d(recording.signal)
+    for name, channel in zip(channels, signal, strict=True):
+        flaw = _flaw(channel, length, fs)
+        if flaw is not None:
+            raise UnusableError(f"{flaw} (channel {name})" if len(channels) > 1 else flaw)
+    return recording._replace(signal=signal)
 
 
 def _flaw(signal: FloatArray, length: int, fs: float) -> str | None:
@@ -105,14 +108,14 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
         **orders(recording.bearing)._asdict(),
         **recording.extra,
         "bearing": recording.bearing.designation,
-        "fault": FAULTS.index(recording.fault),
+        "fault": UNKNOWN_CODE if recording.fault == UNKNOWN else FAULTS.index(recording.fault),
         "recording": recording.number,
         "sample_rate": fs,
         "split": SPLITS.index("test"),
     }
-    signal = recording.signal.astype(np.float32)
-    starts = range(0, signal.size - length + 1, length)
-    return [Record(signal[start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
+    signal = np.atleast_2d(recording.signal).astype(np.float32)
+    starts = range(0, signal.shape[-1] - length + 1, length)
+    return [Record(signal[:, start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
 
 
 def some_files(found: Iterable[Path], already: int, what: str) -> list[Path]:

@@ -7,6 +7,8 @@ corpora        commands that make corpora and look at them
 importing      commands that convert real recordings into the format
 feature_tables a picture of one record, and features of all
 models         a model trained, and scored on another corpus
+references     healthy records that the tested ones are compared with
+diagnosing     a diagnosis of one recording
 benchmarking   scores of all baselines, and the speed of this machine
 comparing      synthetic records against real ones
 reproduce      the seed paper run again

@@ -6,14 +6,34 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.feature_tables import table_of
-from raceway.commands.models import warn_of_severities
+from raceway.commands.feature_tables import notice_of_unknown, table_of
+from raceway.commands.models import ESTIMATORS, warn_of_severities
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, corpus_folder, folder_option, json_option, recipe_argument
+from raceway.console.options import (
+    A_PATH,
+    corpus_argument,
+    corpus_folder,
+    folder_option,
+    json_option,
+    recipe_argument,
+    speed_option,
+)
 from raceway.console.progress import compilation_noticed, progress
 
 if TYPE_CHECKING:
-    from features.baselines import Baseline
+    from features.baselines import Baseline, Results
+    from features.baselines.own import Maker
+    from features.recording_speeds import Speed
+
+# a copy of the names, since help must not import the registry; a test compares the two
+TRACKS = ("specimen", "rig", "bearing", "speed", "severity", "shape")
+
+
+def _checked_names(_context: click.Context, _option: click.Parameter, names: tuple[str, ...]) -> tuple[str, ...]:
+    for name in names:
+        if name not in (*ESTIMATORS, "all") and not all(name.partition(":")):
+            raise click.BadParameter(f"{name!r} is none of {', '.join(ESTIMATORS)}, all, or MODULE:NAME of your own")
+    return names
 
 
 @click.command()
@@ -27,44 +47,123 @@ if TYPE_CHECKING:
     help="Another corpus to test on, such as real recordings.",
 )
 @click.option(
-    "--by",
-    type=click.Choice(["specimen", "rig"]),
-    default="specimen",
+    "--track",
+    "tracks",
+    type=click.Choice([*TRACKS, "all"]),
+    multiple=True,
+    default=["specimen"],
     show_default=True,
-    help="Unit whose records all stay on one side of a split.",
+    metavar="NAME",
+    help=f"Respect in which tested records are new: {', '.join(TRACKS)}, or all. Repeatable. (It was --by.)",
 )
+@click.option(
+    "--estimator",
+    "estimators",
+    multiple=True,
+    metavar="NAME",
+    callback=_checked_names,
+    help="Classifier to score: a baseline, all of them (all), or MODULE:NAME of your own. Repeatable.",
+)
+@click.option(
+    "--waveforms", is_flag=True, help="Give your own classifiers the signals, shape (record, time), and no features."
+)
+@click.option(
+    "--per-turn",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Resample these signals to N samples per turn of the shaft.",
+)
+@click.option("--learning-curve", is_flag=True, help="Also score ever smaller numbers of training specimens.")
 @click.option(
     "--folds", type=click.IntRange(min=2), metavar="K", default=5, show_default=True, help="Number of splits."
 )
 @click.option(
     "--seed", type=int, default=0, show_default=True, metavar="S", help="Seed of splits, classifiers and bootstrap."
 )
+@speed_option
 @json_option
-def benchmark(corpus: Path, output: Path, test: Path | None, by: Any, folds: int, seed: int, as_json: bool) -> None:
+def benchmark(
+    corpus: Path,
+    output: Path,
+    test: Path | None,
+    tracks: tuple[Any, ...],
+    estimators: tuple[str, ...],
+    waveforms: bool,
+    per_turn: int | None,
+    learning_curve: bool,
+    folds: int,
+    seed: int,
+    speed: "Speed",
+    as_json: bool,
+) -> None:
     """Measure the scores of all baselines on DIR.
 
-    (raceway bench measures speed.) Cross-validation keeps all records of a specimen (or rig) on one side of each split. Two controls
-    are shown beside each score: a split of random records, which leaks, and labels permuted among specimens, which must score at chance.
-    With --test, models trained on all of DIR are also scored on DIR2.
+    (raceway bench measures speed.) Cross-validation keeps all records of a specimen on one side of each split, and all of a rig, bearing
+    type, speed range, fault width or fault shape with --track. Two controls are shown beside each score: a split of random records,
+    which leaks, and labels permuted among specimens, which must score at chance. With --test, models trained on all of DIR are also
+    scored on DIR2; --speed concerns DIR2 alone.
+
+    MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the
+    current folder, without .py, or an installed module. With --estimator or several tracks, the other baselines are left out.
 
       raceway benchmark corpus -o report
-      raceway benchmark corpus --test cwru -o report --by rig
+      raceway benchmark corpus --test cwru -o report --track rig
+      raceway benchmark corpus -o report --track all --learning-curve
+      raceway benchmark corpus -o report --estimator mine:make --estimator ensemble
     """
+    if waveforms and (test is not None or not any(":" in name for name in estimators)):
+        raise click.UsageError("--waveforms is for --estimator MODULE:NAME, and without --test")
+    if per_turn is not None and not waveforms:
+        raise click.UsageError("--per-turn is for --waveforms")
+    chosen = _makers(estimators)
+    from features import open_waveforms
     from features.baselines import benchmark as run
     from features.report.page import write_report
 
+    signals = open_waveforms(corpus, normalise=True, per_turn=per_turn) if waveforms else None
     table = table_of(corpus)
-    other = None if test is None else table_of(test)
-    with progress("scoring", "baselines") as report:
-        results = run(table, other, by=by, folds=folds, seed=seed, progress=report)
+    other = None if test is None else table_of(test, speed)
+    asked = "all" if "all" in tracks else tracks
+    options = {"tracks": asked, "estimators": chosen, "waveforms": signals, "curve": learning_curve}
+    with progress("scoring", "scores") as report:
+        results = run(table, other, **options, folds=folds, seed=seed, progress=report)
+    notice_of_unknown(corpus, results.corpus.unknown)
+    if test is not None and results.test is not None:
+        notice_of_unknown(test, results.test.unknown)
     warn_of_severities(results, next(iter(results.baselines.values())).test)
     page = write_report(corpus, results, output)
     if as_json:
         show.as_json({"report": page, "results": output / "results.json", **show.plain(results)})
         return
-    show.text(f"Balanced accuracy on {results.corpus.title}, {folds} folds by {by}:", "")
+    show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
     _show_baselines(results.baselines)
+    for track, found in results.further.items():
+        show.text("", f"By {track}, {found.folds} folds, {found.tested:,} of {found.records:,} records tested:", "")
+        _show_baselines(found.baselines)
+    for track, reason in results.left_out.items():
+        show.text("", f"No scores by {track}. {reason}")
+    if results.curve:
+        _show_curve(results)
     show.text("", f"{page}: the complete report.")
+
+
+def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
+    """Classifiers by the name that the user gave; None if none was given."""
+    from features.baselines import load_maker
+
+    spelled = dict.fromkeys(baseline for name in names for baseline in (ESTIMATORS if name == "all" else (name,)))
+    return {name: load_maker(name) if ":" in name else name for name in spelled} or None
+
+
+def _show_curve(results: "Results") -> None:
+    from features.baselines import interval_text
+
+    show.text("", f"Learning curve of {results.leading}, by {results.track}:", "")
+    rows = [(p.specimens, f"{p.records:.0f}", p.scores) for p in results.curve]
+    show.table(
+        ("training specimens", "records", "score", "95 %"),
+        ((str(n), of, f"{s.balanced_accuracy:.3f}", interval_text(s.interval, 2)) for n, of, s in rows),
+    )
 
 
 def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:

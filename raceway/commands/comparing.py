@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from raceway.commands.feature_tables import notice_of_unknown
 from raceway.console import show
 from raceway.console.options import A_PATH, corpus_folder, folder_option, json_option
 from raceway.console.progress import progress
@@ -60,6 +61,8 @@ def compare(
 
     with progress("measuring", "corpora") as report:
         found = run(synthetic, real, top=top, window=window, records=records, progress=report)
+    for windows in (found.synthetic, *found.real):
+        notice_of_unknown(windows.folder, windows.unknown)
     page = write_comparison(found, output)
     if as_json:
         show.as_json(found.plain() | {"report": page})

@@ -235,7 +235,8 @@ def validate(corpus: Path, as_json: bool) -> int:
     """Check every byte of the corpus in DIR.
 
     Exits with 1 if anything is wrong. The checks cover the manifest, the hash and the format of each part, the samples, and whether
-    corpus.nc agrees with the parts.
+    corpus.nc agrees with the parts. Of an imported corpus it also warns of splits that can leak: one recording under two specimens,
+    each file a specimen of its own, a class of one specimen.
 
       raceway validate corpus && echo sound
     """
@@ -244,8 +245,15 @@ def validate(corpus: Path, as_json: bool) -> int:
     if not (corpus / "manifest.json").exists():
         read_manifest(corpus)  # raises: a folder without a manifest is bad input, not a damaged corpus
     problems = validate_corpus(corpus)
+    warnings: list[str] = []
+    if not problems and read_manifest(corpus).importer is not None:
+        from features.auditing import audit_splits
+
+        warnings = audit_splits(corpus)
+    for sentence in warnings:
+        notice(f"warning: {sentence}")
     if as_json:
-        show.as_json({"corpus": corpus, "valid": not problems, "problems": problems})
+        show.as_json({"corpus": corpus, "valid": not problems, "problems": problems, "warnings": warnings})
     elif problems:
         show.text(*problems)
     else:

@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway.console import show
-from raceway.console.options import corpus_argument, file_option, json_option, record_option
-from raceway.console.progress import progress
+from raceway.console.options import corpus_argument, file_option, json_option, record_option, speed_option
+from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
     import xarray as xr
+
+    from features.recording_speeds import Speed
 
 
 @click.command()
@@ -33,33 +35,46 @@ def plot(corpus: Path, record: int, output: Path) -> None:
 @click.command()
 @corpus_argument
 @file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"))
+@speed_option
 @json_option
-def features(corpus: Path, output: Path, as_json: bool) -> None:
+def features(corpus: Path, output: Path, speed: "Speed", as_json: bool) -> None:
     """Compute the features of every record of DIR.
 
     The table has one row per record, with the features of its signal and all its labels.
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
+      raceway features recordings -o features.nc --speed correct
     """
     from features.table_files import check_destination, write_table
 
     check_destination(output)
-    table = table_of(corpus)
+    table = table_of(corpus, speed)
     write_table(table, output)
     records, columns = table.sizes["record"], table.sizes["feature"]
     missing = table.attrs["records_with_missing_features"]
     if as_json:
         facts = {"table": output, "records": records, "features": columns, "records_with_missing_features": missing}
-        show.as_json(facts)
+        other = table.attrs.get("recordings_with_other_speed")  # none if speeds were not estimated
+        show.as_json(facts | {"recordings_with_other_speed": other})
         return
     lacking = f"; some are missing in {show.counted(missing, 'record')}" if missing else ""
     show.text(f"{output}: {columns} features of {show.counted(records, 'record')}{lacking}.")
 
 
-def table_of(corpus: Path) -> "xr.Dataset":
-    """Feature table of a corpus, with progress."""
+def notice_of_unknown(corpus: Path, unknown: int) -> None:
+    """Say how many records of a corpus are left out because their class is not known."""
+    if unknown:
+        notice(f"{corpus}: {show.counted(unknown, 'record')} of class unknown left out.")
+
+
+def table_of(corpus: Path, speed: "Speed" = "off") -> "xr.Dataset":
+    """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
+    from features.recording_speeds import speed_warnings
 
     with progress("computing features", "parts") as report:
-        return feature_table(corpus, scheduler="local", progress=report)
+        table = feature_table(corpus, speed=speed, scheduler="local", progress=report)
+    for sentence in speed_warnings(table):
+        notice(f"warning: {sentence}")
+    return table

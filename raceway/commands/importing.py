@@ -78,11 +78,12 @@ def mfpt(source: Path, output: Path, window: float, as_json: bool) -> None:
 @_source
 @_output
 @_window
+@click.option("--folder", type=A_PATH, metavar="DIR", help="Folder of the recordings; by default that of SRC.")
 @json_option
-def generic(source: Path, output: Path, window: float, as_json: bool) -> None:
+def generic(source: Path, output: Path, window: float, folder: Path | None, as_json: bool) -> None:
     """Your own recordings, described by a mapping file.
 
-    SRC is a YAML file in the folder of the recordings (MATLAB, text or NumPy) that describes them:
+    SRC is a YAML file in the folder of the recordings (MATLAB, text, NumPy or WAV) that describes them:
 
       title: Pump 7, drive side
       bearing: "6205"
@@ -91,13 +92,13 @@ def generic(source: Path, output: Path, window: float, as_json: bool) -> None:
       shaft_rpm: 1480
       files:
         - {path: healthy/*.csv, fault: healthy, specimen: new}
-        - {path: outer/*.csv, fault: outer, specimen: worn}
+        - {path: "{fault}/{shaft_rpm}_*.csv", specimen: worn}
 
       raceway import generic pump7/mapping.yaml -o pump7_corpus
     """
     from gen.importers import import_generic
 
-    _run(lambda report: import_generic(source, output, window=window, progress=report), as_json)
+    _run(lambda report: import_generic(source, output, window=window, folder=folder, progress=report), as_json)
 
 
 def _run(bring: "Callable[[Any], Import]", as_json: bool) -> None:

@@ -1,17 +1,19 @@
 """Commands that train a model and score it on another corpus."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.feature_tables import table_of
+from raceway.commands.feature_tables import notice_of_unknown, table_of
+from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, file_option, json_option
+from raceway.console.options import A_PATH, corpus_argument, corpus_folder, file_option, json_option, speed_option
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
-    from features.baselines import Results, Scores
+    from features.baselines import Calibration, Results, Scores
+    from features.recording_speeds import Speed
 
 # a copy of the names, since help must not import the registry; a test compares the two
 ESTIMATORS = (
@@ -27,8 +29,8 @@ ESTIMATORS = (
 
 
 @click.command()
-@corpus_argument
-@file_option("MODEL", "Model file.")
+@click.argument("source", metavar="DIR|RECIPE")
+@file_option("MODEL", "Model file; without it the model of a RECIPE is kept for this user.", required=False)
 @click.option(
     "--estimator",
     type=click.Choice(ESTIMATORS),
@@ -38,38 +40,57 @@ ESTIMATORS = (
     help=f"One of {', '.join(ESTIMATORS)}.",
 )
 @json_option
-def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
-    """Train a classifier on the corpus in DIR.
+def train(source: str, output: Path | None, estimator: str, as_json: bool) -> None:
+    """Train a classifier on the corpus in DIR or of RECIPE.
 
     If the corpus has a test split (raceway info DIR), the model is trained on the other records and scored on the test split, which has
     other specimens. Otherwise it is trained on all records and not scored. Model files run no code when they are loaded.
 
       raceway train corpus -o model.skops
       raceway train corpus -o forest.skops --estimator random_forest
+      raceway train domain_randomised                 the reference model of raceway diagnose
+      raceway train my_recipe.yaml -o model.skops
+
+    A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training. Without -o the model is kept in
+    the folder RACEWAY_CACHE, or else in raceway in the cache folder of the user (XDG_CACHE_HOME or ~/.cache), and is not trained twice.
 
     Next: raceway evaluate OTHER --model MODEL
     """
-    from features.baselines import evaluate as score
-    from features.baselines import save_model
-    from features.baselines import train as fit
-    from gen.corpus import SPLITS
+    from features.baselines import count_unknown, load_model, save_model
+    from raceway.studies.reference_model import keep_model, recipe_table, train_and_score
 
-    table = table_of(corpus)
-    test = table["split"].values == SPLITS.index("test")
-    honest = bool(test.any() and not test.all())
-    model = fit(table.isel(record=~test) if honest else table, estimator)
-    save_model(model, output)
-    scores = score(table.isel(record=test), model) if honest else None
+    folder = Path(source)
+    from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
+    corpus = corpus_folder(None, None, folder) if from_folder else None
+    if corpus is None:
+        from gen.recipe import find_recipe
+
+        find_recipe(source)  # a misspelt name is reported before the simulator is imported
+    if corpus is None and output is None:
+        output, scores = keep_model(source, estimator)
+        model = load_model(output)
+    elif output is None:
+        raise click.UsageError("Missing option '-o' / '--output': only the model of a RECIPE is kept without it.")
+    else:
+        table = recipe_table(source) if corpus is None else table_of(corpus)
+        notice_of_unknown(corpus or folder, count_unknown(table))
+        model, scores = train_and_score(table, estimator)
+        save_model(model, output)
     warn_of_severities(scores)
     if as_json:
         names = ("records", "classes", "groups")
-        facts = {name: getattr(model, name) for name in names}
+        facts = {name: getattr(model, name) for name in names} | {"calibration": model.calibration.model_dump()}
+        facts |= {"takes_reference": model.relative is not None}
         show.as_json(
             {"model": output, "estimator": estimator, **facts, "features": len(model.features), "test": scores}
         )
         return
     show.text(
-        f"{output}: {estimator}, trained on {show.counted(model.records, 'record')}, classes {', '.join(model.classes)}."
+        f"{output}: {estimator}, trained on {show.counted(model.records, 'record')}, classes {', '.join(model.classes)}.",
+        calibration_text(model.calibration),
+        "It also takes healthy records of the tested rig (raceway evaluate --reference)."
+        if model.relative
+        else "It takes no healthy reference: each class needs records on rigs with two healthy recordings.",
     )
     if scores is not None:
         show.text("", f"Scores on the test split of {show.counted(scores.records, 'record')}:")
@@ -79,20 +100,31 @@ def train(corpus: Path, output: Path, estimator: str, as_json: bool) -> None:
 @click.command()
 @corpus_argument
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
+@reference_options
+@speed_option
 @json_option
-def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
+def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", as_json: bool, **reading: Any) -> None:
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
-    scored together, by the sum of their probabilities. The interval is a bootstrap over specimens.
+    scored together, by the geometric mean of their probabilities. The interval is a bootstrap over specimens. A record is answered if
+    its largest probability reaches the threshold of the model, and otherwise the answer is "unsure".
+
+    With --reference, records are compared with healthy records of their rig: those of a corpus, which may be DIR itself, or a recording
+    (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores.
 
       raceway evaluate cwru --model model.skops
+      raceway evaluate pump --model model.skops --reference pump
+      raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
+    from features.baselines import count_unknown, load_model
     from features.baselines import evaluate as score
-    from features.baselines import load_model
 
     loaded = load_model(model)
-    scores = score(table_of(corpus), loaded)
+    table = table_of(corpus, speed)
+    notice_of_unknown(corpus, count_unknown(table))
+    healthy = None if reference is None else reference_table(reference, corpus, table, speed, **reading)
+    scores = score(table, loaded, reference=healthy)
     warn_of_severities(scores)
     if scores.seen:
         notice(
@@ -102,7 +134,19 @@ def evaluate(corpus: Path, model: Path, as_json: bool) -> None:
         show.as_json({"corpus": corpus, "model": model, "estimator": loaded.name, **show.plain(scores)})
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")
+    if scores.reference:
+        show.text(scores.reference, "")
     _show_scores(scores)
+
+
+def calibration_text(calibration: "Calibration") -> str:
+    """Sentence on the calibration of a model."""
+    if calibration.by == "nothing":
+        return "Not calibrated: every record is answered."
+    return (
+        f"Calibrated on {calibration.by}s outside the training: answers {100 * calibration.coverage:.0f} % of their records, those with "
+        f"a largest probability of at least {calibration.threshold:.2f}, and is unsure of the others."
+    )
 
 
 def warn_of_severities(*tested: "Scores | Results | None") -> None:
@@ -115,20 +159,50 @@ def warn_of_severities(*tested: "Scores | Results | None") -> None:
 
 
 def _show_scores(scores: "Scores") -> None:
-    from features.baselines import interval_text
-
-    found = {
-        "balanced accuracy": f"{scores.balanced_accuracy:.3f} (95 % interval {interval_text(scores.interval)})",
-        "macro F1": f"{scores.macro_f1:.3f}",
-        "accuracy": f"{scores.accuracy:.3f}",
-        "records": f"{scores.records:,}",
-    }
     whole = scores.by_recording
-    if whole is not None and whole.records < scores.records:
-        found["by recording"] = f"balanced accuracy {whole.balanced_accuracy:.3f} of {whole.records:,}"
-    show.facts(found)
+    compared = [scores] if whole is None or whole.records == scores.records else [scores, whole]
+    header = ("", "by record", "by recording")[: 1 + len(compared)]
+    show.table(header, zip(FIGURES, *(_figures(one) for one in compared), strict=True))
     show.text("")
     show.table(
         ("true \\ predicted", *scores.model_classes),
         zip(scores.classes, *zip(*scores.confusion, strict=True), strict=True),
     )
+
+
+FIGURES = (
+    "balanced accuracy",
+    "95 % interval",
+    "false alarms on healthy",
+    "macro F1",
+    "accuracy",
+    "AUC",
+    "log-loss",
+    "calibration error",
+    "answered",
+    "accuracy of the answered",
+    "number",
+)
+
+
+def _figures(scores: "Scores") -> tuple[str, ...]:
+    """Text of each of ``FIGURES``."""
+    from features.baselines import interval_text
+
+    return (
+        f"{scores.balanced_accuracy:.3f}",
+        interval_text(scores.interval),
+        _shown(scores.false_alarms),
+        f"{scores.macro_f1:.3f}",
+        f"{scores.accuracy:.3f}",
+        _shown(scores.auc),
+        f"{scores.log_loss:.3f}",
+        f"{scores.ece:.3f}",
+        f"{scores.coverage:.3f}",
+        _shown(scores.answered_accuracy),
+        f"{scores.records:,}",
+    )
+
+
+def _shown(figure: float | None) -> str:
+    return "none" if figure is None else f"{figure:.3f}"

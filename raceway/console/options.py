@@ -11,7 +11,7 @@ Decorator = Callable[[Any], Any]
 A_PATH = click.Path(path_type=Path)
 
 
-def corpus_folder(_context: click.Context, _parameter: click.Parameter, path: Path | None) -> Path | None:
+def corpus_folder(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
     """Folder of a corpus; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
     if path is None or not path.is_file():
         return path
@@ -47,6 +47,15 @@ record_option: Decorator = click.option(
 )
 seed_option: Decorator = click.option("--seed", type=int, metavar="S", help="Replaces the seed of the recipe.")
 records_option: Decorator = click.option("--records", type=int, metavar="N", help="Make only the first N records.")
+
+speed_option: Decorator = click.option(
+    "--speed",
+    type=click.Choice(["off", "check", "correct"]),
+    default="check",
+    show_default=True,
+    help="Compare the labelled shaft speeds of real recordings with their lines and warn (check), or use the speed found "
+    "where it is clear (correct).",
+)
 
 
 def folder_option(metavar: str, what: str) -> Decorator:

@@ -4,6 +4,7 @@ They come from the manifest and from the per-record variables; no signal is read
 """
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import xarray as xr
 
 from gen.corpus import (
     DRAWS,
-    FAULTS,
+    FAULT_NAMES,
     SPLITS,
     Manifest,
     SignalCounts,
@@ -101,8 +102,8 @@ def _content(labels: xr.Dataset) -> dict[str, Any]:
         "sample_rate": float(rates[0]) if len(rates) == 1 else rates.tolist(),
         "duration": labels.sizes["elapsed_time"] / float(rates[0]),
         "samples": labels.sizes["elapsed_time"],
-        "classes": _named_counts(labels["fault"].values, FAULTS),
-        "splits": _named_counts(labels["split"].values, SPLITS),
+        "classes": _named_counts(labels["fault"].values, FAULT_NAMES),
+        "splits": _named_counts(labels["split"].values, dict(enumerate(SPLITS))),
         "bearings": _counts(labels["bearing"].values),
         "rigs": _distinct(labels["rig"].values),
         "specimens": _distinct(labels["rig"].values, labels["specimen"].values),
@@ -117,7 +118,7 @@ def _content(labels: xr.Dataset) -> dict[str, Any]:
 def _severities(labels: xr.Dataset) -> dict[str, dict[str, list[float]]]:
     """Smallest and largest value of each severity that is known and not 0, by class, in SI units."""
     found: dict[str, dict[str, list[float]]] = {}
-    for code, fault in enumerate(FAULTS):
+    for code, fault in FAULT_NAMES.items():
         rows = labels["fault"].values == code
         values = {name: labels[name].values[rows] for name in _SEVERITIES if name in labels.variables}
         ranges = {name: _range(some[some != 0]) for name, some in values.items()}
@@ -127,8 +128,8 @@ def _severities(labels: xr.Dataset) -> dict[str, dict[str, list[float]]]:
     return found
 
 
-def _named_counts(codes: np.ndarray, names: tuple[str, ...]) -> dict[str, int]:
-    return {name: int((codes == code).sum()) for code, name in enumerate(names) if (codes == code).any()}
+def _named_counts(codes: np.ndarray, names: Mapping[int, str]) -> dict[str, int]:
+    return {name: int((codes == code).sum()) for code, name in names.items() if (codes == code).any()}
 
 
 def _counts(values: np.ndarray) -> dict[str, int]:

@@ -1,16 +1,17 @@
 """Studies that need both ``gen`` and ``features``.
 
-============= ======================================================================
-module        responsibility
-============= ======================================================================
-paper         the seed paper: its systems run, its figures 3 to 6 drawn
-schematics    figures 1 and 2 of the seed paper: the model, the cracked bearing
-measures      measures on displacements and spectra
-experiments   the one constant with which a statement of the paper holds
-statements    the statements of the seed paper, measured
-orbits        picture of two crossed sensors on one machine
-sensor_faults pictures of every sensor fault and of a gear mesh
-gallery       a page of pictures: the seed paper, every fault, run-ups, sensor faults
-timing        speed of this machine, stage by stage
-============= ======================================================================
+=============== ======================================================================
+module          responsibility
+=============== ======================================================================
+paper           the seed paper: its systems run, its figures 3 to 6 drawn
+schematics      figures 1 and 2 of the seed paper: the model, the cracked bearing
+measures        measures on displacements and spectra
+experiments     the one constant with which a statement of the paper holds
+statements      the statements of the seed paper, measured
+orbits          picture of two crossed sensors on one machine
+sensor_faults   pictures of every sensor fault and of a gear mesh
+gallery         a page of pictures: the seed paper, every fault, run-ups, sensor faults
+timing          speed of this machine, stage by stage
+reference_model models trained on a recipe, and the one kept per user
+=============== ======================================================================
 """

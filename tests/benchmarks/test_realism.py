@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import scipy.io
 
-from benchmarks.realism import import_uestc, medians, real_corpora, table, verdicts
+from benchmarks.realism import medians, real_corpora, table, verdicts
 from features.realism import compare
 from features.realism.measures import MEASURES
 from gen.corpus import FAULTS, SIGNAL, open_corpus
@@ -49,7 +49,7 @@ def test_parts_of_a_uestc_recording_are_joined_converted_and_given_their_true_sp
             path = tmp_path / "uestc" / "Data" / name / f"{name}_{part}.mat"
             scipy.io.savemat(path, {"Data": volts[part - 1]})
     assert real_corpora(tmp_path, tmp_path / "one") == [tmp_path / "one" / "uestc"]
-    with open_corpus(import_uestc(tmp_path / "uestc", tmp_path / "two")) as corpus:
+    with open_corpus(tmp_path / "one" / "uestc") as corpus:
         assert [FAULTS[code] for code in corpus["fault"].values] == ["healthy", "outer"]
         np.testing.assert_allclose(corpus["shaft_rate"].values, [800 / 60, 1.061 * 1400 / 60])
         joined = np.concatenate(volts)[:10_000, 0] / 0.01022

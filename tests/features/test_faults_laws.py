@@ -10,7 +10,7 @@ import pytest
 
 from features.baselines import estimators
 from features.baselines.estimators import EnvelopeRule
-from features.faults import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, FaultClass, Line
+from features.faults import CLASSES, COMBS, EVIDENCE, FUNDAMENTALS, HEALTHY, LOOKS, FaultClass, Line
 from features.indicators import Orders, feature_names
 from features.report import pictures
 from features.report.pictures import Shown, draw_record, fault_lines
@@ -28,7 +28,7 @@ def test_the_table_has_the_classes_of_the_format_in_its_order():
 
 
 def test_classes_are_drawn_in_different_colours():
-    assert len({row.colour for row in CLASSES.values()}) == len(CLASSES)
+    assert len({row.colour for row in LOOKS.values()}) == len(LOOKS) == len(CLASSES) + 1
 
 
 def test_every_class_but_healthy_and_compound_has_features_that_tell_it_and_lines_that_show_it():
@@ -74,8 +74,8 @@ def looseness(monkeypatch):
     )
     table = {**CLASSES, row.name: row}
     monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, row.name))
-    for module in (estimators, pictures):
-        monkeypatch.setattr(module, "CLASSES", table)
+    monkeypatch.setattr(estimators, "CLASSES", table)
+    monkeypatch.setattr(pictures, "LOOKS", table)
     return row
 
 

@@ -218,7 +218,7 @@ def test_a_table_is_unchanged_after_netcdf(tmp_path, table):
     again = read_table(path)
     xr.testing.assert_equal(again, table)
     assert again["fault"].dtype == np.int8
-    assert again["fault"].attrs["flag_meanings"] == "healthy inner outer ball cage compound"
+    assert again["fault"].attrs["flag_meanings"] == "healthy inner outer ball cage compound unknown"
     assert again.attrs == table.attrs
     assert [file.name for file in tmp_path.iterdir()] == ["table.nc"]
 

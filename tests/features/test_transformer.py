@@ -1,11 +1,13 @@
 """The scikit-learn transformer passes the checks of scikit-learn and computes the features of the feature table."""
 
 import numpy as np
+import pytest
 from sklearn.base import clone
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
 from features.indicators import Orders, feature_names, indicators
 from features.transformer import IndicatorTransformer
+from tests.pulses import pulse_train
 
 FAST = {"fs": 3000.0, "shaft_rate": 400.0}  # at this speed the few samples of the checks are several revolutions
 
@@ -15,6 +17,7 @@ FAST = {"fs": 3000.0, "shaft_rate": 400.0}  # at this speed the few samples of t
         IndicatorTransformer(),
         IndicatorTransformer(groups=("time", "bands")),
         IndicatorTransformer(**FAST, groups=("lines", "shape")),
+        IndicatorTransformer(**FAST, groups=("lines",), speed="correct"),
     ]
 )
 def test_the_transformer_passes_the_checks_of_scikit_learn(estimator, check):
@@ -28,6 +31,25 @@ def test_the_transformer_computes_the_indicators():
     transformer = IndicatorTransformer(12_800.0, 25.0, 0.4, 3.6, 5.4, 2.4, ("shape", "lines"))
     np.testing.assert_array_equal(transformer.fit_transform(x), expected)
     assert tuple(transformer.get_feature_names_out()) == names
+
+
+def test_a_wrong_speed_is_corrected_signal_by_signal():
+    rates = (28.6, 30.0)
+    rng = np.random.default_rng(1)
+    x = np.array([pulse_train(12_000.0, 3.0, 3.5848 * rate, 3000.0, rng, noise=0.1) for rate in rates])
+    comb = feature_names(("lines",)).index("whitened_bpfo_comb")
+
+    def combs(**options):
+        return IndicatorTransformer(groups=("lines",), **options).fit_transform(x)[:, comb]
+
+    right = [combs(shaft_rate=rate)[number] for number, rate in enumerate(rates)]
+    np.testing.assert_allclose(combs(speed="correct"), right, atol=0.2)
+    assert combs()[0] < right[0] - 1
+
+
+def test_another_treatment_of_speeds_is_refused():
+    with pytest.raises(ValueError, match="'check' is no treatment of shaft speeds; choose off or correct"):
+        IndicatorTransformer(speed="check").fit_transform(np.ones((1, 100)))  # pyright: ignore[reportArgumentType]
 
 
 def test_the_transformer_has_no_state():

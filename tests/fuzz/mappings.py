@@ -8,7 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from gen.errors import RacewayError
-from gen.importers.mapping import bearing_of, read_mapping
+from gen.importers.entry import bearing_of
+from gen.importers.mapping import read_mapping
+from gen.importers.paths import match_path
 from gen.physics.bearing import orders
 from tests.fuzz import recipes
 
@@ -27,6 +29,7 @@ files:
 """,
     "geometry.yaml": """\
 variable: &v run.x
+resample_hz: 12000
 rig: 1
 files:
   - &first
@@ -41,11 +44,42 @@ files:
     bearing: {designation: L8, n_balls: 8, pitch_diameter_mm: 40, ball_diameter_mm: 8, contact_angle_deg: 15}
   - {<<: *first, path: b.mat, variable: *v, column: ax}
 """,
+    "paths.yaml": """\
+bearing: NICE
+unit: V
+sensitivity_mv_per_g: 100
+sample_rate_hz: {variable: fs}
+fault: {N: healthy, I: inner, O: outer}
+shaft_rpm: {variable: X*RPM, times: 60}
+load_n: {0: 0, 1: 746.5}
+specimen: "{fault} {place}"
+recording: "{run}"
+width_mm: {"007": 0.1778}
+files:
+  - {path: "Data/{place}/{fault}_{load_n}_{run}*.mat", variable: "X{run}_*"}
+  - {path: "**/{fault}-{width_mm}_{place}_{load_n}/{run}.mat"}
+  - path: "{fault}/{shaft_rpm}_{load_n}_{place}[0-9]{run}.wav"
+    shaft_rpm: {times: 60}
+""",
+    "channels.yaml": """\
+bearing: "6205"
+shaft_rpm: 1480
+fault: unknown
+specimen: "1"
+sample_rate_hz: 25600
+channels:
+  - {name: drive end, column: 0, unit: g}
+  - {name: fan end, column: ay, unit: mV, sensitivity_mv_per_m_s2: 10.2}
+files: [{path: a.csv}]
+""",
 }
 VALUES = (
     "40000", "-1", "18446744073709551616", "1e308", "1e-300", ".nan", ".", "..", "/etc/passwd", "'**/**/*'", "'a**b'", "'*'", "'['",
     '"\\0"', '"a\\tb"', "<script>alert(1)</script>", "'[x](javascript:y)'", "'|'", "';;'", "'\\n'", "6205", "NU206", "{n_balls: 9}",
-    "{n_balls: 9, pitch_diameter_mm: 1e308, ball_diameter_mm: 1e-308}", "compound", "m/s2", "\u202ex", "a" * 3000,
+    "{n_balls: 9, pitch_diameter_mm: 1e308, ball_diameter_mm: 1e-308}", "compound", "m/s2",
+    "'{fault}'", "'{specimen}_{specimen}'", "'{x}{y}{a}{b}{c}{d}{e}{f}{g}'",
+    "{variable: x}",
+    "{times: 0}", "{N: 1}", "{}", "[{name: x, unit: g}]", "V", "unknown", "\u202ex", "a" * 3000,
 )  # fmt: skip
 
 
@@ -69,12 +103,15 @@ def mutate(content: bytes, rng: np.random.Generator) -> bytes:
 
 
 def check(path: Path) -> None:
-    """Read a mapping file, and the bearing of each of its entries; any exception except a RacewayError is a finding."""
+    """Read a mapping file, the bearing of each of its entries, and names of files; any exception except a RacewayError is a finding."""
     try:
         mapping = read_mapping(path)
     except RacewayError:
         return
-    for entry in mapping.entries:
+    for section in mapping.sections:
+        for name in ("Data/a/N_0_1.mat", "I/30_1_x7y.wav", "a" * 255, "_" * 255, "x/" * 60):
+            match_path(section.pattern, name, section.suits())
+    for entry in (entry for section in mapping.sections for entry in section.examples()):
         if not np.isfinite(orders(bearing_of(entry))).all():
             message = f"orders of {entry.bearing} are not finite"
             raise ValueError(message)

@@ -121,7 +121,7 @@ def _scaled_number(content: bytes, rng: np.random.Generator) -> bytes:
         number = float(content[start:stop]) * 10.0 ** int(rng.integers(-12, 13)) * rng.choice([-1, 1, 1, 1])
     except ValueError:
         return content
-    text = str(int(number)) if rng.random() < 0.5 else repr(float(number))
+    text = str(int(number)) if rng.random() < 0.5 and np.isfinite(number) else repr(float(number))
     return content[:start] + text.encode() + content[stop:]
 
 

@@ -180,7 +180,7 @@ def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tm
 
 
 def test_info_and_validate_find_a_sound_corpus_sound(run, told, tiny_corpus):
-    assert told("validate", tiny_corpus) == {"corpus": str(tiny_corpus), "valid": True, "problems": []}
+    assert told("validate", tiny_corpus) == {"corpus": str(tiny_corpus), "valid": True, "problems": [], "warnings": []}
     assert run("validate", tiny_corpus).stdout == f"{tiny_corpus}: sound.\n"
     found = told("info", tiny_corpus)
     assert (found["complete"], found["bearings"], found["recordings"]) == (True, {"6205": 48}, 48)
@@ -236,6 +236,8 @@ def test_train_scores_on_the_test_split_and_trains_on_the_other_records(told, ru
     assert (made["records"], made["test"]["records"], made["test"]["seen"]) == (36, 12, 0)
     assert made["classes"] == ["healthy", "inner", "outer", "ball"]
     assert 0 <= made["test"]["balanced_accuracy"] <= 1
+    assert made["calibration"]["by"] in ("rig", "specimen")
+    assert made["calibration"]["coverage"] >= 0.9
     found = run("evaluate", tiny_corpus, "--model", path, "--json")
     assert json.loads(found.stdout)["seen"] == 36
     assert "no fair test" in found.stderr
@@ -255,7 +257,10 @@ def test_evaluate_gives_the_figures_over_the_classes_present(run, told, tiny_cor
     assert set(wanted) <= scores.keys()
     assert sum(map(sum, scores["confusion"])) == scores["records"] == 48
     shown = run("evaluate", tiny_corpus, "--model", model).stdout
-    assert f"balanced accuracy  {scores['balanced_accuracy']:.3f}" in shown
+    (line,) = (line.split() for line in shown.splitlines() if line.startswith("balanced accuracy"))
+    assert line[2] == f"{scores['balanced_accuracy']:.3f}"
+    (line,) = (line.split() for line in shown.splitlines() if line.startswith("false alarms on healthy"))
+    assert line[4] == f"{scores['false_alarms']:.3f}"
 
 
 def test_benchmark_writes_a_report_and_results(run, told, tiny_corpus, tmp_path, monkeypatch):

@@ -162,7 +162,7 @@ TABLE = [
     ("evaluate {corpus} --model {file}", "file.txt: not a readable model"),
     ("evaluate {corpus} --model {cut}", "cut.skops: not a readable model"),
     ("evaluate {nowhere} --model {model}", "nowhere: no such folder"),
-    ("benchmark {corpus} -o {new} --by rig --folds 3", "2 rig(s) cannot fill 3 folds; use at most 2 folds."),
+    ("benchmark {corpus} -o {new} --track rig --folds 3", "2 rig(s) cannot fill 3 folds; use at most 2 folds."),
     ("benchmark {corpus} -o {new} --folds 3 --test {corpus}", "48 of its records are in the training corpus too"),
     # recordings
     ("import cwru {nowhere} -o {new}", "nowhere: no such folder; give the folder that holds the .mat files."),

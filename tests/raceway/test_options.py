@@ -28,10 +28,10 @@ def given(monkeypatch):
 def test_benchmark_passes_on_grouping_folds_and_seed(run, given, tiny_corpus, tmp_path):
     options = given("features.baselines.benchmark")
     line = ("benchmark", tiny_corpus, "-o", tmp_path / "report")
-    assert run(*line, "--by", "rig", "--folds", 2, "--seed", 9).exit_code == 2
-    assert (options["by"], options["folds"], options["seed"]) == ("rig", 2, 9)
+    assert run(*line, "--track", "rig", "--folds", 2, "--seed", 9).exit_code == 2
+    assert (options["tracks"], options["folds"], options["seed"]) == (("rig",), 2, 9)
     run(*line)
-    assert (options["by"], options["folds"], options["seed"]) == ("specimen", 5, 0)
+    assert (options["tracks"], options["folds"], options["seed"]) == (("specimen",), 5, 0)
 
 
 @pytest.mark.parametrize("name", ["cwru", "mfpt", "generic"])

@@ -23,10 +23,11 @@ from features.baselines import (
     splits,
     train,
 )
-from features.baselines.benchmark import _cases, permuted_labels, write_results
+from features.baselines.benchmark import write_results
 from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
-from features.baselines.splits import check_disjoint, check_taught, grouped_splits, score_splits
+from features.baselines.splits import control_cases, grouped_case, permuted_labels, score_splits
+from features.baselines.tracks import check_disjoint, check_taught, grouped_splits
 from features.faults import CLASSES, COMBS, EVIDENCE
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
@@ -138,7 +139,7 @@ def results(few_trees):  # noqa: ARG001
 
 def test_each_control_is_stratified_by_the_labels_that_it_scores():
     records = records_of(make_table(24, 3))
-    cases = _cases(records, "specimen", 3, 7)
+    cases = {"grouped": grouped_case(records, "specimen", 3, 7), **control_cases(records, "specimen", 3, 7)}
     assert list(cases) == ["grouped", "leaky", "null"]
     for name, (labels, found) in cases.items():
         group = np.arange(len(labels)) if name == "leaky" else records.specimen
@@ -201,7 +202,7 @@ def test_permuted_labels_of_a_rare_class_are_scored_although_a_fold_trains_none_
 def test_cross_validation_refuses_a_fold_that_trains_no_record_of_a_class(monkeypatch):
     table = make_table()
     outer = table.fault.values == FAULTS.index("outer")
-    monkeypatch.setattr(splits, "grouped_splits", lambda *_: [(np.flatnonzero(~outer), np.flatnonzero(outer))])
+    monkeypatch.setattr(splits, "track_splits", lambda *_: [(np.flatnonzero(~outer), np.flatnonzero(outer))])
     with pytest.raises(CorpusError, match="a fold has no outer record to train on"):
         cross_validate(table, "majority")
 
@@ -221,9 +222,9 @@ def test_results_are_plain_json(results, tmp_path):
 
 def test_cross_validation_by_rig_keeps_rigs_together():
     table = make_table(40, 2, rigs=5)
-    assert cross_validate(table, "logistic_regression", by="rig").balanced_accuracy > 0.95
+    assert cross_validate(table, "logistic_regression", track="rig").balanced_accuracy > 0.95
     with pytest.raises(CorpusError, match=r"5 rig\(s\) cannot fill 6 folds; use at most 5 folds"):
-        cross_validate(table, "logistic_regression", by="rig", folds=6)
+        cross_validate(table, "logistic_regression", track="rig", folds=6)
 
 
 @pytest.mark.parametrize("name", list(ESTIMATORS))
@@ -368,7 +369,7 @@ def without(table: xr.Dataset, name: str) -> xr.Dataset:
         (make_table(8, 2).isel(record=[]), "holds no record"),
         (without(make_table(), "specimen"), "lacks 'specimen'; make it again with raceway features"),
         (make_table().isel(feature=slice(0, 8)), "lacks 'shape'"),
-        (make_table().assign(fault=("record", np.full(80, 9))), "values outside 0..5"),
+        (make_table().assign(fault=("record", np.full(80, 9))), "fault has values other than 0 healthy, 1 inner"),
     ],
 )
 def test_a_table_that_cannot_be_cross_validated_is_refused_in_one_sentence(table, sentence):

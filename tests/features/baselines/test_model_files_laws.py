@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from features.baselines import evaluate, load_model
+from features.baselines.calibration import UNCALIBRATED
 from features.baselines.model_file import pack
 from features.baselines.model_rules import LEARNED, LISTS
 from gen.errors import CorpusError
@@ -124,6 +125,7 @@ def test_a_support_vector_machine_that_miscounts_its_vectors_is_refused(files, t
     assert "estimator.steps[2][1]" in refusal(archive.write(tmp_path / "m"))
 
 
+CALIBRATION = UNCALIBRATED.model_dump()
 WRONG_FIELDS = [
     ("name", ["svm"], "name: "),
     ("name", "forest", "'forest' is no baseline; the baselines are majority"),
@@ -159,6 +161,24 @@ WRONG_FIELDS = [
     ("digests", np.zeros(3, dtype=np.uint64), "digests"),
     ("versions", {"numpy": 2}, "versions"),
     ("versions", {"scikit-learn": "0.1"}, "was trained with scikit-learn 0.1, and "),
+    ("calibration", None, "calibration"),
+    ("calibration", {}, "calibration.by"),
+    *(
+        ("calibration", CALIBRATION | change, f"calibration.{next(iter(change))}")
+        for change in (
+            {"by": "shelf"},
+            {"temperature": 0.0},
+            {"temperature": 1e-320},
+            {"temperature": float("nan")},
+            {"temperature": "1"},
+            {"dependence": -0.1},
+            {"threshold": 1.5},
+            {"threshold": float("inf")},
+            {"recording_threshold": None},
+            {"coverage": True},
+            {"code": "print"},
+        )
+    ),
     ("raceway_model", [1], "not a model of this version"),
     ("estimator", 5, "estimator"),
 ]

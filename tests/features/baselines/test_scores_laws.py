@@ -8,12 +8,20 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
-from sklearn.metrics import f1_score, recall_score
+from sklearn.metrics import f1_score, log_loss, recall_score, roc_auc_score
 
 from features.baselines.calibration import UNCALIBRATED
 from features.baselines.predictions import predictions
 from features.baselines.records import Records
-from features.baselines.scores import bootstrap_interval, interval_text, score
+from features.baselines.scores import (
+    area,
+    balanced_log_loss,
+    bootstrap_interval,
+    expected_calibration_error,
+    interval_text,
+    reliability_bins,
+    score,
+)
 from gen.corpus import FAULTS
 
 
@@ -140,3 +148,73 @@ def test_the_interval_is_as_wide_as_that_of_as_many_independent_specimens(specim
     width = 2 * 1.96 * np.sqrt(share * (1 - share) / specimens / 2)
     # 1000 resamples determine a quantile to about 5 %; half as many specimens would make it 41 % wider
     assert high - low == pytest.approx(width, rel=0.15)
+
+
+@given(labelled())
+@settings(deadline=None)
+def test_false_alarms_are_the_healthy_records_that_are_predicted_faulty(case):
+    fault, predicted, specimen = case
+    found = scores_of(fault, predicted, specimen).false_alarms
+    if 0 not in fault:
+        assert found is None
+    else:
+        assert found == pytest.approx(
+            sum(p != 0 for f, p in zip(fault, predicted, strict=True) if f == 0) / sum(fault == 0)
+        )
+
+
+@given(st.integers(0, 999), st.integers(2, 4))
+@settings(deadline=None)
+def test_area_and_log_loss_agree_with_those_of_scikit_learn(seed, classes):
+    rng = np.random.default_rng(seed)
+    fault = np.concatenate([np.arange(classes), rng.integers(classes, size=40)])
+    probabilities = rng.dirichlet(np.ones(classes), len(fault)).round(2) + 0.01  # rounded for ties
+    probabilities /= probabilities.sum(axis=1, keepdims=True)
+    codes = np.arange(classes)
+    aucs = [roc_auc_score(fault == c, probabilities[:, c]) for c in codes]
+    weights = 1 / np.bincount(fault)[fault]
+    assert area(fault, probabilities, codes) == pytest.approx(np.mean(aucs))
+    expected = log_loss(fault, probabilities, sample_weight=weights, labels=codes)
+    assert balanced_log_loss(fault, probabilities, codes) == pytest.approx(expected)
+
+
+def test_the_area_counts_the_pairs_of_the_classes_present():
+    probabilities = np.array([[0.6, 0.3, 0.1], [0.1, 0.2, 0.7], [0.5, 0.4, 0.1]])
+    # class 0 is above class 1 in both pairs, class 1 above class 0 in one of two
+    assert area(np.array([0, 1, 0]), probabilities, np.arange(3)) == pytest.approx((1 + 0) / 2)
+    assert area(np.array([0, 1, 1]), probabilities, np.arange(3)) == pytest.approx((1 + 0.5) / 2)
+    assert area(np.array([0, 2, 0]), probabilities[:, :2], np.arange(2)) == pytest.approx(
+        (1 + 0.5) / 2
+    )  # class 2 is unknown
+    assert area(np.array([1, 1, 1]), probabilities, np.arange(3)) is None
+
+
+def test_the_calibration_error_of_overconfident_answers_is_that_computed_by_hand():
+    largest = np.array([0.95, 0.95, 0.95, 0.95, 0.55, 0.55])
+    right = np.array([True, True, False, False, True, False])
+    bins = reliability_bins(largest, right)
+    assert [(found.records, found.accuracy) for found in bins] == [(2, 0.5), (4, 0.5)]
+    assert expected_calibration_error(bins) == pytest.approx((2 * 0.05 + 4 * 0.45) / 6)
+
+
+def test_the_calibration_error_of_calibrated_answers_is_near_zero():
+    rng = np.random.default_rng(0)
+    largest = rng.uniform(0.25, 1.0, 100_000)
+    bins = reliability_bins(largest, rng.random(len(largest)) < largest)
+    # the share of right answers in a bin of 13,000 records varies by 0.004
+    assert expected_calibration_error(bins) < 0.01
+    assert sum(found.records for found in bins) == len(largest)
+
+
+def test_coverage_and_accuracy_are_of_the_answered_records():
+    fault = np.array([0, 1, 1, 0])
+    probabilities = np.array([[0.9, 0.1], [0.2, 0.8], [0.55, 0.45], [0.4, 0.6]])
+    records = made_records(fault, np.arange(4), np.arange(4))
+    calibration = UNCALIBRATED.model_copy(update={"threshold": 0.58})
+    found = score(records, predictions(probabilities, FAULTS[:2], records.recording, calibration))
+    assert (found.coverage, found.answered_accuracy) == (0.75, pytest.approx(2 / 3))
+    assert (found.accuracy, found.false_alarms) == (0.5, 0.5)
+    none = score(
+        records, replace(predictions(probabilities, FAULTS[:2], records.recording, calibration), threshold=0.95)
+    )
+    assert (none.coverage, none.answered_accuracy) == (0.0, None)

@@ -15,7 +15,16 @@ from features.indicators import Orders
 from features.report import examples
 from features.report.examples import plot_record
 from features.report.page import QUANTITIES, _findings, _of_faults, write_report
-from features.report.pictures import Shown, draw_record, draw_scores, fault_lines, picture, squared_envelope, thinned
+from features.report.pictures import (
+    Shown,
+    draw_record,
+    draw_reliability,
+    draw_scores,
+    fault_lines,
+    picture,
+    squared_envelope,
+    thinned,
+)
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, open_corpus, part_name, write_index, write_manifest, write_part
 from gen.errors import CorpusError
@@ -113,7 +122,7 @@ class Links(HTMLParser):
 def test_the_page_refers_to_no_other_file(page):
     found = Links(page)
     assert found.open == []
-    assert len(found.addresses) == 6
+    assert len(found.addresses) == 7
     assert all(address.startswith("data:image/svg+xml;base64,") for address in found.addresses)
     assert "http" not in re.sub(r"base64,[^\"]*", "", page).replace("http-equiv", "")
 
@@ -124,6 +133,8 @@ def test_the_page_contains_the_counts_of_the_corpus_and_every_score(page, result
     for name in ESTIMATORS:
         found = results.baselines[name].grouped
         assert f"{name.replace('_', ' ')} {found.balanced_accuracy:.3f} ± {np.std(found.folds):.3f}" in text
+        expected = (found.balanced_accuracy, found.false_alarms, found.auc, found.log_loss, found.ece, found.coverage)
+        assert f"{name.replace('_', ' ')} {' '.join(f'{figure:.3f}' for figure in expected)}" in text
     for fault in FOUR:
         assert f"{fault} 6 2 2 6 0 0" in text
     assert "cage" not in text
@@ -142,7 +153,7 @@ def test_six_classes_are_counted_drawn_and_scored(results_of, tmp_path):
     corpus = write_corpus(tmp_path / "corpus", specimens=12, classes=6)
     found = Links(write_report(corpus, results_of(corpus), tmp_path / "out").read_text())
     text = " ".join(found.text.split())
-    assert len(found.addresses) == 8
+    assert len(found.addresses) == 9
     for fault in FAULTS:
         assert f"{fault} 6 2 2 6 0 0" in text
     assert f"true \\ predicted {' '.join(FAULTS)} healthy" in text
@@ -208,10 +219,10 @@ def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results
     found = results.baselines["ensemble"]
     leaking = replace(found, null=replace(found.null, interval=(0.8, 0.9)))
     suspicious = replace(results, baselines=results.baselines | {"ensemble": leaking})
-    assert "above chance; look for a leak" in _findings(suspicious, 0.25)[2]
+    assert "above chance; look for a leak" in _findings(suspicious, 0.25)[3]
     honest = replace(found, null=replace(found.null, interval=(0.2, 0.9)))
     fine = replace(results, baselines=results.baselines | {"ensemble": honest})
-    assert "at chance, as expected" in _findings(fine, 0.25)[2]
+    assert "at chance, as expected" in _findings(fine, 0.25)[3]
 
 
 def test_an_unknown_interval_is_reported_as_such_and_not_drawn(results):
@@ -220,16 +231,17 @@ def test_an_unknown_interval_is_reported_as_such_and_not_drawn(results):
         found, grouped=replace(found.grouped, interval=None), null=replace(found.null, interval=None), test=None
     )
     sentences = _findings(replace(results, baselines=results.baselines | {"ensemble": alone}), 0.25)
+    assert sentences[1].startswith(f"It predicts a fault for {found.grouped.false_alarms:.1%} of the healthy records.")
     assert "(95 % interval not known); chance is" in sentences[0]
-    assert sentences[2].endswith("(95 % interval not known).")
+    assert sentences[3].endswith("(95 % interval not known).")
     known, unknown = (draw_scores({"one": one}, 0.25, "specimen").axes[0] for one in (found, alone))
     assert len(known.collections) == len(unknown.collections) + 1
 
 
 def test_severities_that_were_tested_and_not_trained_are_among_the_findings(results):
-    assert len(_findings(replace(results, uncovered_widths={}), 0.25)) == 3
+    assert len(_findings(replace(results, uncovered_widths={}), 0.25)) == 4
     sentences = _findings(replace(results, uncovered_widths={"inner": (0.0014,)}), 0.25)
-    assert sentences[3].startswith("Cross-validation: tested but not trained: inner 1.4 mm wide")
+    assert sentences[4].startswith("Cross-validation: tested but not trained: inner 1.4 mm wide")
 
 
 def test_the_page_says_if_no_record_of_a_class_can_be_drawn(results, tmp_path):
@@ -239,7 +251,7 @@ def test_the_page_says_if_no_record_of_a_class_can_be_drawn(results, tmp_path):
     )
     page = write_report(unknown, results, tmp_path / "out").read_text()
     assert "No record of this class has a signal, a shaft rate and fault orders to draw." in page
-    assert len(Links(page).addresses) == 5
+    assert len(Links(page).addresses) == 6
 
 
 @pytest.mark.parametrize(
@@ -319,3 +331,11 @@ def test_a_thinned_waveform_keeps_its_highest_peak(length, place, seed):
     assert drawn.max() == 20.0
     assert time.shape == drawn.shape
     assert drawn.size < 6100
+
+
+def test_the_reliability_diagram_has_a_point_for_each_bin(results):
+    found = results.baselines["ensemble"].grouped
+    (panel,) = draw_reliability({"made up": found}).axes
+    drawn = panel.collections[0].get_offsets()
+    np.testing.assert_allclose(drawn, [(one.probability, one.accuracy) for one in found.reliability])
+    assert f"calibration error {found.ece:.3f}" in panel.get_title("left")

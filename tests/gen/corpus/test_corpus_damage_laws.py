@@ -307,8 +307,8 @@ def with_attribute(name, key, value):
 
 
 FOUND_IN_PARTS = {
-    "a class that does not exist": (with_values("fault", 9), "fault has values outside 0..5"),
-    "a split that does not exist": (with_values("split", -1), "split has values outside 0..2"),
+    "a class that does not exist": (with_values("fault", 9), "fault has values other than 0 healthy, 1 inner"),
+    "a split that does not exist": (with_values("split", -1), "split has values other than 0 train, 1 validation, 2 test."),
     "a missing variable": (lambda part: part.drop_vars("bpfo"), "bpfo"),
     "a wrong unit": (with_attribute("load", "units", "lbf"), "load is in 'lbf', not 'N'"),
     "a wrong type": (lambda part: part.assign(rig=part["rig"].astype("f8").assign_attrs(part["rig"].attrs)), "rig"),

@@ -2,7 +2,7 @@
 
 import pytest
 
-from gen.corpus import FAULTS
+from gen.corpus import FAULTS, UNKNOWN
 from gen.errors import CorpusError
 from gen.importers.mapping import read_mapping
 
@@ -16,16 +16,16 @@ def mapping(folder, *files):
 
 
 def test_a_mapping_may_name_every_fault_class(tmp_path):
-    found = read_mapping(mapping(tmp_path, *(f"fault: {fault}" for fault in FAULTS)))
-    assert tuple(entry.fault for entry in found.entries) == FAULTS
+    found = read_mapping(mapping(tmp_path, *(f"fault: {fault}" for fault in (*FAULTS, UNKNOWN))))
+    assert tuple(next(section.examples()).fault for section in found.sections) == (*FAULTS, UNKNOWN)
 
 
 @pytest.mark.parametrize("key", ["width_mm: 1", "depth_um: 100", "angle_deg: 0", "n_spalls: 1"])
-@pytest.mark.parametrize("fault", FAULTS)
+@pytest.mark.parametrize("fault", [*FAULTS, UNKNOWN])
 def test_a_spall_is_described_only_where_there_is_one(tmp_path, fault, key):
     path = mapping(tmp_path, f"fault: {fault}, {key}")
-    if fault in ("healthy", "cage"):
+    if fault in ("healthy", "cage", UNKNOWN):
         with pytest.raises(CorpusError, match=f"{key.split(':')[0]} describes a spall, and fault is {fault}"):
             read_mapping(path)
     else:
-        assert read_mapping(path).entries[0].fault == fault
+        assert next(read_mapping(path).sections[0].examples()).fault == fault

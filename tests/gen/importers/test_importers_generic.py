@@ -11,7 +11,9 @@ import scipy.io
 from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.errors import CorpusError
 from gen.importers import import_generic
-from gen.importers.mapping import Entry, Geometry, bearing_of, read_mapping
+from gen.importers.entry import Entry, bearing_of
+from gen.importers.mapping import read_mapping
+from gen.importers.mapping_values import Geometry
 from gen.recipe.keys import recipe_keys
 from gen.units import unit_suffix
 from tests.paths import ROOT
@@ -148,11 +150,14 @@ UNUSABLE = {
         "is not a readable NumPy file",
     ),
     "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is not a readable NumPy file"),
-    "sound.wav": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy"),
-    "a.mat": (lambda path: scipy.io.savemat(path, {"x": SIGNAL}), "is a MATLAB file; give the key variable"),
+    "notes.doc": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy, .wav"),
+    "two.mat": (
+        lambda path: scipy.io.savemat(path, {"x": SIGNAL, "y": SIGNAL, "rpm": 5}),
+        "holds x, y, more than one variable with 100 numbers or more; name one with variable",
+    ),
     "broken_7_3.mat": (
         lambda path: (write_matlab_7_3(path), path.write_bytes(path.read_bytes()[:900])),
-        "is a MATLAB file; give the key variable",
+        "is not a readable MATLAB 7.3 file",
     ),
 }
 
@@ -234,13 +239,13 @@ REFUSED = {
     ),
     "rates": (
         COMMON + "files: [{path: a.npy}, {path: b.npy, sample_rate_hz: 4000}]",
-        "files[1] (b.npy) is at 4000 Hz and files[0] (a.npy) at 2000 Hz; a corpus has one sample rate: make a corpus of each",
+        "(a.npy) at 2000 Hz; a corpus has one sample rate: give resample_hz at the top, or make a corpus of each.",
     ),
     "absolute": (
         COMMON + "files: [{path: /etc/passwd}]",
         "files[0].path: /etc/passwd leads out of the folder",
     ),
-    "above": (COMMON + "files: [{path: data/../../a.npy}]", "leads out of the folder of the mapping file"),
+    "above": (COMMON + "files: [{path: data/../../a.npy}]", "leads out of the folder of the recordings"),
     "pattern": (COMMON + "files: [{path: 'a**b'}]", "files[0].path: a**b is not a pattern of file names"),
     "folder_itself": (
         COMMON + "files: [{path: '.'}]",
@@ -336,11 +341,17 @@ def test_a_link_out_of_the_folder_is_refused(tmp_path):
 
 def test_the_mapping_in_the_documentation_is_one(tmp_path):
     page = (ROOT / "docs" / "importing.md").read_text(encoding="utf-8")
-    (example,) = re.findall(r"```yaml\n(.*?)```", page, flags=re.DOTALL)
+    example, paths, channels = re.findall(r"```yaml\n(.*?)```", page, flags=re.DOTALL)
     (tmp_path / "mapping.yaml").write_text(example, encoding="utf-8")
     mapping = read_mapping(tmp_path / "mapping.yaml")
-    assert [entry.fault for entry in mapping.entries] == ["healthy", "outer", "ball"]
-    assert [bearing_of(entry).designation for entry in mapping.entries] == ["6205", "6205", "L8"]
+    entries = [next(section.examples()) for section in mapping.sections]
+    assert [entry.fault for entry in entries] == ["healthy", "outer", "ball"]
+    assert [bearing_of(entry).designation for entry in entries] == ["6205", "6205", "L8"]
+    (tmp_path / "mapping.yaml").write_text(paths, encoding="utf-8")
+    (section,) = read_mapping(tmp_path / "mapping.yaml").sections
+    assert section.entry({"fault": "O", "shaft_rpm": "1200"}).recording == "O 1200"
+    (tmp_path / "mapping.yaml").write_text(f"{COMMON}{channels}files: [{{path: a.csv}}]", encoding="utf-8")
+    assert read_mapping(tmp_path / "mapping.yaml").channels == ("drive end", "fan end")
 
 
 def test_a_folder_in_place_of_a_mapping_file_is_refused_with_what_to_give(tmp_path):
@@ -356,4 +367,4 @@ def test_mapping_files_and_recipes_spell_a_quantity_alike():
     keys = {*Entry.model_fields, *Geometry.model_fields}
     quantities = {key for key in keys if unit_suffix(key) or key.startswith("n_")}
     assert quantities > {"shaft_rpm", "depth_um", "n_spalls", "ball_diameter_mm"}
-    assert quantities - in_recipes == set()
+    assert quantities - in_recipes == {"sensitivity_mv_per_m_s2"}

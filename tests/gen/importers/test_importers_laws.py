@@ -57,7 +57,7 @@ def test_the_windows_put_together_are_the_recording_without_its_incomplete_end(s
     signal = np.random.default_rng(size).normal(size=size)
     records = cut(recording(signal), "a.mat", length, 1000.0)
     assert len(records) == size // length
-    together = np.concatenate([record.signal for record in records]) if records else np.zeros(0)
+    together = np.concatenate([record.signal[0] for record in records]) if records else np.zeros(0)
     np.testing.assert_array_equal(together, signal[: len(records) * length].astype(np.float32))
     assert [record.columns["source"] for record in records] == [f"a.mat#{length * n}" for n in range(len(records))]
 
@@ -71,7 +71,7 @@ def test_a_corpus_holds_every_window_of_every_recording_that_is_long_enough(size
             Candidate(Path(__file__), f"{number}.mat", lambda n=number: recording(signals[n], n, n))
             for number in range(len(sizes))
         ]
-        collection = Collection("test", "Test", "Nowhere.", 100.0, "sensor")
+        collection = Collection("test", "Test", "Nowhere.", 100.0, ("sensor",))
         done = import_recordings(collection, candidates, Path(folder) / "corpus", window=0.1)
         assert validate_corpus(done.directory) == []
         long = [signal for signal in signals if signal.size >= 10]

@@ -1,0 +1,159 @@
+"""Tables of README.md and docs/transfer.md, made from ``benchmarks/transfer.json``.
+
+A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``. A test compares the pages with the file.
+"""
+
+import json
+import re
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+RESULTS = Path(__file__).with_name("transfer.json")
+ROOT = RESULTS.parent.parent
+PAGES = ("README.md", "docs/transfer.md")
+_TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+
+Results = Mapping[str, Any]
+NAMES = {
+    "envelope_rule": "untrained envelope rule",
+    "logistic_regression": "logistic regression",
+    "random_forest": "random forest",
+    "extra_trees": "ExtraTrees",
+    "ensemble": "ensemble (the default)",
+}
+
+
+def spread(found: Sequence[Mapping[str, float | None]], figure: str) -> str:
+    """Mean over the seeds and, in brackets, the lowest; a dash if the figure is not known.
+
+    >>> spread([{"window": 0.5}, {"window": 0.75}], "window")
+    '0.625 (0.500)'
+    """
+    values = [value for each in found if (value := each[figure]) is not None]
+    return f"{sum(values) / len(values):.3f} ({min(values):.3f})" if values else "-"
+
+
+def mean(found: Sequence[Mapping[str, float | None]], figure: str) -> str:
+    """Mean over the seeds; a dash if the figure is not known."""
+    return spread(found, figure).partition(" ")[0]
+
+
+def _markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [header, ["---", *["---:"] * (len(header) - 1)], *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _summary(results: Results) -> str:
+    """The four sets in short: zero-shot, and with one healthy recording."""
+    zero, reference = results["zero_shot"], results["reference"]
+    rows = [
+        [NAMES[name], *(spread(zero[name][test], "window") for test in zero[name])]
+        for name in ("envelope_rule", "ensemble")
+    ]
+    known = [spread(reference[test], "window") if test in reference else "-" for test in zero["ensemble"]]
+    heads = {"wang": "CWRU, Wang's subset", "cwru": "CWRU, all 64", "mfpt": "MFPT, 2 classes", "uestc": "UESTC"}
+    return _markdown(
+        ["", *(heads[test] for test in zero["ensemble"])],
+        [*rows, ["ensemble, with one healthy recording of the machine", *known]],
+    )
+
+
+def _zero_shot(results: Results) -> str:
+    zero = results["zero_shot"]
+    tests = list(zero["ensemble"])
+    header = ["", *(f"{test} {unit}" for test in tests for unit in ("window", "recording")), "own rigs, CV"]
+    rows = [
+        [
+            NAMES[name],
+            *(spread(found[test], unit) for test in tests for unit in ("window", "recording")),
+            mean([results["own_rigs"][name]], "window"),
+        ]
+        for name, found in zero.items()
+    ]
+    return _markdown(header, rows)
+
+
+def _details(results: Results) -> str:
+    """Every figure of the default estimator."""
+    ways = {
+        "zero-shot": results["zero_shot"]["ensemble"],
+        "speed corrected": results["speed_corrected"],
+        "one healthy recording": results["reference"],
+    }
+    header = [
+        *("set", "way", "window", "recording", "false alarms", "of recordings"),
+        *("AUC", "log-loss", "ECE", "answered", "accuracy of answers"),
+    ]
+    rows = [
+        [
+            *(test, way, spread(found[test], "window"), spread(found[test], "recording")),
+            *(mean(found[test], name) for name in ("false_alarms", "recording_false_alarms", "auc", "log_loss", "ece")),
+            *(mean(found[test], name) for name in ("coverage", "answered_accuracy")),
+        ]
+        for test in results["zero_shot"]["ensemble"]
+        for way, found in ways.items()
+        if test in found
+    ]
+    return _markdown(header, rows)
+
+
+def _teachers(results: Results) -> str:
+    rows = [
+        [
+            teaching.replace("synthetic", f"`{results['recipe']}`"),
+            test,
+            *(spread(found, name) for name in ("window", "recording")),
+            *(mean(found, name) for name in ("false_alarms", "auc", "log_loss")),
+        ]
+        for test, teachers in results["teachers"].items()
+        for teaching, found in teachers.items()
+    ]
+    return _markdown(["trained on", "tested on", "window", "recording", "false alarms", "AUC", "log-loss"], rows)
+
+
+def _confusion(results: Results, test: str) -> str:
+    found = results["confusion"][test]
+    rows = [[name, *map(str, row)] for name, row in zip(found["true"], found["windows"], strict=True)]
+    return _markdown(["true", *found["predicted"]], rows)
+
+
+def _missed(results: Results) -> str:
+    """Recordings of which less than nine tenths of the windows are predicted as labelled."""
+    rows = [
+        [test, name.replace("_", r"\_"), f"{share:.2f}"]
+        for test, recordings in results["recordings"].items()
+        if test != "wang"
+        for name, share in recordings.items()
+        if share < 0.9
+    ]
+    return _markdown(["set", "recording", "share of windows predicted as labelled"], rows)
+
+
+TABLES: Mapping[str, Callable[[Results], str]] = {
+    "summary": _summary,
+    "zero-shot": _zero_shot,
+    "details": _details,
+    "teachers": _teachers,
+    "confusion-wang": lambda results: _confusion(results, "wang"),
+    "confusion-uestc": lambda results: _confusion(results, "uestc"),
+    "missed": _missed,
+}
+
+
+def with_tables(page: str, results: Results) -> str:
+    """A page with its tables made again."""
+    return _TABLE.sub(lambda found: f"{found[1]}\n{TABLES[found[2]](results)}\n{found[3]}", page)
+
+
+def read_results() -> Results:
+    """The results that the pages show."""
+    return json.loads(RESULTS.read_text(encoding="utf-8"))
+
+
+def write_pages() -> None:
+    """Make the tables of all pages again."""
+    results = read_results()
+    for name in PAGES:
+        page = ROOT / name
+        page.write_text(with_tables(page.read_text(encoding="utf-8"), results), encoding="utf-8")

@@ -1,0 +1,210 @@
+"""Classifiers of the user: estimators of scikit-learn, or alike, that are not in the registry of baselines.
+
+An own classifier is anything with ``fit(X, y)`` and ``predict(X)``. It is given the names of the classes as ``y``,
+because names need no table of codes and scikit-learn takes them. `OwnClassifier` translates between names and codes.
+"""
+
+import copy
+import importlib
+import inspect
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, Protocol, Self
+
+import numpy as np
+from scipy.special import softmax
+from sklearn.base import BaseEstimator, clone
+
+from features.baselines.records import FloatArray, IntArray
+from gen.corpus import FAULTS
+from gen.errors import RacewayError
+
+
+class EstimatorError(RacewayError):
+    """An estimator of the user that cannot be found, made or used."""
+
+
+class Classifier(Protocol):
+    """What an own classifier must have; ``predict_proba`` or ``decision_function`` is used if it exists."""
+
+    def fit(self, X: Any, y: Any) -> Any:
+        """Learn from records, a data frame (record, feature) or waveforms (record, time), and their class names."""
+
+    def predict(self, X: Any) -> Any:
+        """Class name of each record, shape (record,)."""
+
+
+Maker = Classifier | Callable[..., Classifier]
+"""An unfitted classifier, which is copied before each fit, or a class or function that makes one.
+
+A class or function is given the seed if it has one required argument, or an argument ``seed`` or ``random_state``.
+"""
+
+
+class OwnClassifier:
+    """A classifier of the user as one of codes: indices into ``gen.corpus.FAULTS`` in place of class names.
+
+    Without ``predict_proba``, the softmax of ``decision_function`` is taken; without either, the prediction has the
+    probability 1.
+
+    Attributes
+    ----------
+    classes_
+        Codes that it predicts, ascending, shape (class,).
+    """
+
+    def __init__(self, maker: Maker, seed: int) -> None:
+        self.name = maker_name(maker)
+        self.made = new_classifier(maker, seed, self.name)
+
+    def fit(self, X: Any, y: IntArray) -> Self:
+        """Fit the classifier to records of the codes ``y``, shape (record,).
+
+        Raises
+        ------
+        EstimatorError
+            If it fails, or predicts classes that it was not given.
+        """
+        fitted = self._call("fit", X, np.array(FAULTS)[y])
+        self.fitted: Any = self.made if fitted is None else fitted
+        names = [str(name) for name in getattr(self.fitted, "classes_", [FAULTS[c] for c in np.unique(y)])]
+        if not set(names) <= set(FAULTS):
+            raise EstimatorError(
+                f"{self.name}: its classes_ are {', '.join(names)}; leave y as it is, the names of the classes."
+            )
+        codes = np.array([FAULTS.index(name) for name in names])
+        self.columns = np.argsort(codes)
+        self.classes_ = codes[self.columns]
+        return self
+
+    def predict_proba(self, X: Any) -> FloatArray:
+        """Probability of each of ``classes_``, shape (record, class).
+
+        Raises
+        ------
+        EstimatorError
+            If the classifier fails, or its result has another shape or is not finite.
+        """
+        if not (hasattr(self.fitted, "predict_proba") or hasattr(self.fitted, "decision_function")):
+            predicted = np.asarray(self._call("predict", X)).astype(str)
+            return (predicted[:, None] == np.array(FAULTS)[self.classes_]).astype(float)
+        method = "predict_proba" if hasattr(self.fitted, "predict_proba") else "decision_function"
+        found = np.asarray(self._call(method, X), dtype=float)
+        if method == "decision_function":
+            found = softmax(np.stack([-found, found], axis=1) if found.ndim == 1 else found, axis=1)
+        wanted = (len(X), len(self.classes_))
+        if found.shape != wanted or not np.isfinite(found).all():
+            what = "numbers that are not finite" if found.shape == wanted else f"an array of shape {found.shape}"
+            raise EstimatorError(
+                f"{self.name}: {method} gives {what}; give finite numbers of shape {wanted}, (record, class)."
+            )
+        return found[:, self.columns]
+
+    def predict(self, X: Any) -> IntArray:
+        """Code of each record, shape (record,)."""
+        return self.classes_[self.predict_proba(X).argmax(axis=1)]
+
+    def _call(self, method: str, *arguments: Any) -> Any:
+        try:
+            return getattr(self.fitted if method != "fit" else self.made, method)(*arguments)
+        except Exception as error:
+            raise EstimatorError(
+                f"{self.name}: {method} failed ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where."
+            ) from error
+
+
+def maker_name(maker: Maker) -> str:
+    """Name of a classifier or of its maker, for tables and errors."""
+    return str(getattr(maker, "__name__", type(maker).__name__))
+
+
+def new_classifier(maker: Maker, seed: int, name: str) -> Any:
+    """Unfitted classifier: a copy of the given one, or a new one.
+
+    Raises
+    ------
+    EstimatorError
+        If it cannot be made, or has no ``fit`` or ``predict``.
+    """
+    made: Any = maker
+    if isinstance(maker, type) or not hasattr(maker, "fit"):
+        if not callable(maker):
+            raise EstimatorError(
+                f"{name}: is no classifier; it needs fit and predict, or must be a function that makes one."
+            )
+        try:
+            made = maker(**_seed_argument(maker, seed))
+        except Exception as error:
+            raise EstimatorError(
+                f"{name}: cannot be made ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where."
+            ) from error
+    else:
+        made = clone(maker) if isinstance(maker, BaseEstimator) else copy.deepcopy(maker)
+    lacking = [method for method in ("fit", "predict") if not callable(getattr(made, method, None))]
+    if lacking:
+        raise EstimatorError(
+            f"{name}: a {type(made).__name__} has no {' and no '.join(lacking)}; a classifier needs both."
+        )
+    return made
+
+
+def _seed_argument(maker: Callable[..., Any], seed: int) -> dict[str, int]:
+    try:
+        parameters = inspect.signature(maker).parameters
+    except ValueError:  # a function in C
+        return {}
+    required = [
+        name
+        for name, parameter in parameters.items()
+        if parameter.default is parameter.empty and parameter.kind is parameter.POSITIONAL_OR_KEYWORD
+    ]
+    named = [name for name in ("seed", "random_state") if name in parameters]
+    return dict.fromkeys(required if len(required) == 1 else named[:1], seed)
+
+
+def load_maker(address: str) -> Maker:
+    """Import what ``module:name`` names, from the current folder or from an installed package.
+
+    This runs the code of the module. What is found must be a classifier, or a class or function that makes one.
+
+    Raises
+    ------
+    EstimatorError
+        If there is no such module or name, its code fails, or it makes no classifier.
+    """
+    module_name, _, name = address.partition(":")
+    here = str(Path.cwd())
+    if here not in sys.path:
+        sys.path.insert(0, here)
+    try:
+        module = importlib.import_module(module_name)
+    except ModuleNotFoundError as error:
+        if error.name is None or not f"{module_name}.".startswith(f"{error.name}."):
+            raise _not_imported(address, module_name, error) from error
+        raise EstimatorError(
+            f"{address}: no module {error.name} in this folder or among the installed packages; correct the name before the colon."
+        ) from error
+    except (Exception, SystemExit) as error:
+        raise _not_imported(address, module_name, error) from error
+    if not hasattr(module, name):
+        held = [
+            own
+            for own, value in vars(module).items()
+            if callable(value) and getattr(value, "__module__", None) == module_name
+        ]
+        raise EstimatorError(
+            f"{address}: {module_name} has no {name}; it has {', '.join(held) or 'no class or function'}."
+        )
+    maker: Maker = getattr(module, name)
+    new_classifier(maker, 0, address)
+    return maker
+
+
+def _not_imported(address: str, module: str, error: BaseException) -> EstimatorError:
+    return EstimatorError(f"{address}: {module} cannot be imported ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where.")
+
+
+def _brief(error: BaseException) -> str:
+    """Type and first line of an error."""
+    return ": ".join([type(error).__name__, *str(error).splitlines()[:1]])

@@ -1,0 +1,156 @@
+"""Reference of a test: the healthy records that tested records are compared with, and none of which is tested.
+
+``table, reference -> healthy records, without double use -> Compared``
+"""
+
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from features.baselines.records import FloatArray, feature_rows, record_digests, recording_numbers, title_of
+from features.baselines.references import by_rig, healthy_records
+from features.indicators import Orders
+from features.recording_table import recording_table
+from gen.corpus import UNKNOWN_CODE, open_corpus
+from gen.errors import CorpusError
+
+FILE = "recording_file"  # attribute of the table of a reference recording
+SAME_SPEED = 0.02  # relative: speeds within it are one speed, as in the search for lines
+
+
+class Compared(NamedTuple):
+    """Records to test, the healthy records of their reference, and the number of records that are left out."""
+
+    table: xr.Dataset
+    reference: xr.Dataset
+    left_out: int
+
+    @property
+    def sentence(self) -> str:
+        """What is compared with what, for people."""
+        count = self.reference.sizes["record"]
+        whose = "the healthy records of their rig" if by_rig(self.table, self.reference) else "all healthy records"
+        left = f"; {self.left_out:,} tested records that belong to it are left out" if self.left_out else ""
+        return f"Records are compared with {whose} in the reference, which has {count:,}{left}."
+
+
+def compared(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> Compared:
+    """Choose the records to test and their healthy records, so that no tested record is part of the reference.
+
+    If both tables hold the same records, the first healthy recording of each rig is the reference, and rigs without one are not tested.
+    Records that were cut from the file of a reference recording are not tested either.
+
+    Parameters
+    ----------
+    table, reference
+        Feature tables; order of their records has no effect on the choice.
+    features
+        Names of the features that identify a record.
+
+    Raises
+    ------
+    CorpusError
+        If the reference has no healthy record, or no tested record is left.
+    """
+    healthy, tested = healthy_records(reference), np.ones(table.sizes["record"], dtype=bool)
+    mine = record_digests(feature_rows(table, features).to_numpy())
+    if np.array_equal(np.sort(mine), np.sort(record_digests(feature_rows(reference, features).to_numpy()))):
+        healthy = _first_recordings(healthy)
+        tested = np.isin(table["rig"].values, healthy["rig"].values)
+    tested &= ~np.isin(mine, record_digests(feature_rows(healthy, features).to_numpy()))
+    if FILE in reference.attrs and "source" in table:
+        tested &= ~_of_file(table["source"].values, Path(reference.attrs[FILE]))
+    if not tested.any():
+        message = (
+            f"{title_of(reference)}: every tested record belongs to the reference; give another recording as reference."
+        )
+        raise CorpusError(message)
+    return Compared(table.isel(record=tested), healthy, int((~tested).sum()))
+
+
+def _first_recordings(healthy: xr.Dataset) -> xr.Dataset:
+    """The records of the recording with the lowest number of each rig."""
+    rig, number = healthy["rig"].values, recording_numbers(healthy)
+    first = [number[rig == each].min() for each in np.unique(rig)]
+    return healthy.isel(record=np.isin(number, first))
+
+
+def _of_file(sources: Iterable[str], file: Path) -> np.ndarray:
+    """Whether records come from a file; a source is a path in the folder of an imported set, and a place in that file."""
+    paths = [Path(str(source).partition("#")[0]).parts for source in sources]
+    return np.array([bool(parts) and file.parts[-len(parts) :] == parts for parts in paths], dtype=bool)
+
+
+def recording_reference(
+    signal: FloatArray, fs: float, corpus: Path | str, file: Path, shaft_rate: float | None = None
+) -> xr.Dataset:
+    """Feature table of a healthy recording, cut into records as long as those of a corpus and with their bearing.
+
+    Parameters
+    ----------
+    signal
+        Shape (time,), in any unit.
+    fs
+        Sample rate [Hz].
+    corpus
+        Folder of the corpus to be tested.
+    file
+        Path of the recording, with which an error sentence begins.
+    shaft_rate
+        Speed of the recording [Hz]; by default that of the corpus.
+
+    Raises
+    ------
+    CorpusError
+        If the recording is shorter than a record, the corpus has several bearings, or it has several speeds and none is given.
+    """
+    with open_corpus(corpus) as opened:
+        duration = _duration(opened)
+        orders = [np.unique(opened[order].values) for order in Orders._fields]
+        rates = opened["shaft_rate"].values
+    length = round(duration * fs)
+    if len(signal) < length:
+        message = (
+            f"{file}: the reference lasts {len(signal) / fs:.3g} s, less than a record of {corpus} ({duration:g} s); "
+            "give a longer recording."
+        )
+        raise CorpusError(message)
+    if any(len(values) > 1 for values in orders):
+        message = f"{file}: {corpus} has several bearings; give a corpus as reference, with the bearing of each record."
+        raise CorpusError(message)
+    if shaft_rate is None and np.ptp(rates) > SAME_SPEED * rates.min():
+        message = (
+            f"{file}: the speeds of {corpus} go from {60 * rates.min():.5g} to {60 * rates.max():.5g} rpm; "
+            "give the speed of the reference (--reference-rpm)."
+        )
+        raise CorpusError(message)
+    windows = signal[: len(signal) // length * length].reshape(-1, length)
+    speed = float(rates.mean()) if shaft_rate is None else shaft_rate
+    table = recording_table(windows, fs, speed, Orders(*(values[0] for values in orders)), UNKNOWN_CODE)
+    return table.assign_attrs({"title": str(file), FILE: str(file.absolute())})
+
+
+def check_durations(corpus: Path | str, reference: Path | str) -> None:
+    """Refuse a reference corpus with records of another duration: lines rise higher above the floor in longer records.
+
+    Raises
+    ------
+    CorpusError
+        If the durations differ by more than 1 %, or a corpus cannot be read.
+    """
+    with open_corpus(corpus) as opened, open_corpus(reference) as other:
+        tested, its = _duration(opened), _duration(other)
+    if abs(its - tested) > 0.01 * tested:
+        message = (
+            f"{reference}: the records of the reference last {its:g} s and those of {corpus} {tested:g} s; "
+            "import the reference with records of the same duration."
+        )
+        raise CorpusError(message)
+
+
+def _duration(opened: xr.Dataset) -> float:
+    """Duration of the records of an open corpus [s]."""
+    return opened.sizes["elapsed_time"] / float(opened["sample_rate"].max())

@@ -1,0 +1,195 @@
+"""Features of records relative to healthy records of the same rig.
+
+``feature table, healthy records -> mean of these -> features, and their change from that mean``
+
+A machine has lines and a colour of its own, and a fault changes them. So a classifier is given the features of a record, how far they are
+from those of healthy records of the rig, and how far the energies in bands of frequency are from theirs. The change that all bands have in
+common is taken away, so that gain has no effect. In training, a healthy recording of a simulated rig is the reference of its other records.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from features.baselines.records import (
+    FloatArray,
+    IntArray,
+    feature_rows,
+    record_digests,
+    recording_numbers,
+    title_of,
+)
+from features.faults import HEALTHY
+from features.indicators import NAMES, TOP
+from gen.corpus import FAULTS, UNKNOWN_CODE
+from gen.errors import CorpusError
+
+HEALTHY_CODE = FAULTS.index(HEALTHY)
+ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))
+RELATIVE = "relative"  # group of the features of a relative table
+NEAREST = 3  # recordings, nearest in speed, that a virtual reference is chosen from
+COMPARABLE_RATE = 2 * TOP  # Hz: from it on, all bands of the features lie below the Nyquist frequency
+
+
+def with_energies(groups: Sequence[str]) -> tuple[str, ...]:
+    """Groups of features that records and references need for a model of some groups."""
+    return tuple(dict.fromkeys((*groups, "bands")))
+
+
+def relative_names(features: Sequence[str]) -> tuple[str, ...]:
+    """Names of the features of a record relative to a reference.
+
+    >>> relative_names(["raw_kurtosis"])[:3]
+    ('raw_kurtosis', 'raw_kurtosis_change', 'energy_20-100_Hz_change')
+    """
+    return (*features, *(f"{name}_change" for name in (*features, *ENERGIES)))
+
+
+def relative_table(table: xr.Dataset, features: Sequence[str], references: FloatArray) -> xr.Dataset:
+    """Feature table of some features, and of their changes and those of the energies, in the group ``RELATIVE``.
+
+    Parameters
+    ----------
+    table
+        Feature table with the groups of these features, and ``bands``.
+    features
+        Names of features.
+    references
+        Values of ``features`` and ``ENERGIES`` of the reference of each record, shape (record, feature).
+
+    Raises
+    ------
+    CorpusError
+        If the table has no records, or lacks a feature.
+    """
+    values = feature_rows(table, (*features, *ENERGIES)).to_numpy()
+    changes, energies = np.split(values - references, [len(features)], axis=1)
+    if energies.size:
+        energies = energies - np.median(energies, axis=1, keepdims=True)
+    found = np.concatenate([values[:, : len(features)], changes, energies], axis=1)
+    names = np.array(relative_names(features), dtype=object)
+    groups = np.full(len(names), RELATIVE, dtype=object)
+    return (
+        table.drop_dims("feature")
+        .assign(features=(("record", "feature"), found))
+        .assign_coords(feature=("feature", names), group=("feature", groups))
+    )
+
+
+def relative_to(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> xr.Dataset:
+    """`relative_table` of records whose reference is the mean of the healthy records of a reference table.
+
+    If the reference has healthy records of each rig of the table, a record is compared with those of its rig, else with all of them.
+
+    Raises
+    ------
+    CorpusError
+        If a table lacks a feature, the reference has no healthy record, or their sample rates cannot be compared.
+    """
+    healthy = healthy_records(reference)
+    check_rates(table, healthy)
+    values = feature_rows(healthy, (*features, *ENERGIES)).to_numpy()
+    if by_rig(table, healthy):
+        rigs, number = np.unique(table["rig"].values, return_inverse=True)
+        references = np.stack([_mean(values[healthy["rig"].values == rig]) for rig in rigs])[number]
+    else:
+        references = np.repeat(_mean(values)[None], table.sizes["record"], axis=0)
+    return relative_table(table, features, references)
+
+
+def healthy_records(reference: xr.Dataset) -> xr.Dataset:
+    """The records of a reference that are healthy, or all of them if the class of all is unknown.
+
+    Raises
+    ------
+    CorpusError
+        If there is none.
+    """
+    fault = reference["fault"].values
+    rows = (fault == HEALTHY_CODE) | bool((fault == UNKNOWN_CODE).all())
+    rows &= np.isfinite(reference["features"].values).any(axis=1)  # too short or constant signals have no features
+    if not rows.any():
+        message = (
+            f"{title_of(reference)}: the reference holds no healthy record with features; give a healthy recording of "
+            "the rig that is as long as the records."
+        )
+        raise CorpusError(message)
+    return reference.isel(record=rows)
+
+
+def by_rig(table: xr.Dataset, reference: xr.Dataset) -> bool:
+    """Whether a reference has records of each rig of a table."""
+    return bool(np.isin(table["rig"].values, reference["rig"].values).all())
+
+
+def check_rates(table: xr.Dataset, reference: xr.Dataset) -> None:
+    """Refuse a reference whose features differ from those of the table because of its sample rate.
+
+    Raises
+    ------
+    CorpusError
+        If the sample rates differ, and one of them is below ``COMPARABLE_RATE``.
+    """
+    if "sample_rate" not in table or "sample_rate" not in reference:
+        return
+    tested, its = np.unique(table["sample_rate"].values), np.unique(reference["sample_rate"].values)
+    if not np.array_equal(tested, its) and min(*tested, *its) < COMPARABLE_RATE:
+        message = (
+            f"{title_of(reference)}: the sample rate of the reference is {its[0]:g} Hz and that of the records "
+            f"{tested[0]:g} Hz; they may differ only if both are at least {COMPARABLE_RATE:g} Hz."
+        )
+        raise CorpusError(message)
+
+
+def virtual_references(table: xr.Dataset, features: Sequence[str], seed: int) -> tuple[IntArray, IntArray]:
+    """Choose another healthy recording of the same rig for each record of a corpus.
+
+    It is one of the three nearest in speed, on another specimen or on the same one. The choice depends on the features of the records
+    and on the seed, and not on the order of the records.
+
+    Returns
+    -------
+    Numbers of the records with a reference, and of their references, each of shape (pair,).
+    """
+    rows = feature_rows(table, features).to_numpy()
+    digests, recording = record_digests(rows), recording_numbers(table)
+    speed = np.log(np.asarray(table["shaft_rate"].values, dtype=float))
+    healthy = (table["fault"].values == HEALTHY_CODE) & np.isfinite(rows).any(axis=1)
+    pairs: list[tuple[int, int]] = []
+    for rig in np.unique(table["rig"].values):
+        records = np.flatnonzero(table["rig"].values == rig)
+        known = records[healthy[records]]
+        known = known[np.argsort(digests[known])]
+        for record in records:
+            others = known[recording[known] != recording[record]]
+            nearest = others[np.argsort(np.abs(speed[others] - speed[record]), kind="stable")[:NEAREST]]
+            if len(nearest):
+                drawn = np.random.default_rng([seed, int(digests[record])]).integers(len(nearest))
+                pairs.append((int(record), int(nearest[drawn])))
+    chosen = np.array(pairs, dtype=np.intp).reshape(-1, 2)
+    return chosen[:, 0], chosen[:, 1]
+
+
+def paired_table(table: xr.Dataset, features: Sequence[str], seed: int) -> xr.Dataset | None:
+    """`relative_table` of the records of a corpus with their virtual references.
+
+    None if the table lacks energies or shaft rates, or if a class of the corpus has no record with a reference: then no rig has two
+    healthy recordings and records of that class.
+    """
+    if not set(ENERGIES) <= set(table["feature"].values) or "shaft_rate" not in table:
+        return None
+    table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
+    records, references = virtual_references(table, features, seed)
+    paired = table.isel(record=records)
+    if len(np.unique(paired["fault"].values)) < len(np.unique(table["fault"].values)):
+        return None
+    values = feature_rows(table, (*features, *ENERGIES)).to_numpy()[references]
+    return relative_table(paired, features, values)
+
+
+def _mean(values: FloatArray) -> FloatArray:
+    """Mean of each feature over the records that have it, NaN without any; the order of the records has no effect."""
+    values = np.sort(values, axis=0)  # NaN comes last
+    count = np.isfinite(values).sum(axis=0)
+    return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)

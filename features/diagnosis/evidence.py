@@ -1,0 +1,270 @@
+"""Evidence of a fault: the lines of fault families that stand above the floor of an envelope spectrum.
+
+``band spectra -> the highest line of each family -> its harmonics and sidebands -> lines that another family explains removed``
+
+The first line of a family must exceed a level that noise exceeds anywhere in the search of a recording with a
+probability of 1 %. Further lines are searched only at multiples of the frequency of the first one, and beside them, and
+again noise adds one with 1 %. Three rules keep out lines that are there and tell no fault:
+
+- Multiples of the shaft rate are never counted, since imbalance and gears make them too. So a fault line that cannot be
+  resolved from one is not found.
+- The first line must be ten times as high as the floor, because long recordings of healthy bearings show faint lines
+  at many fault frequencies.
+- The family with the largest sum of levels comes first, and its lines explain no other family. The others must come
+  within 10 dB of it: beside its harmonics shaft and cage make lines everywhere.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from features.diagnosis.spectrum import TOP_ORDER, BandSpectrum
+from features.faults import CLASSES, FaultClass
+from features.indicators import Orders
+
+FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
+TOLERANCE = 0.02  # of an order: slip, contact angle and the remaining error of the speed
+DRIFT = 0.002  # by which harmonics of one family may differ from multiples of each other
+SHAFT_DRIFT = 0.004  # error of the shaft rate, by which its multiples are left out more widely
+LEAST_LEVEL = 10.0  # dB, of a first line
+SPREAD = 10.0  # dB, between the first lines of the strongest and the weakest family
+FIRST_HARMONICS = 2  # harmonics among which the first line is searched
+HARMONICS = 5  # of a fault line that are searched
+SIDEBANDS = 4  # on each side of a harmonic that belong to its family
+CAGE_LINES = 2  # a slow fluctuation has one line at the rate of the cage by chance
+TRIALS_PER_BIN = 0.5  # independent trials per bin of spectra that are padded to four times their length
+
+
+class Line(NamedTuple):
+    """A line found.
+
+    Attributes
+    ----------
+    fault
+        Class of the format that the line tells.
+    name
+        Such as ``2 BPFI`` or ``BPFI + shaft``.
+    harmonic
+        Number of the harmonic, from 1, that the line is or lies beside.
+    order, frequency
+        As measured, in multiples of the shaft rate and in Hz.
+    level
+        Power over the floor [dB].
+    band
+        Of the envelope [Hz].
+    sideband
+        Whether it lies beside a harmonic.
+    """
+
+    fault: str
+    name: str
+    harmonic: int
+    order: float
+    frequency: float
+    level: float
+    band: tuple[float, float]
+    sideband: bool = False
+
+
+class Series(NamedTuple):
+    """Lines at multiples of a frequency that belongs to no family: order of the first, and level of the weakest [dB]."""
+
+    order: float
+    level: float
+
+
+def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Orders) -> list[Line]:
+    """Lines of all fault families, strongest family first, each by harmonic.
+
+    Parameters
+    ----------
+    spectra
+        Of `features.diagnosis.spectrum.band_spectra`.
+    shaft_rate
+        [Hz]
+    orders
+        Nominal fault orders, as numbers.
+    """
+    free = [~_near_shaft(spectrum, shaft_rate) for spectrum in spectra]
+    families = [row for row in CLASSES.values() if row.evidence]
+    trials = TRIALS_PER_BIN * sum(
+        free_bins[slice(*place)].sum()
+        for row in families
+        for spectrum, free_bins in zip(spectra, free, strict=True)
+        for place in _searched(row, spectrum, shaft_rate, orders)
+    )
+    lines: list[Line] = []
+    least = LEAST_LEVEL
+    while families and trials:
+        found = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
+        held = [
+            _family(row, spectra[number], free[number], fundamental, shaft_rate, orders) if ratio else []
+            for row, (ratio, number, fundamental) in zip(families, found, strict=True)
+        ]
+        strongest = int(np.argmax([sum(line.level for line in family) for family in held]))
+        ratio, _, fundamental = found[strongest]
+        row, family = families.pop(strongest), held[strongest]
+        level = 10 * float(np.log10(max(ratio, 1.0)))
+        if (
+            not family
+            or level < least
+            or (row.name == "cage" and sum(not line.sideband for line in family) < CAGE_LINES)
+        ):
+            continue
+        lines += family
+        least = max(least, level - SPREAD)
+        for spectrum, free_bins in zip(spectra, free, strict=True):
+            _remove(spectrum, free_bins, row, fundamental, shaft_rate, orders)
+    return lines
+
+
+def strange_series(
+    spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Orders, lines: Sequence[Line]
+) -> Series | None:
+    """Strongest series of three harmonics that belongs neither to the shaft nor to a part of the bearing.
+
+    It is searched between 1.5 orders and a third of the spectrum. None if noise has such a series with more than 1 %,
+    if it lies at multiples of 50 or 60 Hz, where mains can make it, or if its first line differs from a harmonic of the
+    evidence ``lines`` by a multiple of the shaft rate.
+    """
+    families = [_fundamental_order(row, orders) for row in CLASSES.values() if row.evidence]
+    plain = [line for line in lines if not line.sideband]
+    strongest = {line.fault: line for line in sorted(plain, key=lambda line: line.level)}
+    modulated = [line.order / line.harmonic for line in strongest.values()]
+    best: Series | None = None
+    for spectrum in spectra:
+        free = ~_near_shaft(spectrum, shaft_rate)
+        order = np.arange(len(free)) * spectrum.resolution / shaft_rate
+        first = free.copy()
+        for family in families:
+            first &= np.abs(order - family) > TOLERANCE * family + spectrum.width / shaft_rate
+        for fundamental in modulated:
+            for harmonic in range(1, 4):
+                beside = order - harmonic * fundamental
+                first &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
+        found = _series(spectrum, first, free, shaft_rate, len(spectra))
+        if found is not None and (best is None or found.level > best.level):
+            best = found
+    return best
+
+
+def _series(
+    spectrum: BandSpectrum, first: np.ndarray, free: np.ndarray, shaft_rate: float, bands: int
+) -> Series | None:
+    """Strongest series of one band that noise does not have; its first line and the others are in some bins, shape (frequency,)."""
+    ratio = np.where(free, spectrum.ratio, 0.0)
+    lobe = max(1, round(spectrum.width / spectrum.resolution / 2))
+    highest = np.max([np.roll(ratio, shift) for shift in range(-lobe, lobe + 1)], axis=0)
+    bins = np.arange(int(np.ceil(1.5 * shaft_rate / spectrum.resolution)), len(ratio) // 3)
+    if not bins.size:
+        return None
+    weakest = np.minimum.reduce([np.where(first, ratio, 0.0)[bins], highest[2 * bins], highest[3 * bins]])
+    frequency = bins * spectrum.resolution
+    for mains in (50.0, 60.0):
+        weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
+    place = int(np.argmax(weakest))
+    each = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * bands)) ** (1 / 3) / (TRIALS_PER_BIN * (2 * lobe + 1))
+    if weakest[place] <= max(spectrum.threshold(each), 10 ** (LEAST_LEVEL / 10)):
+        return None
+    return Series(float(frequency[place]) / shaft_rate, 10 * float(np.log10(weakest[place])))
+
+
+def line_facts(line: Line) -> dict[str, object]:
+    """Line as plain values, for JSON."""
+    return {
+        "line": line.name,
+        "fault": line.fault,
+        "harmonic": line.harmonic,
+        "order": round(line.order, 4),
+        "frequency_hz": round(line.frequency, 3),
+        "level_db": round(line.level, 2),
+        "band": [round(edge, 1) for edge in line.band],
+        "sideband": line.sideband,
+    }
+
+
+def _fundamental_order(row: FaultClass, orders: Orders) -> float:
+    line = row.lines[0]
+    return line.multiple * float(getattr(orders, line.base))
+
+
+def _harmonics(row: FaultClass) -> range:
+    return range(1, (len(row.lines) if row.name == "cage" else HARMONICS) + 1)
+
+
+def _searched(row: FaultClass, spectrum: BandSpectrum, shaft_rate: float, orders: Orders) -> Iterator[tuple[int, int]]:
+    """Bins in which the first line of a family is searched, harmonic by harmonic."""
+    for harmonic in range(1, FIRST_HARMONICS + 1):
+        frequency = harmonic * _fundamental_order(row, orders) * shaft_rate
+        yield spectrum.bins(frequency, TOLERANCE * frequency)
+
+
+def _near_shaft(spectrum: BandSpectrum, shaft_rate: float) -> np.ndarray:
+    """Whether a bin cannot be resolved from a multiple of the shaft rate, zero included, shape (frequency,)."""
+    frequency = np.arange(len(spectrum.ratio)) * spectrum.resolution
+    multiple = np.rint(frequency / shaft_rate)
+    return np.abs(frequency - multiple * shaft_rate) < spectrum.width + SHAFT_DRIFT * multiple * shaft_rate
+
+
+def _first_line(
+    row: FaultClass,
+    spectra: Sequence[BandSpectrum],
+    free: Sequence[np.ndarray],
+    shaft_rate: float,
+    orders: Orders,
+    probability: float,
+) -> tuple[float, int, float]:
+    """Ratio of the highest line above the threshold, 0 without one; number of its spectrum; its fundamental [Hz]."""
+    best = 0.0, 0, 0.0
+    for number, (spectrum, free_bins) in enumerate(zip(spectra, free, strict=True)):
+        threshold = spectrum.threshold(probability)
+        for harmonic, (first, last) in enumerate(_searched(row, spectrum, shaft_rate, orders), start=1):
+            ratio = np.where(free_bins[first:last], spectrum.ratio[first:last], 0.0)
+            if ratio.size and ratio.max() > max(threshold, best[0]):
+                best = float(ratio.max()), number, (first + int(ratio.argmax())) * spectrum.resolution / harmonic
+    return best
+
+
+def _family(
+    row: FaultClass, spectrum: BandSpectrum, free: np.ndarray, fundamental: float, shaft_rate: float, orders: Orders
+) -> list[Line]:
+    """Harmonics of a fundamental [Hz], and the sidebands of those found."""
+    side = float(orders.ftf) * shaft_rate if row.name == "ball" else shaft_rate
+    beside = "FTF" if row.name == "ball" else "shaft"
+    label = row.lines[0].label
+    base = row.lines[0].multiple
+    places = [(harmonic, 0) for harmonic in _harmonics(row)]
+    places += [(harmonic, sign) for harmonic in (1, 2) for sign in (-1, 1) if row.name != "cage"]
+    searches = {}
+    for harmonic, sign in places:
+        frequency = harmonic * fundamental + sign * side
+        searches[harmonic, sign] = spectrum.bins(frequency, 0.5 * spectrum.width + DRIFT * frequency)
+    trials = max(1.0, TRIALS_PER_BIN * sum(last - first for first, last in searches.values()))
+    threshold = spectrum.threshold(FALSE_ALARM / trials)
+    lines: dict[tuple[int, int], Line] = {}
+    for (harmonic, sign), (first, last) in searches.items():
+        ratio = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
+        if not ratio.size or ratio.max() <= threshold or (sign and (harmonic, 0) not in lines):
+            continue
+        frequency = (first + int(ratio.argmax())) * spectrum.resolution
+        name = label if harmonic == 1 else f"{base * harmonic} {row.lines[0].base.upper()}"
+        name += {0: "", -1: f" - {beside}", 1: f" + {beside}"}[sign]
+        lines[harmonic, sign] = Line(
+            row.name, name, harmonic, frequency / shaft_rate, frequency, 10 * float(np.log10(ratio.max())), spectrum.band, sign != 0
+        )  # fmt: skip
+    return [lines[key] for key in sorted(lines, key=lambda key: (key[1] != 0, *key))]
+
+
+def _remove(
+    spectrum: BandSpectrum, free: np.ndarray, row: FaultClass, fundamental: float, shaft_rate: float, orders: Orders
+) -> None:
+    """Mark the bins that a family explains: harmonics, and sidebands at the rates of shaft and cage."""
+    sides = {0.0, *(n * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1))}
+    if row.name == "ball":
+        sides |= {n * float(orders.ftf) * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1)}
+    last = int(TOP_ORDER * shaft_rate / fundamental) + 1
+    for harmonic in range(last + 1):  # 0: the sidebands of the mean are lines at the rates themselves
+        for side in sides:
+            frequency = abs(harmonic * fundamental + side)
+            free[slice(*spectrum.bins(frequency, spectrum.width + DRIFT * frequency))] = False

@@ -1,0 +1,65 @@
+"""Feature table of one recording that lies in no corpus.
+
+The recording is cut into windows, which become the records of the table.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+
+from features.indicators import GROUPS, Orders, feature_groups, indicators
+from features.signal.rows import FloatArray
+
+WINDOW = 0.5  # s, as the records of corpora
+
+
+def windows_of(signal: FloatArray, fs: float) -> FloatArray:
+    """Consecutive windows of 0.5 s of a signal, shape (time,), to (window, time); a shorter signal is one window."""
+    length = min(round(WINDOW * fs), len(signal))
+    count = len(signal) // length
+    return signal[: count * length].reshape(count, length)
+
+
+def recording_table(
+    windows: FloatArray, fs: float, shaft_rate: float, orders: Orders, fault: int, groups: Sequence[str] = GROUPS
+) -> xr.Dataset:
+    """Features of the windows of one recording.
+
+    Parameters
+    ----------
+    windows
+        Shape (window, time).
+    fs, shaft_rate
+        [Hz]
+    orders
+        Nominal fault orders, as numbers.
+    fault
+        Code of the class of all windows.
+    groups
+        Some of ``features.indicators.GROUPS``.
+
+    Returns
+    -------
+    A table as of `features.table.feature_table`, with the variables that a prediction needs.
+
+    Raises
+    ------
+    ValueError
+        For a group that does not exist.
+    """
+    count = len(windows)
+    every = np.ones(count)
+    nominal = Orders(*(float(order) * every for order in orders))
+    values, names = indicators(windows, fs, shaft_rate * every, nominal, groups)
+    same = np.zeros(count, dtype=np.int32)
+    variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, fault, dtype=np.int8)}
+    variables |= {"sample_rate": fs * every, "shaft_rate": shaft_rate * every, **nominal._asdict()}
+    return xr.Dataset(
+        {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in variables.items()},
+        {
+            "feature": ("feature", np.array(names, dtype=object)),
+            "group": ("feature", np.array(feature_groups(groups), dtype=object)),
+        },
+        {"title": "recording"},
+    )

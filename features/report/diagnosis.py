@@ -1,0 +1,149 @@
+"""A diagnosis on one self-contained page: verdict, probabilities, pictures, evidence and what was assumed."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Recorded
+from features.diagnosis.spectrum import BandSpectrum
+from features.faults import CLASSES, SHAFT
+from features.report.page import template
+from features.report.pictures import (
+    BROAD,
+    FAINT,
+    INK,
+    STYLE,
+    WIDTH,
+    Shown,
+    draw_density,
+    draw_waveform,
+    name_lines,
+    picture,
+)
+from gen.corpus import write_text_durably
+
+LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
+DRAWN_HARMONICS = 3  # of each family
+
+
+class Bar(NamedTuple):
+    """Bar of a probability."""
+
+    name: str
+    probability: float
+    colour: str
+
+
+def write_diagnosis(
+    diagnosis: Diagnosis, recording: Recorded, output: Path | str, *, name: str, assumed: Sequence[tuple[str, str]]
+) -> None:
+    """Write the page of a diagnosis.
+
+    Parameters
+    ----------
+    diagnosis, recording
+        The diagnosis, and the recording it is of.
+    output
+        The page, a file.
+    name
+        Of the recording, for the title.
+    assumed
+        Facts that were given or assumed, such as the unit.
+
+    Raises
+    ------
+    CorpusError
+        If the disk refuses the file.
+    """
+    drawn = diagnosis.spectrum is not None
+    page = template("diagnosis.html.jinja").render(
+        name=name,
+        diagnosis=diagnosis,
+        colour=CLASSES[diagnosis.verdict].colour if diagnosis.verdict in CLASSES else FAINT,
+        bars=_bars(diagnosis.probabilities),
+        picture=picture(draw_diagnosis(diagnosis, recording), "svg") if drawn else b"",
+        colours={fault: row.colour for fault, row in CLASSES.items()},
+        least=LEAST_LEVEL,
+        false_alarm=FALSE_ALARM,
+        duration=len(recording.signal) / recording.fs,
+        fs=recording.fs,
+        assumed=assumed,
+    )
+    write_text_durably(page, Path(output))
+
+
+def _bars(probabilities: Mapping[str, float]) -> list[Bar]:
+    ranked = sorted(probabilities.items(), key=lambda item: -item[1])
+    return [Bar(fault, probability, CLASSES[fault].colour) for fault, probability in ranked]
+
+
+@rc_context(STYLE)
+def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded) -> Figure:
+    """Waveform, power spectral density, and envelope spectrum over its floor, one above the other."""
+    shown = Shown("", recording.signal, recording.fs, diagnosis.shaft_rate, recording.orders, "healthy")
+    figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
+    waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
+    band = BROAD if diagnosis.spectrum is None else diagnosis.spectrum.band
+    draw_waveform(waveform, shown)
+    draw_density(density, shown, band)
+    if diagnosis.spectrum is not None:
+        _draw_levels(envelope, diagnosis.spectrum, diagnosis, recording)
+    figure.align_ylabels()
+    return figure
+
+
+def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis, recording: Recorded) -> None:
+    """Level of the envelope spectrum over its floor, with the lines of each family, and the evidence marked."""
+    order = np.arange(len(spectrum.ratio)) * spectrum.resolution / diagnosis.shaft_rate
+    level = 10 * np.log10(np.maximum(spectrum.ratio, 1e-3))
+    families = _families(recording)
+    top = min(order[-1], (DRAWN_HARMONICS + 0.15) * max(lines[0] for lines in families.values()))
+    visible = (order > 0) & (order <= top)
+    names: dict[str, float] = {SHAFT.label: 1.0}
+    for fault, lines in families.items():
+        row = CLASSES[fault]
+        for number, line in enumerate(lines):
+            axes.axvline(
+                line, color=row.colour, linewidth=1.0, alpha=0.65, linestyle="-" if number == 0 else (0, (3, 3))
+            )
+        names[row.lines[0].label] = lines[0]
+    axes.axvline(1.0, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
+    axes.plot(order[visible], level[visible], color=INK, linewidth=0.7)
+    axes.axhline(LEAST_LEVEL, color=FAINT, linewidth=0.7, linestyle=(0, (4, 3)))
+    marked = [line for line in diagnosis.evidence if line.band == spectrum.band and line.order <= top]
+    for line in marked:
+        marker = "o" if not line.sideband else "s"
+        axes.plot(
+            line.order, line.level, marker, color=CLASSES[line.fault].colour, markersize=4 if line.sideband else 6
+        )
+    highest = max(float(level[visible].max(initial=LEAST_LEVEL)), LEAST_LEVEL)
+    axes.set(
+        xlabel="order of the shaft",
+        ylabel="level over the floor [dB]",
+        xlim=(0, top),
+        ylim=(LOWEST_DB, highest + MARGIN_DB),
+    )
+    name_lines(axes, {}, names, INK, top)
+    axes.set_title(f"Envelope spectrum of {_kilohertz(spectrum.band)}; dots mark the evidence", pad=30)
+
+
+def _kilohertz(band: tuple[float, float]) -> str:
+    return f"{band[0] / 1e3:.3g}-{band[1] / 1e3:.3g} kHz"
+
+
+def _families(recording: Recorded) -> dict[str, list[float]]:
+    """Orders of the first harmonics of each family, by its class."""
+    nominal = {name: float(value) for name, value in recording.orders._asdict().items()}
+    fundamental = {
+        row.name: row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence
+    }
+    return {
+        fault: [order * n for n in range(1, DRAWN_HARMONICS + 1)]
+        for fault, order in fundamental.items()
+        if fault != "cage"
+    } | {"cage": [fundamental["cage"]]}

@@ -1,0 +1,75 @@
+"""Sentences on what the labels and units of an imported corpus rest on, for its data card.
+
+A corpus is only as right as its mapping: a false unit or a class taken from the wrong part of a path shows in no number. So the card says
+where each fact comes from.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from gen.importers.entry import bearing_of, sensors
+from gen.importers.paths import groups_in
+from gen.importers.section import Section
+from gen.physics.bearing import orders
+
+_TOPICS = {"fault": "Class", "specimen": "Specimen", "shaft_rpm": "Shaft speed (rpm)", "load_n": "Load (N)"}
+_MOST_TEXTS, _MOST_PATHS = 12, 3  # shown of a table, and of the patterns that a sentence holds for
+
+
+def assumptions(sections: Sequence[Section], fs: float) -> tuple[str, ...]:
+    """One sentence for each fact and each of its sources, with the patterns of paths that it holds for."""
+    found: dict[str, list[str]] = {}
+    for section in sections:
+        for sentence in _of_section(section, fs):
+            found.setdefault(sentence, []).append(section.pattern.text)
+    return tuple(
+        f"{sentence}." if len(paths) == len(sections) else f"{sentence} ({_listed(paths, _MOST_PATHS)})."
+        for sentence, paths in sorted(found.items(), key=lambda item: item[0].partition(":")[0])
+    )
+
+
+def _of_section(section: Section, fs: float) -> Iterator[str]:
+    entry = next(section.examples())
+    for sensor in sensors(entry, ""):
+        yield f"Unit{f' of channel {sensor.name}' if sensor.name else ''}: {sensor.scale}"
+    bearing = bearing_of(entry)
+    if "bearing" in section.from_path:
+        yield "Bearing: named in the path, geometry from the catalogue"
+    else:
+        source = "from the catalogue" if isinstance(entry.bearing, str) else "as given"
+        bpfo, bpfi, bsf = (getattr(orders(bearing), name) for name in ("bpfo", "bpfi", "bsf"))
+        yield (
+            f"Bearing: {bearing.designation}, geometry {source}: {bearing.n_balls} balls of "
+            f"{1e3 * bearing.ball_diameter:g} mm on {1e3 * bearing.pitch_diameter:g} mm; BPFO {bpfo:.4g}, BPFI {bpfi:.4g}, "
+            f"2 BSF {2 * bsf:.4g} orders"
+        )
+    for key, topic in _TOPICS.items():
+        yield f"{topic}: {_source(section, key)}"
+    rate = _source(section, "sample_rate_hz")
+    yield f"Sample rate: {rate if rate != 'not known' else 'stated in the files'}, stored at {fs:g} Hz"
+
+
+def _source(section: Section, key: str) -> str:
+    """Where a key comes from, in words."""
+    if key in section.in_file:
+        reading = section.in_file[key]
+        return f"variable {reading.variable} of each file" + (
+            "" if reading.times == 1 else f", times {reading.times:g}"
+        )
+    if key in section.tables:
+        return f"from the path, {_table(section.tables[key])}"
+    if key in section.from_path:
+        times = section.readings[key].times if key in section.readings else 1.0
+        return f"from the path, {section.pattern.text}" + ("" if times == 1 else f", times {times:g}")
+    value = section.given.get(key)
+    if value is None:
+        return "not known"
+    return f"{value} with the texts of the path" if groups_in(str(value)) else f"given as {value}"
+
+
+def _table(table: Mapping[str, object]) -> str:
+    return _listed([f"{text} is {value}" for text, value in table.items()], _MOST_TEXTS)
+
+
+def _listed(items: Sequence[str], most: int) -> str:
+    """First items of a list, and the number of the others."""
+    return ", ".join(items[:most]) + (f" and {len(items) - most} more" if len(items) > most else "")

@@ -1,0 +1,50 @@
+"""Bearing given as one text: a designation of the catalogue, or a geometry such as ``n_balls=8,pitch_diameter_mm=33.5,...``."""
+
+import difflib
+from typing import Any
+
+from pydantic import ValidationError
+
+from gen.errors import CorpusError
+from gen.importers.entry import Geometry, bearing_of_geometry
+from gen.physics.bearing import Bearing
+from gen.physics.catalogue import CATALOGUE
+
+
+def bearing_from_text(text: str) -> Bearing:
+    """Bearing with a designation of the catalogue, or with the keys of a mapping file, separated by commas.
+
+    >>> bearing_from_text("n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938").n_balls
+    8
+
+    Raises
+    ------
+    CorpusError
+        If the text is neither.
+    """
+    if text in CATALOGUE:
+        return CATALOGUE[text]
+    example = "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938"
+    if "=" not in text:
+        near = difflib.get_close_matches(text, CATALOGUE, 1)
+        guess = f"did you mean {near[0]}?" if near else f"the catalogue has {', '.join(CATALOGUE)}."
+        raise CorpusError(f"bearing {text} is not in the catalogue; give its geometry, such as {example}, or {guess}")
+    values: dict[str, Any] = {}
+    for part in text.split(","):
+        key, _, value = (piece.strip() for piece in part.partition("="))
+        try:
+            values[key] = value if key == "designation" else float(value)
+        except ValueError:
+            raise CorpusError(
+                f"bearing: {part.strip()!r} is not of the form key=number; write it like {example}."
+            ) from None
+    try:
+        return bearing_of_geometry(Geometry.model_validate(values))
+    except ValidationError as error:
+        first = max(error.errors(), key=lambda one: one["type"] == "extra_forbidden")  # it causes a missing key
+        key = ".".join(map(str, first["loc"])) or "geometry"
+        complaint = {
+            "missing": "is missing",
+            "extra_forbidden": f"is no key; the keys are {', '.join(Geometry.model_fields)}",
+        }.get(first["type"], first["msg"].removeprefix("Value error, ").removeprefix("Input "))
+        raise CorpusError(f"bearing: {key} {complaint}; write it like {example}.") from None

@@ -1,0 +1,89 @@
+"""Options that name healthy records of a rig, and the feature table of these."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from raceway.commands.feature_tables import table_of
+from raceway.console.options import A_PATH, Decorator
+from raceway.console.progress import notice
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from features.recording_speeds import Speed
+
+
+def _number_or_name(_context: click.Context, _option: click.Parameter, text: str | None) -> int | str | None:
+    return int(text) if text is not None and text.isdecimal() else text
+
+
+def _existing(_context: click.Context, _option: click.Parameter, path: Path | None) -> Path | None:
+    if path is not None and not path.exists():
+        raise click.BadParameter(f"there is no {path}; give a corpus or a recording")
+    return path
+
+
+def reference_options(command: Any) -> Any:
+    """Add the options for a reference: a corpus, or a recording and how it is read."""
+    options: list[Decorator] = [
+        click.option(
+            "--reference",
+            type=A_PATH,
+            callback=_existing,
+            metavar="DIR_OR_RECORDING",
+            help="Corpus or recording of the same rig, healthy.",
+        ),
+        click.option(
+            "--reference-rpm",
+            type=click.FloatRange(0.001, 1e7),
+            metavar="RPM",
+            help="Speed of the recording, if DIR has several.",
+        ),
+        click.option(
+            "--reference-rate",
+            type=click.FloatRange(1, 1e8),
+            metavar="HZ",
+            help="Sample rate of the recording, if its file does not state it; by default that of DIR.",
+        ),
+        click.option(
+            "--reference-column",
+            callback=_number_or_name,
+            metavar="NAME",
+            help="Column of the recording by name or number from 0; channel of a WAV file.",
+        ),
+        click.option("--reference-variable", metavar="NAME", help="Variable of the recording, if it is a MATLAB file."),
+    ]
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def reference_table(
+    path: Path,
+    corpus: Path,
+    table: "xr.Dataset",
+    speed: "Speed",
+    *,
+    reference_rpm: float | None,
+    reference_rate: float | None,
+    reference_column: int | str | None,
+    reference_variable: str | None,
+) -> "xr.Dataset":
+    """Feature table of a reference of the corpus whose own feature table is ``table``; the speed of a recording is believed."""
+    from features.baselines.reference_choice import check_durations, recording_reference
+    from gen.importers.signals import read_signal
+    from gen.units import rpm_to_hertz
+
+    if path.is_file():
+        signal = read_signal(path, variable=reference_variable, column=reference_column, rate=reference_rate)
+        fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
+        if signal.fs is None:
+            notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")
+        rate = None if reference_rpm is None else rpm_to_hertz(reference_rpm)
+        return recording_reference(signal.values, fs, corpus, path, rate)
+    if path.resolve() == corpus.resolve():
+        return table
+    check_durations(corpus, path)
+    return table_of(path, speed)

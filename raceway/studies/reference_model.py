@@ -1,0 +1,195 @@
+"""Models trained on a recipe, and kept per user; the reference model of ``diagnose`` is one of them.
+
+``recipe -> corpus in a temporary folder -> feature table -> model``
+
+A kept model is named after the recipe, the hash of its values, the estimator and the versions of Raceway and
+scikit-learn, so that another recipe or version makes another file. It is written whole or not at all, and a lock keeps
+two processes from making it at once. A file that is damaged is made again.
+"""
+
+import fcntl
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.metadata import version
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from gen.errors import CorpusError
+from raceway.console.progress import compilation_noticed, notice, progress
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from features.baselines import Model, Scores
+
+REFERENCE = "domain_randomised"
+ESTIMATOR = "ensemble"
+CACHE_VARIABLE = "RACEWAY_CACHE"
+HASH_LETTERS = 16
+_HOW_LONG = "about three minutes on two cores"
+
+
+def train_and_score(table: "xr.Dataset", estimator: str) -> tuple["Model", "Scores | None"]:
+    """Model trained on a feature table without its test split, and its scores on that split.
+
+    A table without a test split, or with nothing else, is trained on as a whole and not scored.
+
+    Raises
+    ------
+    CorpusError
+        If the training has only one class, or the table lacks features.
+    """
+    from features.baselines import evaluate, train
+    from gen.corpus import SPLITS
+
+    test = table["split"].values == SPLITS.index("test")
+    if not test.any() or test.all():
+        return train(table, estimator), None
+    model = train(table.isel(record=~test), estimator)
+    return model, evaluate(table.isel(record=test), model)
+
+
+def recipe_table(recipe: Path | str) -> "xr.Dataset":
+    """Feature table of a corpus that is generated in a temporary folder and removed again, with progress.
+
+    Raises
+    ------
+    RecipeError, SimulationError
+        If the recipe cannot be simulated.
+    CorpusError
+        If the disk refuses the corpus.
+    """
+    from features import feature_table
+    from gen import generate
+
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    with tempfile.TemporaryDirectory(prefix="raceway-") as folder:
+        corpus = Path(folder) / "corpus"
+        with compilation_noticed(), progress("generating", "records") as report:
+            generate(recipe, corpus, workers=cores, progress=report)
+        with progress("computing features", "parts") as report:
+            return feature_table(corpus, scheduler="local", progress=report)
+
+
+def load_reference_model() -> tuple["Model", Path]:
+    """Reference model of this user and its file; it is made if there is none, or if the file is damaged.
+
+    Raises
+    ------
+    CorpusError
+        If the cache cannot be written.
+    """
+    from features.baselines.models import load_model
+    from gen.recipe import shipped_recipes
+
+    recipe = shipped_recipes()[REFERENCE]  # of this installation, whatever lies in the working folder
+    path, damaged = kept_path(recipe), False
+    if path.is_file():
+        try:
+            return load_model(path), path
+        except CorpusError as error:
+            notice(f"{error} It is made again.")
+            damaged = True
+    keep_model(recipe, damaged=damaged)
+    return load_model(path), path
+
+
+def keep_model(
+    recipe: Path | str, estimator: str = ESTIMATOR, *, damaged: bool = False
+) -> tuple[Path, "Scores | None"]:
+    """Train a model on a recipe and keep it in the cache of this user, unless it is there.
+
+    Parameters
+    ----------
+    recipe
+        File, or name of a recipe that ships with Raceway.
+    estimator
+        Name of a baseline.
+    damaged
+        Whether the file that is there is damaged, so that it is made again.
+
+    Returns
+    -------
+    The file, and the scores on the test split if the model was trained now.
+
+    Raises
+    ------
+    RecipeError, SimulationError
+        If the recipe cannot be simulated.
+    CorpusError
+        If the cache cannot be written.
+    """
+    from features.baselines import save_model
+
+    path = kept_path(recipe, estimator)
+    before = _stamp(path)
+    with _locked(path):
+        if path.is_file() and not (damaged and _stamp(path) == before):
+            return path, None  # it was there, or another process has made it meanwhile
+        notice(f"training a model on the recipe {recipe_name(recipe)}: {_HOW_LONG}; it is kept as {path}.")
+        table = recipe_table(recipe)
+        notice("training the classifier.")
+        model, scores = train_and_score(table, estimator)
+        save_model(model, path)
+    return path, scores
+
+
+def kept_path(recipe: Path | str, estimator: str = ESTIMATOR) -> Path:
+    """File of the kept model of a recipe, whether it exists or not."""
+    from gen.recipe import read_recipe, recipe_hash
+
+    read = read_recipe(recipe)
+    digest = recipe_hash(read)[:HASH_LETTERS]
+    versions = f"raceway-{version('raceway')}-scikit-learn-{version('scikit-learn')}"
+    return cache_folder() / f"{recipe_name(recipe)}-{digest}-{estimator}-{versions}.skops"
+
+
+def recipe_name(recipe: Path | str) -> str:
+    """Name of the file of a recipe without its suffix."""
+    return Path(recipe).stem
+
+
+def cache_folder() -> Path:
+    """Folder for files that can be made again: ``RACEWAY_CACHE``, or raceway in the cache folder of the user."""
+    chosen = os.environ.get(CACHE_VARIABLE)
+    if chosen:
+        return Path(chosen)
+    common = os.environ.get("XDG_CACHE_HOME")
+    if common and Path(common).is_absolute():  # a relative path is to be ignored
+        return Path(common) / "raceway"
+    usual = Path.home() / ("Library/Caches" if sys.platform == "darwin" else ".cache")
+    return usual / "raceway"
+
+
+def _stamp(path: Path) -> tuple[int, int] | None:
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_mtime_ns, found.st_ino
+
+
+@contextmanager
+def _locked(path: Path) -> Iterator[None]:
+    """Hold the lock of a file in the cache, whose folder is created."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        descriptor = os.open(path.with_suffix(".lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
+    except OSError as error:
+        message = (
+            f"{path.parent}: this cache folder cannot be written ({error.strerror}); set {CACHE_VARIABLE} to another folder, or write the "
+            f"model elsewhere with raceway train {REFERENCE} -o MODEL."
+        )
+        raise CorpusError(message) from error
+    try:
+        try:
+            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            notice("waiting for another process that trains the reference model.")
+            fcntl.flock(descriptor, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,142 @@
+"""Laws of calibration: order of classes, copies of a record, known temperatures, stated coverage."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+from scipy.special import softmax
+
+from features.baselines.calibration import (
+    COVERAGE,
+    UNCALIBRATED,
+    answering,
+    calibrated,
+    combined,
+    fit_calibration,
+)
+from features.baselines.predictions import UNSURE, predictions
+from gen.corpus import FAULTS
+
+FOUR = FAULTS[:4]
+
+
+def drawn_rows(largest: float):
+    """Probabilities of some records, none below exp(-2 * largest) / 4."""
+    logarithms = arrays(float, st.tuples(st.integers(1, 20), st.just(4)), elements=st.floats(-largest, largest))
+    return logarithms.map(lambda values: softmax(values, axis=1))
+
+
+rows = drawn_rows(8.0)
+temperatures = st.floats(0.2, 5.0)
+
+
+def drawn(temperature: float, records: int = 20_000, seed: int = 0):
+    """Probabilities of records whose classes are drawn from the probabilities with that temperature, and the classes."""
+    rng = np.random.default_rng(seed)
+    probabilities = softmax(1.5 * rng.standard_normal((records, 4)), axis=1)
+    right = calibrated(probabilities, temperature)
+    truth = (rng.random((records, 1)) > right.cumsum(axis=1)).sum(axis=1)
+    return probabilities, np.minimum(truth, 3)
+
+
+@given(rows, temperatures)
+def test_a_temperature_keeps_the_order_of_the_classes(probabilities, temperature):
+    found = calibrated(probabilities, temperature)
+    np.testing.assert_allclose(found.sum(axis=1), 1.0)
+    ordered = np.take_along_axis(found, probabilities.argsort(axis=1), axis=1)
+    assert (np.diff(ordered, axis=1) >= -1e-12).all()
+
+
+@given(rows)
+def test_a_temperature_of_one_changes_nothing(probabilities):
+    np.testing.assert_allclose(calibrated(probabilities, 1.0), np.maximum(probabilities, 1e-6), rtol=1e-5)
+
+
+@given(drawn_rows(1.0), st.floats(0.5, 2.0), st.floats(0.5, 2.0))
+def test_temperatures_multiply(probabilities, first, second):
+    np.testing.assert_allclose(
+        calibrated(calibrated(probabilities, first), second), calibrated(probabilities, first * second), rtol=1e-9
+    )
+
+
+@given(rows, st.integers(1, 9))
+def test_copies_of_a_record_that_depend_fully_on_each_other_say_no_more_than_one(probabilities, copies):
+    recording = np.repeat(np.arange(len(probabilities)), copies)
+    found = combined(np.repeat(probabilities, copies, axis=0), recording, 1.0)
+    np.testing.assert_allclose(found, probabilities, rtol=1e-9, atol=1e-12)
+
+
+@given(rows, st.integers(1, 9))
+def test_independent_records_multiply(probabilities, copies):
+    recording = np.repeat(np.arange(len(probabilities)), copies)
+    found = combined(np.repeat(probabilities, copies, axis=0), recording, 0.0)
+    expected = probabilities**copies
+    np.testing.assert_allclose(found, expected / expected.sum(axis=1, keepdims=True), rtol=1e-9, atol=1e-12)
+
+
+@given(rows, st.floats(0, 1))
+def test_a_recording_of_one_record_has_the_probabilities_of_the_record(probabilities, dependence):
+    np.testing.assert_allclose(combined(probabilities, np.arange(len(probabilities)), dependence), probabilities)
+
+
+@given(rows, st.floats(0, 1), st.randoms(use_true_random=False))
+def test_the_order_of_the_records_of_a_recording_does_not_matter(probabilities, dependence, random):
+    order = list(range(len(probabilities)))
+    random.shuffle(order)
+    recording = np.arange(len(probabilities)) % 2 if len(probabilities) > 1 else np.zeros(1, int)
+    np.testing.assert_allclose(
+        combined(probabilities[order], recording[order], dependence), combined(probabilities, recording, dependence)
+    )
+
+
+@pytest.mark.parametrize("temperature", [0.5, 1.0, 2.0])
+def test_the_temperature_that_the_classes_were_drawn_with_is_found(temperature):
+    probabilities, truth = drawn(temperature)
+    found = fit_calibration(probabilities, truth, np.arange(len(truth)))
+    # 20,000 records determine a temperature to about 2 %
+    assert found.temperature == pytest.approx(temperature, rel=0.06)
+
+
+@pytest.mark.parametrize(("copies", "dependence"), [(1, 1.0), (5, 1.0)])
+def test_records_that_are_copies_of_each_other_depend_fully(copies, dependence):
+    probabilities, truth = drawn(1.0, 4000)
+    recording = np.arange(copies * len(truth)) // copies
+    found = fit_calibration(np.repeat(probabilities, copies, axis=0), np.repeat(truth, copies), recording)
+    assert found.dependence == pytest.approx(dependence, abs=0.05)
+
+
+def test_records_with_independent_errors_are_found_independent():
+    """Each record sees its class in noise of its own, so that the product of the probabilities is the right one."""
+    rng = np.random.default_rng(1)
+    truth = np.repeat(rng.integers(4, size=4000), 5)
+    seen = np.eye(4)[truth] + rng.standard_normal((len(truth), 4))
+    found = fit_calibration(softmax(seen, axis=1), truth, np.arange(len(truth)) // 5)
+    assert found.temperature == pytest.approx(1.0, rel=0.06)
+    assert found.dependence < 0.05
+
+
+@given(st.integers(0, 999), st.integers(1, 200))
+def test_the_stated_share_of_the_records_is_answered(seed, records):
+    probabilities, truth = drawn(1.0, records, seed)
+    found = fit_calibration(probabilities, truth, np.arange(records))
+    pooled = predictions(probabilities, FOUR, np.arange(records), found)
+    assert pooled.answered.mean() == found.coverage
+    assert COVERAGE <= found.coverage < COVERAGE + 1 / records
+    assert pooled.by_recording is not None
+    assert pooled.by_recording.answered.mean() >= COVERAGE
+
+
+def test_the_threshold_is_the_highest_one_that_answers_enough():
+    probabilities = np.array([[0.9, 0.1], [0.2, 0.8], [0.7, 0.3], [0.4, 0.6]])
+    assert [answering(probabilities, share) for share in (0.25, 0.5, 0.51, 1.0)] == [0.9, 0.8, 0.7, 0.6]
+
+
+def test_the_answer_below_the_threshold_is_unsure():
+    probabilities = np.array([[0.6, 0.2, 0.1, 0.1], [0.1, 0.8, 0.05, 0.05]])
+    half = UNCALIBRATED.model_copy(update={"threshold": 0.7, "recording_threshold": 0.5})
+    found = predictions(probabilities, FOUR, np.array([0, 1]), half)
+    assert found.predicted == ("healthy", "inner")
+    assert found.answers == (UNSURE, "inner")
+    assert found.by_recording is not None
+    assert found.by_recording.answers == ("healthy", "inner")

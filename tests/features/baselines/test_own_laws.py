@@ -1,0 +1,199 @@
+"""Laws of own classifiers: they learn names, are scored as the baselines are, and fail in one sentence."""
+
+import sys
+
+import numpy as np
+import pytest
+from sklearn.linear_model import LogisticRegression, RidgeClassifier
+from sklearn.naive_bayes import GaussianNB
+from sklearn.svm import SVC
+
+from features.baselines import EstimatorError, benchmark, cross_validate, evaluate, load_maker, save_model, train
+from features.baselines.estimators import class_probabilities, make_estimator
+from features.baselines.own import OwnClassifier
+from gen.corpus import FAULTS
+from gen.errors import CorpusError
+from tests.features.baselines.test_baselines_laws import make_table, records_of
+
+CODES = np.array([0, 1, 2, 4] * 3)
+
+
+class Nearest:
+    """The class of the nearest mean, without anything of scikit-learn; ``seen`` holds the labels of the last fit."""
+
+    def fit(self, X, y):
+        self.seen = y
+        self.names = np.unique(y)
+        self.means = np.stack([np.asarray(X)[y == name].mean(axis=0) for name in self.names])
+
+    def predict(self, X):
+        distance = np.square(np.asarray(X)[:, None] - self.means).sum(axis=2)
+        return self.names[distance.argmin(axis=1)]
+
+
+@pytest.mark.parametrize("made", [LogisticRegression(), RidgeClassifier(), GaussianNB(), Nearest(), SVC()])
+def test_a_classifier_of_names_becomes_one_of_codes(made):
+    X = np.eye(4)[np.arange(12) % 4]
+    fitted = make_estimator(made, 0).fit(X, CODES)
+    np.testing.assert_array_equal(fitted.classes_, [0, 1, 2, 4])
+    found = class_probabilities(fitted, X)
+    np.testing.assert_allclose(found.sum(axis=1), 1)
+    np.testing.assert_array_equal(fitted.predict(X), CODES)
+    names = fitted.fitted.seen if isinstance(made, Nearest) else fitted.fitted.classes_
+    assert set(names) == {"healthy", "inner", "outer", "cage"}
+
+
+@pytest.mark.parametrize("made", [RidgeClassifier(), LogisticRegression(), Nearest()])
+def test_two_classes_are_told_apart_whichever_method_gives_the_probabilities(made):
+    X, codes = np.array([[0.0], [0.1], [1.0], [1.1]]), np.array([1, 1, 0, 0])
+    fitted = make_estimator(made, 0).fit(X, codes)
+    assert class_probabilities(fitted, X).shape == (4, 2)
+    np.testing.assert_array_equal(fitted.predict(X), codes)
+
+
+def test_a_given_classifier_is_copied_before_each_fit():
+    given, other = Nearest(), LogisticRegression()
+    assert cross_validate(make_table(), given).balanced_accuracy > 0.95
+    assert cross_validate(make_table(), other).balanced_accuracy > 0.95
+    assert not hasattr(given, "means")
+    assert not hasattr(other, "coef_")
+
+
+def test_an_own_copy_of_a_baseline_scores_as_the_baseline():
+    from features.baselines.estimators import ESTIMATORS
+
+    table = make_table(told=0.7)
+    theirs, mine = (
+        cross_validate(table, "logistic_regression"),
+        cross_validate(table, ESTIMATORS["logistic_regression"]),
+    )
+    assert (theirs.confusion, theirs.folds) == (mine.confusion, mine.folds)
+    assert theirs.log_loss == pytest.approx(mine.log_loss)
+
+
+@pytest.mark.parametrize(
+    "maker",
+    [
+        lambda seed: LogisticRegression(random_state=seed),
+        lambda s: LogisticRegression(random_state=s),
+        lambda first=1.0, random_state=None: LogisticRegression(C=first, random_state=random_state),
+        LogisticRegression,
+    ],
+)
+def test_a_function_or_class_is_given_the_seed_if_it_takes_one(maker):
+    assert OwnClassifier(maker, 17).made.random_state == 17
+
+
+def test_a_function_without_arguments_is_called_without_a_seed():
+    assert OwnClassifier(lambda: LogisticRegression(), 17).made.random_state is None
+
+
+def test_an_own_classifier_is_benchmarked_beside_the_untrained_baselines_and_on_another_corpus():
+    results = benchmark(make_table(24, 3), make_table(8, 4, seed=1), estimators={"mine": Nearest}, folds=3, curve=True)
+    assert (results.leading, list(results.baselines)) == ("mine", ["majority", "envelope_rule", "mine"])
+    assert results.baselines["mine"].grouped.balanced_accuracy > 0.95
+    assert results.baselines["mine"].test.balanced_accuracy > 0.95
+    assert results.baselines["mine"].null.balanced_accuracy < 0.6
+    assert results.curve[-1].scores.balanced_accuracy == results.baselines["mine"].grouped.balanced_accuracy
+
+
+def test_an_own_model_is_evaluated_and_not_saved(tmp_path):
+    model = train(make_table(), Nearest)
+    assert evaluate(make_table(seed=1), model).balanced_accuracy > 0.95
+    with pytest.raises(CorpusError, match="Nearest is no baseline; a model file holds only one of majority"):
+        save_model(model, tmp_path / "model.skops")
+    assert not list(tmp_path.iterdir())
+
+
+class Broken(Nearest):
+    def __init__(self, how):
+        self.how = how
+
+    def fit(self, X, y):
+        if self.how == "fit":
+            raise ZeroDivisionError("by zero\nand more")
+        super().fit(X, y)
+        if self.how == "codes":
+            self.classes_ = np.arange(4)
+
+    def predict_proba(self, X):
+        return np.full((len(X), 4), np.nan) if self.how == "nan" else np.ones((len(X), 3))
+
+
+@pytest.mark.parametrize(
+    ("made", "sentence"),
+    [
+        (Broken("fit"), r"^Broken: fit failed \(ZeroDivisionError: by zero\); RACEWAY_TRACEBACK=1 shows where\.$"),
+        (Broken("codes"), "Broken: its classes_ are 0, 1, 2, 3; leave y as it is, the names of the classes"),
+        (Broken("nan"), r"predict_proba gives numbers that are not finite; give finite numbers of shape \(16, 4\)"),
+        (Broken("shape"), r"predict_proba gives an array of shape \(16, 3\); give finite numbers of shape \(16, 4\)"),
+        (dict, "dict: a dict has no fit and no predict; a classifier needs both"),
+        (np.take, r"cannot be made \(TypeError: .*missing 2 required positional arguments"),
+        (7, "int: is no classifier; it needs fit and predict, or must be a function that makes one"),
+    ],
+)
+def test_a_classifier_that_cannot_be_used_is_refused_in_one_sentence(made, sentence):
+    with pytest.raises(EstimatorError, match=sentence) as caught:
+        cross_validate(make_table(), made)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.fixture
+def module(tmp_path, monkeypatch):
+    """Write a module into the current folder: ``module("name", text)``."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(sys, "path", list(sys.path))
+    written = []
+
+    def write(name, text):
+        (tmp_path / f"{name}.py").write_text(text)
+        written.append(name)
+
+    yield write
+    for name in written:
+        sys.modules.pop(name, None)
+
+
+def test_a_module_is_imported_from_the_current_folder_or_from_an_installed_package(module):
+    module("own_one", "from sklearn.naive_bayes import GaussianNB\nmade = GaussianNB()\ndef make(seed): return made\n")
+    for address in ("own_one:make", "own_one:made", "own_one:GaussianNB", "sklearn.naive_bayes:GaussianNB"):
+        assert cross_validate(make_table(), load_maker(address)).balanced_accuracy > 0.9
+
+
+@pytest.mark.parametrize(
+    ("address", "text", "sentence"),
+    [
+        ("own_none:make", None, "own_none:make: no module own_none in this folder or among the installed packages"),
+        ("sklearn.none:make", None, "sklearn.none:make: no module sklearn.none in this folder"),
+        (
+            "own_two:make",
+            "import own_missing",
+            r"own_two cannot be imported \(ModuleNotFoundError: No module named 'own_missing'\)",
+        ),
+        ("own_two:make", "1 / 0", r"own_two cannot be imported \(ZeroDivisionError: division by zero\)"),
+        ("own_two:make", "def (", r"own_two cannot be imported \(SyntaxError: "),
+        ("own_two:make", "raise SystemExit(3)", r"own_two cannot be imported \(SystemExit: 3\)"),
+        ("own_two:make", "def other(): pass", "own_two has no make; it has other"),
+        ("own_two:make", "", "own_two has no make; it has no class or function"),
+        ("own_two:make", "make = 3", "own_two:make: is no classifier; it needs fit and predict"),
+        ("own_two:make", "def make(): return 3", "own_two:make: a int has no fit and no predict"),
+        (
+            "own_two:make",
+            "def make(): return 1 / 0",
+            r"own_two:make: cannot be made \(ZeroDivisionError: division by zero\)",
+        ),
+    ],
+)
+def test_an_address_that_gives_no_classifier_is_refused_in_one_sentence(module, address, text, sentence):
+    if text is not None:
+        module("own_two", text)
+    with pytest.raises(EstimatorError, match=sentence) as caught:
+        load_maker(address)
+    assert "\n" not in str(caught.value)
+
+
+def test_names_are_those_of_the_format():
+    fitted = make_estimator(Nearest, 0).fit(np.eye(6), np.arange(6))
+    assert tuple(fitted.fitted.names) == tuple(sorted(FAULTS))
+    np.testing.assert_array_equal(fitted.classes_, np.arange(6))
+    assert len(records_of(make_table()).features) == 80

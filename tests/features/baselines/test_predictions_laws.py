@@ -1,0 +1,108 @@
+"""Laws of predictions: the same from tables in any order, from a model and its file, and calibrated on groups outside the training."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from features.baselines import UNSURE, evaluate, load_model, predict, save_model, train
+from features.baselines.calibration import COVERAGE, UNCALIBRATED
+from features.baselines.cross_calibration import calibration_splits
+from features.baselines.records import features_of, labelled_records
+from tests.model_files import make_table
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_trees():
+    """The laws are true for forests of any size, and small ones are trained faster."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("features.baselines.estimators.TREES", 10)
+        yield
+
+
+def windowed(records: int = 96, windows: int = 4, seed: int = 0, rigs: int = 6) -> xr.Dataset:
+    """Table of recordings of several windows each; every recording has its own specimen."""
+    table = make_table(3, records, seed)
+    recording = np.arange(records) // windows
+    known = {"fault": recording % 3, "specimen": recording, "recording": recording, "rig": recording // 3 % rigs}
+    table = table.assign({name: ("record", values) for name, values in known.items()})
+    shift = known["fault"] - np.arange(records) % 3
+    return table.assign(features=table.features + xr.DataArray(shift, dims="record"))
+
+
+@pytest.mark.parametrize("name", ["ensemble", "svm", "envelope_rule"])
+def test_a_model_and_its_file_give_the_same_predictions(tmp_path, name):
+    model, other = train(windowed(), name), windowed(seed=1)
+    save_model(model, tmp_path / "m")
+    loaded = load_model(tmp_path / "m")
+    assert loaded.calibration == model.calibration
+    one, again = predict(other, model), predict(other, loaded)
+    np.testing.assert_array_equal(one.probabilities, again.probabilities)
+    assert one.answers == again.answers
+    assert one.by_recording is not None
+    assert again.by_recording is not None
+    assert one.by_recording.answers == again.by_recording.answers
+
+
+def test_the_order_of_the_records_of_a_table_does_not_matter():
+    model, table = train(windowed()), windowed(seed=1)
+    order = np.random.default_rng(0).permutation(table.sizes["record"])
+    straight, shuffled = predict(table, model), predict(table.isel(record=order), model)
+    np.testing.assert_allclose(shuffled.probabilities, straight.probabilities[order])
+    assert straight.by_recording is not None
+    assert shuffled.by_recording is not None
+    np.testing.assert_allclose(shuffled.by_recording.probabilities, straight.by_recording.probabilities)
+    one, other = evaluate(table, model), evaluate(table.isel(record=order), model)
+    assert (one.confusion, one.coverage, one.interval) == (other.confusion, other.coverage, other.interval)
+    assert other.log_loss == pytest.approx(one.log_loss)
+
+
+def test_labels_change_no_probability():
+    model, table = train(windowed()), windowed(seed=1)
+    other = table.assign(fault=("record", (table.fault.values + 1) % 3))
+    np.testing.assert_array_equal(predict(other, model).probabilities, predict(table, model).probabilities)
+
+
+def test_predictions_are_those_that_are_scored():
+    model, table = train(windowed(), "logistic_regression"), windowed(seed=1)
+    found, scores = predict(table, model), evaluate(table, model)
+    right = np.array(found.predicted) == np.array(model.classes)[table.fault.values]
+    assert scores.accuracy == pytest.approx(right.mean())
+    assert scores.coverage == np.mean([answer != UNSURE for answer in found.answers])
+    assert scores.answered_accuracy == pytest.approx(right[found.answered].mean())
+    assert scores.by_recording is not None
+    assert scores.by_recording.records == len(np.unique(table.recording))
+
+
+def test_training_calibrates_by_rig_and_states_the_coverage():
+    found = train(windowed(), "logistic_regression").calibration
+    assert found.by == "rig"
+    assert COVERAGE <= found.coverage < COVERAGE + 1 / 96
+    assert 0 < found.dependence < 1  # windows with errors of their own
+
+
+@pytest.mark.parametrize(("rigs", "by", "folds"), [(6, "rig", 3), (2, "rig", 2), (1, "specimen", 3)])
+def test_rigs_are_kept_together_if_each_class_is_on_enough_of_them(rigs, by, folds):
+    table = windowed(rigs=rigs)
+    records = labelled_records(table, features_of(table, ("lines",)))
+    found = calibration_splits(records, 0)
+    assert found is not None
+    assert (found[0], len(found[1])) == (by, folds)
+    for trained, tested in found[1]:
+        assert not set(getattr(records, by)[trained]) & set(getattr(records, by)[tested])
+        assert set(records.fault[trained]) == set(records.fault)
+
+
+def test_without_enough_specimens_and_without_training_nothing_is_calibrated():
+    few = windowed(24).isel(record=slice(0, 24))
+    assert train(few.assign(specimen=few.specimen % 3, rig=few.rig * 0), "svm").calibration == UNCALIBRATED
+    for name in ("majority", "envelope_rule"):
+        assert train(windowed(), name).calibration == UNCALIBRATED
+
+
+def test_calibration_improves_the_log_loss_of_records_outside_the_training():
+    model, other = train(windowed(480, rigs=40), "svm"), windowed(480, seed=1)
+    plain = evaluate(other, replace(model, calibration=UNCALIBRATED))
+    assert evaluate(other, model).log_loss < plain.log_loss
+    assert evaluate(other, model).ece < plain.ece

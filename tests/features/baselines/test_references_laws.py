@@ -1,0 +1,344 @@
+"""Laws of healthy references: what a record is compared with, and that no tested record belongs to its reference."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from features import feature_table
+from features.baselines import evaluate, load_model, predict, save_model, train
+from features.baselines.records import recording_numbers
+from features.baselines.reference_choice import check_durations, compared, recording_reference
+from features.baselines.references import ENERGIES, NEAREST, relative_names, relative_to, virtual_references
+from features.faults import EVIDENCE
+from features.indicators import Orders
+from features.recording_table import recording_table
+from gen.corpus import UNKNOWN_CODE
+from gen.errors import CorpusError
+from gen.importers import import_generic
+from raceway.cli import cli
+from tests.model_files import Archive
+
+LINES = (*EVIDENCE, "raw_kurtosis")
+ORDERS = Orders(3.58, 5.42, 2.36, 0.4)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_trees():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("features.baselines.estimators.TREES", 10)
+        yield
+
+
+def make_table(rigs: int = 8, *, healthy: int = 2, own: float = 3.0, seed: int = 0) -> xr.Dataset:
+    """Feature table of rigs whose features differ by ``own``, each with healthy, inner and outer specimens of two recordings.
+
+    A fault moves the features of a record by less than the rig does.
+    """
+    rng = np.random.default_rng(seed)
+    kinds = np.tile([0] * healthy + [1, 2], rigs)
+    fault, rig = np.repeat(kinds, 2), np.repeat(np.arange(rigs), 2 * (healthy + 2))
+    count, names = len(fault), (*LINES, *ENERGIES)
+    of_rig = own * rng.standard_normal((rigs, len(names)))
+    features = of_rig[rig] + 0.1 * rng.standard_normal((count, len(names)))
+    features[:, : len(LINES)] += 1.0 * fault[:, None] * np.linspace(-1, 1, len(LINES))
+    known = {
+        "fault": fault.astype(np.int8),
+        "rig": rig,
+        "specimen": np.arange(count) // 2,
+        "recording": np.arange(count),
+        "shaft_rate": rng.uniform(10, 50, count),
+        "sample_rate": np.full(count, 12_000.0),
+    }
+    groups = ["lines"] * (len(LINES) - 1) + ["shape"] + ["bands"] * len(ENERGIES)
+    return xr.Dataset(
+        {"features": (("record", "feature"), features), **{name: ("record", held) for name, held in known.items()}},
+        {"feature": np.array(names, dtype=object), "group": ("feature", np.array(groups, dtype=object))},
+        {"title": "a made-up corpus"},
+    )
+
+
+@pytest.fixture(scope="module")
+def table():
+    return make_table()
+
+
+@pytest.fixture(scope="module")
+def model(table):
+    return train(table)
+
+
+def changes(found: xr.Dataset) -> np.ndarray:
+    """Changes of the features of a relative table, shape (record, change)."""
+    return found["features"].values[:, [str(name).endswith("_change") for name in found["feature"].values]]
+
+
+def test_a_record_that_is_its_own_reference_has_no_change(table):
+    for record in (0, 1):
+        alone = table.isel(record=[record])
+        assert not changes(relative_to(alone, alone, LINES)).any()
+
+
+@given(gain=st.floats(1e-3, 1e3), seed=st.integers(0, 99))
+@settings(deadline=None, max_examples=10)
+def test_gains_of_record_and_reference_have_no_effect(gain, seed):
+    x = np.random.default_rng(seed).standard_normal((3, 6000))
+    found = [
+        relative_to(*(recording_table(signal, 12_000.0, 25.0, ORDERS, UNKNOWN_CODE) for signal in pair), LINES)
+        for pair in ((x[:1], x[1:]), (gain * x[:1], x[1:]), (x[:1], gain * x[1:]))
+    ]
+    for other in found[1:]:  # lines are computed in single precision
+        np.testing.assert_allclose(other["features"].values, found[0]["features"].values, atol=1e-4)
+
+
+def test_the_order_of_records_and_references_has_no_effect(table):
+    order = np.random.default_rng(1).permutation(table.sizes["record"])
+    mixed = table.isel(record=order)
+    first = relative_to(table, table, LINES)["features"].values
+    np.testing.assert_array_equal(relative_to(table, mixed, LINES)["features"].values, first)
+    np.testing.assert_array_equal(relative_to(mixed, table, LINES)["features"].values, first[order])
+    pairs = {tuple(table["recording"].values[pair]) for pair in np.transpose(virtual_references(table, LINES, 3))}
+    others = {tuple(mixed["recording"].values[pair]) for pair in np.transpose(virtual_references(mixed, LINES, 3))}
+    assert others == pairs
+    assert {tuple(pair) for pair in np.transpose(virtual_references(table, LINES, 4))} != pairs
+
+
+def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_same_rig(table):
+    records, references = virtual_references(table, LINES, 0)
+    assert records.tolist() == list(range(table.sizes["record"]))
+    rig, speed, recording = table["rig"].values, np.log(table["shaft_rate"].values), recording_numbers(table)
+    for record, reference in zip(records, references, strict=True):
+        known = (rig == rig[record]) & (table["fault"].values == 0) & (recording != recording[record])
+        assert known[reference]
+        nearer = np.abs(speed - speed[record])[known] < abs(speed[reference] - speed[record])
+        assert nearer.sum() < NEAREST
+
+
+def test_records_are_compared_with_their_own_rig_if_the_reference_has_all_rigs(table):
+    healthy = table["fault"].values == 0
+    lines = table["features"].values[:, : len(LINES)]
+    rows = slice(len(LINES), 2 * len(LINES))
+    of_rig = relative_to(table, table, LINES)["features"].values[:, rows]
+    for rig in range(8):
+        mine = table["rig"].values == rig
+        np.testing.assert_allclose(of_rig[mine], lines[mine] - lines[mine & healthy].mean(axis=0))
+    some = table.isel(record=table["rig"].values > 0)
+    of_all = relative_to(table, some, LINES)["features"].values[:, rows]
+    np.testing.assert_allclose(of_all, lines - lines[healthy & (table["rig"].values > 0)].mean(axis=0))
+
+
+def test_faulty_records_of_a_reference_are_not_used(table, model):
+    healthy = table.isel(record=table["fault"].values == 0)
+    unknown = healthy.assign(fault=("record", np.full(healthy.sizes["record"], UNKNOWN_CODE, np.int8)))
+    first = predict(table, model, healthy).probabilities
+    for other in (table, unknown):
+        np.testing.assert_array_equal(predict(table, model, other).probabilities, first)
+
+
+def test_a_missing_feature_of_a_reference_record_is_taken_from_the_others(table):
+    gap = table.copy(deep=True)
+    gap["features"][0, 0] = np.nan
+    whole = table.isel(record=table["recording"].values != 0)
+    found, expected = (relative_to(table.isel(record=[9]), other, LINES)["features"].values for other in (gap, whole))
+    assert found[0, len(LINES)] == expected[0, len(LINES)]
+
+
+def test_a_reference_tells_classes_that_differ_less_than_rigs(model):
+    other = make_table(seed=5)
+    assert evaluate(other, model).balanced_accuracy < 0.6
+    assert evaluate(other, model, reference=other).balanced_accuracy > 0.95
+
+
+def test_the_first_healthy_recording_of_each_rig_is_the_reference_in_the_tested_corpus_itself(table, model):
+    chosen = compared(table, table, LINES)
+    assert sorted(chosen.reference["recording"].values.tolist()) == list(range(0, 64, 8))
+    assert set(chosen.table["recording"].values) == set(range(64)) - set(range(0, 64, 8))
+    scores = evaluate(table, model, reference=table)
+    assert (scores.records, chosen.left_out) == (56, 8)
+    assert scores.reference == chosen.sentence
+    assert "8 tested records that belong to it are left out" in scores.reference
+
+
+def test_a_rig_without_a_healthy_record_is_not_tested_on_its_own_corpus(table):
+    less = table.isel(record=(table["rig"].values != 3) | (table["fault"].values != 0))
+    assert 3 not in compared(less, less, LINES).table["rig"].values
+
+
+def test_a_tested_record_that_is_also_in_the_reference_is_left_out(table, model):
+    mixed = table.isel(record=np.random.default_rng(2).permutation(64)[:40])
+    chosen = compared(table, mixed, LINES)
+    healthy = mixed["fault"].values == 0
+    assert chosen.left_out == healthy.sum()
+    assert not set(chosen.table["recording"].values) & set(mixed["recording"].values[healthy])
+    with pytest.raises(CorpusError, match="every tested record belongs to the reference; give another"):
+        evaluate(table.isel(record=[0, 1]), model, reference=table)
+
+
+def test_a_model_of_a_corpus_without_two_healthy_recordings_takes_no_reference(table):
+    one = table.isel(record=(table["fault"].values > 0) | (table["recording"].values % 8 == 0))
+    for lacking in (one, table.drop_vars("shaft_rate"), table.isel(feature=table["group"].values != "bands")):
+        found = train(lacking, "random_forest")
+        assert found.relative is None
+    with pytest.raises(CorpusError, match="the model takes no reference, because a made-up corpus has no rig with two"):
+        predict(table, found, table)
+
+
+def test_a_reference_without_a_healthy_record_is_refused(table, model):
+    with pytest.raises(CorpusError, match="the reference holds no healthy record with features; give a healthy"):
+        predict(table, model, table.isel(record=table["fault"].values > 0))
+
+
+@pytest.mark.parametrize(("tested", "its", "allowed"), [(8e3, 8e3, 1), (12e3, 48e3, 1), (8e3, 12e3, 0), (12e3, 8e3, 0)])
+def test_sample_rates_may_differ_if_both_reach_the_highest_band(table, model, tested, its, allowed):
+    count = table.sizes["record"]
+    rates = [table.assign(sample_rate=("record", np.full(count, rate))) for rate in (tested, its)]
+    if allowed:
+        predict(rates[0], model, rates[1])
+        return
+    with pytest.raises(CorpusError, match="they may differ only if both are at least 10000 Hz"):
+        predict(rates[0], model, rates[1])
+
+
+def test_a_model_file_holds_both_parts(table, model, tmp_path):
+    for path in (tmp_path / "a.skops", tmp_path / "b.skops"):
+        save_model(model, path)
+    assert path.read_bytes() == (tmp_path / "a.skops").read_bytes()
+    read = load_model(path)
+    assert read.relative is not None
+    assert read.relative.calibration == model.relative.calibration != read.calibration
+    assert read.relative.features == relative_names(LINES)
+    for reference in (None, table):
+        found, expected = (predict(table, each, reference).probabilities for each in (read, model))
+        np.testing.assert_array_equal(found, expected)
+
+
+def forged_seed(held: dict) -> None:
+    held["seed"]["content"] = "1"
+
+
+def forged_corpus(held: dict) -> None:
+    held["corpus"]["content"] = '"another corpus"'
+
+
+def forged_digests(held: dict) -> None:
+    held["digests"] = held["name"]
+
+
+def missing_calibration(held: dict) -> None:
+    del held["calibration"]
+
+
+@pytest.mark.parametrize(
+    ("forge", "sentence"),
+    [
+        (forged_seed, "relative: estimator.*random_state is 0 and must be 1"),
+        (forged_corpus, "relative: is not of the same estimator, seed, classes, features and corpus"),
+        (forged_digests, "relative: digests must be 64 of 64 bits"),
+        (missing_calibration, "not a complete model"),
+    ],
+)
+def test_a_forged_second_part_of_a_model_file_is_refused(model, tmp_path, forge, sentence):
+    save_model(model, tmp_path / "m.skops")
+    archive = Archive(tmp_path / "m.skops")
+    forge(archive.field("relative")["content"])
+    with pytest.raises(CorpusError, match=sentence):
+        load_model(archive.write(tmp_path / "m.skops"))
+
+
+def test_a_tree_of_the_second_part_is_checked_too(model, tmp_path):
+    save_model(model, tmp_path / "m.skops")
+    archive = Archive(tmp_path / "m.skops")
+    nodes = [held for held in archive.places("nodes") if held.get("file")][-1]  # innermost and last: a tree
+    changed = archive.array(nodes)
+    changed["left_child"][0] = 2**40
+    archive.put(nodes, changed)
+    with pytest.raises(CorpusError, match="a node with a child that is not between the node and the last"):
+        load_model(archive.write(tmp_path / "m.skops"))
+
+
+FS = 12_000
+
+
+def imported(folder, *, rpm="1500", window=0.5, bearings=("6205",)):
+    """Corpus of a healthy recording and two inner ones, of two records each, at one speed or several."""
+    folder.mkdir()
+    rng, files = np.random.default_rng(0), []
+    for number, fault in enumerate(["healthy", "inner", "inner"]):
+        signal = rng.standard_normal(FS)
+        signal[:: FS // (60 if fault == "inner" else 400)] += 9.0
+        np.save(folder / f"{number}.npy", signal)
+        bearing = bearings[number % len(bearings)]
+        speed = rpm.split()[number % len(rpm.split())]
+        files.append(
+            f"- {{path: {number}.npy, fault: {fault}, specimen: {number}, bearing: '{bearing}', shaft_rpm: {speed}}}\n"
+        )
+    (folder / "mapping.yaml").write_text(f"unit: g\nsample_rate_hz: {FS}\nfiles:\n{''.join(files)}")
+    return import_generic(folder / "mapping.yaml", folder / "corpus", window=window).directory
+
+
+def test_a_reference_recording_has_the_features_of_the_same_records_in_a_corpus(tmp_path):
+    corpus = imported(tmp_path / "one")
+    tested = feature_table(corpus)
+    signal = 9.80665 * np.load(tmp_path / "one" / "0.npy")
+    found = recording_reference(signal, FS, corpus, tmp_path / "one" / "0.npy")
+    expected = tested["features"].values[tested["fault"].values == 0]
+    np.testing.assert_allclose(found["features"].values, expected, atol=0.02)  # the corpus is quantised
+    chosen = compared(tested, found, [str(name) for name in tested["feature"].values])
+    assert chosen.left_out == 2  # known by the name of the file
+    assert (chosen.table["fault"].values > 0).all()
+
+
+def test_a_reference_recording_that_cannot_be_used_is_refused(tmp_path):
+    signal, file = np.random.default_rng(0).standard_normal(FS), tmp_path / "r.csv"
+    one, speeds = imported(tmp_path / "one"), imported(tmp_path / "speeds", rpm="1500 1600")
+    bearings = imported(tmp_path / "bearings", bearings=("6205", "6204"))
+    for corpus, values, sentence in (
+        (
+            one,
+            signal[: FS // 3],
+            r"r.csv: the reference lasts 0.333 s, less than a record of .* \(0.5 s\); give a longer",
+        ),
+        (speeds, signal, r"go from 1500 to 1600 rpm; give the speed of the reference \(--reference-rpm\)"),
+        (bearings, signal, "has several bearings; give a corpus as reference"),
+    ):
+        with pytest.raises(CorpusError, match=sentence):
+            recording_reference(values, FS, corpus, file)
+    assert recording_reference(signal, FS, speeds, file, 25.0)["shaft_rate"].values.tolist() == [25.0, 25.0]
+    with pytest.raises(
+        CorpusError, match=r"last 0.25 s and those of .* 0.5 s; import the reference with records of the"
+    ):
+        check_durations(one, imported(tmp_path / "short", window=0.25))
+
+
+def several_rigs(table: xr.Dataset) -> xr.Dataset:
+    """Records of a table, repeated on three rigs and in two recordings each, a little changed."""
+    copies = [
+        table.assign(
+            rig=table["rig"] + rig, recording=table["recording"] + 9 * again, features=table["features"] + 0.01 * again
+        )
+        for rig in range(3)
+        for again in range(2)
+    ]
+    return xr.concat(copies, dim="record")
+
+
+def test_evaluate_takes_a_corpus_or_a_recording_as_reference(tmp_path):
+    corpus, path = imported(tmp_path / "one"), tmp_path / "m.skops"
+    save_model(train(several_rigs(feature_table(corpus))), path)
+    assert load_model(path).relative is not None
+
+    def run(*options):
+        done = CliRunner().invoke(cli, ["evaluate", str(corpus), "--model", str(path), *map(str, options)])
+        return done.exit_code, " ".join(done.output.split())
+
+    recording = tmp_path / "one" / "0.npy"
+    for reference, count in ((corpus, 2), (recording, 2)):
+        code, told = run("--reference", reference)
+        assert code == 0, told
+        assert f"which has {count}; 2 tested records that belong to it are left out." in told
+    assert f"{recording}: does not state its sample rate; 12000 Hz is used" in told
+    code, told = run("--reference", tmp_path / "nowhere")
+    assert code
+    assert f"there is no {tmp_path / 'nowhere'}; give a corpus or a recording" in told

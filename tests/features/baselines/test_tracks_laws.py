@@ -1,0 +1,229 @@
+"""Laws of the tracks: no specimen on both sides, tested groups that were not trained, and controls that say so."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from features.baselines import TRACKS, benchmark, controls, cross_validate, learning_curve
+from features.baselines.curves import curve_sizes, nested_specimens
+from features.baselines.records import SHAPES, records_of
+from features.baselines.splits import control_cases, grouped_case, permuted_labels
+from features.baselines.tracks import held_out_groups, ranges, track_splits
+from gen.corpus import FAULTS
+from gen.errors import CorpusError
+from tests.features.baselines.test_baselines_laws import few_trees as few_trees
+from tests.features.baselines.test_baselines_laws import make_table
+
+GROUPS = ("lines", "shape")
+
+
+def varied_table(specimens=48, records=3, *, ladder=False, seed=0, **made):
+    """A feature table with speeds, bearings, widths and shapes; with ``ladder``, every third record is healthy."""
+    table = make_table(specimens, records, rigs=12, seed=seed, **made)
+    rng = np.random.default_rng(seed)
+    specimen = table.specimen.values
+    fault = np.where((np.arange(len(specimen)) % 3 == 0) & ladder, 0, table.fault.values)
+    spalls = np.where(rng.uniform(size=specimens) < 0.3, 2, 1)[specimen]
+    balls = 7 + np.arange(12) % 4
+    columns = {
+        "fault": fault.astype(np.int8),
+        "shaft_rate": rng.uniform(10, 50, len(specimen)),
+        "bpfo": 0.4 * balls[table.rig.values],
+        "bpfi": 0.6 * balls[table.rig.values],
+        "n_spalls": np.where(fault > 0, spalls, 0),
+        "width": np.where(fault > 0, 1e-3 * np.exp(rng.uniform(-1.5, 1.5, specimens))[specimen], 0),
+    }
+    return table.assign({name: ("record", values) for name, values in columns.items()})
+
+
+def records(**options):
+    return records_of(varied_table(**options), GROUPS)
+
+
+tables = st.fixed_dictionaries({"seed": st.integers(0, 50), "ladder": st.booleans(), "records": st.integers(1, 4)})
+
+
+@pytest.mark.parametrize("track", TRACKS)
+@given(options=tables, folds=st.integers(2, 5))
+@settings(deadline=None, max_examples=25)
+def test_no_specimen_is_on_both_sides_and_no_record_is_tested_twice(track, options, folds):
+    found = records(**options)
+    splits = track_splits(found, found.fault, track, folds, options["seed"])
+    tested = np.concatenate([test for _, test in splits])
+    assert len(np.unique(tested)) == len(tested)
+    assert set(found.specimen[tested]) == set(found.specimen)
+    assert set(found.fault[tested]) == set(found.fault)
+    for train, test in splits:
+        assert len(train)
+        assert len(test)
+        assert not set(found.specimen[train]) & set(found.specimen[test])
+
+
+def group_of(found, track):
+    """Group of each record that a track may not train and test in one split; None for any group."""
+    if track in ("specimen", "rig"):
+        return getattr(found, track)
+    if track == "speed":
+        return ranges(found.conditions["shaft_rate"], 4)
+    if track == "severity":
+        group = np.full(len(found.fault), -1)
+        for code in np.unique(found.fault[found.fault > 0]):
+            of_class = found.fault == code
+            group[of_class] = ranges(found.width[of_class], 4)
+        return group
+    return found.conditions[track]
+
+
+@pytest.mark.parametrize("track", TRACKS)
+@given(options=tables)
+@settings(deadline=None, max_examples=25)
+def test_tested_groups_were_not_trained(track, options):
+    found = records(**options)
+    group = group_of(found, track)
+    for train, test in track_splits(found, found.fault, track, 4, options["seed"]):
+        trained, tested = set(group[train]) - {-1}, set(group[test]) - {-1}
+        assert tested
+        assert not trained & tested
+
+
+def test_a_bearing_type_is_a_designation_with_a_number_of_balls():
+    table = varied_table()
+    assert len(np.unique(records_of(table, GROUPS).conditions["bearing"])) == 4
+    named = np.where(table.rig.values < 6, "6205", "6206").astype(object)
+    known = records_of(table.assign_coords(bearing=("record", named)), GROUPS).conditions["bearing"]
+    assert len(np.unique(known)) == 8
+
+
+def test_the_shape_of_a_fault_is_told_by_its_spalls_and_their_width():
+    table = make_table(6, 1)
+    columns = {
+        "n_spalls": [0, 1, 1, 3, 0, 1],
+        "width": [0, 1.4e-3, 1.6e-3, 5e-3, 0, np.nan],
+        "wear": [0, 0, 0, 0, 1e-6, 0],
+    }
+    shape = records_of(table.assign({n: ("record", np.array(v)) for n, v in columns.items()}), GROUPS).conditions[
+        "shape"
+    ]
+    assert [SHAPES[n] if n >= 0 else None for n in shape] == [None, "pit", "extended", "several", "worn", None]
+
+
+@pytest.mark.parametrize("track", ["severity", "shape"])
+def test_healthy_specimens_are_dealt_out_evenly(track):
+    found = records()
+    group, home = held_out_groups(found, track, 4, 0)
+    np.testing.assert_array_equal(group[found.fault == 0], home[found.fault == 0])
+    specimens = np.unique(found.specimen[found.fault == 0])
+    dealt = np.unique([home[found.specimen == number][0] for number in specimens], return_counts=True)[1]
+    assert dealt.max() - dealt.min() <= 1
+
+
+def test_a_class_of_one_shape_is_trained_in_every_fold():
+    table = varied_table()
+    ball = table.fault.values == FAULTS.index("ball")
+    small = table.assign(width=table.width.where(~ball, 1e-3), n_spalls=table.n_spalls.where(~ball, 1))
+    found = records_of(small, GROUPS)
+    for train, _ in grouped_case(found, "shape", 3, 0)[1]:
+        assert set(found.fault[train]) == {0, 1, 2, 3}
+
+
+def test_records_of_unknown_width_are_neither_trained_nor_tested():
+    table = varied_table()
+    unknown = (table.fault.values > 0) & (table.specimen.values % 5 == 0)
+    found = records_of(table.assign(width=table.width.where(~unknown)), GROUPS)
+    for train, test in track_splits(found, found.fault, "severity", 4, 0):
+        assert not unknown[train].any()
+        assert not unknown[test].any()
+
+
+@pytest.mark.parametrize("track", TRACKS)
+def test_random_labels_score_high_in_a_leaky_split_and_at_chance_on_every_track(track):
+    table = varied_table(96, 5, told=0.0, signature=5.0)
+    found = controls(table, "extra_trees", track=track, folds=4)
+    grouped = cross_validate(table, "extra_trees", track=track, folds=4)
+    assert found["leaky"].balanced_accuracy > 0.9
+    assert grouped.balanced_accuracy < 0.4
+    assert found["null"].balanced_accuracy < 0.4
+
+
+@pytest.mark.parametrize("track", TRACKS)
+def test_the_null_control_is_at_chance_although_the_labels_are_told_by_the_features(track):
+    scores = []
+    for seed in range(6):
+        found = controls(varied_table(96, 2, seed=seed), "logistic_regression", track=track, folds=4, seed=seed)
+        scores.append(found["null"].balanced_accuracy)
+    assert 0.15 < np.mean(scores) < 0.3
+
+
+def test_the_null_control_of_a_held_out_track_splits_like_the_track():
+    found = records(ladder=True)
+    _, splits = grouped_case(found, "severity", 4, 3)
+    labels, permuted = control_cases(found, "severity", 4, 3)["null"]
+    np.testing.assert_array_equal(labels, permuted_labels(found, 3))
+    for one, other in zip(splits, permuted, strict=True):
+        np.testing.assert_array_equal(one[1], other[1])
+
+
+@pytest.mark.parametrize(
+    ("track", "changed", "sentence"),
+    [
+        ("bearing", {"bpfo": 3.0, "bpfi": 5.0}, "1 bearing type.s. cannot fill 5 folds; test on another corpus"),
+        ("speed", {"shaft_rate": 30.0}, "there is only one labelled shaft rate, or none; choose another track"),
+        ("speed", {"shaft_rate": np.nan}, "there is only one labelled shaft rate, or none; choose another track"),
+        ("severity", {"width": np.nan}, "there is only one known fault width of a class, or none"),
+        ("shape", {"width": 1e-3, "n_spalls": 1}, "there is only one known fault shape, or none"),
+    ],
+)
+def test_a_track_without_groups_is_refused_in_one_sentence(track, changed, sentence):
+    table = varied_table()
+    plain = table.assign(
+        {
+            n: ("record", np.where(table.fault > 0, v, 0) if n in ("width", "n_spalls") else np.full(144, v))
+            for n, v in changed.items()
+        }
+    )
+    with pytest.raises(CorpusError, match=sentence):
+        cross_validate(plain, "majority", track=track)
+    results = benchmark(plain, tracks="all", estimators={"majority": "majority"}, folds=3)
+    assert list(results.left_out) == [track] or track in results.left_out
+    assert results.track == "specimen"
+
+
+def test_all_tracks_are_scored_by_three_baselines_and_single_ones_by_all():
+    results = benchmark(varied_table(), tracks="all", folds=3)
+    assert (results.track, tuple(results.further), results.left_out) == (TRACKS[0], TRACKS[1:], {})
+    for found in results.further.values():
+        assert list(found.baselines) == ["majority", "envelope_rule", "ensemble"] == list(results.baselines)
+        assert found.baselines["ensemble"].leaky == results.baselines["ensemble"].leaky
+        assert found.tested <= found.records == 144
+    assert results.further["speed"].tested < 144
+
+
+def test_smaller_training_sets_are_parts_of_larger_ones_and_have_all_classes():
+    found = records()
+    order = nested_specimens(found, 0)
+    assert sorted(order) == list(range(48))
+    classes = np.arange(48) % 4
+    for size in range(4, 49, 4):
+        assert np.ptp(np.bincount(classes[order[:size]])) == 0
+
+
+def test_the_learning_curve_ends_at_the_score_of_the_cross_validation():
+    table = varied_table(told=1.0)
+    points = learning_curve(table, "logistic_regression", folds=4)
+    assert [point.specimens for point in points] == [8, 17, 36]
+    assert [point.records for point in points] == [24, 51, 108]
+    whole = cross_validate(table, "logistic_regression", folds=4)
+    assert points[-1].scores.balanced_accuracy == whole.balanced_accuracy
+    assert points[0].scores.records == 144
+
+
+def test_the_sizes_of_a_learning_curve_about_double():
+    found = records_of(
+        xr.concat([varied_table(seed=n).assign(specimen=varied_table().specimen + 48 * n) for n in range(8)], "record"),
+        GROUPS,
+    )
+    sizes = np.array(curve_sizes(found, grouped_case(found, "specimen", 4, 0)[1]))
+    assert (sizes[0], sizes[-1]) == (8, 288)
+    assert np.all(np.abs(np.log2(sizes[1:] / sizes[:-1]) - 1) < 0.3)

@@ -1,0 +1,102 @@
+"""Records whose class is not known: stored, shown, and left out wherever a class is needed."""
+
+import json
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from features import feature_table
+from features.baselines import DEFAULT_GROUPS, benchmark, count_unknown, evaluate, train
+from features.baselines.records import all_records, features_of, labelled_records
+from features.realism.windows import common_ground, measured_windows
+from features.report.examples import draw_examples
+from features.report.page import write_report
+from gen.corpus import FAULT_NAMES, UNKNOWN_CODE, open_corpus, validate_corpus
+from gen.errors import CorpusError
+from gen.importers import import_generic
+from raceway.cli import cli
+from raceway.console.summary import describe
+
+FS = 12_000
+COMMON = f"bearing: '6205'\nunit: g\nsample_rate_hz: {FS}\nshaft_rpm: 1500\n"
+
+
+@pytest.fixture(scope="module", autouse=True)
+def few_trees():
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("features.baselines.estimators.TREES", 5)
+        yield
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory):
+    """Three specimens each of healthy and inner, and two recordings of unknown class, of two records each."""
+    folder = tmp_path_factory.mktemp("unknown")
+    rng, files = np.random.default_rng(0), []
+    for number, fault in enumerate(["healthy", "inner"] * 3 + ["unknown"] * 2):
+        signal = rng.normal(size=FS)
+        signal[:: FS // (60 if fault == "inner" else 400)] += 9.0
+        np.save(folder / f"{number}.npy", signal)
+        files.append(f"- {{path: {number}.npy, fault: {fault}, specimen: {number}}}\n")
+    (folder / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
+    return import_generic(folder / "mapping.yaml", folder / "corpus").directory
+
+
+@pytest.fixture(scope="module")
+def table(corpus):
+    return feature_table(corpus)
+
+
+def test_unknown_is_a_value_of_the_format_and_no_class(corpus):
+    assert validate_corpus(corpus) == []
+    with open_corpus(corpus) as opened:
+        assert opened.fault.values.tolist() == [0, 0, 1, 1] * 3 + [UNKNOWN_CODE] * 4
+        assert opened.fault.flag_values.tolist() == [*FAULT_NAMES]
+        assert opened.n_spalls.values[-4:].tolist() == [-1] * 4
+        assert np.isnan(opened.width.values[-4:]).all()
+        assert [example.fault for example in draw_examples(opened)] == ["healthy", "inner", "unknown"]
+    assert describe(corpus)["classes"] == {"healthy": 6, "inner": 6, "unknown": 4}
+    assert "| unknown | 2 | 4 |" in (corpus / "README.md").read_text()
+
+
+def test_training_and_cross_validation_leave_unknown_records_out(corpus, table, tmp_path):
+    names = features_of(table, DEFAULT_GROUPS)
+    assert count_unknown(table) == 4
+    assert np.unique(labelled_records(table, names).fault).tolist() == [0, 1]
+    assert np.unique(all_records(table, names).fault).tolist() == [0, 1, UNKNOWN_CODE]
+    assert train(table, "majority").records == 12
+    results = benchmark(table, table.isel(record=slice(12, None)).assign(fault=table.fault[:4]), folds=2)
+    assert (results.corpus.records, results.corpus.unknown) == (12, 4)
+    assert results.test is not None
+    assert (results.corpus.classes, results.test.unknown) == ({"healthy": 6, "inner": 6}, 0)
+    page = write_report(corpus, results, tmp_path).read_text()
+    assert "4 records whose class is not known are left out of all scores." in page
+    assert json.loads((tmp_path / "results.json").read_text())["corpus"]["unknown"] == 4
+
+
+def test_a_table_without_a_known_class_is_refused(table):
+    with pytest.raises(CorpusError, match="all records are of class unknown; label some of them"):
+        labelled_records(table.isel(record=slice(12, None)), ())
+
+
+def test_a_comparison_leaves_unknown_records_out(corpus):
+    found = measured_windows(corpus, "real", common_ground([corpus], 5000.0, None), 100)
+    assert np.unique(found.fault).tolist() == [0, 1]
+    assert found.unknown == 4
+
+
+def test_train_says_how_many_records_are_left_out(corpus, tmp_path):
+    done = CliRunner().invoke(
+        cli, ["train", str(corpus), "-o", str(tmp_path / "m.skops"), "--estimator", "majority"], prog_name="raceway"
+    )
+    assert done.exit_code == 0, done.output
+    assert f"{corpus}: 4 records of class unknown left out." in " ".join(done.stderr.split())
+    assert "trained on 12 records, classes healthy, inner." in done.stdout
+
+
+def test_scores_are_those_of_the_records_whose_class_is_known(table):
+    model = train(table, "majority")
+    shuffled = table.isel(record=np.random.default_rng(0).permutation(table.sizes["record"]))
+    assert evaluate(shuffled, model).records == 12
+    assert evaluate(shuffled, model).accuracy == evaluate(table.isel(record=slice(12)), model).accuracy

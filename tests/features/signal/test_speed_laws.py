@@ -1,0 +1,124 @@
+"""Laws of the speed that fits lines: which evidence is clear, and what changes nothing."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from features.signal.lines import COMB_HARMONICS, FAMILIES, Orders
+from features.signal.speed import (
+    EVIDENCE,
+    FLOOR,
+    SHAFT_HARMONICS,
+    SHAFT_SHIFT,
+    SLIP,
+    candidates,
+    find_speed,
+    levels_at,
+    line_orders,
+)
+
+law = settings(deadline=None, max_examples=50)
+COMB_LINES = len(FAMILIES) * COMB_HARMONICS
+LINES = COMB_LINES + 2 * SHAFT_HARMONICS
+CANDIDATES = len(candidates()) + 2 * SHAFT_SHIFT
+errors = st.integers(-75, 75)  # candidates beside the label
+
+
+def levels_with(comb=None, shaft=None, height=2.0):
+    """Levels of noise with lines at candidates beside the label: of family ``comb[0]`` at ``comb[1]``, of the shaft."""
+    levels = np.full((LINES, CANDIDATES), FLOOR)
+    middle = CANDIDATES // 2
+    if comb is not None:
+        family, place = comb
+        levels[family * COMB_HARMONICS : (family + 1) * COMB_HARMONICS, middle + place] = height
+    if shaft is not None:
+        levels[COMB_LINES:, middle + shaft] = height
+    return levels
+
+
+def test_candidates_are_symmetric_and_hold_the_label():
+    error = candidates(0.08)
+    np.testing.assert_allclose(error, -error[::-1], atol=1e-15)
+    assert error[len(error) // 2] == 0
+    assert error[-1] == pytest.approx(0.08)
+
+
+@law
+@given(st.floats(1.0, 8.0), st.floats(-0.07, 0.07), st.floats(10.0, 40.0))
+def test_the_level_of_a_line_is_read_at_the_candidate_that_hits_it(order, error, bins_per_order):
+    place = order * bins_per_order * (1 + error)
+    level = np.maximum(0.0, 1.0 - np.abs(np.arange(400) - place) / 3)[None].astype(np.float32)
+    read = levels_at(level, np.array([[order * bins_per_order]]))[0, 0]
+    found = candidates(0.08 + SHAFT_SHIFT * 0.001)[read.argmax()]
+    assert abs(found - error) * order * bins_per_order <= 1.0  # a bin
+
+
+def test_lines_beyond_the_end_of_a_spectrum_have_the_level_of_the_floor():
+    assert (levels_at(np.ones((1, 50), np.float32), np.array([[80.0]])) == 0).all()
+
+
+def test_line_orders_are_three_harmonics_of_each_family_and_those_of_the_shaft():
+    one = np.ones(1)
+    envelope, signal = line_orders(Orders(0.4 * one, 3.6 * one, 5.4 * one, 2.4 * one))
+    np.testing.assert_allclose(envelope[0, :9], [3.6, 7.2, 10.8, 5.4, 10.8, 16.2, 4.8, 9.6, 14.4])
+    np.testing.assert_array_equal(envelope[0, 9:], signal)
+
+
+@law
+@given(st.integers(0, len(FAMILIES) - 1), errors, st.integers(-SHAFT_SHIFT, SHAFT_SHIFT), st.floats(8.0, 50.0))
+def test_a_comb_and_a_shaft_within_the_slip_of_each_other_are_clear_evidence(family, place, slip, label):
+    found = find_speed(levels_with((family, place), place + slip), 10, label)
+    assert found.clear
+    assert found.evidence == FAMILIES[family]
+    assert found.rate == pytest.approx(label * (1 + place * 0.001))
+    assert found.uncertainty < 0.015 * label
+    assert found.agrees == (abs(found.rate - label) <= 2 * found.uncertainty)
+
+
+@law
+@given(errors)
+def test_the_shaft_alone_is_named_where_no_comb_is(place):
+    found = find_speed(levels_with(shaft=place), 10, 25.0)
+    assert not found.clear or found.evidence == "shaft"
+    assert abs(found.rate / 25.0 - 1 - place * 0.001) <= SHAFT_SHIFT * 0.001 + 1e-9
+
+
+@law
+@given(st.integers(0, 2), errors, st.sampled_from([-60, -40, 40, 60]))
+def test_a_comb_that_contradicts_the_shaft_is_not_clear(family, place, apart):
+    other = place + apart
+    if abs(other) <= 75:  # a bearing other than the one that is named gives such a comb
+        assert not find_speed(levels_with((family, place), other), 10, 25.0).clear
+
+
+@law
+@given(st.integers(0, 1), st.integers(-75, -10), st.integers(1, 2))
+def test_two_families_that_fit_two_speeds_equally_are_not_clear(family, place, step):
+    levels = np.maximum(levels_with((family, place)), levels_with(((family + step) % 3, place + 60)))
+    found = find_speed(levels, 10, 25.0)
+    assert not found.clear
+    assert found.agrees
+    assert found.evidence == EVIDENCE[0]
+
+
+@law
+@given(errors, st.integers(0, 8))
+def test_one_line_alone_is_no_clear_comb(place, line):
+    levels = np.full((LINES, CANDIDATES), FLOOR)
+    levels[line, CANDIDATES // 2 + place] = 5.0
+    assert not find_speed(levels, 10, 25.0).clear
+
+
+def test_without_lines_the_rate_is_the_label_and_uncertain():
+    found = find_speed(levels_with(), 10, 25.0)
+    assert found.rate == 25.0
+    assert found.uncertainty > 2 * SLIP * 25.0
+    assert not found.clear
+
+
+def test_without_a_window_nothing_is_known():
+    found = find_speed(np.zeros((1, 1)), 0, 25.0)
+    assert np.isnan(found.rate)
+    assert not found.clear
+    assert found.agrees

@@ -1,0 +1,114 @@
+"""Splits of real recordings that can leak: copies under two names are found, and different recordings of one machine are not."""
+
+import json
+
+import numpy as np
+import pytest
+import scipy.signal
+from click.testing import CliRunner
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from features import audit_splits
+from features.auditing import COPY, _signature, phase_correlation
+from gen.importers import import_generic
+from raceway.cli import cli
+
+FS = 2000
+COMMON = f"bearing: '6205'\nunit: g\nsample_rate_hz: {FS}\nshaft_rpm: 1500\n"
+
+
+def machine(seed, size=8 * FS):
+    """A recording of one machine: the same shaft harmonics and resonance every time, other noise."""
+    noise = scipy.signal.lfilter([1.0], [1.0, -1.2, 0.8], np.random.default_rng(seed).normal(size=size))
+    turns = 25 * np.arange(size) / FS
+    return noise + sum(3.0 * np.sin(2 * np.pi * k * turns + seed) for k in (1, 2, 3))
+
+
+def corpus(tmp_path, recordings):
+    """Corpus of recordings as (file, signal, fault, specimen)."""
+    files = []
+    for name, signal, fault, specimen in recordings:
+        np.save(tmp_path / f"{name}.npy", signal)
+        files.append(f"- {{path: {name}.npy, fault: {fault}, specimen: {specimen}}}\n")
+    (tmp_path / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
+    return import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").directory
+
+
+def sound_set():
+    """Two specimens a class with two recordings each."""
+    return [
+        (f"{fault}{n}{again}", machine(4 * (fault == "inner") + 2 * n + again), fault, f"{fault}{n}")
+        for fault in ("healthy", "inner")
+        for n in range(2)
+        for again in range(2)
+    ]
+
+
+def test_a_set_with_two_bearings_a_class_and_no_copy_raises_no_doubt(tmp_path):
+    assert audit_splits(corpus(tmp_path, sound_set())) == []
+
+
+COPIES = {
+    "same": lambda x: x,
+    "louder and turned": lambda x: -3.0 * x,
+    "shifted": lambda x: x[FS : 7 * FS],
+    "resampled": lambda x: scipy.signal.resample_poly(scipy.signal.resample_poly(x, 2, 3), 3, 2),
+    "noisy": lambda x: x + 0.3 * x.std() * np.random.default_rng(9).normal(size=x.size),
+}
+
+
+@pytest.mark.parametrize("change", COPIES.values(), ids=COPIES)
+def test_a_copy_of_a_recording_under_another_specimen_is_named(tmp_path, change):
+    recordings = [*sound_set(), ("copy", change(sound_set()[0][1]), "healthy", "another")]
+    (sentence,) = audit_splits(corpus(tmp_path, recordings))
+    assert "healthy00.npy and copy.npy agree in phase sample by sample, as copies of one recording do" in sentence
+    assert sentence.endswith("remove one of the two, or give both the same specimen.")
+
+
+def test_a_copy_under_the_same_specimen_is_no_leak(tmp_path):
+    assert audit_splits(corpus(tmp_path, [*sound_set(), ("copy", sound_set()[0][1], "healthy", "healthy0")])) == []
+
+
+@settings(deadline=None, max_examples=30)
+@given(seed=st.integers(0, 10_000), other=st.integers(10_001, 20_000))
+def test_different_recordings_of_one_machine_are_no_copies(seed, other):
+    one, two = (_signature(machine(number))[0] for number in (seed, other))
+    assert phase_correlation(one, two) < COPY / 2
+    assert phase_correlation(one, one) > 4 * COPY * 0.99
+
+
+def test_a_class_of_one_specimen_and_one_specimen_per_file_are_told(tmp_path):
+    found = audit_splits(corpus(tmp_path, [*sound_set()[:6], ("o", machine(77), "outer", "x")]))
+    assert len(found) == 1
+    assert "all 32 inner and all 16 outer records are of one specimen each" in found[0]
+    (tmp_path / "b").mkdir()
+    found = audit_splits(corpus(tmp_path / "b", [(n, x, fault, n) for n, x, fault, _ in sound_set()]))
+    assert len(found) == 1
+    assert (
+        "each of the 8 recordings is a specimen of its own; if some are of one bearing, a split by specimen leaks"
+        in found[0]
+    )
+
+
+def test_two_sensors_of_one_file_are_not_two_specimens(tmp_path):
+    for name, signal, *_ in sound_set():
+        np.save(tmp_path / f"{name}.npy", signal)
+    np.save(tmp_path / "two.npy", np.stack([machine(95), machine(96)]))
+    files = [
+        f"- {{path: {name}.npy, fault: {fault}, specimen: {specimen}}}\n" for name, _, fault, specimen in sound_set()
+    ]
+    files += [f"- {{path: two.npy, column: {n}, fault: inner, specimen: sensor{n}}}\n" for n in (0, 1)]
+    (tmp_path / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
+    (sentence,) = audit_splits(import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").directory)
+    assert "two.npy holds recordings of more than one specimen; if these are sensors of one machine" in sentence
+
+
+def test_validate_warns_of_an_imported_corpus_and_still_finds_it_sound(tmp_path):
+    folder = corpus(tmp_path, [*sound_set(), ("copy", sound_set()[0][1], "healthy", "another")])
+    done = CliRunner().invoke(cli, ["validate", str(folder), "--json"], prog_name="raceway")
+    assert done.exit_code == 0, done.output
+    facts = json.loads(done.stdout)
+    assert facts["valid"]
+    assert len(facts["warnings"]) == 1
+    assert "warning:" in done.stderr

@@ -1,0 +1,190 @@
+"""One recording of the user: every format gives the numbers that were written, and each error is one sentence."""
+
+import re
+import struct
+
+import h5py
+import numpy as np
+import pytest
+import scipy.io
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.io import wavfile
+
+from gen.errors import CorpusError
+from gen.importers import read_signal
+from gen.importers.matlab import matches
+
+X = np.random.default_rng(3).uniform(-0.9, 0.9, 600)
+GRAVITY = 9.80665
+
+
+def write_matlab_7_3(path):
+    with h5py.File(path, "w") as file:
+        file["run/x"] = X[np.newaxis]
+        file["rpm"] = np.array([[1500.0]])
+
+
+FILES = {
+    "only_variable.mat": lambda path: scipy.io.savemat(path, {"rpm": 1500, "x": X}),
+    "only_field.mat": lambda path: scipy.io.savemat(path, {"bearing": {"sr": 12000, "gs": X}, "name": "a"}),
+    "level_7_3.mat": write_matlab_7_3,
+    "column.csv": lambda path: np.savetxt(path, X, fmt="%.17g"),
+    "values.npy": lambda path: np.save(path, X),
+    "float.wav": lambda path: wavfile.write(path, 12_000, X),
+}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_only_signal_of_a_file_is_read_without_being_named(tmp_path, name):
+    FILES[name](tmp_path / name)
+    found = read_signal(tmp_path / name)
+    np.testing.assert_array_equal(found.values, X)
+    assert found.fs == (12_000 if name.endswith(".wav") else None)
+    assert found.warnings == ()
+
+
+def wav(path, samples, rate=8000, *, extensible=False):
+    """Write PCM of 24 bits, which SciPy does not write; ``samples`` of shape (time, channel)."""
+    count, channels = samples.shape
+    data = samples.astype("<i4").reshape(-1, 1).view(np.uint8)[:, :3].tobytes()
+    described = struct.pack("<HHIIHH", 1, channels, rate, 3 * channels * rate, 3 * channels, 24)
+    if extensible:
+        described = struct.pack("<H", 0xFFFE) + described[2:] + struct.pack("<HHI", 22, 24, 0)
+        described += struct.pack("<H", 1) + bytes.fromhex("000000001000800000aa00389b71")
+    note = b"LIST" + struct.pack("<I", 3) + b"abc\0"
+    chunks = b"fmt " + struct.pack("<I", len(described)) + described + note
+    chunks += b"data" + struct.pack("<I", len(data)) + data + b"\0" * (len(data) % 2)
+    path.write_bytes(b"RIFF" + struct.pack("<I", 4 + len(chunks)) + b"WAVE" + chunks)
+    return count
+
+
+@pytest.mark.parametrize(("dtype", "scale", "silence"), [("u1", 128, 128), ("i2", 2**15, 0), ("i4", 2**31, 0)])
+def test_integers_of_a_wav_file_are_shares_of_its_full_scale(tmp_path, dtype, scale, silence):
+    counts = np.round(X * scale) + silence
+    wavfile.write(tmp_path / "a.wav", 44_100, counts.astype(dtype))
+    found = read_signal(tmp_path / "a.wav")
+    np.testing.assert_array_equal(found.values, (counts - silence) / scale)
+    assert found.fs == 44_100
+    assert found.warnings == (
+        "a.wav: it holds integers, whose full scale is taken as 1, so that its level is not absolute.",
+    )
+
+
+@pytest.mark.parametrize("extensible", [False, True])
+def test_24_bits_and_a_chosen_channel_of_stereo_are_read(tmp_path, extensible):
+    counts = np.round(np.stack([X, -X / 2], axis=1) * 2**23)
+    wav(tmp_path / "a.wav", counts, extensible=extensible)
+    for column in (0, 1):
+        np.testing.assert_array_equal(read_signal(tmp_path / "a.wav", column=column).values, counts[:, column] / 2**23)
+    assert read_signal(tmp_path / "a.wav", column=0).fs == 8000
+    with pytest.raises(
+        CorpusError, match=re.escape("a.wav: has 2 columns and none is chosen; choose one with column.")
+    ):
+        read_signal(tmp_path / "a.wav")
+
+
+def test_units_and_sensitivities_give_accelerations(tmp_path):
+    np.save(tmp_path / "a.npy", X)
+    found = (
+        read_signal(tmp_path / "a.npy", unit="g"),
+        read_signal(tmp_path / "a.npy", unit="V", sensitivity=100.0),
+        read_signal(tmp_path / "a.npy", unit="mV", sensitivity=100.0),
+    )
+    for signal, factor in zip(found, (1, 10, 0.01), strict=True):
+        np.testing.assert_allclose(signal.values, X * factor * GRAVITY, rtol=1e-14)
+
+
+def test_a_given_rate_is_used_and_a_different_one_in_the_file_is_told(tmp_path):
+    wavfile.write(tmp_path / "a.wav", 12_000, X)
+    np.save(tmp_path / "a.npy", X)
+    assert read_signal(tmp_path / "a.npy", rate=5000.0).fs == 5000
+    found = read_signal(tmp_path / "a.wav", rate=5000.0)
+    assert found.fs == 5000
+    assert found.warnings == ("a.wav: states a sample rate of 12000 Hz; the given 5000 Hz are used.",)
+
+
+DOUBTFUL = {
+    "counts": (np.round(X * 2000), "it holds whole numbers, as the counts of a converter are"),
+    "quiet": (
+        X * 1e-5,
+        "its rms is 5.1e-06 m/s^2, and machines show 0.001 to 10000 m/s^2; check the unit, which is taken as m/s2",
+    ),
+    "loud": (X * 1e5 + 0.5, "its rms is 5.1e+04 m/s^2"),
+}
+
+
+@pytest.mark.parametrize(("values", "doubt"), DOUBTFUL.values(), ids=DOUBTFUL)
+def test_values_that_no_accelerometer_gives_are_doubted(tmp_path, values, doubt):
+    np.save(tmp_path / "a.npy", values)
+    (told,) = read_signal(tmp_path / "a.npy").warnings
+    assert doubt in told
+
+
+def cut_wav(path):
+    wavfile.write(path, 8000, X)
+    path.write_bytes(path.read_bytes()[:-8])
+
+
+def with_encoding(number):
+    def write(path):
+        wavfile.write(path, 8000, np.zeros(9, "i2"))
+        content = bytearray(path.read_bytes())
+        content[20:22] = struct.pack("<H", number)
+        path.write_bytes(content)
+
+    return write
+
+
+REFUSED = {
+    "missing": ("a.npy", None, {}, "could not be read (No such file or directory); check the path."),
+    "empty": ("a.csv", lambda path: path.write_bytes(b""), {}, "is empty (0 bytes); copy it again."),
+    "unknown_type": ("a.mp3", lambda path: path.write_bytes(b"1"), {}, "is of no known type; known are .mat, .npy, .wav, .csv"),
+    "no_wav": ("a.wav", lambda path: path.write_bytes(b"1" * 99), {}, "is not a WAV file."),
+    "cut_wav": ("a.wav", cut_wav, {}, "is truncated or damaged: 4800 bytes announced where 4792 are left."),
+    "no_samples": ("a.wav", lambda path: path.write_bytes(b"RIFF1234WAVE"), {}, "is truncated or damaged: it has no samples."),
+    "compressed": ("a.wav", with_encoding(85), {}, "holds samples of encoding 85; save it as PCM or floating point."),
+    "half_float": ("a.wav", with_encoding(3), {}, "holds samples of 16 bits; PCM of 8, 16, 24 or 32 and floating point"),
+    "named_column": (
+        "a.npy", FILES["values.npy"], {"column": "ax"}, "so none is called ax; give column as a number from 0.",
+    ),
+    "no_such_column": ("a.csv", FILES["column.csv"], {"column": 3}, "has no line of numbers in column 3 among its first 100."),
+    "no_such_name": ("a.csv", FILES["column.csv"], {"column": "ax"}, "has no column ax in its first 100 lines."),
+    "no_such_variable": (
+        "a.mat", FILES["only_variable.mat"], {"variable": "y*"}, "holds rpm, x, and no variable y*; name one with variable.",
+    ),
+    "voltage": ("a.npy", FILES["values.npy"], {"unit": "V"}, "the unit is V and the sensitivity of the sensor is missing;"),
+    "no_voltage": ("a.npy", FILES["values.npy"], {"sensitivity": 100.0}, "a sensitivity is given and the unit is m/s2, not V or mV;"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("name", "write", "keys", "sentence"), REFUSED.values(), ids=REFUSED)
+def test_a_recording_that_cannot_be_read_is_named_with_its_reason(tmp_path, name, write, keys, sentence):
+    if write is not None:
+        write(tmp_path / name)
+    with pytest.raises(CorpusError) as refused:
+        read_signal(tmp_path / name, **keys)
+    assert str(refused.value).startswith(f"{tmp_path / name}: ")
+    assert sentence in str(refused.value)
+    assert "\n" not in str(refused.value)
+
+
+@settings(deadline=None, max_examples=300)
+@given(place=st.integers(0, 60), value=st.binary(min_size=1, max_size=4))
+def test_an_altered_wav_file_is_read_or_refused(tmp_path_factory, place, value):
+    path = tmp_path_factory.mktemp("wav") / "a.wav"
+    wav(path, np.round(X[:, np.newaxis] * 2**23), extensible=True)
+    content = bytearray(path.read_bytes())
+    content[place : place + len(value)] = value
+    path.write_bytes(content)
+    try:
+        found = read_signal(path, column=0)
+    except CorpusError:
+        return
+    assert 0 < found.values.size <= len(content)
+
+
+@given(st.text("ab*", max_size=8), st.text("ab", max_size=8))
+def test_a_star_stands_for_any_letters(pattern, name):
+    expected = re.fullmatch(re.escape(pattern).replace(r"\*", ".*"), name) is not None
+    assert matches(name, pattern) == expected

@@ -1,0 +1,90 @@
+"""Own classifiers, tracks and the learning curve on the command line."""
+
+import json
+
+import pytest
+
+from features.baselines import TRACKS
+from raceway.commands import benchmarking
+
+MINE = """
+import numpy as np
+from sklearn.impute import SimpleImputer
+from sklearn.naive_bayes import GaussianNB
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import FunctionTransformer
+
+
+def make():
+    return make_pipeline(SimpleImputer(keep_empty_features=True), GaussianNB())
+
+
+def of_signals():
+    return make_pipeline(FunctionTransformer(lambda X: np.log(np.abs(np.fft.rfft(np.asarray(X))) + 1e-3)), GaussianNB())
+"""
+
+
+@pytest.fixture
+def mine(tmp_path, monkeypatch):
+    (tmp_path / "own_module.py").write_text(MINE)
+    monkeypatch.chdir(tmp_path)
+    return "own_module:make"
+
+
+def test_help_names_all_tracks():
+    assert benchmarking.TRACKS == TRACKS
+
+
+def test_own_classifiers_tracks_and_a_curve_are_shown_and_written(run, told, tiny_corpus, tmp_path, mine):
+    line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", mine)
+    line = (*line, "--estimator", "logistic_regression", "--track", "all", "--learning-curve")
+    found = told(*line)
+    assert (found["leading"], found["track"]) == (mine, "specimen")
+    assert list(found["baselines"]) == ["majority", "envelope_rule", mine, "logistic_regression"]
+    assert {*found["further"], *found["left_out"]} == set(TRACKS[1:])
+    assert {"rig", "speed"} <= set(found["further"])
+    assert [point["specimens"] for point in found["curve"]] == sorted(point["specimens"] for point in found["curve"])
+    assert json.loads((tmp_path / "report" / "results.json").read_text())["further"] == found["further"]
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "<h2>Tracks</h2>" in page
+    assert "<h2>Learning curve</h2>" in page
+    shown = run(*line).stdout
+    assert "By speed, 2 folds, " in shown
+    assert f"Learning curve of {mine}, by specimen:" in shown
+    for track, reason in found["left_out"].items():
+        assert f"No scores by {track}. {reason}" in shown
+
+
+def test_an_own_classifier_of_waveforms_is_scored_beside_baselines_on_features(told, tiny_corpus, tmp_path, mine):
+    line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--waveforms", "--per-turn", 64)
+    found = told(*line, "--estimator", mine.replace("make", "of_signals"))
+    assert list(found["baselines"]) == ["majority", "envelope_rule", "own_module:of_signals"]
+    assert {scores["grouped"]["records"] for scores in found["baselines"].values()} == {48}
+
+
+def test_a_page_of_one_track_has_neither_section(run, tiny_corpus, tmp_path, mine):
+    run("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", mine)
+    page = (tmp_path / "report" / "report.html").read_text()
+    assert "<h2>Tracks</h2>" not in page
+    assert "<h2>Learning curve</h2>" not in page
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("--estimator", "forest"), "'forest' is none of majority, envelope_rule"),
+        (("--estimator", ":make"), "':make' is none of majority, envelope_rule"),
+        (("--estimator", "own_none:make"), "own_none:make: no module own_none in this folder"),
+        (("--waveforms",), "--waveforms is for --estimator MODULE:NAME, and without --test"),
+        (("--estimator", "own_module:make", "--per-turn", 9), "--per-turn is for --waveforms"),
+        (("--track", "load"), "'load' is not one of 'specimen', 'rig'"),
+    ],
+)
+def test_options_that_cannot_be_used_are_refused_before_any_feature_is_computed(
+    run, tiny_corpus, tmp_path, mine, monkeypatch, options, sentence
+):
+    assert mine
+    monkeypatch.setattr(benchmarking, "table_of", lambda _: pytest.fail("features were computed"))
+    result = run("benchmark", tiny_corpus, "-o", tmp_path / "report", *options)
+    assert result.exit_code != 0
+    assert sentence in str(result.exception) + result.output

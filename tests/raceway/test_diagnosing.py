@@ -1,0 +1,243 @@
+"""``raceway diagnose``: a sentence, a JSON object and a page for good recordings, one sentence for all others."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy.io import wavfile
+
+from features import feature_table
+from features.baselines import save_model, train
+from gen import generate, open_corpus
+from gen.corpus import FAULTS
+from raceway.cli import cli
+
+FS = 12_000
+RECIPE = """\
+# Recordings to diagnose, for tests; they share the kernel of the tiny recipe.
+name: recordings
+title: Recordings
+seed: {seed}
+corpus: {{rigs: {rigs}, specimens_per_rig: 4, records_per_specimen: {records}, records_per_part: 48}}
+recording: {{sample_rate_hz: 12000, duration_s: {duration}, settle_s: 0.05, converter: {{kind: float32}}}}
+bearing: {{kind: catalogue, designations: ["6205"]}}
+specimen: {{waviness_nm: 20}}
+operation: {{shaft_rpm: {{kind: uniform, low: 1700, high: 1800}}}}
+background: {{slope: {{kind: uniform, low: 0, high: 1}}}}
+faults:
+  - {{kind: healthy}}
+  - {{kind: inner, width_mm: {{kind: uniform, low: 0.5, high: 1}}}}
+  - {{kind: outer, width_mm: {{kind: uniform, low: 0.5, high: 1}}}}
+  - {{kind: ball, width_mm: {{kind: uniform, low: 0.5, high: 1}}}}
+"""
+LINE_ORDERS = {"inner": 5.4152, "outer": 3.5848, "ball": 4.7135}
+
+
+def corpus(folder, **values):
+    recipe = folder / "recipe.yaml"
+    recipe.write_text(RECIPE.format(**values), encoding="utf-8")
+    return generate(recipe, folder / "corpus").directory
+
+
+@pytest.fixture(scope="module")
+def model(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("training")
+    table = feature_table(corpus(folder, seed=5, rigs=6, records=2, duration=0.5))
+    save_model(train(table, "logistic_regression"), folder / "model.skops")
+    return folder / "model.skops"
+
+
+@pytest.fixture(scope="module")
+def recordings(tmp_path_factory):
+    """Signal [m s-2] and speed [rpm] of one recording of each class."""
+    found = {}
+    with open_corpus(corpus(tmp_path_factory.mktemp("tested"), seed=11, rigs=1, records=1, duration=3.0)) as opened:
+        for number, code in enumerate(opened["fault"].values):
+            signal = opened["acceleration"][number, 0].values.astype(float)
+            found[FAULTS[code]] = signal, 60 * float(opened["shaft_rate"][number])
+    return found
+
+
+def call(*arguments):
+    return CliRunner().invoke(cli, ["diagnose", *map(str, arguments)], prog_name="raceway")
+
+
+def told(*arguments):
+    result = call(*arguments, "--json")
+    assert result.exit_code == 0, result.output
+    return json.loads(result.stdout)
+
+
+def write_csv(path, signal):
+    time = np.arange(signal.size) / FS
+    np.savetxt(
+        path,
+        np.stack([time, signal / 9.80665], axis=1),
+        delimiter=",",
+        header="time,drive_end",
+        comments="",
+        fmt="%.7g",
+    )
+    return path
+
+
+def write_wav(path, *channels):
+    wavfile.write(
+        path, FS, np.stack(channels, axis=1).astype(np.float32) if len(channels) > 1 else channels[0].astype(np.float32)
+    )
+    return path
+
+
+@pytest.mark.parametrize("fault", ["healthy", "inner", "outer", "ball"])
+@pytest.mark.parametrize("suffix", ["csv", "wav"])
+def test_a_simulated_recording_of_each_class_is_diagnosed(fault, suffix, model, recordings, tmp_path):
+    signal, rpm = recordings[fault]
+    if suffix == "csv":
+        options = [write_csv(tmp_path / "r.csv", signal), "--column", "drive_end", "--rate", FS, "--unit", "g"]
+    else:
+        options = [write_wav(tmp_path / "r.wav", signal)]
+    found = told(*options, "--bearing", "6205", "--rpm", rpm, "--model", model)
+    assert found["verdict"] == fault
+    assert sum(found["probabilities"].values()) == pytest.approx(1.0)
+    assert max(found["probabilities"], key=found["probabilities"].get) == fault
+    assert found["shaft_rpm"] == pytest.approx(rpm, rel=0.02)
+    assert f"{found['shaft_rpm']:,.0f} rpm" in found["sentence"]
+    if fault == "healthy":
+        assert found["evidence"] == []
+        assert found["sentence"].startswith("Healthy (probability ")
+        return
+    first = found["evidence"][0]
+    assert first["fault"] == fault
+    assert first["order"] == pytest.approx(first["harmonic"] * LINE_ORDERS[fault], rel=0.02)
+    assert first["frequency_hz"] == pytest.approx(first["order"] * found["shaft_rpm"] / 60, rel=1e-3)
+    assert first["level_db"] >= 3
+    assert len(first["band"]) == 2
+    assert first["line"] in found["sentence"]
+
+
+def test_the_sentence_is_printed_and_the_page_is_self_contained(model, recordings, tmp_path):
+    signal, rpm = recordings["outer"]
+    page = tmp_path / "report.html"
+    result = call(
+        write_wav(tmp_path / "<fan>.wav", signal), "--bearing", "6205", "--rpm", rpm, "--model", model, "-o", page
+    )
+    assert result.exit_code == 0, result.output
+    assert result.stdout.startswith("Outer race fault (probability ")
+    text = page.read_text(encoding="utf-8")
+    assert "&lt;fan&gt;.wav" in text
+    assert "<fan>" not in text
+    assert not re.search(r'(src|href)="(?!data:)', text)
+    assert "BPFO" in text
+    assert "Probabilities" in text
+
+
+def test_a_wrong_speed_is_told_and_hides_the_lines_if_it_is_not_checked(model, recordings, tmp_path):
+    signal, rpm = recordings["inner"]
+    path = write_wav(tmp_path / "r.wav", signal)
+    common = (path, "--bearing", "6205", "--rpm", 1.05 * rpm, "--model", model)
+    checked = told(*common)
+    assert checked["shaft_rpm"] == pytest.approx(rpm, rel=0.02)
+    assert any("does not fit the lines" in sentence for sentence in checked["warnings"])
+    assert "as found" in checked["sentence"]
+    assert checked["evidence"][0]["fault"] == "inner"
+    believed = told(*common, "--speed", "off")
+    assert believed["shaft_rpm"] == pytest.approx(1.05 * rpm)
+    assert all(line["line"] != "BPFI" for line in believed["evidence"])
+    assert "not checked" in believed["sentence"]
+
+
+def test_a_wrong_bearing_is_told_cautiously(model, recordings, tmp_path):
+    signal, rpm = recordings["outer"]
+    geometry = "n_balls=7,pitch_diameter_mm=46,ball_diameter_mm=6.1"
+    found = told(
+        write_wav(tmp_path / "r.wav", signal), "--bearing", geometry, "--rpm", rpm, "--model", model, "--speed", "off"
+    )
+    assert any(
+        "no part of this bearing" in sentence and "may be another one" in sentence for sentence in found["warnings"]
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda x: x[: round(0.05 * FS)], "the recording lasts 0.05 s"),
+        (lambda x: 0 * x, "the signal is constant"),
+        (lambda x: 0 * x + 3.7, "the signal is constant"),
+    ],
+)
+def test_a_signal_that_tells_nothing_gives_unsure_and_advice(change, sentence, model, recordings, tmp_path):
+    signal, rpm = recordings["inner"]
+    page = tmp_path / "report.html"
+    found = told(
+        write_wav(tmp_path / "r.wav", change(signal)), "--bearing", "6205", "--rpm", rpm, "--model", model, "-o", page
+    )
+    assert found["verdict"] == "unsure"
+    assert sentence in found["sentence"]
+    assert found["evidence"] == []
+    assert found["advice"]
+    assert len(set(found["probabilities"].values())) == 1
+    assert sentence in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("change", "options", "sentence"),
+    [
+        (lambda x: np.clip(x, -0.5 * x.std(), 0.5 * x.std()), (), "clipped"),
+        (lambda x: x * 1e-4 / x.std(), (), "implausible"),
+        (lambda x: x[: round(0.5 * FS)], (), "The recording is short"),
+        (lambda x: x, ("--rate", 8000), "leaves out part of the band"),
+    ],
+)
+def test_what_is_to_be_read_with_care_is_a_warning(change, options, sentence, model, recordings, tmp_path):
+    signal, rpm = recordings["inner"]
+    path = write_wav(tmp_path / "r.wav", change(signal))
+    found = told(path, "--bearing", "6205", "--rpm", rpm, "--model", model, *options)
+    assert any(sentence in warning for warning in found["warnings"])
+
+
+def test_the_verdict_does_not_depend_on_the_unit(model, recordings, tmp_path):
+    signal, rpm = recordings["inner"]
+    path = write_csv(tmp_path / "r.csv", signal)
+    common = (path, "--column", 1, "--rate", FS, "--bearing", "6205", "--rpm", rpm, "--model", model)
+    answers = [told(*common, "--unit", unit) for unit in ("g", "m/s2")]
+    assert answers[0]["verdict"] == answers[1]["verdict"] == "inner"
+    volts = told(*common, "--unit", "V", "--sensitivity", 100)
+    assert volts["evidence"][0]["order"] == answers[0]["evidence"][0]["order"]
+
+
+@pytest.mark.parametrize(
+    ("options", "sentence"),
+    [
+        (("r.csv", "--column", "1"), "--rate"),
+        (("r.csv", "--rate", FS), "column"),
+        (("stereo.wav",), "column"),
+        (("no.csv", "--rate", FS), "no.csv"),
+        (("r.pdf", "--rate", FS), "no known type"),
+        (("r.wav", "--unit", "V"), "sensitivity"),
+        (("r.wav", "--bearing", "62O5"), "6205"),
+        (("r.wav", "--bearing", "n_balls=8"), "pitch_diameter_mm is missing"),
+        (("r.wav", "--bearing", "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=x"), "key=number"),
+        (("r.wav", "--bearing", "n_balls=8,pitch_diameter_mm=33.5,balls_mm=8"), "balls_mm"),
+        (("r.wav", "--rpm", "-3"), "--rpm"),
+        (("r.wav", "--rpm", "nan"), "--rpm"),
+        (("r.wav", "--model", "no.skops"), "no.skops"),
+        (("r.wav", "-o", "report.pdf"), ".html"),
+        (("nan.npy", "--rate", FS), "1 of 600 samples are not finite"),
+    ],
+)
+def test_an_error_is_one_sentence_and_exit_code_2(options, sentence, model, recordings, tmp_path, monkeypatch):
+    signal = recordings["inner"][0]
+    monkeypatch.chdir(tmp_path)
+    write_csv(Path("r.csv"), signal[:600])
+    write_wav(Path("r.wav"), signal[:6000])
+    write_wav(Path("stereo.wav"), signal[:600], signal[:600])
+    Path("r.pdf").write_text("no recording", encoding="utf-8")
+    np.save("nan.npy", np.where(np.arange(600) == 5, np.nan, 1.0))
+    result = call("--bearing", "6205", "--rpm", 1750, "--model", model, *options)
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+    assert result.stdout == ""

@@ -1,0 +1,120 @@
+"""A model trained on a recipe is kept per user: made once, under a name that tells recipe and versions, made again if damaged."""
+
+import json
+import threading
+from importlib.metadata import version
+
+import pytest
+from click.testing import CliRunner
+
+from features import feature_table
+from features.baselines import load_model
+from gen import read_recipe
+from gen.recipe import recipe_hash, shipped_recipes
+from raceway.cli import cli
+from raceway.studies import reference_model
+
+
+@pytest.fixture
+def trainings(tiny_corpus, tmp_path, monkeypatch):
+    """List that grows with each training; the table of the tiny corpus replaces that of every recipe."""
+    table, made = feature_table(tiny_corpus), []
+    monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
+    monkeypatch.setattr("features.baselines.estimators.TREES", 2)
+    monkeypatch.setattr(reference_model, "recipe_table", lambda recipe: made.append(recipe) or table)
+    return made
+
+
+def call(*arguments):
+    return CliRunner().invoke(cli, [str(argument) for argument in arguments], prog_name="raceway")
+
+
+@pytest.mark.usefixtures("trainings")
+def test_the_name_tells_the_recipe_as_shipped_and_the_versions(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "domain_randomised").write_text("not the shipped recipe", encoding="utf-8")
+    name = reference_model.kept_path(shipped_recipes()["domain_randomised"]).name
+    digest = recipe_hash(read_recipe(shipped_recipes()["domain_randomised"]))
+    assert name.startswith(f"domain_randomised-{digest[:16]}-ensemble-")
+    assert f"raceway-{version('raceway')}" in name
+    assert name.endswith(f"scikit-learn-{version('scikit-learn')}.skops")
+
+
+def test_the_reference_model_is_made_once_and_loaded_afterwards(trainings, tmp_path):
+    first, path = reference_model.load_reference_model()
+    second, again = reference_model.load_reference_model()
+    assert len(trainings) == 1
+    assert path == again
+    assert path.parent == tmp_path / "cache"
+    assert first.classes == second.classes
+    assert [found.name for found in path.parent.glob("*.skops")] == [path.name]
+
+
+@pytest.mark.parametrize("damage", [lambda content: content[: len(content) // 2], lambda _: b"", lambda _: b"x" * 100])
+def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
+    _, path = reference_model.load_reference_model()
+    path.write_bytes(damage(path.read_bytes()))
+    capfd.readouterr()
+    reference_model.load_reference_model()
+    assert len(trainings) == 2
+    assert "It is made again." in capfd.readouterr().err
+    load_model(path)
+
+
+def test_two_that_need_it_at_once_train_it_once(trainings):
+    threads = [
+        threading.Thread(target=reference_model.keep_model, args=("quickstart", "logistic_regression"))
+        for _ in range(3)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(trainings) == 1
+    load_model(reference_model.kept_path("quickstart", "logistic_regression"))
+
+
+@pytest.mark.usefixtures("trainings")
+def test_train_on_a_recipe_keeps_the_model_or_writes_it(tiny_recipe, tmp_path):
+    kept = call("train", tiny_recipe, "--estimator", "logistic_regression", "--json")
+    assert kept.exit_code == 0, kept.output
+    facts = json.loads(kept.stdout)
+    assert facts["model"] == str(reference_model.kept_path(tiny_recipe, "logistic_regression"))
+    assert facts["test"]["records"] == 12
+    written = call("train", tiny_recipe, "--estimator", "logistic_regression", "-o", tmp_path / "model.skops")
+    assert written.exit_code == 0, written.output
+    assert load_model(tmp_path / "model.skops").records == load_model(facts["model"]).records == facts["records"]
+
+
+def test_train_on_a_folder_needs_a_place_for_the_model(tiny_corpus, trainings):
+    result = call("train", tiny_corpus)
+    assert result.exit_code == 2
+    assert "'-o'" in result.stderr
+    assert trainings == []
+
+
+@pytest.mark.usefixtures("trainings")
+def test_a_name_that_is_neither_folder_nor_recipe_is_refused():
+    result = call("train", "domain_randomized")
+    assert result.exit_code == 2
+    assert "did you mean domain_randomised" in result.stderr
+
+
+def test_the_cache_follows_the_conventions_of_the_system(tmp_path, monkeypatch):
+    monkeypatch.delenv("RACEWAY_CACHE", raising=False)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "xdg"))
+    assert reference_model.cache_folder() == tmp_path / "xdg" / "raceway"
+    monkeypatch.delenv("XDG_CACHE_HOME")
+    monkeypatch.setenv("HOME", str(tmp_path))
+    monkeypatch.setattr("sys.platform", "linux")
+    assert reference_model.cache_folder() == tmp_path / ".cache" / "raceway"
+
+
+@pytest.mark.usefixtures("trainings")
+def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tmp_path, monkeypatch):
+    (tmp_path / "file").write_text("", encoding="utf-8")
+    monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "file" / "cache"))
+    result = call("train", "domain_randomised")
+    assert result.exit_code == 2
+    assert "RACEWAY_CACHE" in result.stderr
+    assert "-o MODEL" in result.stderr

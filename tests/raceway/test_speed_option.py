@@ -1,0 +1,59 @@
+"""The option --speed of the commands that compute features of recordings."""
+
+import json
+
+import pytest
+
+from features.recording_speeds import FOUND, SPEEDS
+from features.table_files import read_table
+from raceway.console.options import speed_option
+from tests.features.test_recording_speeds import write_machines
+
+WARNING = "warning: inner.csv: labelled 1500 rpm, but its BPFI lines fit"
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory):
+    return write_machines(tmp_path_factory.mktemp("machines") / "corpus")
+
+
+def test_features_warns_of_a_wrong_speed_unless_told_off(run, corpus, tmp_path):
+    assert WARNING in run("features", corpus, "-o", tmp_path / "a.nc").stderr
+    result = run("features", corpus, "-o", tmp_path / "b.nc", "--speed", "off")
+    assert "rpm" not in result.stderr
+    assert FOUND not in read_table(tmp_path / "b.nc")
+
+
+def test_features_counts_the_recordings_with_another_speed(told, corpus, tmp_path):
+    line = ("features", corpus, "-o", tmp_path / "a.nc", "--speed")
+    assert told(*line, "correct")["recordings_with_other_speed"] == 2
+    assert told(*line, "off")["recordings_with_other_speed"] is None
+
+
+@pytest.mark.parametrize("command", ["evaluate", "benchmark"])
+def test_recordings_that_are_tested_are_checked_and_others_are_not(run, monkeypatch, corpus, tmp_path, command):
+    treatments = []
+
+    def table_of(_, speed="off"):
+        treatments.append(speed)
+
+    for module in ("models", "benchmarking"):
+        monkeypatch.setattr(f"raceway.commands.{module}.table_of", table_of)
+    monkeypatch.setattr("features.baselines.load_model", lambda _: None)
+    line = {
+        "evaluate": ("evaluate", corpus, "--model", tmp_path / "model"),
+        "benchmark": ("benchmark", corpus, "--test", corpus, "-o", tmp_path / "report"),
+    }[command]
+    run(*line)
+    run(*line, "--speed", "correct")
+    assert [treatment for treatment in treatments if treatment != "off"] == ["check", "correct"]
+
+
+def test_a_simulated_corpus_is_not_checked(run, tiny_corpus, tmp_path):
+    result = run("features", tiny_corpus, "-o", tmp_path / "a.nc", "--json")
+    assert json.loads(result.stdout)["recordings_with_other_speed"] is None
+
+
+def test_the_option_has_the_treatments_of_the_feature_table():
+    option = speed_option(lambda: None).__click_params__[0]
+    assert tuple(option.type.choices) == SPEEDS
