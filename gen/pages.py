@@ -46,12 +46,19 @@ A quantity can name those of its own section and those of a level above it, if b
 | `machine.resonator` | itself, `machine` |
 | `specimen` | itself, `machine`, `pitch_diameter_mm`, `ball_diameter_mm`, `free_contact_angle_deg` |
 | an entry of `faults` | itself, `specimen`, `machine`, `pitch_diameter_mm`, `ball_diameter_mm`; a spall on a race also `ball_spacing_mm` |
-| `operation` | itself, `specimen`, `machine`, `pitch_diameter_mm`, `ball_diameter_mm` |
+| `operation` | itself, `specimen`, `machine`, `pitch_diameter_mm`, `ball_diameter_mm`, `static_rating_n`, `least_axial_load_n` |
 
 `pitch_diameter_mm` and `ball_diameter_mm` are those of the bearing of the rig. `free_contact_angle_deg` is the contact
 angle of a ball bearing whose rings are pushed apart along the axis without force: `cos(angle) = 1 - clearance / (2 A)`
 with `A = (inner + outer conformity - 1) * ball diameter`. It is 0 without clearance, for rollers, and for a bearing
 with a contact angle on its drawing. `ball_spacing_mm` is the arc on the damaged race from one ball to the next.
+`static_rating_n` is the basic static load rating of the bearing, so that large bearings can carry large loads.
+`least_axial_load_n` is the axial load at which half of the balls are loaded, `1.25 tan(contact angle) * load_n`; a
+smaller one, other than 0, cannot hold the rings together:
+
+    operation:
+      load_n: {share_of: static_rating_n, kind: loguniform, low: 0.005, high: 0.3}
+      axial_load_n: {share_of: least_axial_load_n, kind: choice, values: [0, 1.1, 2]}
 
 **`per`** (in `operation` alone) draws one value for a rig or a specimen instead of one for each record, and
 **`scatter_percent`** lets its records deviate from it. A machine with one speed, held within 2 %:

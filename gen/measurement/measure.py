@@ -193,7 +193,8 @@ def _parts(
         gear, found = scenario.rig.background.gear, filters[row]
         if gear is not None:
             mesh = gear_in_channels(gear, angles[row], found.paths, found.n, scenario.rng(Purpose.GEAR_PHASE))
-            impulses[row] = impulses[row] + mesh if impulses[row].size else mesh
+            # impulses have the length of the Fourier transform
+            impulses[row] = impulses[row][:, : mesh.shape[1]] + mesh if impulses[row].size else mesh
     parts = []
     for row in range(count):
         fault = both[count + faulty.index(row)] if row in faulty else NO_SIGNAL

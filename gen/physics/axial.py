@@ -10,14 +10,23 @@ half of the balls are loaded, and the bearing has no stable axial position [1]_.
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
 
 from gen.physics.rotor import Machine
 
 FloatArray = NDArray[np.float64]
 # least axial load, over radial load times the tangent of the contact angle, at which half of the balls are loaded
 HALF_LOADED = 1.25
-_MICROMETRE = 1e-6  # [m]; the minimiser works in micrometres
+_BALANCED = 1e-9  # largest unbalanced force over the load
+_MOST_STEPS, _SMALLEST_SHARE = 100, 1e-3
+
+
+def least_axial_load(radial_load: float, contact_angle: float) -> float:
+    """Axial load at which half of the balls are loaded [N]; a smaller one does not hold the rings together.
+
+    >>> round(least_axial_load(1000.0, np.radians(15)))
+    335
+    """
+    return float(HALF_LOADED * radial_load * np.tan(abs(contact_angle)))
 
 
 def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, largest_load_share: float = 1.0) -> float:
@@ -52,26 +61,38 @@ def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, larg
     directions = np.stack([cosine * np.cos(angles), cosine * np.sin(angles), np.full(len(angles), sine)], axis=1)
     load = np.array([machine.load_x, machine.load_y, axial_load])
     factor, n = machine.load_deflection_factor, machine.contact_exponent
-
-    def squeeze(q: FloatArray) -> FloatArray:
-        return np.maximum(directions @ q * _MICROMETRE - machine.half_clearance, 0.0)
-
-    def energy(q: FloatArray) -> float:
-        return float(np.sum(factor / (n + 1) * squeeze(q) ** (n + 1)) / _MICROMETRE - load @ q)
-
-    def slope(q: FloatArray) -> FloatArray:
-        return (factor * squeeze(q) ** n) @ directions - load
-
-    def curvature(q: FloatArray) -> FloatArray:
-        stiffness = n * factor * _MICROMETRE * squeeze(q) ** (n - 1)
-        return (directions.T * stiffness) @ directions
-
-    equal_squeeze = (axial_load / (len(angles) * sine * factor)) ** (
-        1 / n
-    )  # every ball carries the same part of the axial load
-    start = np.array([0.0, 0.0, (max(machine.half_clearance, 0.0) + equal_squeeze) / sine / _MICROMETRE])
-    found = minimize(
-        energy, start, jac=slope, hess=curvature, method="trust-exact", options={"gtol": 1e-6 * axial_load}
-    )
+    # every ball carries the same part of the axial load
+    equal_squeeze = (axial_load / (len(angles) * sine * factor)) ** (1 / n)
+    start = np.array([0.0, 0.0, (max(machine.half_clearance, 0.0) + equal_squeeze) / sine])
+    found = _equilibrium(directions, load, factor, n, machine.half_clearance, start)
     # rounded to a picometre: further digits depend on the linear algebra library of the processor
-    return round(float(found.x[2] * _MICROMETRE * sine), 12)
+    return round(float(found[2] * sine), 12)
+
+
+def _equilibrium(
+    directions: FloatArray, load: FloatArray, factor: float, exponent: float, half_clearance: float, start: FloatArray
+) -> FloatArray:
+    """Displacement of the inner ring at which the forces of the balls along ``directions`` balance ``load``, shape (3,) [m].
+
+    Newton steps down the potential energy, which is convex; a step that does not lower it is halved.
+    """
+
+    def energy(squeeze: FloatArray, q: FloatArray) -> float:
+        return float(factor / (exponent + 1) * np.sum(squeeze ** (exponent + 1)) - load @ q)
+
+    q, squeeze = start, np.maximum(directions @ start - half_clearance, 0.0)
+    for _ in range(_MOST_STEPS):
+        residual = load - (factor * squeeze**exponent) @ directions
+        if np.abs(residual).max() < _BALANCED * np.abs(load).max():
+            break
+        stiffness = exponent * factor * squeeze ** (exponent - 1)
+        step = np.linalg.solve((directions.T * stiffness) @ directions, residual)
+        before, share = energy(squeeze, q), 1.0
+        while True:
+            moved = q + share * step
+            squeezed = np.maximum(directions @ moved - half_clearance, 0.0)
+            if energy(squeezed, moved) < before or share < _SMALLEST_SHARE:
+                break
+            share /= 2
+        q, squeeze = moved, squeezed
+    return q

@@ -38,12 +38,14 @@ from gen.recipe.operation import ProfileSection
 from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
 from gen.recipe.section import Section
 from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
-from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, quantities
+from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, LEAST_AXIAL_LOAD, STATIC_RATING, quantities
 
 __all__ = [
     "BALL_SPACING",
     "FREE_ANGLE",
+    "LEAST_AXIAL_LOAD",
     "MAX_OVERSAMPLING",
+    "STATIC_RATING",
     "BallFault",
     "CageFault",
     "CatalogueBearing",

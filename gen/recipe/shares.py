@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 BEARING_QUANTITIES = ("pitch_diameter_mm", "ball_diameter_mm")
 """Dimensions of the bearing of the rig, for sections below it."""
 FREE_ANGLE, BALL_SPACING = "free_contact_angle_deg", "ball_spacing_mm"
+STATIC_RATING, LEAST_AXIAL_LOAD = "static_rating_n", "least_axial_load_n"
+_DEPENDS_ON = {LEAST_AXIAL_LOAD: "load_n"}  # quantity of the same section
 _COUNTS = ("n_balls", "n_spalls")
 _HAVE_SHARES = "bearing, machine, machine.resonator, contact.lubricant, specimen, operation and faults"
 # units that measure the same; every other unit is of a kind of its own, and a quantity without a unit is a ratio
@@ -106,7 +108,8 @@ def _numbered(place: str, sections: tuple[Any, ...]) -> list[tuple[str, Any]]:
 
 
 def _above_records(recipe: "Recipe") -> dict[str, Support | None]:
-    return {**_supports(recipe.machine), **_bearing_supports(recipe), **_supports(recipe.specimen)}
+    loads = {STATIC_RATING: None, LEAST_AXIAL_LOAD: None}
+    return {**_supports(recipe.machine), **_bearing_supports(recipe), **_supports(recipe.specimen), **loads}
 
 
 def _supports(section: Section) -> dict[str, Support | None]:
@@ -185,7 +188,7 @@ def _name_problem(recipe: "Recipe", scope: _Scope, key: str, named: str) -> str 
         return f"{at}: {named} is of another kind than {key}; {advice}."
     if named in quantities(recipe.operation) or named in quantities(recipe.specimen):
         return f"{at}: {named} is drawn after {key}, not with it or before it; {advice}."
-    if named in (FREE_ANGLE, BALL_SPACING, *BEARING_QUANTITIES):
+    if named in (FREE_ANGLE, BALL_SPACING, STATIC_RATING, LEAST_AXIAL_LOAD, *BEARING_QUANTITIES):
         return f"{at}: {named} is not known here; {advice}."
     near = difflib.get_close_matches(named, allowed, 1)
     return f"{at}: there is no quantity {named!r}; " + (f"did you mean {near[0]}?" if near else f"{advice}.")
@@ -199,7 +202,7 @@ def _kind(key: str) -> str:
 def _loop(scope: _Scope, key: str) -> str | None:
     """Error sentence if a quantity is a share of itself, through others or not, else None."""
     own, chain = quantities(scope.section), [key]
-    while (named := own[chain[-1]].share_of) in own:
+    while (named := _DEPENDS_ON.get(share := own[chain[-1]].share_of, share)) in own:
         if named == key:
             round_trip = ", which is a share of ".join([*chain[1:], key])
             return (

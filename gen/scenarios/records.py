@@ -9,8 +9,10 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
-from gen.recipe import Fault, ProfileSection, Recipe, fault_class
+from gen.physics.rating import static_rating
+from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
 from gen.scenarios.draws import Combination, Draws, Known, known_of, known_of_rig
 from gen.scenarios.model import Operation, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions, operating_of
@@ -43,7 +45,12 @@ def source_of(recipe: Recipe, rig: Rig, specimen: Specimen, of_rig: Draws, of_sp
     if "specimen" in operating.levels.values():
         rng = stream(recipe.seed, rig.number, specimen.number, 0, Purpose.SPECIMEN_OPERATION)
         commons["specimen"] = common_numbers(recipe, rng, of_specimen.combination.number)
-    known = {**known_of_rig(recipe, rig), **known_of(recipe.specimen, specimen.properties)}
+    known = {
+        **known_of_rig(recipe, rig),
+        **known_of(recipe.specimen, specimen.properties),
+        STATIC_RATING: lambda _: static_rating(rig.bearing),
+        LEAST_AXIAL_LOAD: lambda value: least_axial_load(value("load_n"), specimen.bearing.contact_angle),
+    }
     return Source(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
 
 

@@ -10,7 +10,7 @@ from scipy.signal import welch
 
 from gen.measurement.measure import measure
 from gen.measurement.rig import base_excited
-from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios, with_level
+from gen.scenarios import Background, Gear, Mode, Path, ShaftModulation, Tone, draw_scenarios, with_level
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import timeline
 from tests.measuring import FLOAT, FS, QUIET, hiss, response, rms, silence, with_rig
@@ -200,6 +200,19 @@ def test_knocks_come_with_the_shaft_and_impulses_at_their_rate(recipe_with):
         counts[kind] = np.count_nonzero(np.abs(signal) > 30)
     assert counts["knocks"] == pytest.approx(2 * 30 * 5, abs=1)
     assert counts["impulses"] == pytest.approx(40 * 5, abs=4 * np.sqrt(200))
+
+
+def test_a_gear_and_impulses_are_both_in_a_record_whose_transform_is_longer(recipe_with):
+    """A response of 6,600 samples, whose Fourier transform has 6,750."""
+    recipe = recipe_with(FLOAT | {"recording.duration_s": 0.5, "operation.shaft_rpm": 1800})
+    scenarios = draw_scenarios(recipe, 0, 1)
+    lines = ({"level": 1.0, "phase": 0.0},)
+    gear = Gear(20, 40, lines, 0.0, 0.0, 0.0, high_point=0.0, lead_point=0.0)
+    powers = []
+    for changes in ({"gear": gear}, {"impulses": Tone(40.0, 1e3)}, {"gear": gear, "impulses": Tone(40.0, 1e3)}):
+        rigged = with_rig(scenarios, background=replace(QUIET, **changes), background_rms=1.0, gain=1.0)
+        powers.append(rms(measure(silence(recipe, 1), rigged, recipe).signal) ** 2)
+    assert powers[2] == pytest.approx(powers[0] + powers[1], rel=0.05)
 
 
 def test_the_shaft_modulates_what_the_bearing_sends_down_the_path(recipe_with):

@@ -27,6 +27,7 @@ faults:
   - {kind: outer, width_mm: 0.5}
 """
 
+LOADS = "axial_load_n, bow_n, misalignment_n, static_rating_n, least_axial_load_n"
 RPM = "{kind: uniform, low: 1500, high: 1800}"
 OUTER = "{kind: outer, width_mm: 0.5}"
 
@@ -186,13 +187,18 @@ TABLE = [
      "rig 0: oil of 68 mm2/s at 40 C has no lower viscosity at 100 C; keep viscosity_100_mm2_s below viscosity_40_mm2_s."),
     # shares
     (RPM, RPM + ", load_n: {share_of: thrust, kind: uniform, low: 0, high: 1}",
-     "operation.load_n.share_of: there is no quantity 'thrust'; allowed are axial_load_n, bow_n, misalignment_n."),
+     f"operation.load_n.share_of: there is no quantity 'thrust'; allowed are {LOADS}."),
     (RPM, RPM + ", axial_load_n: {share_of: laod_n, kind: uniform, low: 0, high: 1}",
      "operation.axial_load_n.share_of: there is no quantity 'laod_n'; did you mean load_n?"),
     (RPM, RPM + ", load_n: {share_of: shaft_rpm, kind: uniform, low: 0, high: 1}",
-     "operation.load_n.share_of: shaft_rpm is of another kind than load_n; allowed are axial_load_n, bow_n, misalignment_n."),
+     f"operation.load_n.share_of: shaft_rpm is of another kind than load_n; allowed are {LOADS}."),
     (RPM, RPM + ", load_n: {share_of: load_n, kind: uniform, low: 0, high: 1}",
      "operation.load_n.share_of: load_n is a share of load_n; give one of them a range of its own."),
+    (RPM, RPM + ", load_n: {share_of: axial_load_n, kind: constant, value: 1}, "
+     "axial_load_n: {share_of: least_axial_load_n, kind: constant, value: 2}",
+     "operation.load_n.share_of: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
+    ("machine: {shaft_mass_kg: 5}", "machine: {bow_n: {share_of: static_rating_n, kind: constant, value: 1}}",
+     "machine.bow_n.share_of: static_rating_n is not known here; allowed are misalignment_n."),
     (RPM, RPM + ", load_n: {share_of: axial_load_n, kind: constant, value: 1}, axial_load_n: {share_of: load_n, kind: constant, value: 1}",
      "operation.load_n.share_of: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
     (RPM, RPM + ", load_n: {share_of: bow_n, kind: constant, value: 1}",

@@ -1,6 +1,7 @@
 """Laws of shares: a quantity that is a share of another is that share of its value, and no other quantity moves."""
 
 import math
+from contextlib import nullcontext
 
 import pytest
 from hypothesis import given, settings
@@ -8,11 +9,13 @@ from hypothesis import strategies as st
 
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
+from gen.physics.rating import static_rating
 from gen.recipe.distributions import DISTRIBUTIONS
 from gen.recipe.machine import MachineSection
 from gen.recipe.operation import OperationSection
 from gen.recipe.shares import quantities
 from gen.scenarios import draw_scenarios
+from gen.simulation.machine import machine_of
 from gen.units import split_unit
 
 law = settings(deadline=None, max_examples=25)
@@ -152,6 +155,35 @@ def test_a_spall_can_be_a_share_of_the_arc_between_two_balls(recipe_with, site):
     shares = [spall.width / ball_spacing(specimen.bearing, site) for specimen, spall in spalls]
     assert 0.1 <= min(shares) < 0.15 < 0.25 < max(shares) <= 0.3
     assert [spall.depth for _, spall in spalls] == pytest.approx([0.01 * spall.width for _, spall in spalls])
+
+
+BY_SIZE = {"bearing": {"kind": "catalogue", "designations": ["6203", "6311"]}}
+
+
+def test_a_load_can_be_a_share_of_the_static_rating_of_the_bearing(recipe_with):
+    recipe = recipe_with(BY_SIZE | {"corpus.rigs": 8, "operation.load_n": share("static_rating_n", 0.1, 0.1)})
+    scenarios = draw_scenarios(recipe)
+    assert len({scenario.rig.bearing.designation for scenario in scenarios}) == 2
+    for scenario in scenarios:
+        assert scenario.record.conditions["load"] == pytest.approx(0.1 * static_rating(scenario.rig.bearing))
+
+
+@pytest.mark.parametrize("of_drawing", [0, 25])
+def test_a_share_above_1_of_the_least_axial_load_holds_the_rings_together(recipe_with, of_drawing):
+    """1.25 tan(contact angle) of the radial load, at any contact angle; just below it the machine is not possible."""
+    bearing = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": 39, "ball_share": 0.2}
+    changes = {
+        "bearing": bearing | {"contact_angle_deg": of_drawing},
+        "specimen.contact_angle_deg": uniform(5, 15),
+        "operation.load_n": uniform(10, 1000),
+    }
+    for times, possible in ((1.001, True), (0.999, False)):
+        recipe = recipe_with(changes | {"operation.axial_load_n": share("least_axial_load_n", times, times)})
+        for scenario in draw_scenarios(recipe, 0, 6):
+            conditions, angle = scenario.record.conditions, scenario.specimen.bearing.contact_angle
+            assert conditions["axial_load"] == pytest.approx(times * 1.25 * math.tan(angle) * conditions["load"])
+            with nullcontext() if possible else pytest.raises(ValueError, match="too small to hold its rings together"):
+                machine_of(scenario, 0.0)
 
 
 def test_the_shares_of_the_parts_of_a_compound_are_those_of_the_part(recipe_with):

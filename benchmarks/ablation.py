@@ -1,0 +1,236 @@
+"""Mechanisms of ``domain_randomised``, each tried alone and in the whole: scores on recordings of real machines.
+
+``python -m benchmarks.ablation REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them.
+ablation.yaml beside this file lists the mechanisms: the keys that take one out of the recipe (``without``), or that bring in one that the
+recipe does not have (``with``). Each variant of the recipe is generated, and a classifier trained on it, once per seed. docs/ablation.md
+holds the tables. ``--cost`` tells what the variants cost.
+"""
+
+import argparse
+import copy
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from ruamel.yaml import YAML
+
+from benchmarks.realism import UESTC, UESTC_LABELLED
+from features import feature_table
+from features.baselines import DEFAULT_ESTIMATOR, Scores, evaluate, train
+from gen import generate
+from gen.importers import import_cwru, import_generic, import_mfpt
+from gen.physics.kernel.compiling import LANES
+from gen.recipe import Recipe, find_recipe
+from gen.scenarios import draw_scenarios
+from gen.simulation.simulate import integrations, laid_out
+
+MECHANISMS = Path(__file__).with_suffix(".yaml")
+GROUPS = ("lines", "shape")
+FIRST_SEED = 20260
+SMALL = {"corpus.rigs": 60, "corpus.records_per_specimen": 1}
+"""480 specimens with a record each: scores change little beyond 300 specimens, and hardly with the records of a specimen."""
+
+Changes = Mapping[str, Any]
+"""New values by key, with dots between sections; None removes a key.
+
+``faults.KIND.KEY`` changes every entry of that kind, ``faults.+`` adds a list of entries.
+"""
+
+
+class Mechanism(NamedTuple):
+    """One part of the recipe, or one that was tried and left out."""
+
+    name: str
+    changes: Changes
+    is_kept: bool
+    """Whether the recipe has it, so that ``changes`` take it out; otherwise they bring it in."""
+
+
+def read_mechanisms(path: Path = MECHANISMS) -> list[Mechanism]:
+    """Mechanisms of a file, in its order."""
+    listed = YAML(typ="safe").load(path)
+    return [Mechanism(one["name"], one.get("without") or one["with"], "without" in one) for one in listed]
+
+
+def variants(mechanisms: Sequence[Mechanism]) -> dict[str, Changes]:
+    """Changes of the recipe by the name of the variant: none of the mechanisms, each alone, all that are kept, all but one."""
+    kept = [one for one in mechanisms if one.is_kept]
+    none = {key: value for one in kept for key, value in one.changes.items()}
+    found: dict[str, Changes] = {"none of these": none}
+    for one in mechanisms:
+        others = {key: value for other in kept if other != one for key, value in other.changes.items()}
+        found[f"only {one.name}"] = others if one.is_kept else {**none, **one.changes}
+    found["the recipe"] = {}
+    for one in mechanisms:
+        found[f"{'without' if one.is_kept else 'with'} {one.name}"] = one.changes
+    return found
+
+
+def changed(recipe: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
+    """Copy of a recipe with some changes."""
+    made = copy.deepcopy(dict(recipe))
+    for path, value in changes.items():
+        section, *keys = path.split(".")
+        if path == "faults.+":
+            made["faults"] += copy.deepcopy(value)
+        elif section == "faults":
+            kind, *below = keys
+            for entry in made["faults"]:
+                if entry["kind"] == kind:
+                    _set(entry, below, value)
+        else:
+            _set(made, [section, *keys], value)
+    return made
+
+
+def _set(section: dict[str, Any], keys: list[str], value: Any) -> None:
+    for key in keys[:-1]:
+        section = section.setdefault(key, {})
+    if value is None:
+        section.pop(keys[-1], None)
+    else:
+        section[keys[-1]] = copy.deepcopy(value)
+
+
+def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
+    """Feature tables of the sets in ``real``; UESTC with its labelled speeds and with the true ones."""
+    found = {}
+    if (real / "cwru").is_dir():
+        found["wang"] = import_cwru(real / "cwru", folder / "wang", subset="wang").directory
+        found["cwru"] = import_cwru(real / "cwru", folder / "cwru").directory
+    if (real / "mfpt").is_dir():
+        found["mfpt"] = import_mfpt(real / "mfpt", folder / "mfpt").directory
+    if (real / "uestc").is_dir():
+        for name, mapping in (("uestc", UESTC_LABELLED), ("uestc, true speeds", UESTC)):
+            found[name] = import_generic(mapping, folder / mapping.stem, folder=real / "uestc").directory
+    return {name: feature_table(path, groups=GROUPS) for name, path in found.items()}
+
+
+def scores_of(recipe: Mapping[str, Any], seed: int, tests: Mapping[str, xr.Dataset], workers: int) -> dict[str, Scores]:
+    """Scores on each test of a classifier that is trained on a corpus of a recipe."""
+    with tempfile.TemporaryDirectory() as name:
+        path = Path(name) / "recipe.yaml"
+        YAML().dump(dict(recipe), path)
+        corpus = generate(path, Path(name) / "corpus", workers=workers, seed=seed).directory
+        model = train(feature_table(corpus, groups=GROUPS), DEFAULT_ESTIMATOR, seed=seed)
+    return {test: evaluate(table, model) for test, table in tests.items()}
+
+
+def plain(scores: Scores) -> dict[str, float]:
+    """Figures of one test that the table and the JSON file hold."""
+    recalls = {
+        f"recall of {name}": dict(zip(scores.model_classes, row, strict=True)).get(name, 0) / sum(row)
+        for name, row in zip(scores.classes, scores.confusion, strict=True)
+    }
+    whole = scores.by_recording or scores
+    figures = {
+        "balanced accuracy": scores.balanced_accuracy,
+        "by recording": whole.balanced_accuracy,
+        "AUC": scores.auc,
+        "log-loss": scores.log_loss,
+        "false alarms": scores.false_alarms,
+    }
+    return {name: float(value) for name, value in figures.items() if value is not None} | recalls
+
+
+class Cost(NamedTuple):
+    """What determines the time of the kernel for one part."""
+
+    kernels: int
+    lane_steps: float
+    """Steps per sample in all lanes, filled or not, for each record."""
+    filled: float
+    """Share of the lanes that hold a record or its twin."""
+
+
+def cost_of(recipe: Recipe) -> Cost:
+    """Cost of the first part of a recipe, without the faults that are drawn again."""
+    scenarios = draw_scenarios(recipe, 0, min(recipe.corpus.records_per_part, recipe.n_records))
+    groups = [group for group, _ in laid_out(scenarios, recipe)]
+    return Cost(
+        kernels=len({group.shape for group in groups}),
+        lane_steps=LANES * sum(group.steps for group in groups) / len(scenarios),
+        filled=integrations(scenarios, recipe) / (LANES * len(groups)),
+    )
+
+
+def costs(recipe: Mapping[str, Any], mechanisms: Sequence[Mechanism]) -> Iterator[str]:
+    """Markdown table of the cost of every variant, in the parts of the recipe and in smaller ones."""
+    sizes = (480, recipe["corpus"]["records_per_part"])
+    yield "| variant | kernels | " + " | ".join(f"lane-steps, parts of {n} | lanes filled" for n in sizes) + " |"
+    yield "|---|---:|" + "---:|---:|" * len(sizes)
+    for variant, changes in variants(mechanisms).items():
+        made = changed(recipe, changes)
+        found = [cost_of(Recipe.model_validate(changed(made, {"corpus.records_per_part": n}))) for n in sizes]
+        cells = [f"{one.lane_steps:.1f} | {one.filled:.0%}" for one in found]
+        yield f"| {variant} | {found[-1].kernels} | " + " | ".join(cells) + " |"
+
+
+COLUMNS = {"balanced accuracy": "BA", "AUC": "AUC", "log-loss": "log-loss", "false alarms": "false alarms"}
+
+
+def table(found: Mapping[str, Mapping[str, Sequence[Mapping[str, float]]]]) -> Iterator[str]:
+    """Markdown table of means over the seeds, one row per variant.
+
+    ``found`` has the figures by variant and test, one mapping per seed.
+    """
+    columns = [
+        (test, figure)
+        for test, figures in next(iter(found.values())).items()
+        for figure in COLUMNS
+        if figure in figures[0]
+    ]
+    yield "| variant | " + " | ".join(f"{test} {COLUMNS[figure]}" for test, figure in columns) + " |"
+    yield "|---|" + "---:|" * len(columns)
+    for variant, tests in found.items():
+        cells = [f"{np.mean([figures[figure] for figures in tests[test]]):.3f}" for test, figure in columns]
+        yield f"| {variant} | " + " | ".join(cells) + " |"
+
+
+def main() -> None:
+    """Print the table."""
+    parser = argparse.ArgumentParser(
+        prog="python -m benchmarks.ablation", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("real", type=Path, nargs="?", default=os.environ.get("RACEWAY_REAL"))
+    parser.add_argument("--cost", action="store_true", help="print what the variants cost instead; needs no recordings")
+    parser.add_argument("--seeds", type=int, default=3)
+    parser.add_argument("--full", action="store_true", help="as many records as the recipe has, in place of 480")
+    parser.add_argument("--workers", type=int, default=2)
+    parser.add_argument("--only", metavar="TEXT", help="the variants whose name has this text")
+    parser.add_argument("--json", type=Path, help="also write every figure to this file")
+    options = parser.parse_args()
+    shipped = YAML(typ="safe").load(Path(find_recipe("domain_randomised")))
+    if options.cost:
+        print("\n".join(costs(shipped, read_mechanisms())))
+        return
+    if options.real is None:
+        parser.error("give the folder that holds cwru, mfpt and uestc, or name it in RACEWAY_REAL.")
+    recipe = changed(shipped, {} if options.full else SMALL)
+    found = {}
+    with tempfile.TemporaryDirectory() as name:
+        tests = real_tables(options.real, Path(name))
+        if not tests:
+            parser.error(f"{options.real}: holds none of cwru, mfpt and uestc; give the folder that holds them.")
+        for variant, changes in variants(read_mechanisms()).items():
+            if options.only and options.only not in variant:
+                continue
+            made = [
+                scores_of(changed(recipe, changes), seed, tests, options.workers)
+                for seed in range(FIRST_SEED, FIRST_SEED + options.seeds)
+            ]
+            found[variant] = {test: [plain(scores[test]) for scores in made] for test in tests}
+            print(f"{variant} done", file=sys.stderr, flush=True)
+            if options.json:
+                options.json.write_text(json.dumps(found, indent=1), encoding="utf-8")
+    print("\n".join(table(found)))
+
+
+if __name__ == "__main__":
+    main()

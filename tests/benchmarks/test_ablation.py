@@ -1,0 +1,70 @@
+"""The benchmark of mechanisms: its variants are recipes that differ, and its table holds their scores."""
+
+import pytest
+from ruamel.yaml import YAML
+
+from benchmarks.ablation import Mechanism, changed, cost_of, plain, read_mechanisms, scores_of, table, variants
+from features import feature_table
+from gen.recipe import Recipe, find_recipe, read_recipe
+from tests.pulses import write_pulses
+
+GIVEN = {"a": {"b": 1, "c": 2}, "faults": [{"kind": "inner", "width": 1}, {"kind": "ball", "width": 1}]}
+
+
+def test_changes_set_keys_remove_keys_and_reach_all_faults_of_a_kind():
+    made = changed(GIVEN, {"a.b": None, "a.d.e": 5, "faults.inner.edge.scatter": 7, "faults.+": [{"kind": "outer"}]})
+    assert made["a"] == {"c": 2, "d": {"e": 5}}
+    assert made["faults"] == [
+        {"kind": "inner", "width": 1, "edge": {"scatter": 7}},
+        {"kind": "ball", "width": 1},
+        {"kind": "outer"},
+    ]
+    assert GIVEN["a"] == {"b": 1, "c": 2}
+    assert GIVEN["faults"] == [{"kind": "inner", "width": 1}, {"kind": "ball", "width": 1}]
+
+
+def test_a_mechanism_is_tried_alone_and_in_the_whole():
+    found = variants(
+        [Mechanism("x", {"a.x": 0}, True), Mechanism("y", {"a.y": 0}, True), Mechanism("z", {"a.z": 1}, False)]
+    )
+    assert found == {
+        "none of these": {"a.x": 0, "a.y": 0},
+        "only x": {"a.y": 0},
+        "only y": {"a.x": 0},
+        "only z": {"a.x": 0, "a.y": 0, "a.z": 1},
+        "the recipe": {},
+        "without x": {"a.x": 0},
+        "without y": {"a.y": 0},
+        "with z": {"a.z": 1},
+    }
+
+
+@pytest.mark.parametrize(("name", "changes"), variants(read_mechanisms()).items())
+def test_every_variant_is_a_recipe_that_differs_from_the_one_that_ships(name, changes, tmp_path):
+    shipped = YAML(typ="safe").load(find_recipe("domain_randomised"))
+    made = changed(shipped, changes)
+    assert (made == shipped) == (name == "the recipe")
+    YAML().dump(made, tmp_path / "r.yaml")
+    read_recipe(tmp_path / "r.yaml")
+
+
+def test_a_recipe_is_scored_on_recordings_and_shown_as_means_over_seeds(tmp_path):
+    recipe = YAML(typ="safe").load(find_recipe("quickstart")) | {"records": 28}
+    tests = {"pulses": feature_table(write_pulses(tmp_path / "pulses"), groups=("lines", "shape"))}
+    figures = plain(scores_of(recipe, 1, tests, 1)["pulses"])
+    assert {"balanced accuracy", "by recording", "AUC", "log-loss", "false alarms"} < set(figures)
+    lines = list(table({"the recipe": {"pulses": [figures, figures | {"AUC": figures["AUC"] + 0.5}]}}))
+    assert lines[0] == "| variant | pulses BA | pulses AUC | pulses log-loss | pulses false alarms |"
+    assert f"| {figures['AUC'] + 0.25:.3f} |" in lines[2]
+
+
+def test_a_mechanism_that_only_some_rigs_have_doubles_the_kernels():
+    """More kernels share the same records, so that more of the last batches have free lanes."""
+    shipped = YAML(typ="safe").load(find_recipe("quickstart"))
+    all_rigs, some_rigs = (
+        cost_of(Recipe.model_validate(changed(shipped, {"machine.looseness_um": play})))
+        for play in (5, {"kind": "choice", "values": [0, 5]})
+    )
+    assert some_rigs.kernels == 2 * all_rigs.kernels
+    assert some_rigs.lane_steps > all_rigs.lane_steps
+    assert some_rigs.filled < all_rigs.filled <= 1
