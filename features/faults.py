@@ -36,6 +36,13 @@ class FaultClass(NamedTuple):
         The feature that averages three harmonics of its line, empty if no comb belongs to this class alone.
     single_lines
         Features whose mean tells the class where it has no comb of its own.
+    words
+        The class in a sentence.
+    part
+        The damaged part in a sentence, empty if the class does not name one.
+    side
+        Distance of the sidebands of its lines: a field of `features.signal.lines.Orders`, or ``shaft``. A spall on a ball
+        passes the load zone with the cage.
     """
 
     name: str
@@ -43,6 +50,9 @@ class FaultClass(NamedTuple):
     lines: tuple[Line, ...] = ()
     comb: str = ""
     single_lines: tuple[str, ...] = ()
+    words: str = ""
+    part: str = ""
+    side: str = "shaft"
 
     @property
     def evidence(self) -> tuple[str, ...]:
@@ -62,19 +72,24 @@ HEALTHY, UNKNOWN = "healthy", "unknown"
 CLASSES: Mapping[str, FaultClass] = {
     row.name: row
     for row in (
-        FaultClass(HEALTHY, "#009E73"),
-        FaultClass("inner", "#D55E00", BPFI, comb="whitened_bpfi_comb"),
-        FaultClass("outer", "#0072B2", BPFO, comb="whitened_bpfo_comb"),
-        FaultClass("ball", "#CC79A7", BSF, comb="whitened_2bsf_comb"),
-        FaultClass("cage", "#E69F00", FTF, single_lines=("whitened_ftf", "whitened_2ftf")),
+        FaultClass(HEALTHY, "#009E73", words="Healthy"),
+        FaultClass("inner", "#D55E00", BPFI, "whitened_bpfi_comb", words="Inner race fault", part="inner race"),
+        FaultClass("outer", "#0072B2", BPFO, "whitened_bpfo_comb", words="Outer race fault", part="outer race"),
+        FaultClass("ball", "#CC79A7", BSF, "whitened_2bsf_comb", words="Ball fault", part="balls", side="ftf"),
+        FaultClass(
+            "cage", "#E69F00", FTF, single_lines=("whitened_ftf", "whitened_2ftf"), words="Cage fault", part="cage"
+        ),
         # the label does not say which parts are damaged, so the fundamental line of every part is marked
-        FaultClass("compound", "#56B4E9", (BPFI[0], BPFO[0], BSF[0], FTF[0])),
+        FaultClass("compound", "#56B4E9", (BPFI[0], BPFO[0], BSF[0], FTF[0]), words="Several faults"),
     )
 }
 """Rows by name, in the order of the codes of the format. Colours: see `features.report.pictures`."""
 
 LOOKS: Mapping[str, FaultClass] = {**CLASSES, UNKNOWN: FaultClass(UNKNOWN, "#444444")}
 """Rows for pictures: of the classes, and of records whose class is not known."""
+
+SIDES = {SHAFT.base: "shaft", "ftf": "cage"}
+"""Part that turns at the distance of sidebands."""
 
 COMBS: Mapping[str, str] = {name: row.comb for name, row in CLASSES.items() if row.comb}
 """Comb of each class that has one of its own."""

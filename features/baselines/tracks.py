@@ -20,6 +20,7 @@ import numpy as np
 from sklearn.model_selection import StratifiedGroupKFold
 
 from features.baselines.records import FloatArray, IntArray, Records, check_classes
+from features.faults import HEALTHY
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
@@ -168,7 +169,7 @@ def _fault_groups(records: Records, track: Track, folds: int) -> IntArray:
     shape = records.conditions["shape"]
     group = np.full(len(records.fault), LEFT_OUT)
     group[records.width == 0] = DEALT
-    group[records.fault == FAULTS.index("healthy")] = DEALT
+    group[records.fault == FAULTS.index(HEALTHY)] = DEALT
     for c in np.unique(records.fault):
         known = (records.fault == c) & ((records.width > 0) if track == "severity" else (shape >= 0))
         if known.any():

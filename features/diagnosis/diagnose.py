@@ -19,7 +19,6 @@ from features.diagnosis.evidence import Line, find_evidence, strange_series
 from features.diagnosis.quality import quality_of
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.diagnosis.wording import (
-    FAULTS_IN_WORDS,
     by_family,
     candidates,
     family_in_words,
@@ -27,7 +26,7 @@ from features.diagnosis.wording import (
     reasons,
     speed_in_words,
 )
-from features.faults import HEALTHY
+from features.faults import CLASSES, HEALTHY
 from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray
@@ -258,7 +257,7 @@ def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration
     if diagnosis.verdict != UNSURE and not contradiction:
         probability = probability_in_words(diagnosis.probabilities[diagnosis.verdict])
         why = reasons(diagnosis.verdict, diagnosis.evidence)
-        text = f"{FAULTS_IN_WORDS[diagnosis.verdict]} (probability {probability}): {why}; {at_speed}."
+        text = f"{CLASSES[diagnosis.verdict].words} (probability {probability}): {why}; {at_speed}."
         advice = (WATCH,) if diagnosis.verdict == HEALTHY and diagnosis.evidence else ()
         return replace(diagnosis, sentence=text, advice=advice)
     why = contradiction or diagnosis.sentence or _doubt(diagnosis)
@@ -270,7 +269,8 @@ def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration
 def _contradiction(diagnosis: Diagnosis) -> str:
     """What lines of another class say against the verdict, empty if they do not."""
     families = by_family(diagnosis.evidence)
-    if diagnosis.verdict in families or diagnosis.verdict == "compound":
+    linked = diagnosis.verdict == HEALTHY or CLASSES[diagnosis.verdict].evidence
+    if diagnosis.verdict in families or not linked:
         return ""
     for fault, lines in families.items():
         harmonics = {line.harmonic for line in lines if not line.sideband}

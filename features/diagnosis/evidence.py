@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from features.diagnosis.spectrum import TOP_ORDER, BandSpectrum
-from features.faults import CLASSES, FaultClass
+from features.faults import CLASSES, SHAFT, FaultClass
 from features.indicators import Orders
 
 FALSE_ALARM = 0.01  # probability that noise has a first line in a recording, and that it adds a further line to one
@@ -106,11 +106,7 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
         ratio, _, fundamental = found[strongest]
         row, family = families.pop(strongest), held[strongest]
         level = 10 * float(np.log10(max(ratio, 1.0)))
-        if (
-            not family
-            or level < least
-            or (row.name == "cage" and sum(not line.sideband for line in family) < CAGE_LINES)
-        ):
+        if not family or level < least or (not row.comb and sum(not line.sideband for line in family) < CAGE_LINES):
             continue
         lines += family
         least = max(least, level - SPREAD)
@@ -189,8 +185,13 @@ def _fundamental_order(row: FaultClass, orders: Orders) -> float:
     return line.multiple * float(getattr(orders, line.base))
 
 
+def _side(row: FaultClass, orders: Orders) -> float:
+    """Distance of the sidebands of a class, in orders."""
+    return 1.0 if row.side == SHAFT.base else float(getattr(orders, row.side))
+
+
 def _harmonics(row: FaultClass) -> range:
-    return range(1, (len(row.lines) if row.name == "cage" else HARMONICS) + 1)
+    return range(1, (HARMONICS if row.comb else len(row.lines)) + 1)
 
 
 def _searched(row: FaultClass, spectrum: BandSpectrum, shaft_rate: float, orders: Orders) -> Iterator[tuple[int, int]]:
@@ -230,12 +231,12 @@ def _family(
     row: FaultClass, spectrum: BandSpectrum, free: np.ndarray, fundamental: float, shaft_rate: float, orders: Orders
 ) -> list[Line]:
     """Harmonics of a fundamental [Hz], and the sidebands of those found."""
-    side = float(orders.ftf) * shaft_rate if row.name == "ball" else shaft_rate
-    beside = "FTF" if row.name == "ball" else "shaft"
+    side = _side(row, orders) * shaft_rate
+    beside = row.side if row.side == SHAFT.base else row.side.upper()
     label = row.lines[0].label
     base = row.lines[0].multiple
     places = [(harmonic, 0) for harmonic in _harmonics(row)]
-    places += [(harmonic, sign) for harmonic in (1, 2) for sign in (-1, 1) if row.name != "cage"]
+    places += [(harmonic, sign) for harmonic in (1, 2) for sign in (-1, 1) if row.comb]
     searches = {}
     for harmonic, sign in places:
         frequency = harmonic * fundamental + sign * side
@@ -261,8 +262,7 @@ def _remove(
 ) -> None:
     """Mark the bins that a family explains: harmonics, and sidebands at the rates of shaft and cage."""
     sides = {0.0, *(n * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1))}
-    if row.name == "ball":
-        sides |= {n * float(orders.ftf) * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1)}
+    sides |= {n * _side(row, orders) * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1)}
     last = int(TOP_ORDER * shaft_rate / fundamental) + 1
     for harmonic in range(last + 1):  # 0: the sidebands of the mean are lines at the rates themselves
         for side in sides:

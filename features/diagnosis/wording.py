@@ -3,17 +3,9 @@
 from collections.abc import Mapping, Sequence
 
 from features.diagnosis.evidence import LEAST_LEVEL, Line
-from features.faults import CLASSES, HEALTHY
+from features.faults import CLASSES, HEALTHY, SIDES
 
-FAULTS_IN_WORDS = {
-    HEALTHY: "Healthy",
-    "inner": "Inner race fault",
-    "outer": "Outer race fault",
-    "ball": "Ball fault",
-    "cage": "Cage fault",
-    "compound": "Several faults",
-}
-PARTS = {"inner": "inner race", "outer": "outer race", "ball": "balls", "cage": "cage"}
+PARTS = tuple(row.part for row in CLASSES.values() if row.part)
 
 
 def family_in_words(lines: Sequence[Line]) -> str:
@@ -26,7 +18,7 @@ def family_in_words(lines: Sequence[Line]) -> str:
     verb = "stand up to" if further else "stands"
     sides = ""
     if any(line.sideband for line in lines):
-        sides = f" with sidebands at the rate of the {'cage' if first.fault == 'ball' else 'shaft'}"
+        sides = f" with sidebands at the rate of the {SIDES[CLASSES[first.fault].side]}"
     return f"{first.name} at {first.order:.2f} orders{more} {verb} {level:.0f} dB above the floor{sides}"
 
 
@@ -46,7 +38,7 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
     if verdict == HEALTHY:
         if others:
             return f"although {others}"
-        return f"no line of {_listed(list(PARTS.values()), 'or')} stands {LEAST_LEVEL:g} dB above the floor"
+        return f"no line of {_listed(PARTS, 'or')} stands {LEAST_LEVEL:g} dB above the floor"
     if own:
         return family_in_words(own) + (f"; also {others}" if others else "")
     name = CLASSES[verdict].lines[0].label if CLASSES[verdict].evidence else "fault"

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Recorded
 from features.diagnosis.spectrum import BandSpectrum
-from features.faults import CLASSES, SHAFT
+from features.faults import CLASSES, HEALTHY, SHAFT
 from features.report.page import template
 from features.report.pictures import (
     BROAD,
@@ -85,7 +85,7 @@ def _bars(probabilities: Mapping[str, float]) -> list[Bar]:
 @rc_context(STYLE)
 def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded) -> Figure:
     """Waveform, power spectral density, and envelope spectrum over its floor, one above the other."""
-    shown = Shown("", recording.signal, recording.fs, diagnosis.shaft_rate, recording.orders, "healthy")
+    shown = Shown("", recording.signal, recording.fs, diagnosis.shaft_rate, recording.orders, HEALTHY)
     figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
     band = BROAD if diagnosis.spectrum is None else diagnosis.spectrum.band
@@ -143,7 +143,6 @@ def _families(recording: Recorded) -> dict[str, list[float]]:
         row.name: row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence
     }
     return {
-        fault: [order * n for n in range(1, DRAWN_HARMONICS + 1)]
+        fault: [order * n for n in range(1, DRAWN_HARMONICS + 1 if CLASSES[fault].comb else 2)]
         for fault, order in fundamental.items()
-        if fault != "cage"
-    } | {"cage": [fundamental["cage"]]}
+    }

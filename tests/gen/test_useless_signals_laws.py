@@ -104,7 +104,7 @@ def test_recordings_that_cannot_be_used_are_counted_when_they_are_imported(tmp_p
     signal = np.concatenate([rng.normal(size=1000), cut_off, np.zeros(1000), np.full(1000, 0.5), rng.normal(size=1000)])
     made = Recording(0, 0, 0, CATALOGUE["6205"], 25.0, "inner", signal)
     import_recordings(
-        Collection("test", "A set", "Mine.", 1000.0, "housing"),
+        Collection("test", "A set", "Mine.", 1000.0, ("housing",)),
         [Candidate(Path(__file__), "a", lambda: made)],
         tmp_path / "c",
         window=1.0,
