@@ -12,8 +12,9 @@ from gen.corpus import format_page
 from gen.limits import limits_page
 from gen.physics.catalogue import catalogue_page
 from gen.recipe.distributions import DISTRIBUTIONS
+from gen.recipe.finding import recipe_purpose, shipped_recipes
 from gen.recipe.keys import Key, recipe_keys
-from gen.recipe.reading import recipe_purpose, recipe_schema, shipped_recipes
+from gen.recipe.reading import recipe_schema
 
 _COMMON = {"kind", "share_of", "per", "scatter_percent"}  # keys of every distribution
 

@@ -18,27 +18,34 @@ checks        keys that contradict each other, weights that cannot be met
 model         the recipe as a whole
 keys          every key with unit, range, default and meaning
 sentences     error sentences for broken recipes
-reading       files, names, hash and JSON schema
+finding       paths and names of recipe files
+reading       a file read into the model, its hash, JSON schema
 ============= ========================================================
 """
 
-from gen.recipe.faults import (
-    BallFault,
-    CageFault,
-    CompoundFault,
-    DistributedFault,
-    Fault,
-    Healthy,
-    RaceFault,
-    fault_class,
-)
-from gen.recipe.machine import CatalogueBearing
-from gen.recipe.model import Recipe
-from gen.recipe.operation import ProfileSection
-from gen.recipe.reading import find_recipe, read_recipe, recipe_hash, recipe_purpose, recipe_schema, shipped_recipes
-from gen.recipe.section import Section
-from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
-from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, LEAST_AXIAL_LOAD, STATIC_RATING, quantities
+from typing import TYPE_CHECKING
+
+from gen.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from gen.recipe.faults import (
+        BallFault,
+        CageFault,
+        CompoundFault,
+        DistributedFault,
+        Fault,
+        Healthy,
+        RaceFault,
+        fault_class,
+    )
+    from gen.recipe.finding import find_recipe, recipe_purpose, shipped_recipes
+    from gen.recipe.machine import CatalogueBearing
+    from gen.recipe.model import Recipe
+    from gen.recipe.operation import ProfileSection
+    from gen.recipe.reading import read_recipe, recipe_hash, recipe_schema
+    from gen.recipe.section import Section
+    from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
+    from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, LEAST_AXIAL_LOAD, STATIC_RATING, quantities
 
 __all__ = [
     "BALL_SPACING",
@@ -69,3 +76,47 @@ __all__ = [
     "recipe_schema",
     "shipped_recipes",
 ]
+
+# a name or a path of a recipe is looked up without the model of recipes
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "gen.recipe.faults": (
+            "BallFault",
+            "CageFault",
+            "CompoundFault",
+            "DistributedFault",
+            "Fault",
+            "Healthy",
+            "RaceFault",
+            "fault_class",
+        ),
+        "gen.recipe.finding": (
+            "find_recipe",
+            "recipe_purpose",
+            "shipped_recipes",
+        ),
+        "gen.recipe.machine": ("CatalogueBearing",),
+        "gen.recipe.model": ("Recipe",),
+        "gen.recipe.operation": ("ProfileSection",),
+        "gen.recipe.reading": (
+            "read_recipe",
+            "recipe_hash",
+            "recipe_schema",
+        ),
+        "gen.recipe.section": ("Section",),
+        "gen.recipe.sensing": (
+            "MAX_OVERSAMPLING",
+            "Modes",
+            "Modulation",
+            "PathSection",
+        ),
+        "gen.recipe.shares": (
+            "BALL_SPACING",
+            "FREE_ANGLE",
+            "LEAST_AXIAL_LOAD",
+            "STATIC_RATING",
+            "quantities",
+        ),
+    },
+)

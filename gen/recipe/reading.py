@@ -1,58 +1,17 @@
-"""Find, read and check a recipe file.
+"""Read and check a recipe file; the model compares counts and sizes with the limits."""
 
-A recipe is given as a path, or by the name of one that ships with Raceway. The model compares counts and sizes with the limits.
-"""
-
-import difflib
 import hashlib
 import json
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 from pydantic import ValidationError
 
 from gen.errors import RecipeError
+from gen.recipe.finding import find_recipe
 from gen.recipe.model import Recipe
 from gen.recipe.sentences import sentences
 from gen.yaml_files import read_yaml
-
-
-def shipped_recipes() -> dict[str, Path]:
-    """Names and paths of the recipes that ship with Raceway."""
-    folder = Path(str(files("raceway_recipes")))
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
-
-
-def recipe_purpose(path: Path) -> str:
-    """Purpose of a recipe: its opening comment, on one line."""
-    comment = []
-    for line in path.read_text(encoding="utf-8").splitlines():
-        if not line.startswith("#"):
-            break
-        comment.append(line.lstrip("# "))
-    return " ".join(comment)
-
-
-def find_recipe(recipe: Path | str) -> Path:
-    """Path of a recipe given as a path or by name.
-
-    Raises
-    ------
-    RecipeError
-        If there is no such file and no recipe of that name.
-    """
-    path = Path(recipe)
-    if path.is_file():
-        return path
-    shipped = shipped_recipes()
-    if str(recipe) in shipped:
-        return shipped[str(recipe)]
-    if path.is_dir():
-        raise RecipeError(f"{recipe}: is a folder; give a recipe file, or the name of one of {', '.join(shipped)}.")
-    near = difflib.get_close_matches(str(recipe), shipped, 1)
-    guess = f"did you mean {near[0]}?" if near else "raceway recipes lists the names."
-    raise RecipeError(f"{recipe}: neither a file nor one of the recipes {', '.join(shipped)}; {guess}")
 
 
 def read_recipe(recipe: Path | str, *, seed: int | None = None, records: int | None = None) -> Recipe:

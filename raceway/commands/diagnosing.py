@@ -136,7 +136,7 @@ def diagnose(
         _recorded(signal.values, _rate(path, signal.fs), rpm, known, path)
         for path, signal in zip(paths, signals, strict=True)
     ]
-    loaded, source = _model(model)
+    loaded, source = _model(model, relative=healthy is not None)
     from features.diagnosis import diagnose as run
 
     with compilation_noticed():
@@ -189,15 +189,15 @@ def _import_skops() -> None:
     utils.all_estimators = listed
 
 
-def _model(path: Path | None) -> tuple[Any, Path]:
+def _model(path: Path | None, *, relative: bool) -> tuple[Any, Path]:
     """Model and its file, or the reference model."""
     if path is None:
         from raceway.studies.reference_model import load_reference_model
 
-        return load_reference_model()
+        return load_reference_model(relative=relative)
     from features.baselines.models import load_model
 
-    return load_model(path), path
+    return load_model(path, relative=relative), path
 
 
 def _facts(

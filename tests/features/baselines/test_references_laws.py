@@ -212,6 +212,9 @@ def test_a_model_file_holds_both_parts(table, model, tmp_path):
     for reference in (None, table):
         found, expected = (predict(table, each, reference).probabilities for each in (read, model))
         np.testing.assert_array_equal(found, expected)
+    alone = load_model(path, relative=False)
+    assert alone.relative is None
+    np.testing.assert_array_equal(predict(table, alone).probabilities, predict(table, model).probabilities)
 
 
 def forged_seed(held: dict) -> None:
