@@ -143,7 +143,7 @@ def _samples_in_turns(where: str, labels: xr.Dataset, samples: int, per_turn: in
     unknown = np.flatnonzero(~(shaft_rate > 0))
     if len(unknown):
         raise CorpusError(f"{where}: record {unknown[0]} has no shaft rate; leave out per_turn.")
-    turns = int((shaft_rate / fs).min() * samples) if turns is None else turns
+    turns = int((shaft_rate * samples / fs).min() + 1e-9) if turns is None else turns  # rates are rounded
     if per_turn < 1 or turns < 1:
         raise CorpusError(
             f"{where}: {turns} turns of {per_turn} samples are no signal; give turns and per_turn above 0."
