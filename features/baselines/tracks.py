@@ -152,7 +152,7 @@ def _one_group_per_fold(group: IntArray, tested: IntArray) -> list[Split]:
     placed = (group != LEFT_OUT) & (tested != LEFT_OUT)
     return [
         (np.flatnonzero(placed & (group != g) & (tested != g)), np.flatnonzero((group == g) & (tested == g)))
-        for g in np.unique(group[placed])
+        for g in np.unique(tested[placed])
     ]
 
 

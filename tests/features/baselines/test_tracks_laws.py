@@ -128,6 +128,16 @@ def test_a_class_of_one_shape_is_trained_in_every_fold():
         assert set(found.fault[train]) == {0, 1, 2, 3}
 
 
+@given(seed=st.integers(0, 100))
+def test_a_range_of_speeds_in_which_no_specimen_is_tested_makes_no_fold(seed):
+    found = records(specimens=8, records=6)
+    speeds = {"shaft_rate": np.tile([10.0, 20, 30, 40, 50, 60], 8)}
+    found = found._replace(conditions={**found.conditions, **speeds})
+    splits = track_splits(found, found.fault, "speed", 6, seed)
+    assert all(len(test) for _, test in splits)
+    assert set(found.specimen[np.concatenate([test for _, test in splits])]) == set(found.specimen)
+
+
 def test_records_of_unknown_width_are_neither_trained_nor_tested():
     table = varied_table()
     unknown = (table.fault.values > 0) & (table.specimen.values % 5 == 0)
