@@ -75,7 +75,8 @@ def _recordings(corpus: xr.Dataset) -> Iterator[_Recording]:
 
 def _signature(signal: FloatArray) -> tuple[NDArray[np.complexfloating], FloatArray]:
     """Phases of the spectrum, padded so that shifts do not wrap around, and levels [dB] in bands relative to their mean."""
-    tapered = np.nan_to_num(signal - signal.mean()) * np.hanning(signal.size)
+    signal = np.nan_to_num(signal, posinf=0.0, neginf=0.0)
+    tapered = (signal - signal.mean()) * np.hanning(signal.size)
     spectrum = fft.rfft(tapered, fft.next_fast_len(2 * signal.size, real=True))
     magnitude = np.abs(spectrum)
     phases = np.divide(spectrum, magnitude, out=np.zeros_like(spectrum), where=magnitude > 0)
