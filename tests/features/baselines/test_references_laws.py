@@ -22,7 +22,7 @@ from raceway.cli import cli
 from tests.model_files import Archive
 
 LINES = (*EVIDENCE, "raw_kurtosis")
-ORDERS = Orders(3.58, 5.42, 2.36, 0.4)
+ORDERS = Orders(ftf=0.4, bpfo=3.58, bpfi=5.42, bsf=2.36)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -84,11 +84,13 @@ def test_a_record_that_is_its_own_reference_has_no_change(table):
 @given(gain=st.floats(1e-3, 1e3), seed=st.integers(0, 99))
 @settings(deadline=None, max_examples=10)
 def test_gains_of_record_and_reference_have_no_effect(gain, seed):
-    x = np.random.default_rng(seed).standard_normal((3, 6000))
+    x = np.random.default_rng(seed).standard_normal((4, 6000))
+    one = np.array([[gain], [1.0]])  # of the first of two records alone
     found = [
         relative_to(*(recording_table(signal, 12_000.0, 25.0, ORDERS, UNKNOWN_CODE) for signal in pair), LINES)
-        for pair in ((x[:1], x[1:]), (gain * x[:1], x[1:]), (x[:1], gain * x[1:]))
+        for pair in ((x[:2], x[2:]), (one * x[:2], x[2:]), (x[:2], gain * x[2:]))
     ]
+    assert np.ptp(found[0]["features"].values[:, -len(ENERGIES) :], axis=1).min() > 0
     for other in found[1:]:  # lines are computed in single precision
         np.testing.assert_allclose(other["features"].values, found[0]["features"].values, atol=1e-4)
 
@@ -105,7 +107,10 @@ def test_the_order_of_records_and_references_has_no_effect(table):
     assert {tuple(pair) for pair in np.transpose(virtual_references(table, LINES, 4))} != pairs
 
 
-def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_same_rig(table):
+@pytest.mark.parametrize("records_each", [1, 2])
+def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_same_rig(table, records_each):
+    cut = np.arange(table.sizes["record"]) // records_each
+    table = table.assign(recording=("record", cut), shaft_rate=("record", table["shaft_rate"].values[cut]))
     records, references = virtual_references(table, LINES, 0)
     assert records.tolist() == list(range(table.sizes["record"]))
     rig, speed, recording = table["rig"].values, np.log(table["shaft_rate"].values), recording_numbers(table)

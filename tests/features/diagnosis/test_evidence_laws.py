@@ -94,6 +94,24 @@ def test_sidebands_belong_to_the_family_of_their_line():
     assert all("BPFI" in name for name in names)
 
 
+def test_a_second_harmonic_alone_is_told_as_such_and_a_sideband_needs_its_harmonic():
+    t = np.arange(round(5 * FS)) / FS
+    at = {2 * 5.4152: 0.5, 6.4152: 0.5}  # 2 BPFI, and BPFI + shaft without BPFI
+    depth = sum(depth * np.cos(2 * np.pi * order * RATE * t) for order, depth in at.items())
+    lines = evidence(np.random.default_rng(8).standard_normal(t.size) * (1 + depth))
+    assert lines[0].order == pytest.approx(2 * 5.4152, abs=0.02)
+    assert (lines[0].name, lines[0].harmonic) == ("2 BPFI", 2)
+    assert {line.harmonic for line in lines} == {2}
+
+
+def test_a_family_10_db_below_the_strongest_is_not_told():
+    t = np.arange(round(5 * FS)) / FS
+    weak, strong = (0.12 * np.cos(2 * np.pi * 4.7134 * RATE * t), 0.7 * np.cos(2 * np.pi * 5.4152 * RATE * t))
+    e = np.random.default_rng(9).standard_normal(t.size)
+    assert {line.fault for line in evidence(e * (1 + weak))} == {"ball"}
+    assert {line.fault for line in evidence(e * (1 + weak + strong))} == {"inner"}
+
+
 def test_a_series_of_no_part_of_the_bearing_is_told_and_noise_has_none():
     rng = np.random.default_rng(7)
     t = np.arange(round(5 * FS)) / FS
