@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from features import feature_table
 from features.baselines import evaluate, load_model, predict, save_model, train
-from features.baselines.records import recording_numbers
 from features.baselines.reference_choice import check_durations, compared, recording_reference
 from features.baselines.references import ENERGIES, NEAREST, relative_names, relative_to, virtual_references
 from features.faults import EVIDENCE
 from features.indicators import Orders
+from features.recording_speeds import recording_numbers
 from features.recording_table import recording_table
 from gen.corpus import UNKNOWN_CODE
 from gen.errors import CorpusError
