@@ -121,6 +121,14 @@ def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_sam
         assert nearer.sum() < NEAREST
 
 
+def test_healthy_records_without_features_are_no_reference(table):
+    silent = table.copy(deep=True)
+    silent["features"].values[np.flatnonzero(table["fault"].values == 0)[::4]] = np.nan
+    kept = silent.isel(record=np.isfinite(silent["features"].values).all(axis=1))
+    assert np.isfinite(silent["features"].values[virtual_references(silent, LINES, 0)[1]]).all()
+    assert compared(table, silent, LINES).reference.sizes["record"] == (kept["fault"].values == 0).sum()
+
+
 def test_records_are_compared_with_their_own_rig_if_the_reference_has_all_rigs(table):
     healthy = table["fault"].values == 0
     lines = table["features"].values[:, : len(LINES)]
