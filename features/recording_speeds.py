@@ -33,7 +33,7 @@ IntArray = NDArray[np.integer[Any]]
 
 
 class Sums(NamedTuple):
-    """Of the records of one recording in one part."""
+    """Sums over the records of one recording in one part."""
 
     recording: int
     records: int

@@ -38,7 +38,7 @@ class Waveforms:
     rows
         Numbers of the chosen records in the corpus, shape (record,).
     normalise
-        Whether each record is freed of its mean and divided by its rms.
+        Whether the mean of each record is subtracted, and the result divided by its rms.
     per_turn, samples
         Samples per turn of the shaft, or None for samples at equal times; and number of samples of each record.
     """
@@ -113,7 +113,7 @@ def open_waveforms(
     channel
         Number of the channel, from 0.
     normalise
-        Free each record of its mean and divide it by its rms, so that the gain of the sensor tells nothing.
+        Subtract the mean of each record and divide the result by its rms, so that the gain of the sensor has no effect.
     per_turn
         Resample to so many samples per turn of the shaft, at the labelled shaft rate. See `features.signal.orders`.
     turns

@@ -36,7 +36,7 @@ class Predictions:
     probabilities
         Shape (record, class) or (recording, class).
     threshold
-        Smallest of the largest probability that is answered.
+        A record is answered if its largest probability is at least this.
     recording
         Number of the recording of each record, from 0 and without a gap; in ``by_recording``, 0, 1, 2, ....
     by_recording

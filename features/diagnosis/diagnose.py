@@ -42,10 +42,9 @@ if TYPE_CHECKING:
     from features.recording_speeds import Speed
 
 LONGEST = 60.0  # s; of a longer recording the beginning is used
-CONTRADICTING = (
-    15.0  # dB, of lines of another class, the fundamental and a harmonic or three harmonics, against the classifier
-)
-NEARLY_AS_HIGH = 5.0  # dB, by which lines of no part of the bearing may be below the evidence and are still told
+# dB; lines of another class this high contradict the classifier, if they are a fundamental and a harmonic, or three harmonics
+CONTRADICTING = 15.0
+NEARLY_AS_HIGH = 5.0  # dB; lines of no part of the bearing are reported unless they are further below the evidence
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
 
 
@@ -81,9 +80,9 @@ class Diagnosis:
     sentence
         The verdict with its reason.
     advice
-        What would help, one sentence each; empty if nothing is wanting.
+        How to get a surer answer, one sentence each; empty if there is no advice.
     warnings
-        What is to be read with care, one sentence each.
+        Reasons to read the diagnosis with care, one sentence each.
     windows
         Number of windows that the classifier used.
     spectrum
@@ -267,7 +266,7 @@ def _worded(diagnosis: Diagnosis, found: float | None, speed: "Speed", duration:
 
 
 def _contradiction(diagnosis: Diagnosis) -> str:
-    """What lines of another class say against the verdict, empty if they do not."""
+    """Clause on lines that plainly tell another class than the verdict; empty if there are none."""
     families = by_family(diagnosis.evidence)
     linked = diagnosis.verdict == HEALTHY or CLASSES[diagnosis.verdict].evidence
     if diagnosis.verdict in families or not linked:

@@ -104,7 +104,7 @@ def split_keys(keys: Mapping[str, Any], pattern: PathPattern) -> tuple[dict[str,
     Raises
     ------
     ValueError
-        If a table has no group in the path, or a text as a key is not simple.
+        If a table or a factor has no group in the path, or a key of a table is neither text nor a whole number.
     """
     given, tables, readings = {}, {}, {}
     for key, value in keys.items():
