@@ -121,6 +121,15 @@ def test_joined_files_can_name_their_variables_differently(tmp_path):
     np.testing.assert_array_equal(corpus.acceleration.values[:, 0].reshape(-1), whole[:2000].astype("f4"))
 
 
+def test_the_card_names_the_paths_of_a_fact_that_not_all_sections_share(tmp_path):
+    for name in "ab":
+        np.save(tmp_path / f"{name}.npy", noise(0))
+    done, _ = imported(tmp_path, COMMON + "files: [{path: a.npy}, {path: b.npy, load_n: 5, specimen: B}]\n")
+    card = (done.directory / "README.md").read_text()
+    assert "- Load (N): given as 5 (b.npy)." in card
+    assert "- Shaft speed (rpm): given as 1500." in card
+
+
 def test_files_of_several_sections_are_joined_in_the_order_of_the_sections(tmp_path):
     whole = noise(0, 2200)
     np.save(tmp_path / "b9.npy", whole[:1100])
