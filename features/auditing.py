@@ -1,8 +1,9 @@
 """Splits of real recordings that can leak: signs in labels and signals that one bearing is on both sides.
 
-A split by specimen keeps the records of a specimen together, so it is only as good as the names of the specimens. A recording that is there
-twice, shifted, amplified or filtered, is found by phase correlation [1]_: the cross spectrum of two recordings with all magnitudes set to
-one. Its peak is near 1 for copies and near 0 for different recordings, even of one machine, since shaft harmonics are few of many bins.
+A split by specimen keeps the records of a specimen together, so it is only as good as the names of the specimens. A recording that a set
+holds twice, shifted, amplified or filtered, is found by phase correlation [1]_: the cross spectrum of two recordings with all magnitudes
+set to one. Its peak is near 1 for copies and near 0 for different recordings, even of one machine, since shaft harmonics are few of many
+bins.
 
 .. [1] C. H. Knapp, G. C. Carter, "The generalized correlation method for estimation of time delay", IEEE Trans. Acoust. Speech Signal
    Process. 24 (1976) 320-327.
@@ -75,7 +76,8 @@ def _recordings(corpus: xr.Dataset) -> Iterator[_Recording]:
 
 def _signature(signal: FloatArray) -> tuple[NDArray[np.complexfloating], FloatArray]:
     """Phases of the spectrum, padded so that shifts do not wrap around, and levels [dB] in bands relative to their mean."""
-    tapered = np.nan_to_num(signal - signal.mean()) * np.hanning(signal.size)
+    signal = np.nan_to_num(signal, posinf=0.0, neginf=0.0)
+    tapered = (signal - signal.mean()) * np.hanning(signal.size)
     spectrum = fft.rfft(tapered, fft.next_fast_len(2 * signal.size, real=True))
     magnitude = np.abs(spectrum)
     phases = np.divide(spectrum, magnitude, out=np.zeros_like(spectrum), where=magnitude > 0)

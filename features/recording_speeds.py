@@ -33,7 +33,7 @@ IntArray = NDArray[np.integer[Any]]
 
 
 class Sums(NamedTuple):
-    """Of the records of one recording in one part."""
+    """Sums over the records of one recording in one part."""
 
     recording: int
     records: int
@@ -58,7 +58,7 @@ def checked_speed(speed: str, table: xr.Dataset) -> Speed:
 
 
 def recording_numbers(table: xr.Dataset) -> IntArray:
-    """Number of the recording that each record was cut from, from 0, shape (record,)."""
+    """Number of the recording that each record was cut from, from 0 and without a gap, shape (record,)."""
     keys = np.stack([table[name].values for name in RECORDING])
     return np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
 

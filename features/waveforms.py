@@ -38,7 +38,7 @@ class Waveforms:
     rows
         Numbers of the chosen records in the corpus, shape (record,).
     normalise
-        Whether each record is freed of its mean and divided by its rms.
+        Whether the mean of each record is subtracted, and the result divided by its rms.
     per_turn, samples
         Samples per turn of the shaft, or None for samples at equal times; and number of samples of each record.
     """
@@ -113,7 +113,7 @@ def open_waveforms(
     channel
         Number of the channel, from 0.
     normalise
-        Free each record of its mean and divide it by its rms, so that the gain of the sensor tells nothing.
+        Subtract the mean of each record and divide the result by its rms, so that the gain of the sensor has no effect.
     per_turn
         Resample to so many samples per turn of the shaft, at the labelled shaft rate. See `features.signal.orders`.
     turns
@@ -143,7 +143,7 @@ def _samples_in_turns(where: str, labels: xr.Dataset, samples: int, per_turn: in
     unknown = np.flatnonzero(~(shaft_rate > 0))
     if len(unknown):
         raise CorpusError(f"{where}: record {unknown[0]} has no shaft rate; leave out per_turn.")
-    turns = int((shaft_rate / fs).min() * samples) if turns is None else turns
+    turns = int((shaft_rate * samples / fs).min() + 1e-9) if turns is None else turns  # rates are rounded
     if per_turn < 1 or turns < 1:
         raise CorpusError(
             f"{where}: {turns} turns of {per_turn} samples are no signal; give turns and per_turn above 0."

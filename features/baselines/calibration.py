@@ -1,4 +1,4 @@
-"""Calibrated probabilities, and the smallest probability at which a model still answers.
+"""Calibrated probabilities, and the least probability with which a model answers.
 
 Estimators are over- or underconfident: of the records that an ensemble of forests gives a probability of 0.6, far more than 60 % may have
 the class. A temperature [1]_ corrects this: the logarithms of the probabilities are divided by it, and the result is normalised. The order
@@ -41,7 +41,8 @@ class Calibration(BaseModel):
     dependence
         Correlation of the errors of two records of one recording, as in ``combined``: 0 if they are independent, 1 if they are the same.
     threshold, recording_threshold
-        Smallest of the largest probability at which a record, and a recording of several records, is answered.
+        A record is answered if its largest probability is at least ``threshold``, and a recording of several records if its largest is
+        at least ``recording_threshold``.
     coverage
         Share of the records outside the training that are answered.
     """

@@ -22,7 +22,7 @@ LEAST_OF_A_CLASS = 2  # training specimens of a class in the smallest set, on av
 
 @dataclass(frozen=True)
 class CurvePoint:
-    """Scores with so many training specimens, and their training records, averaged over the folds."""
+    """Scores with a number of training ``specimens`` in each fold; ``records`` is the mean number of training records."""
 
     specimens: int
     records: float

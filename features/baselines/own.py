@@ -164,9 +164,9 @@ def _seed_argument(maker: Callable[..., Any], seed: int) -> dict[str, int]:
 
 
 def load_maker(address: str) -> Maker:
-    """Import what ``module:name`` names, from the current folder or from an installed package.
+    """Import a classifier, or a class or function that makes one, from ``module:name``.
 
-    This runs the code of the module. What is found must be a classifier, or a class or function that makes one.
+    The module is searched in the current folder and among the installed packages. This runs its code.
 
     Raises
     ------

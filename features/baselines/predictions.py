@@ -11,8 +11,9 @@ import xarray as xr
 
 from features.baselines.calibration import Calibration, calibrated, combined
 from features.baselines.estimators import class_probabilities
-from features.baselines.records import FloatArray, IntArray, feature_rows, recording_numbers, title_of
+from features.baselines.records import FloatArray, IntArray, feature_rows, title_of
 from features.baselines.references import relative_to
+from features.recording_speeds import recording_numbers
 from gen.corpus import FAULTS
 from gen.errors import CorpusError
 
@@ -35,7 +36,7 @@ class Predictions:
     probabilities
         Shape (record, class) or (recording, class).
     threshold
-        Smallest of the largest probability that is answered.
+        A record is answered if its largest probability is at least this.
     recording
         Number of the recording of each record, from 0 and without a gap; in ``by_recording``, 0, 1, 2, ....
     by_recording

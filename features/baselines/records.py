@@ -13,6 +13,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from features.recording_speeds import recording_numbers
 from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.errors import CorpusError
 
@@ -140,11 +141,6 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
         message = f"{title}: the feature table holds no record; give a corpus with at least one."
         raise CorpusError(message)
     return cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas())
-
-
-def recording_numbers(table: xr.Dataset) -> IntArray:
-    """Number of the recording of each record, from 0 and without a gap, shape (record,)."""
-    return _numbered(*(table[name].values for name in ("rig", "specimen", "fault", "recording")))
 
 
 def _column(table: xr.Dataset, name: str) -> FloatArray:

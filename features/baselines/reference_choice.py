@@ -10,9 +10,10 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.baselines.records import FloatArray, feature_rows, record_digests, recording_numbers, title_of
+from features.baselines.records import FloatArray, feature_rows, record_digests, title_of
 from features.baselines.references import by_rig, healthy_records
 from features.indicators import Orders
+from features.recording_speeds import recording_numbers
 from features.recording_table import recording_table
 from gen.corpus import UNKNOWN_CODE, open_corpus
 from gen.errors import CorpusError

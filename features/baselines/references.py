@@ -17,11 +17,11 @@ from features.baselines.records import (
     IntArray,
     feature_rows,
     record_digests,
-    recording_numbers,
     title_of,
 )
 from features.faults import HEALTHY
 from features.indicators import NAMES, TOP
+from features.recording_speeds import recording_numbers
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.errors import CorpusError
 

@@ -143,7 +143,11 @@ def score_splits(
 def _pooled(
     probabilities: FloatArray, classes: IntArray, labels: IntArray, recording: IntArray, estimator: str | Maker
 ) -> Predictions:
-    """Predictions of all folds, with the one calibration that fits all of them; an untrained baseline stays uncalibrated."""
+    """Predictions of all folds, calibrated together; an untrained baseline stays uncalibrated.
+
+    Temperature, dependence and thresholds are fitted to these same predictions, so log-loss and calibration error are those of a model
+    that was calibrated on the tested machines.
+    """
     truth = np.searchsorted(classes, labels)
     calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth, recording)
     return predictions(probabilities, class_names(classes), recording, calibration)

@@ -8,9 +8,9 @@ of faults.
 A specimen can have records in several groups, such as several speeds. It is then tested in the group of one of its
 records, drawn at random. Its other records are left out of that fold, and train in no other group than theirs.
 
-Healthy records have no severity and no shape. Nor are those of a class with a single group of use: a classifier that is
-tested in this group must have been trained on the class. On the tracks *severity* and *shape* the specimens of these
-records are dealt out to the groups evenly.
+Healthy records have no severity and no shape. A class with a single group cannot be held out either, because every
+tested class must be trained. On the tracks *severity* and *shape* the specimens of these records are dealt out to the
+groups evenly.
 """
 
 from collections.abc import Sequence
@@ -152,7 +152,7 @@ def _one_group_per_fold(group: IntArray, tested: IntArray) -> list[Split]:
     placed = (group != LEFT_OUT) & (tested != LEFT_OUT)
     return [
         (np.flatnonzero(placed & (group != g) & (tested != g)), np.flatnonzero((group == g) & (tested == g)))
-        for g in np.unique(group[placed])
+        for g in np.unique(tested[placed])
     ]
 
 

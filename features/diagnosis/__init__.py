@@ -13,7 +13,7 @@ diagnose verdict, probabilities and evidence of a recording
 ======== ==================================================================================
 """
 
-from features.diagnosis.diagnose import Diagnosis, Recorded, SpeedUse, diagnose
+from features.diagnosis.diagnose import Diagnosis, Recorded, diagnose
 from features.diagnosis.evidence import FALSE_ALARM, LEAST_LEVEL, Line, line_facts
 
-__all__ = ["FALSE_ALARM", "LEAST_LEVEL", "Diagnosis", "Line", "Recorded", "SpeedUse", "diagnose", "line_facts"]
+__all__ = ["FALSE_ALARM", "LEAST_LEVEL", "Diagnosis", "Line", "Recorded", "diagnose", "line_facts"]

@@ -9,7 +9,7 @@ if the lines plainly tell another class. Evidence is measured in the signal alon
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from features.faults import CLASSES, HEALTHY
 from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray
+from features.signal.speed import TOLERANCE
 from features.speed import shaft_speed
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.errors import CorpusError
@@ -38,15 +39,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from features.baselines.models import Model
+    from features.recording_speeds import Speed
 
-SpeedUse = Literal["off", "check", "correct"]
 LONGEST = 60.0  # s; of a longer recording the beginning is used
-CONTRADICTING = (
-    15.0  # dB, of lines of another class, the fundamental and a harmonic or three harmonics, against the classifier
-)
-NEARLY_AS_HIGH = 5.0  # dB, by which lines of no part of the bearing may be below the evidence and are still told
+# dB; lines of another class this high contradict the classifier, if they are a fundamental and a harmonic, or three harmonics
+CONTRADICTING = 15.0
+NEARLY_AS_HIGH = 5.0  # dB; lines of no part of the bearing are reported unless they are further below the evidence
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
-TOLERANCE_PERCENT = 8  # within which the speed is searched
 
 
 class Recorded(NamedTuple):
@@ -81,9 +80,9 @@ class Diagnosis:
     sentence
         The verdict with its reason.
     advice
-        What would help, one sentence each; empty if nothing is wanting.
+        How to get a surer answer, one sentence each; empty if there is no advice.
     warnings
-        What is to be read with care, one sentence each.
+        Reasons to read the diagnosis with care, one sentence each.
     windows
         Number of windows that the classifier used.
     spectrum
@@ -104,7 +103,7 @@ class Diagnosis:
 
 
 def diagnose(
-    recording: Recorded, model: "Model", *, healthy: Recorded | None = None, speed: SpeedUse = "check"
+    recording: Recorded, model: "Model", *, healthy: Recorded | None = None, speed: "Speed" = "check"
 ) -> Diagnosis:
     """Diagnose one recording.
 
@@ -250,7 +249,7 @@ def _agreed(found: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnos
     return replace(found, verdict=UNSURE, sentence=why, advice=(advice,))
 
 
-def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration: float, compared: bool) -> Diagnosis:
+def _worded(diagnosis: Diagnosis, found: float | None, speed: "Speed", duration: float, compared: bool) -> Diagnosis:
     """Diagnosis with its sentence and advice; the verdict becomes unsure if the lines plainly tell another class."""
     at_speed = speed_in_words(diagnosis.labelled_rate, found, speed != "off")
     contradiction = "" if diagnosis.verdict == UNSURE else _contradiction(diagnosis)
@@ -267,7 +266,7 @@ def _worded(diagnosis: Diagnosis, found: float | None, speed: SpeedUse, duration
 
 
 def _contradiction(diagnosis: Diagnosis) -> str:
-    """What lines of another class say against the verdict, empty if they do not."""
+    """Clause on lines that plainly tell another class than the verdict; empty if there are none."""
     families = by_family(diagnosis.evidence)
     linked = diagnosis.verdict == HEALTHY or CLASSES[diagnosis.verdict].evidence
     if diagnosis.verdict in families or not linked:
@@ -314,7 +313,7 @@ def _bearing_warning(spectra: list[BandSpectrum], lines: list[Line], shaft_rate:
         return []
     sentence = (
         f"A line at {series.order:.2f} orders and its harmonics stand {series.level:.0f} dB above the floor, and no part of this bearing "
-        f"has that order: the bearing may be another one, or the speed wrong by more than {TOLERANCE_PERCENT} %, or the lines come from "
+        f"has that order: the bearing may be another one, or the speed wrong by more than {100 * TOLERANCE:g} %, or the lines come from "
         "another part of the machine."
     )
     return [sentence]

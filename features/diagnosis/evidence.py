@@ -4,7 +4,7 @@
 
 The first line of a family must exceed a level that noise exceeds anywhere in the search of a recording with a
 probability of 1 %. Further lines are searched only at multiples of the frequency of the first one, and beside them, and
-again noise adds one with 1 %. Three rules keep out lines that are there and tell no fault:
+again noise adds one with 1 %. Three rules leave out lines that are real but caused by no fault:
 
 - Multiples of the shaft rate are never counted, since imbalance and gears make them too. So a fault line that cannot be
   resolved from one is not found.

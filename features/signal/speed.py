@@ -30,13 +30,11 @@ SIGNAL_NOISE = (0.7, 0.35)  # the same for the spectrum of the signal
 WEIGHTS = (0.5, 1.0)  # of the shaft harmonics in the envelope and in the signal, beside those of a fault family
 HIGHEST = 4.0  # standard deviations that one shaft harmonic may count
 AHEAD = 3.0  # standard deviations that the highest line of a comb may count above the second
-PENALTY = 1.0  # of a candidate at the end of the tolerance; it decides between equal candidates
+PENALTY = 1.0  # standard deviations, of a speed error of `TOLERANCE`; it decides between equal candidates
 
 RIVALS_BEYOND = 0.025  # relative distance from which another candidate is a rival
 CLEAR_MARGIN = 1.5  # standard deviations by which the best candidate exceeds its rivals
-SHAFT_BEHIND = (
-    1.0  # standard deviations by which the shaft may fit another speed better: else the bearing may be another
-)
+SHAFT_BEHIND = 1.0  # standard deviations; if the shaft fits another speed better by more, the bearing may be another
 CLEAR_FAMILY = 2.0  # standard deviations from which a comb, and not the shaft, is named
 SHARPNESS = 2.0  # factor from evidence to a logarithm of probability
 SLIP = 0.007  # relative, standard deviation of true from nominal orders

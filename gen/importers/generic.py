@@ -28,6 +28,7 @@ from gen.importers.signals import read_values, stated_rate
 from gen.units import rpm_to_hertz, to_si
 
 _SPALLS = {"healthy": 0, "cage": 0, "compound": 2, UNKNOWN: -1}
+_SAME_SPEED = 0.02  # relative; files of one recording can differ by less, and the record has the speed of the first
 
 
 class _Target(NamedTuple):
@@ -179,6 +180,7 @@ def _joined(files: tuple[File, ...]) -> tuple[list[FloatArray], float, bool]:
     """Values of each channel in the unit of the files, shape (time,), their sample rate [Hz], and whether they have a unit."""
     parts: list[list[FloatArray]] = []
     rates: set[float] = set()
+    speeds: list[float] = []
     absolute = True
     for file in files:
         entry = _entry_of(file)
@@ -187,10 +189,14 @@ def _joined(files: tuple[File, ...]) -> tuple[list[FloatArray], float, bool]:
         if rate is None:
             raise UnusableError("states no sample rate; give sample_rate_hz")
         rates.add(rate)
+        speeds.append(entry.shaft_rpm)
         parts.append([values.values for values in found])
         absolute = absolute and found[0].absolute
     if len(rates) > 1:
         raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
+    if max(speeds) > (1 + _SAME_SPEED) * min(speeds):
+        message = f"is joined of files at {min(speeds):g} to {max(speeds):g} rpm; give each recording a name of its own"
+        raise UnusableError(message)
     return [np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), absolute
 
 

@@ -102,7 +102,7 @@ def _matches(source: Path, folder: Path, section: Section, looked_at: int) -> li
 
 def _check_alike(source: Path, first: File, other: File) -> None:
     """Refuse to join files with different facts."""
-    different = next((key for key in Entry.model_fields if key not in ("path", "recording")
+    different = next((key for key in Entry.model_fields if key not in ("path", "recording", "variable")
                       and getattr(first.entry, key) != getattr(other.entry, key)), None)  # fmt: skip
     if different is not None:
         here, there = (getattr(file.entry, different) for file in (other, first))

@@ -6,7 +6,7 @@ from gen.importers.files import FloatArray, UnusableError
 from gen.limits import check_limit
 
 FLAT = 0.84  # of the lower Nyquist frequency: the filter passes more than 99 % of the amplitude below
-_FINEST = 10_000  # largest denominator of the ratio of two rates; the rounding is below 1e-7 of the rate
+_FINEST = 10_000  # largest denominator of the ratio of two rates; its rounding is below 6e-5 of the rate
 _WIDEST = 1000  # ratio of two rates
 
 

@@ -104,17 +104,18 @@ def split_keys(keys: Mapping[str, Any], pattern: PathPattern) -> tuple[dict[str,
     Raises
     ------
     ValueError
-        If a table has no group in the path, or a text as a key is not simple.
+        If a table or a factor has no group in the path, or a key of a table is neither text nor a whole number.
     """
     given, tables, readings = {}, {}, {}
     for key, value in keys.items():
         if not isinstance(value, dict) or key not in STAND_INS or key == "bearing":
             given[key] = value
-        elif key in IN_FILE and value.keys() <= {"variable", "times"}:
+        elif key in IN_FILE and "variable" in value and value.keys() <= {"variable", "times"}:
             readings[key] = value
         elif key not in pattern.groups:
+            kind = "a factor" if value.keys() == {"times"} else "a table"
             message = (
-                f"{key} is a table, and path has no group {{{key}}}; write {{{key}}} in the path where it tells {key}"
+                f"{key} is {kind}, and path has no group {{{key}}}; write {{{key}}} in the path where it tells {key}"
             )
             raise ValueError(message)
         elif key in _NUMBERS and value.keys() == {"times"}:

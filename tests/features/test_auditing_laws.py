@@ -66,6 +66,13 @@ def test_a_copy_of_a_recording_under_another_specimen_is_named(tmp_path, change)
     assert sentence.endswith("remove one of the two, or give both the same specimen.")
 
 
+def test_a_gap_in_a_copy_hides_nothing_else():
+    whole = machine(0)
+    gap = whole.copy()
+    gap[1000:1010] = np.nan
+    assert phase_correlation(_signature(whole)[0], _signature(gap)[0]) > 2 * COPY
+
+
 def test_a_copy_under_the_same_specimen_is_no_leak(tmp_path):
     assert audit_splits(corpus(tmp_path, [*sound_set(), ("copy", sound_set()[0][1], "healthy", "healthy0")])) == []
 

@@ -10,7 +10,10 @@ from features.recording_speeds import (
     BY,
     FOUND,
     UNCERTAINTY,
+    Sums,
+    other_speed,
     part_sums,
+    rates_to_use,
     recording_numbers,
     recording_speeds,
     speed_warnings,
@@ -205,3 +208,20 @@ def test_a_table_without_speeds_warns_of_nothing(corpus):
 def test_another_treatment_of_speeds_is_refused(corpus):
     with pytest.raises(ValueError, match="'fix' is no treatment of shaft speeds; choose from off, check, correct"):
         feature_table(corpus, GROUPS, speed="fix")  # pyright: ignore[reportArgumentType]
+
+
+def test_the_sum_over_many_parts_does_not_depend_on_their_order():
+    """A recording in two parts would not tell, because a sum of two numbers has no order."""
+    rng, lines = np.random.default_rng(0), np.zeros(9)
+    levels = [rng.standard_normal((21, 181)) for _ in lines]
+    sums = [(part, [Sums(0, 1, 1, level)]) for part, level in enumerate(levels)]
+    numbers, rates = np.zeros(9, int), np.full(9, 25.0)
+    first = recording_speeds(numbers, rates, sums)
+    assert all(recording_speeds(numbers, rates, [sums[n] for n in rng.permutation(9)]) == first for _ in range(20))
+
+
+def test_only_a_clear_speed_contradicts_the_label():
+    found = {"shaft_rate": [25.0, 25.0, 25.0], FOUND: [26.0, 26.0, 25.1], UNCERTAINTY: [0.2] * 3, BY: [0, 2, 2]}
+    table = xr.Dataset({name: ("record", np.array(values)) for name, values in found.items()})
+    assert other_speed(table).tolist() == [False, True, False]
+    assert rates_to_use(table).tolist() == [25.0, 26.0, 25.1]

@@ -151,6 +151,12 @@ def test_useless_windows_are_left_out():
     assert not nothing.clear
 
 
+def test_a_window_of_less_than_two_turns_is_not_used():
+    x = recording(0, 25.0, ORDERS.bpfo)[:, :900]  # 75 ms
+    assert np.isnan(shaft_speed(x, FS, 25.0, ORDERS).rate)
+    assert shaft_speed(x, FS, 27.0, ORDERS).rate > 0
+
+
 @pytest.mark.parametrize("tolerance", [0.0, 0.3, np.nan])
 def test_a_tolerance_out_of_range_is_refused(tolerance):
     with pytest.raises(ValueError, match=r"not in \[0.01, 0.2\]"):

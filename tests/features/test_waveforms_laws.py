@@ -5,12 +5,16 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
 from sklearn.linear_model import LogisticRegression
 from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import FunctionTransformer
 
 from features import open_waveforms
 from features.baselines import controls, cross_validate
+from features.waveforms import _samples_in_turns
 from gen.corpus import UNKNOWN_CODE
 from gen.errors import CorpusError
 from tests.tone_corpora import FS, TONES, write_corpus
@@ -74,6 +78,13 @@ def test_a_resampled_record_has_its_tone_at_the_order_of_its_class(corpus):
     assert turns == int(X.labels.shaft_rate.min() * 1000 / FS)
     lines = np.abs(np.fft.rfft(X[:]))[:, 1:].argmax(axis=1) + 1
     np.testing.assert_array_equal(lines / turns, np.array(TONES)[X.labels.fault])
+
+
+@given(turns=st.integers(1, 500), fs=st.sampled_from([12_000.0, 12_800.0, 25_600.0, 48_000.0, 97_656.25]))
+def test_a_record_of_whole_turns_keeps_all_of_them(turns, fs):
+    samples = 2 * int(fs)
+    rates = xr.Dataset({"shaft_rate": ("record", [turns * fs / samples]), "sample_rate": ("record", [fs])})
+    assert _samples_in_turns("tones", rates, samples, 64, None) == 64 * turns
 
 
 def test_turns_beyond_the_end_of_a_record_are_zero(corpus):

@@ -98,6 +98,15 @@ def test_the_temperature_that_the_classes_were_drawn_with_is_found(temperature):
     assert found.temperature == pytest.approx(temperature, rel=0.06)
 
 
+@pytest.mark.parametrize("times", [2, 9])
+def test_the_number_of_records_of_a_class_has_no_effect_on_the_temperature(times):
+    probabilities, truth = drawn(2.0, 500)
+    more = np.concatenate([np.arange(500), np.tile(np.flatnonzero(truth == 0), times)])
+    found = [fit_calibration(probabilities[rows], truth[rows], np.arange(len(rows))) for rows in (np.arange(500), more)]
+    assert found[1].temperature == pytest.approx(found[0].temperature, rel=1e-3)
+    assert found[1].dependence == found[0].dependence
+
+
 @pytest.mark.parametrize(("copies", "dependence"), [(1, 1.0), (5, 1.0)])
 def test_records_that_are_copies_of_each_other_depend_fully(copies, dependence):
     probabilities, truth = drawn(1.0, 4000)

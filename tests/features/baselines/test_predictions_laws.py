@@ -8,7 +8,7 @@ import xarray as xr
 
 from features.baselines import UNSURE, evaluate, load_model, predict, save_model, train
 from features.baselines.calibration import COVERAGE, UNCALIBRATED
-from features.baselines.cross_calibration import calibration_splits
+from features.baselines.cross_calibration import calibration_splits, cross_calibration
 from features.baselines.records import features_of, labelled_records
 from tests.model_files import make_table
 
@@ -92,6 +92,30 @@ def test_rigs_are_kept_together_if_each_class_is_on_enough_of_them(rigs, by, fol
     for trained, tested in found[1]:
         assert not set(getattr(records, by)[trained]) & set(getattr(records, by)[tested])
         assert set(records.fault[trained]) == set(records.fault)
+
+
+class Witness:
+    """A classifier that fails if it is asked for a record that it was trained on, or for one of its rig."""
+
+    def fit(self, X, y):
+        self.rigs = set(X["rig"])
+        self.classes_ = np.unique(y)
+        return self
+
+    def predict_proba(self, X):
+        if self.rigs & set(X["rig"]):
+            raise AssertionError
+        return np.full((len(X), len(self.classes_)), 1 / len(self.classes_))
+
+    def predict(self, X):
+        return self.classes_[self.predict_proba(X).argmax(axis=1)]
+
+
+def test_no_record_that_calibrates_was_trained_on():
+    table = windowed()
+    records = labelled_records(table, features_of(table, ("lines",)))
+    records = records._replace(features=records.features.assign(rig=records.rig))
+    assert cross_calibration(records, Witness, 0).by == "rig"
 
 
 def test_without_enough_specimens_and_without_training_nothing_is_calibrated():

@@ -9,11 +9,11 @@ from hypothesis import strategies as st
 
 from features import feature_table
 from features.baselines import evaluate, load_model, predict, save_model, train
-from features.baselines.records import recording_numbers
 from features.baselines.reference_choice import check_durations, compared, recording_reference
 from features.baselines.references import ENERGIES, NEAREST, relative_names, relative_to, virtual_references
 from features.faults import EVIDENCE
 from features.indicators import Orders
+from features.recording_speeds import recording_numbers
 from features.recording_table import recording_table
 from gen.corpus import UNKNOWN_CODE
 from gen.errors import CorpusError
@@ -22,7 +22,7 @@ from raceway.cli import cli
 from tests.model_files import Archive
 
 LINES = (*EVIDENCE, "raw_kurtosis")
-ORDERS = Orders(3.58, 5.42, 2.36, 0.4)
+ORDERS = Orders(ftf=0.4, bpfo=3.58, bpfi=5.42, bsf=2.36)
 
 
 @pytest.fixture(scope="module", autouse=True)
@@ -84,11 +84,13 @@ def test_a_record_that_is_its_own_reference_has_no_change(table):
 @given(gain=st.floats(1e-3, 1e3), seed=st.integers(0, 99))
 @settings(deadline=None, max_examples=10)
 def test_gains_of_record_and_reference_have_no_effect(gain, seed):
-    x = np.random.default_rng(seed).standard_normal((3, 6000))
+    x = np.random.default_rng(seed).standard_normal((4, 6000))
+    one = np.array([[gain], [1.0]])  # of the first of two records alone
     found = [
         relative_to(*(recording_table(signal, 12_000.0, 25.0, ORDERS, UNKNOWN_CODE) for signal in pair), LINES)
-        for pair in ((x[:1], x[1:]), (gain * x[:1], x[1:]), (x[:1], gain * x[1:]))
+        for pair in ((x[:2], x[2:]), (one * x[:2], x[2:]), (x[:2], gain * x[2:]))
     ]
+    assert np.ptp(found[0]["features"].values[:, -len(ENERGIES) :], axis=1).min() > 0
     for other in found[1:]:  # lines are computed in single precision
         np.testing.assert_allclose(other["features"].values, found[0]["features"].values, atol=1e-4)
 
@@ -105,7 +107,10 @@ def test_the_order_of_records_and_references_has_no_effect(table):
     assert {tuple(pair) for pair in np.transpose(virtual_references(table, LINES, 4))} != pairs
 
 
-def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_same_rig(table):
+@pytest.mark.parametrize("records_each", [1, 2])
+def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_same_rig(table, records_each):
+    cut = np.arange(table.sizes["record"]) // records_each
+    table = table.assign(recording=("record", cut), shaft_rate=("record", table["shaft_rate"].values[cut]))
     records, references = virtual_references(table, LINES, 0)
     assert records.tolist() == list(range(table.sizes["record"]))
     rig, speed, recording = table["rig"].values, np.log(table["shaft_rate"].values), recording_numbers(table)
@@ -114,6 +119,14 @@ def test_a_virtual_reference_is_one_of_the_nearest_healthy_recordings_of_the_sam
         assert known[reference]
         nearer = np.abs(speed - speed[record])[known] < abs(speed[reference] - speed[record])
         assert nearer.sum() < NEAREST
+
+
+def test_healthy_records_without_features_are_no_reference(table):
+    silent = table.copy(deep=True)
+    silent["features"].values[np.flatnonzero(table["fault"].values == 0)[::4]] = np.nan
+    kept = silent.isel(record=np.isfinite(silent["features"].values).all(axis=1))
+    assert np.isfinite(silent["features"].values[virtual_references(silent, LINES, 0)[1]]).all()
+    assert compared(table, silent, LINES).reference.sizes["record"] == (kept["fault"].values == 0).sum()
 
 
 def test_records_are_compared_with_their_own_rig_if_the_reference_has_all_rigs(table):

@@ -128,6 +128,16 @@ def test_a_class_of_one_shape_is_trained_in_every_fold():
         assert set(found.fault[train]) == {0, 1, 2, 3}
 
 
+@given(seed=st.integers(0, 100))
+def test_a_range_of_speeds_in_which_no_specimen_is_tested_makes_no_fold(seed):
+    found = records(specimens=8, records=6)
+    speeds = {"shaft_rate": np.tile([10.0, 20, 30, 40, 50, 60], 8)}
+    found = found._replace(conditions={**found.conditions, **speeds})
+    splits = track_splits(found, found.fault, "speed", 6, seed)
+    assert all(len(test) for _, test in splits)
+    assert set(found.specimen[np.concatenate([test for _, test in splits])]) == set(found.specimen)
+
+
 def test_records_of_unknown_width_are_neither_trained_nor_tested():
     table = varied_table()
     unknown = (table.fault.values > 0) & (table.specimen.values % 5 == 0)
@@ -227,3 +237,22 @@ def test_the_sizes_of_a_learning_curve_about_double():
     sizes = np.array(curve_sizes(found, grouped_case(found, "specimen", 4, 0)[1]))
     assert (sizes[0], sizes[-1]) == (8, 288)
     assert np.all(np.abs(np.log2(sizes[1:] / sizes[:-1]) - 1) < 0.3)
+
+
+def test_a_specimen_with_two_bearing_types_is_tested_in_the_first():
+    found = records()
+    bearing = found.conditions["bearing"].copy()
+    bearing[found.specimen == 0] = [0, 1, 2]
+    found = found._replace(conditions={**found.conditions, "bearing": bearing})
+    splits = track_splits(found, found.fault, "bearing", 4, 0)
+    ((_, tested),) = [split for split in splits if 0 in found.specimen[split[1]]]
+    assert set(found.specimen[tested]) >= {0, *found.specimen[bearing == 0]}
+
+
+def test_any_first_part_of_the_nested_specimens_has_the_classes_as_often_as_all():
+    found = records(specimens=60, records=1)
+    found = found._replace(fault=np.repeat([0, 1, 2], [6, 18, 36]))
+    fault = found.fault[np.argsort(found.specimen)][nested_specimens(found, 0)]
+    for size in range(3, 61):
+        share = np.bincount(fault[:size], minlength=3)
+        np.testing.assert_allclose(share, size * np.array([0.1, 0.3, 0.6]), atol=2)

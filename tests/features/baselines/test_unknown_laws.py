@@ -121,6 +121,7 @@ def test_recordings_of_unknown_class_are_answered_and_not_scored(table):
     assert [one.answer for one in answers] == list(found.answers)
     assert [[*one.probabilities.values()] for one in answers] == found.probabilities.tolist()
     assert unlabelled_answers(table.isel(record=slice(12)), model) == ()
+    assert unlabelled_answers(table.isel(record=slice(None, None, -1)), model) == answers[::-1]
 
 
 def test_evaluate_lists_the_answers_for_recordings_of_unknown_class(corpus, table, tmp_path, monkeypatch):

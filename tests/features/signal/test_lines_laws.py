@@ -119,3 +119,12 @@ def test_all_families_are_read_at_one_speed(first, sign):
 def test_of_two_speeds_with_equal_combs_the_one_nearer_to_the_label_is_fitted():
     level = np.maximum(level_with(*harmonics_of(1, 0.01)), level_with(*harmonics_of(1, -0.07)))
     assert fitted_combs(level, PLACES)[0, -1] < 0.02
+
+
+@law
+@given(st.integers(0, 2), st.sampled_from([-1, 1]), st.floats(-0.015, 0.015))
+def test_families_may_differ_by_the_slip_at_the_fitted_speed(first, sign, error):
+    second, fine = (first + 1) % len(FAMILIES), 8 * PLACES  # bins so narrow that rounding is far below the slip
+    middle = np.outer(fine[0, [first, second]] * (1 + error + np.array([0, sign * 0.003])), np.arange(1, 4))
+    wide = [level_with(*one - 1, *one, *one + 1, bins=9600) for one in middle]
+    assert fitted_combs(np.maximum(1.5 * wide[0], wide[1]), fine)[0, second] >= 2.0

@@ -72,7 +72,7 @@ def test_a_comb_and_a_shaft_within_the_slip_of_each_other_are_clear_evidence(fam
     assert found.clear
     assert found.evidence == FAMILIES[family]
     assert found.rate == pytest.approx(label * (1 + place * 0.001))
-    assert found.uncertainty < 0.015 * label
+    assert SLIP * label <= found.uncertainty < 0.015 * label
     assert found.agrees == (abs(found.rate - label) <= 2 * found.uncertainty)
 
 

@@ -13,6 +13,7 @@ from scipy.io import wavfile
 from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.importers import import_generic
 from gen.importers.paths import match_path, parse_pattern
+from gen.importers.resampling import resampled
 from tests.gen.importers.test_importers_generic import COMMON, imported, refusal
 
 FS = 2000
@@ -108,6 +109,44 @@ def test_files_of_one_recording_are_joined_in_the_order_of_their_numbers(tmp_pat
     joined = corpus.acceleration.values[:3, 0].reshape(-1)
     np.testing.assert_array_equal(joined, whole[:3000].astype("f4"))
     assert corpus.source.values.tolist() == [*(f"N_2.npy..N_10.npy#{start}" for start in (0, 1000, 2000)), "O_1.npy#0"]
+
+
+def test_joined_files_can_name_their_variables_differently(tmp_path):
+    whole = noise(0, 2200)
+    scipy.io.savemat(tmp_path / "a1.mat", {"X1": whole[:1100]})
+    scipy.io.savemat(tmp_path / "a2.mat", {"X2": whole[1100:]})
+    files = "files: [{path: '{run}{number}.mat', variable: 'X{number}', recording: '{run}'}]\n"
+    done, corpus = imported(tmp_path, COMMON + files)
+    assert done.recordings == 1
+    np.testing.assert_array_equal(corpus.acceleration.values[:, 0].reshape(-1), whole[:2000].astype("f4"))
+
+
+def test_the_card_names_the_paths_of_a_fact_that_not_all_sections_share(tmp_path):
+    for name in "ab":
+        np.save(tmp_path / f"{name}.npy", noise(0))
+    done, _ = imported(tmp_path, COMMON + "files: [{path: a.npy}, {path: b.npy, load_n: 5, specimen: B}]\n")
+    card = (done.directory / "README.md").read_text()
+    assert "- Load (N): given as 5 (b.npy)." in card
+    assert "- Shaft speed (rpm): given as 1500." in card
+
+
+def test_files_of_several_sections_are_joined_in_the_order_of_the_sections(tmp_path):
+    whole = noise(0, 2200)
+    np.save(tmp_path / "b9.npy", whole[:1100])
+    np.save(tmp_path / "a1.npy", whole[1100:])
+    _, corpus = imported(tmp_path, COMMON + "recording: r\nfiles: [{path: b9.npy}, {path: a1.npy}]\n")
+    np.testing.assert_array_equal(corpus.acceleration.values[:, 0].reshape(-1), whole[:2000].astype("f4"))
+
+
+def test_files_that_hold_different_speeds_are_not_joined(tmp_path):
+    for name, rpm in (("a1", 1500.0), ("a2", 1520.0), ("b1", 1500.0), ("b2", 1800.0)):
+        scipy.io.savemat(tmp_path / f"{name}.mat", {"x": noise(0), "rpm": rpm})
+    keys = "variable: x, shaft_rpm: {variable: rpm}, recording: '{run}'"
+    common = COMMON.replace("shaft_rpm: 1500\n", "")
+    done, corpus = imported(tmp_path, f"{common}files: [{{path: '{{run}}?.mat', {keys}}}]\n")
+    reason = "is joined of files at 1500 to 1800 rpm; give each recording a name of its own; skipped."
+    assert done.skipped == (f"b1.mat:x..b2.mat:x: {reason}",)
+    assert corpus.shaft_rate.values.tolist() == [25.0, 25.0]
 
 
 def test_a_recording_with_an_unusable_part_is_skipped_whole(tmp_path):
@@ -242,6 +281,10 @@ REFUSED = {
         COMMON + "files: [{path: a.npy, sensitivity: 100}]",
         "files[0].sensitivity is not a key here; give sensitivity_mv_per_g or sensitivity_mv_per_m_s2.",
     ),
+    "factor_of_nothing": (
+        COMMON + "load_n: {times: 9.81}\nfiles: [{path: a.npy}]",
+        "load_n is a factor, and path has no group {load_n}; write {load_n} in the path where it tells load_n.",
+    ),
     "no_unit": (
         COMMON.replace("unit: m/s2\n", "") + "files: [{path: a.npy}]",
         "unit is missing; give it there, or at the top for all files.",
@@ -273,6 +316,12 @@ REFUSED = {
 @pytest.mark.parametrize(("mapping", "sentence"), REFUSED.values(), ids=REFUSED)
 def test_a_mapping_with_a_wrong_new_key_is_refused_with_a_sentence(tmp_path, mapping, sentence):
     assert sentence in refusal(tmp_path, mapping)
+
+
+@pytest.mark.parametrize(("fs", "wanted"), [(20_001, 20_000), (20_000, 999), (97_656, 12_000)])
+def test_a_ratio_of_rates_is_rounded_by_less_than_6e_5(fs, wanted):
+    up, down = map(int, re.findall(r"x, (\d+), (\d+)", resampled(np.zeros(2), fs, wanted)[1])[0])
+    assert abs(up / down * fs / wanted - 1) < 6e-5
 
 
 def test_files_that_differ_are_not_joined(tmp_path):

@@ -121,6 +121,11 @@ def test_values_that_no_accelerometer_gives_are_doubted(tmp_path, values, doubt)
     assert doubt in told
 
 
+def test_whole_numbers_of_a_small_range_are_not_doubted(tmp_path):
+    np.save(tmp_path / "a.npy", np.arange(500) % 90 - 45.0)
+    assert read_signal(tmp_path / "a.npy").warnings == ()
+
+
 def cut_wav(path):
     wavfile.write(path, 8000, X)
     path.write_bytes(path.read_bytes()[:-8])

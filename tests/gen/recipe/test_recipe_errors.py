@@ -201,6 +201,10 @@ TABLE = [
      "machine.bow_n.share_of: static_rating_n is not known here; allowed are misalignment_n."),
     (RPM, RPM + ", load_n: {share_of: axial_load_n, kind: constant, value: 1}, axial_load_n: {share_of: load_n, kind: constant, value: 1}",
      "operation.load_n.share_of: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
+    ("shaft_mass_kg: 5",
+     ("load_angle_deg: {kind: uniform, low: -100, high: -10}, "
+      "misalignment_angle_deg: {share_of: load_angle_deg, kind: uniform, low: 2, high: 4}"),
+     "machine.misalignment_angle_deg: as a share of load_angle_deg it can be -400, which is not in [-360, 360]."),
     (RPM, RPM + ", load_n: {share_of: bow_n, kind: constant, value: 1}",
      "operation.load_n: as a share of bow_n it can be 0, which is not in [1, "),
     (RPM, RPM + ", temperature_celsius: {share_of: load_n, kind: constant, value: 1}",
