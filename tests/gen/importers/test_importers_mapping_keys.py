@@ -228,7 +228,7 @@ REFUSED = {
     ),
     "no_sensitivity": (
         COMMON + "files: [{path: a.npy, unit: V}]",
-        "files[0].the unit is V and the sensitivity of the sensor is missing; give it in mV per g or in mV per m/s^2.",
+        "files[0]: the unit is V and the sensitivity of the sensor is missing; give it in mV per g or in mV per m/s^2.",
     ),
     "both_sensitivities": (
         COMMON + "files: [{path: a.npy, unit: V, sensitivity_mv_per_g: 1, sensitivity_mv_per_m_s2: 1}]",
@@ -273,6 +273,12 @@ REFUSED = {
 @pytest.mark.parametrize(("mapping", "sentence"), REFUSED.values(), ids=REFUSED)
 def test_a_mapping_with_a_wrong_new_key_is_refused_with_a_sentence(tmp_path, mapping, sentence):
     assert sentence in refusal(tmp_path, mapping)
+
+
+def test_a_rate_that_no_file_holds_is_named(tmp_path):
+    scipy.io.savemat(tmp_path / "a.mat", {"x": noise(0)})
+    mapping = COMMON.replace("sample_rate_hz: 2000", "sample_rate_hz: {variable: fs}")
+    assert "fs" in refusal(tmp_path, mapping + "variable: x\nfiles: [{path: a.mat}]").rpartition("a.mat")[2]
 
 
 def test_files_that_differ_are_not_joined(tmp_path):
