@@ -121,6 +121,9 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", 
     from features.baselines import count_unknown, load_model, unlabelled_answers
     from features.baselines import evaluate as score
 
+    given = [name for name, value in reading.items() if value is not None]
+    if reference is None and given:
+        raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
     loaded = load_model(model)
     table = table_of(corpus, speed)
     healthy = None if reference is None else reference_table(reference, corpus, table, speed, **reading)
