@@ -41,7 +41,8 @@ class Raceway(click.Group):
         """Run a command; click alone would exit with 1 when standard output is closed."""
         try:
             result = super().invoke(ctx)
-            sys.stdout.flush()
+            if sys.stdout is not None:  # a parent can close it
+                sys.stdout.flush()
         except BrokenPipeError:
             raise NoReader("") from None
         return result

@@ -87,8 +87,7 @@ class OwnClassifier:
             If the classifier fails, or its result has another shape or is not finite.
         """
         if not (hasattr(self.fitted, "predict_proba") or hasattr(self.fitted, "decision_function")):
-            predicted = np.asarray(self._call("predict", X)).astype(str)
-            return (predicted[:, None] == np.array(FAULTS)[self.classes_]).astype(float)
+            return self._certain(np.asarray(self._call("predict", X)), len(X))
         method = "predict_proba" if hasattr(self.fitted, "predict_proba") else "decision_function"
         found = np.asarray(self._call(method, X), dtype=float)
         if method == "decision_function":
@@ -101,6 +100,17 @@ class OwnClassifier:
             )
         return found[:, self.columns]
 
+    def _certain(self, predicted: Any, records: int) -> FloatArray:
+        """Probability 1 of each predicted class name, shape (record, class)."""
+        names = np.array(FAULTS)[self.classes_]
+        wrong = predicted[~np.isin(predicted.astype(str), names)] if predicted.shape == (records,) else None
+        if wrong is None or wrong.size:
+            what = f"an array of shape {predicted.shape}" if wrong is None else repr(wrong[0].item())
+            raise EstimatorError(
+                f"{self.name}: predict gives {what}; give one of {', '.join(names)} for each of {records} records."
+            )
+        return (predicted.astype(str)[:, None] == names).astype(float)
+
     def predict(self, X: Any) -> IntArray:
         """Code of each record, shape (record,)."""
         return self.classes_[self.predict_proba(X).argmax(axis=1)]
@@ -108,7 +118,7 @@ class OwnClassifier:
     def _call(self, method: str, *arguments: Any) -> Any:
         try:
             return getattr(self.fitted if method != "fit" else self.made, method)(*arguments)
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise EstimatorError(
                 f"{self.name}: {method} failed ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where."
             ) from error
@@ -135,7 +145,7 @@ def new_classifier(maker: Maker, seed: int, name: str) -> Any:
             )
         try:
             made = maker(**_seed_argument(maker, seed))
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             raise EstimatorError(
                 f"{name}: cannot be made ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where."
             ) from error
@@ -144,7 +154,7 @@ def new_classifier(maker: Maker, seed: int, name: str) -> Any:
     lacking = [method for method in ("fit", "predict") if not callable(getattr(made, method, None))]
     if lacking:
         raise EstimatorError(
-            f"{name}: a {type(made).__name__} has no {' and no '.join(lacking)}; a classifier needs both."
+            f"{name}: {type(made).__name__} has no {' and no '.join(lacking)}; a classifier needs both."
         )
     return made
 

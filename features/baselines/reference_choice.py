@@ -20,6 +20,8 @@ from gen.errors import CorpusError
 
 FILE = "recording_file"  # attribute of the table of a reference recording
 SAME_SPEED = 0.02  # relative: speeds within it are one speed, as in the search for lines
+SAME_BEARING = 0.02  # relative: orders within it are those of one bearing
+OTHER_BEARING = "No bearing of the reference has the fault orders of a tested one: check that it is of the same rig."
 
 
 class Compared(NamedTuple):
@@ -35,7 +37,8 @@ class Compared(NamedTuple):
         count = self.reference.sizes["record"]
         whose = "the healthy records of their rig" if by_rig(self.table, self.reference) else "all healthy records"
         left = f"; {self.left_out:,} tested records that belong to it are left out" if self.left_out else ""
-        return f"Records are compared with {whose} in the reference, which has {count:,}{left}."
+        other = "" if _share_a_bearing(self.table, self.reference) else f" {OTHER_BEARING}"
+        return f"Records are compared with {whose} in the reference, which has {count:,}{left}.{other}"
 
 
 def compared(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> Compared:
@@ -72,6 +75,14 @@ def compared(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) 
     return Compared(table.isel(record=tested), healthy, int((~tested).sum()))
 
 
+def _share_a_bearing(table: xr.Dataset, reference: xr.Dataset) -> bool:
+    """Whether some bearing of the reference has the outer race order of a tested one; true if a table has no orders."""
+    if "bpfo" not in table or "bpfo" not in reference:
+        return True
+    tested, its = np.unique(table["bpfo"].values), np.unique(reference["bpfo"].values)
+    return bool(np.isclose(tested[:, None], its, rtol=SAME_BEARING).any())
+
+
 def _first_recordings(healthy: xr.Dataset) -> xr.Dataset:
     """The records of the recording with the lowest number of each rig."""
     rig, number = healthy["rig"].values, recording_numbers(healthy)
@@ -106,8 +117,12 @@ def recording_reference(
     Raises
     ------
     CorpusError
-        If the recording is shorter than a record, the corpus has several bearings, or it has several speeds and none is given.
+        If the recording is not finite or shorter than a record, the corpus has several bearings, or it has several speeds and none
+        is given.
     """
+    wrong = int(np.count_nonzero(~np.isfinite(signal)))
+    if wrong:
+        raise CorpusError(f"{file}: {wrong:,} of {signal.size:,} samples are not finite numbers; export it again.")
     with open_corpus(corpus) as opened:
         duration = _duration(opened)
         orders = [np.unique(opened[order].values) for order in Orders._fields]

@@ -134,12 +134,12 @@ def diagnose(
     if not set(model.groups) <= set(GROUPS) or not set(model.features) <= set(feature_names(model.groups)):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
     signal, warnings = _beginning(recording)
-    quality = quality_of(signal, recording.fs, recording.shaft_rate)
+    quality = quality_of(signal, recording.fs, recording.shaft_rate, recording.orders)
     if quality.useless:
         return _useless(recording, model, quality.useless, quality.advice)
     warnings += quality.warnings
     if healthy is not None:
-        reason = quality_of(healthy.signal, healthy.fs, healthy.shaft_rate).useless
+        reason = quality_of(healthy.signal, healthy.fs, healthy.shaft_rate, healthy.orders).useless
         if reason:
             raise CorpusError(
                 f"{healthy.name}: cannot be used as the healthy recording, since {reason}; give another, or none."

@@ -1,16 +1,23 @@
 """Checks of a recording before its diagnosis: signals that tell nothing, and signals to be read with care. Pure."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 
-from features.indicators import LOWEST_RATE, SHORTEST, TOP
+from features.indicators import LOWEST_RATE, SHORTEST, TOP, Orders
 from features.signal.rows import FloatArray
 
 CLIPPED_SHARE = 1e-3  # of the samples at the highest or lowest value, from which a signal counts as clipped
 CLIPPED_SAMPLES = 5  # at least so many of them
 PLAUSIBLE_RMS = (0.03, 1000.0)  # m s-2, of machines that turn
 FLATTEST = 1e-7  # spread of a constant signal, relative to its largest value
+POSSIBLE = (
+    1e-12,
+    1e9,
+)  # m s-2, spread of a signal in whatever unit; fourth powers of more leave the range of single precision
+ENOUGH = 10.0  # s, duration to be recorded
+TURNS = 20  # shaft revolutions to be recorded
 
 
 class Quality(NamedTuple):
@@ -21,30 +28,36 @@ class Quality(NamedTuple):
     warnings: tuple[str, ...]
 
 
-def quality_of(x: FloatArray, fs: float, shaft_rate: float) -> Quality:
-    """Quality of a signal [m s-2], shape (time,), all finite, at a sample rate and a shaft rate [Hz]."""
-    duration = len(x) / fs
-    turns, seconds = SHORTEST
-    if len(x) == 0 or np.ptp(x) <= FLATTEST * np.abs(x).max():
-        return Quality(
-            "the signal is constant, as of a sensor or cable that is not connected",
-            "check sensor, cable and channel, and record again",
-            (),
-        )
+def quality_of(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> Quality:
+    """Quality of a signal [m s-2], shape (time,), all finite, at a sample rate and a shaft rate [Hz], with nominal orders as numbers."""
+    reason, advice = _useless(x, fs, shaft_rate, orders)
+    return Quality(reason, advice, () if reason else tuple(_warnings(x, fs, len(x) / fs, shaft_rate)))
+
+
+def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tuple[str, str]:
+    """Reason why a signal tells nothing, and what would help; both empty if it tells something."""
+    duration, (turns, seconds) = len(x) / fs, SHORTEST
     least = max(seconds, turns / shaft_rate)
     if duration < least:
-        return Quality(
-            f"the recording lasts {duration:.3g} s and {least:.3g} s are the least ({turns:g} shaft revolutions and {seconds:g} s)",
-            "record 10 s",
-            (),
-        )
+        reason = f"the recording lasts {duration:.3g} s and {least:.3g} s are the least ({turns:g} shaft revolutions and {seconds:g} s)"
+        return reason, f"record {max(ENOUGH, math.ceil(TURNS / shaft_rate)):,.0f} s, and check speed and sample rate"
+    spread, largest = np.ptp(x), np.abs(x).max()
+    if spread <= FLATTEST * largest:
+        reason = "the signal is constant, as of a sensor or cable that is not connected"
+        return reason, "check sensor, cable and channel, and record again"
+    if not POSSIBLE[0] <= spread <= POSSIBLE[1]:
+        return f"the values spread over {spread:.2g} m/s², which is no vibration", "check unit, column and export"
+    steps = np.diff(x)
+    if np.all(steps >= 0) or np.all(steps <= 0):
+        return "the values only rise or only fall, as in a column of times", "choose another column"
     if fs < LOWEST_RATE:
-        return Quality(
-            f"the sample rate of {fs:,.0f} Hz is below {LOWEST_RATE:,.0f} Hz, so no band with the impacts of a bearing is left",
-            "record at 10,000 Hz or more",
-            (),
-        )
-    return Quality("", "", tuple(_warnings(x, fs, duration, shaft_rate)))
+        reason = f"the sample rate of {fs:,.0f} Hz is below {LOWEST_RATE:,.0f} Hz, so no band with the impacts of a bearing is left"
+        return reason, "record at 10,000 Hz or more"
+    highest, top = shaft_rate * max(orders.bpfo, orders.bpfi, 2 * orders.bsf), min(TOP, fs / 2)
+    if highest > top:
+        reason = f"at {60 * shaft_rate:,.0f} rpm a fault line lies at {highest:,.0f} Hz, and the signal is used up to {top:,.0f} Hz"
+        return reason, "check speed and sample rate"
+    return "", ""
 
 
 def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> list[str]:
@@ -52,8 +65,8 @@ def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> l
     share = clipped_share(x)
     if share:
         found.append(
-            f"{100 * share:.2g} % of the samples are at the highest or lowest value, so the signal is clipped; levels are not those of "
-            "the machine: record again with a larger range."
+            f"{100 * share:.{1 if share < 0.1 else 0}f} % of the samples are at the highest or lowest value, so the "
+            "signal is clipped; levels are not those of the machine: record again with a larger range."
         )
     if fs < 2 * TOP:
         found.append(

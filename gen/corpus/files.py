@@ -7,6 +7,7 @@ import hashlib
 import os
 import re
 import shutil
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
@@ -116,6 +117,18 @@ def temporary_beside(path: Path) -> Iterator[Path]:
     finally:
         _remove(temporary)
         _unfinished.discard(temporary)
+
+
+@contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """New folder among the temporary files of the system; it is removed at the end, also if a signal ends the process."""
+    folder = Path(tempfile.mkdtemp(prefix="raceway-"))
+    _unfinished.add(folder)
+    try:
+        yield folder
+    finally:
+        _remove(folder)
+        _unfinished.discard(folder)
 
 
 def remove_unfinished() -> None:

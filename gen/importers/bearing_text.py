@@ -28,10 +28,12 @@ def bearing_from_text(text: str) -> Bearing:
     if "=" not in text:
         near = difflib.get_close_matches(text, CATALOGUE, 1)
         guess = f"did you mean {near[0]}?" if near else f"the catalogue has {', '.join(CATALOGUE)}."
-        raise CorpusError(f"bearing {text} is not in the catalogue; give its geometry, such as {example}, or {guess}")
+        raise CorpusError(f"bearing {text!r} is not in the catalogue; give its geometry, such as {example}, or {guess}")
     values: dict[str, Any] = {}
     for part in text.split(","):
         key, _, value = (piece.strip() for piece in part.partition("="))
+        if key in values:
+            raise CorpusError(f"bearing: {key} is given twice; write it like {example}.")
         try:
             values[key] = value if key == "designation" else float(value)
         except ValueError:

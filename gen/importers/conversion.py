@@ -78,7 +78,8 @@ def doubts(values: FloatArray, signal: FloatArray, scale: Scale, *, absolute: bo
     """
     if not absolute:
         return ["it holds integers, whose full scale is taken as 1, so that its level is not absolute"]
-    rms = float(np.std(signal)) if signal.size else 0.0
+    with np.errstate(all="ignore"):
+        rms = float(np.std(signal)) if signal.size else 0.0
     if not np.isfinite(rms) or rms == 0:
         return []
     found = []

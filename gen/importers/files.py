@@ -3,8 +3,10 @@
 Every error becomes an :class:`UnusableError` with a reason and without the name of the file: the caller adds the name.
 """
 
+import codecs
 import io
 import os
+import re
 import warnings
 from collections.abc import Callable
 from itertools import islice
@@ -22,6 +24,8 @@ Value = TypeVar("Value")
 
 _HEAD_LINES = 100
 _LONGEST_LINE = 2_000_000  # characters; a whole recording can be on one line
+_DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
+_NO_NUMBER = re.compile(r"[^\d\s.,;eE+-]")
 
 
 class UnusableError(Exception):
@@ -42,14 +46,16 @@ def read_text(path: Path, column: int | str | None = None, delimiter: str | None
     with open_plain(path) as stream:
         check_limit("file_bytes", os.fstat(stream.fileno()).st_size, "is", UnusableError)
         _check_lines(stream)
-        text = io.TextIOWrapper(stream, encoding="utf-8-sig", errors="replace")
+        encoding = _encoding(stream)
+        text = io.TextIOWrapper(stream, encoding=encoding, errors="replace")
         head = [line.rstrip("\r\n").lstrip("#") for line in _head(text)]
     separator = delimiter or next((mark for mark in "\t;," if any(mark in line for line in head)), None)
+    _check_commas(head, separator)
     lines = [[field.strip() for field in line.split(separator)] for line in head]
     index, first = _locate(lines, column)
 
     def load() -> NDArray[np.float64]:
-        return np.loadtxt(path, delimiter=separator, skiprows=first, usecols=index, ndmin=1, encoding="utf-8-sig")
+        return np.loadtxt(path, delimiter=separator, skiprows=first, usecols=index, ndmin=1, encoding=encoding)
 
     return guarded("delimited text", load)
 
@@ -61,6 +67,31 @@ def _check_lines(stream: BinaryIO) -> None:
             message = f"has a line of more than {_LONGEST_LINE} characters"
             raise UnusableError(message)
     stream.seek(0)
+
+
+def _encoding(stream: BinaryIO) -> str:
+    """Encoding of a text by its beginning: UTF-16 has a mark, and what is no UTF-8 is read as Latin-1."""
+    start = stream.read(_LONGEST_LINE)
+    stream.seek(0)
+    if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
+        return "utf-16"
+    try:
+        codecs.getincrementaldecoder("utf-8")().decode(start)
+    except UnicodeDecodeError:
+        return "latin-1"
+    return "utf-8-sig"
+
+
+def _check_commas(head: list[str], separator: str | None) -> None:
+    """Refuse decimal commas. Of a comma between whole numbers, two in each line, it is one if some second number is like 05."""
+    lines = [line.strip() for line in head if line.strip() and not _NO_NUMBER.search(line)]
+    if separator == ",":
+        refused = all(map(_DECIMAL_COMMA.fullmatch, lines)) and any(re.search(r",0\d", line) for line in lines)
+    else:
+        fields = [re.split(r"[;\s]+", line) for line in lines if "," in line]
+        refused = any(all(_DECIMAL_COMMA.fullmatch(field) or field.isdecimal() for field in each) for each in fields)
+    if refused:
+        raise UnusableError("has numbers with decimal commas; save it with decimal points")
 
 
 def _head(text: TextIO) -> list[str]:

@@ -27,6 +27,7 @@ from gen.importers.resampling import resampled
 from gen.importers.signals import read_values, stated_rate
 from gen.units import rpm_to_hertz, to_si
 
+_NO_RATE = 10_000.0  # Hz, if no file tells a rate: each is then refused with its own reason
 _SPALLS = {"healthy": 0, "cage": 0, "compound": 2, UNKNOWN: -1}
 _SAME_SPEED = 0.02  # relative; files of one recording can differ by less, and the record has the speed of the first
 
@@ -93,7 +94,7 @@ def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
 
 
 def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File, ...]]) -> float:
-    """Sample rate of the corpus [Hz]: the one asked for, or that of all recordings; 1 if no file tells any, and so none can be used.
+    """Sample rate of the corpus [Hz]: the one asked for, or that of all recordings; any if no file tells one, and so none can be used.
 
     Raises
     ------
@@ -114,10 +115,10 @@ def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File
         return given[0][1]
     for file, *_ in recordings:
         try:
-            return _measured(file).get("sample_rate_hz") or stated_rate(file.path) or 1.0
+            return _measured(file).get("sample_rate_hz") or stated_rate(file.path) or _NO_RATE
         except (UnusableError, OSError):
             continue
-    return 1.0
+    return _NO_RATE
 
 
 def _given_rates(mapping: MappingFile, recordings: list[tuple[File, ...]]) -> Iterator[tuple[str, float]]:

@@ -176,7 +176,7 @@ def sentence_of(error: ValidationError, where: str, common: Mapping[str, Any], o
             near = difflib.get_close_matches(keys[-1], known, n=1)
             return f"{where}{key} is not a key here; " + (f"did you mean {near[0]}?" if near else "remove it.")
         case "value_error":
-            return f"{where}{key}{': ' if key else ''}{message}."
+            return f"{(where + key).removesuffix('.')}: {message}.".removeprefix(": ")
         case _:
             return (
                 f"{where}{key}: {reprlib.repr(complaint['input'])} is not allowed; {message[0].lower()}{message[1:]}."

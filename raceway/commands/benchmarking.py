@@ -69,7 +69,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 )
 @click.option(
     "--per-turn",
-    type=click.IntRange(min=1),
+    type=click.IntRange(1, 16_384),
     metavar="N",
     help="Resample these signals to N samples per turn of the shaft.",
 )
@@ -183,7 +183,7 @@ def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:
 @recipe_argument
 @click.option(
     "--records",
-    type=click.IntRange(min=1),
+    type=click.IntRange(1, 16_384),
     metavar="N",
     help="Number of records to time; by default those of one part.",
 )

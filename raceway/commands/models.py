@@ -57,8 +57,8 @@ def train(source: str, output: Path | None, estimator: str, as_json: bool) -> No
 
     Next: raceway evaluate OTHER --model MODEL
     """
-    from features.baselines import count_unknown, load_model, save_model
-    from raceway.studies.reference_model import keep_model, recipe_table, train_and_score
+    from features.baselines import count_unknown, save_model
+    from raceway.studies.reference_model import kept_model, recipe_table, train_and_score
 
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
@@ -68,8 +68,7 @@ def train(source: str, output: Path | None, estimator: str, as_json: bool) -> No
 
         find_recipe(source)  # a misspelt name is reported before the simulator is imported
     if corpus is None and output is None:
-        output, scores = keep_model(source, estimator)
-        model = load_model(output)
+        model, output, scores = kept_model(source, estimator)
     elif output is None:
         raise click.UsageError("Missing option '-o' / '--output': only the model of a RECIPE is kept without it.")
     else:
@@ -122,6 +121,9 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", 
     from features.baselines import count_unknown, load_model, unlabelled_answers
     from features.baselines import evaluate as score
 
+    given = [name for name, value in reading.items() if value is not None]
+    if reference is None and given:
+        raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
     loaded = load_model(model)
     table = table_of(corpus, speed)
     healthy = None if reference is None else reference_table(reference, corpus, table, speed, **reading)

@@ -11,7 +11,6 @@ import fcntl
 import hashlib
 import os
 import sys
-import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.metadata import version
@@ -65,10 +64,11 @@ def recipe_table(recipe: Path | str) -> "xr.Dataset":
     """
     from features import feature_table
     from gen import generate
+    from gen.corpus import temporary_folder
 
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    with tempfile.TemporaryDirectory(prefix="raceway-") as folder:
-        corpus = Path(folder) / "corpus"
+    with temporary_folder() as folder:
+        corpus = folder / "corpus"
         with compilation_noticed(), progress("generating", "records") as report:
             generate(recipe, corpus, workers=cores, progress=report)
         with progress("computing features", "parts") as report:
@@ -83,19 +83,34 @@ def load_reference_model(*, relative: bool = True) -> tuple["Model", Path]:
     CorpusError
         If the cache cannot be written.
     """
-    from features.baselines.models import load_model
     from gen.recipe import shipped_recipes
 
-    recipe = shipped_recipes()[REFERENCE]  # of this installation, whatever lies in the working folder
-    path, damaged = kept_path(recipe), False
+    # of this installation, whatever lies in the working folder
+    model, path, _ = kept_model(shipped_recipes()[REFERENCE], relative=relative)
+    return model, path
+
+
+def kept_model(
+    recipe: Path | str, estimator: str = ESTIMATOR, *, relative: bool = True
+) -> tuple["Model", Path, "Scores | None"]:
+    """Kept model of a recipe, its file, and its scores if it was trained now: if there was none, or the file was damaged.
+
+    Raises
+    ------
+    RecipeError, SimulationError, CorpusError
+        As `keep_model`.
+    """
+    from features.baselines.models import load_model
+
+    path, damaged = kept_path(recipe, estimator), False
     if path.is_file():
         try:
-            return load_model(path, relative=relative), path
+            return load_model(path, relative=relative), path, None
         except CorpusError as error:
             notice(f"{error} It is made again.")
             damaged = True
-    keep_model(recipe, damaged=damaged)
-    return load_model(path, relative=relative), path
+    _, scores = keep_model(recipe, estimator, damaged=damaged)
+    return load_model(path, relative=relative), path, scores
 
 
 def keep_model(
@@ -130,7 +145,9 @@ def keep_model(
     with _locked(path):
         if path.is_file() and not (damaged and _stamp(path) == before):
             return path, None  # it was there, or another process has made it meanwhile
-        notice(f"training a model on the recipe {recipe_name(recipe)}: {_HOW_LONG}; it is kept as {path}.")
+        name = recipe_name(recipe)
+        duration = f": {_HOW_LONG}" if name == REFERENCE else ""
+        notice(f"training a model on the recipe {name}{duration}; it is kept as {path}.")
         table = recipe_table(recipe)
         notice("training the classifier.")
         model, scores = train_and_score(table, estimator)
@@ -188,7 +205,7 @@ def _locked(path: Path) -> Iterator[None]:
         try:
             fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
-            notice("waiting for another process that trains the reference model.")
+            notice("waiting for another process that trains this model.")
             fcntl.flock(descriptor, fcntl.LOCK_EX)
         yield
     finally:

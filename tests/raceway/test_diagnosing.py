@@ -166,6 +166,9 @@ def test_a_wrong_bearing_is_told_cautiously(model, recordings, tmp_path):
         (lambda x: x[: round(0.05 * FS)], "the recording lasts 0.05 s"),
         (lambda x: 0 * x, "the signal is constant"),
         (lambda x: 0 * x + 3.7, "the signal is constant"),
+        (lambda x: np.arange(x.size) / FS, "only rise or only fall, as in a column of times"),
+        (lambda x: 1e-30 * x, "is no vibration"),
+        (lambda x: 1e30 * x, "is no vibration"),
     ],
 )
 def test_a_signal_that_tells_nothing_gives_unsure_and_advice(change, sentence, model, recordings, tmp_path):
@@ -180,6 +183,17 @@ def test_a_signal_that_tells_nothing_gives_unsure_and_advice(change, sentence, m
     assert found["advice"]
     assert len(set(found["probabilities"].values())) == 1
     assert sentence in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("rpm", "sentence"),
+    [(90_000, "a fault line lies at 8,123 Hz, and the signal is used up to 5,000 Hz"), (10, "record 120 s")],
+)
+def test_a_speed_that_the_recording_cannot_show_gives_unsure(rpm, sentence, model, recordings, tmp_path):
+    path = write_wav(tmp_path / "r.wav", recordings["inner"][0])
+    found = told(path, "--bearing", "6205", "--rpm", rpm, "--model", model)
+    assert found["verdict"] == "unsure"
+    assert sentence in found["sentence"]
 
 
 @pytest.mark.parametrize(
@@ -221,6 +235,7 @@ def test_the_verdict_does_not_depend_on_the_unit(model, recordings, tmp_path):
         (("r.wav", "--bearing", "n_balls=8"), "pitch_diameter_mm is missing"),
         (("r.wav", "--bearing", "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=x"), "key=number"),
         (("r.wav", "--bearing", "n_balls=8,pitch_diameter_mm=33.5,balls_mm=8"), "balls_mm"),
+        (("r.wav", "--bearing", "n_balls=8,n_balls=9"), "n_balls is given twice"),
         (("r.wav", "--rpm", "-3"), "--rpm"),
         (("r.wav", "--rpm", "nan"), "--rpm"),
         (("r.wav", "--model", "no.skops"), "no.skops"),

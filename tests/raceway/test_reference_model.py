@@ -58,6 +58,9 @@ def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
     reference_model.load_reference_model()
     assert len(trainings) == 2
     assert "It is made again." in capfd.readouterr().err
+    path.write_bytes(damage(path.read_bytes()))
+    assert call("train", "domain_randomised").exit_code == 0
+    assert len(trainings) == 3
     load_model(path)
 
 

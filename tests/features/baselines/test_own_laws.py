@@ -120,6 +120,18 @@ class Broken(Nearest):
         return np.full((len(X), 4), np.nan) if self.how == "nan" else np.ones((len(X), 3))
 
 
+class Predicting:
+    def __init__(self, *predicted):
+        self.predicted = predicted
+
+    def fit(self, *_):
+        if not self.predicted:
+            raise SystemExit(3)
+
+    def predict(self, X):
+        return self.predicted if len(self.predicted) > 1 else self.predicted * len(X)
+
+
 @pytest.mark.parametrize(
     ("made", "sentence"),
     [
@@ -127,7 +139,11 @@ class Broken(Nearest):
         (Broken("codes"), "Broken: its classes_ are 0, 1, 2, 3; leave y as it is, the names of the classes"),
         (Broken("nan"), r"predict_proba gives numbers that are not finite; give finite numbers of shape \(16, 4\)"),
         (Broken("shape"), r"predict_proba gives an array of shape \(16, 3\); give finite numbers of shape \(16, 4\)"),
-        (dict, "dict: a dict has no fit and no predict; a classifier needs both"),
+        (Predicting(), r"^Predicting: fit failed \(SystemExit: 3\)"),
+        (Predicting(1), "Predicting: predict gives 1; give one of healthy, inner, outer, ball for each of 16 records"),
+        (Predicting("cage"), "predict gives 'cage'; give one of healthy, inner, outer, ball"),
+        (Predicting("inner", "ball"), r"predict gives an array of shape \(2,\); give one of healthy"),
+        (dict, "dict: dict has no fit and no predict; a classifier needs both"),
         (np.take, r"cannot be made \(TypeError: .*missing 2 required positional arguments"),
         (7, "int: is no classifier; it needs fit and predict, or must be a function that makes one"),
     ],
@@ -176,7 +192,7 @@ def test_a_module_is_imported_from_the_current_folder_or_from_an_installed_packa
         ("own_two:make", "def other(): pass", "own_two has no make; it has other"),
         ("own_two:make", "", "own_two has no make; it has no class or function"),
         ("own_two:make", "make = 3", "own_two:make: is no classifier; it needs fit and predict"),
-        ("own_two:make", "def make(): return 3", "own_two:make: a int has no fit and no predict"),
+        ("own_two:make", "def make(): return 3", "own_two:make: int has no fit and no predict"),
         (
             "own_two:make",
             "def make(): return 1 / 0",

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from features import feature_table
 from features.baselines import evaluate, load_model, predict, save_model, train
-from features.baselines.reference_choice import check_durations, compared, recording_reference
+from features.baselines.reference_choice import OTHER_BEARING, check_durations, compared, recording_reference
 from features.baselines.references import ENERGIES, NEAREST, relative_names, relative_to, virtual_references
 from features.faults import EVIDENCE
 from features.indicators import Orders
@@ -174,6 +174,13 @@ def test_the_first_healthy_recording_of_each_rig_is_the_reference_in_the_tested_
     assert "8 tested records that belong to it are left out" in scores.reference
 
 
+def test_a_reference_of_another_bearing_is_told(table):
+    other = make_table(seed=5)
+    mine, its = (each.assign(bpfo=("record", np.full(each.sizes["record"], 3.58))) for each in (table, other))
+    assert OTHER_BEARING not in compared(mine, its, LINES).sentence
+    assert OTHER_BEARING in compared(mine, its.assign(bpfo=its["bpfo"] + 0.1), LINES).sentence
+
+
 def test_a_rig_without_a_healthy_record_is_not_tested_on_its_own_corpus(table):
     less = table.isel(record=(table["rig"].values != 3) | (table["fault"].values != 0))
     assert 3 not in compared(less, less, LINES).table["rig"].values
@@ -318,6 +325,7 @@ def test_a_reference_recording_that_cannot_be_used_is_refused(tmp_path):
         ),
         (speeds, signal, r"go from 1500 to 1600 rpm; give the speed of the reference \(--reference-rpm\)"),
         (bearings, signal, "has several bearings; give a corpus as reference"),
+        (one, np.r_[signal, np.nan], "r.csv: 1 of 12,001 samples are not finite numbers; export it again"),
     ):
         with pytest.raises(CorpusError, match=sentence):
             recording_reference(values, FS, corpus, file)

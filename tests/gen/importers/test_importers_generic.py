@@ -223,7 +223,7 @@ REFUSED = {
     "not_a_number": (COMMON + "files: [{path: a.npy, load_n: .nan}]", "files[0].load_n: nan is not allowed"),
     "bearing": (
         COMMON + "files: [{path: a.npy, bearing: 6295}]",
-        "files[0].bearing 6295 is not in the catalogue (",
+        "files[0]: bearing 6295 is not in the catalogue (",
     ),
     "geometry": (
         COMMON + "files: [{path: a.npy, bearing: {n_balls: 8, pitch_diameter_mm: 40}}]",
@@ -235,7 +235,7 @@ REFUSED = {
     ),
     "healthy_spall": (
         COMMON + "files: [{path: a.npy, fault: healthy, width_mm: 1}]",
-        "files[0].width_mm describes a spall, and fault is healthy",
+        "files[0]: width_mm describes a spall, and fault is healthy",
     ),
     "rates": (
         COMMON + "files: [{path: a.npy}, {path: b.npy, sample_rate_hz: 4000}]",

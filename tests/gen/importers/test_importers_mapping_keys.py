@@ -267,7 +267,7 @@ REFUSED = {
     ),
     "no_sensitivity": (
         COMMON + "files: [{path: a.npy, unit: V}]",
-        "files[0].the unit is V and the sensitivity of the sensor is missing; give it in mV per g or in mV per m/s^2.",
+        "files[0]: the unit is V and the sensitivity of the sensor is missing; give it in mV per g or in mV per m/s^2.",
     ),
     "both_sensitivities": (
         COMMON + "files: [{path: a.npy, unit: V, sensitivity_mv_per_g: 1, sensitivity_mv_per_m_s2: 1}]",
@@ -322,6 +322,12 @@ def test_a_mapping_with_a_wrong_new_key_is_refused_with_a_sentence(tmp_path, map
 def test_a_ratio_of_rates_is_rounded_by_less_than_6e_5(fs, wanted):
     up, down = map(int, re.findall(r"x, (\d+), (\d+)", resampled(np.zeros(2), fs, wanted)[1])[0])
     assert abs(up / down * fs / wanted - 1) < 6e-5
+
+
+def test_a_rate_that_no_file_holds_is_named(tmp_path):
+    scipy.io.savemat(tmp_path / "a.mat", {"x": noise(0)})
+    mapping = COMMON.replace("sample_rate_hz: 2000", "sample_rate_hz: {variable: fs}")
+    assert "fs" in refusal(tmp_path, mapping + "variable: x\nfiles: [{path: a.mat}]").rpartition("a.mat")[2]
 
 
 def test_files_that_differ_are_not_joined(tmp_path):

@@ -158,9 +158,24 @@ REFUSED = {
     "no_such_variable": (
         "a.mat", FILES["only_variable.mat"], {"variable": "y*"}, "holds rpm, x, and no variable y*; name one with variable.",
     ),
+    "decimal_commas": ("a.csv", lambda path: path.write_text("t;x\n0;0,5\n1;-0,25\n"), {"column": 1}, "has numbers with decimal commas;"),
+    "one_column": ("a.csv", lambda path: path.write_text("x\n0,512\n-1,037\n0,200\n"), {"column": 0}, "has numbers with decimal commas;"),
     "voltage": ("a.npy", FILES["values.npy"], {"unit": "V"}, "the unit is V and the sensitivity of the sensor is missing;"),
     "no_voltage": ("a.npy", FILES["values.npy"], {"sensitivity": 100.0}, "a sensitivity is given and the unit is m/s2, not V or mV;"),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
+@pytest.mark.parametrize("header", ["", "Zeit;Beschl. m/s²\n"])
+def test_a_text_is_read_in_the_encodings_that_spreadsheets_write(tmp_path, encoding, header):
+    (tmp_path / "a.csv").write_text(header + "".join(f"{i};{x!r}\n" for i, x in enumerate(X.tolist())), encoding)
+    column = "Beschl. m/s²" if header else 1
+    np.testing.assert_array_equal(read_signal(tmp_path / "a.csv", column=column).values, X)
+
+
+def test_whole_numbers_between_commas_are_columns(tmp_path):
+    (tmp_path / "a.csv").write_text("512,37\n-10,200\n0,0\n")
+    np.testing.assert_array_equal(read_signal(tmp_path / "a.csv", column=1).values, [37, 200, 0])
 
 
 @pytest.mark.parametrize(("name", "write", "keys", "sentence"), REFUSED.values(), ids=REFUSED)
