@@ -243,7 +243,7 @@ def load_model(path: Path | str, *, relative: bool = True) -> Model:
     path
         The file.
     relative
-        Whether to create the part for records with a healthy reference, which takes half of the time.
+        Whether to create the part for records with a healthy reference too.
 
     Raises
     ------

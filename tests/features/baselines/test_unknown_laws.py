@@ -1,6 +1,7 @@
 """Records whose class is not known: stored, shown, and left out wherever a class is needed."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from click.testing import CliRunner
 from features import feature_table
 from features.baselines import (
     DEFAULT_GROUPS,
+    UNSURE,
     benchmark,
     count_unknown,
     evaluate,
@@ -121,6 +123,8 @@ def test_recordings_of_unknown_class_are_answered_and_not_scored(table):
     assert [one.answer for one in answers] == list(found.answers)
     assert [[*one.probabilities.values()] for one in answers] == found.probabilities.tolist()
     assert unlabelled_answers(table.isel(record=slice(12)), model) == ()
+    strict = replace(model, calibration=model.calibration.model_copy(update={"recording_threshold": 1.0}))
+    assert [one.answer for one in unlabelled_answers(table, strict)] == [UNSURE] * 2
     assert unlabelled_answers(table.isel(record=slice(None, None, -1)), model) == answers[::-1]
 
 
