@@ -30,7 +30,7 @@ def rows(
 ) -> Iterator[Line]:
     """Lines of the table; rivals take ``steps`` steps, ``solve_ivp`` simulates ``sampled_s`` seconds."""
     dt, factor = step_seconds(recipe)
-    seed, state = _spalled(recipe, records)
+    seed, state = spalled(recipe, records)
     measures = {
         "ours": kernel_rate(recipe, records),
         "ivp": lambda: sampled_s / cpu_seconds(adaptive, seed, state, sampled_s, dt * factor),
@@ -117,7 +117,7 @@ def jax_march(steps: int) -> Callable[[Seed, FloatArray, float], Any]:
     return jax.jit(jax.vmap(march, in_axes=(0, 1, None), out_axes=2))
 
 
-def _spalled(recipe: Path | str, records: int) -> tuple[Seed, FloatArray]:
+def spalled(recipe: Path | str, records: int) -> tuple[Seed, FloatArray]:
     groups = seed_records(read_recipe(recipe), records)
     return seed_of(groups[max(groups)])
 
