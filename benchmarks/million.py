@@ -8,7 +8,7 @@ model, as programs for one bearing do it, and a train of impulses with ring-down
 import importlib
 import importlib.util
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -20,22 +20,20 @@ from benchmarks.rivals import adaptive, spalled
 from gen.recipe import find_recipe, read_recipe
 
 RECORDS = 1e6
-RANDOMISED = "domain_randomised"
+RECIPES = {"full": (FULL, 512), "domain_randomised": ("domain_randomised", 1500)}
 IVP = "solve_ivp of SciPy, seed model, one record at a time"
 IMPULSES = "viblearn, impulses with ring-down and noise"
 
 
-def rows(pairs: int = 2, *, full: int = 2048, randomised: int = 1500, sampled_s: float = 0.1) -> Iterator[Line]:
-    """Lines of the table; ``full`` and ``randomised`` are numbers of records, ``sampled_s`` is how long ``solve_ivp`` simulates."""
+def rows(
+    pairs: int = 2, *, recipes: Mapping[str, tuple[Path | str, int]] = RECIPES, sampled_s: float = 0.1
+) -> Iterator[Line]:
+    """Lines of the table, for recipes with so many records each; ``solve_ivp`` simulates ``sampled_s`` seconds."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        second = {"duration_s": 1}
-        recipes = {
-            "full": (variant(FULL, folder / "full.yaml", corpus={"specimens_per_rig": 256}, recording=second), full),
-            RANDOMISED: (variant(find_recipe(RANDOMISED), folder / "randomised.yaml", recording=second), randomised),
-        }
         for name, (recipe, records) in recipes.items():
-            yield from _rows_of(name, recipe, records, folder, pairs, sampled_s)
+            one_second = variant(find_recipe(recipe), folder / f"{name}.yaml", recording={"duration_s": 1})
+            yield from _rows_of(name, one_second, records, folder, pairs, sampled_s)
 
 
 def _rows_of(name: str, recipe: Path, records: int, folder: Path, pairs: int, sampled_s: float) -> Iterator[Line]:

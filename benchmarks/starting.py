@@ -8,8 +8,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.pairs import Line, interleaved, process_seconds, row
 from benchmarks.kernel import FULL
+from benchmarks.pairs import Line, interleaved, process_seconds, row
 from benchmarks.pipeline import SHORT, variant
 from gen.generation import generate
 

@@ -3,12 +3,33 @@
 import importlib.util
 import math
 
-from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
+import pytest
+
+from benchmarks import (
+    against,
+    features,
+    kernel,
+    lanes,
+    million,
+    opening,
+    pipeline,
+    reading,
+    rivals,
+    roofline,
+    starting,
+    truth,
+)
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
+from benchmarks.pipeline import variant
 from benchmarks.profile import PARTS, kernel_parts
 from gen.generation import generate
+from gen.physics.kernel.batch import input_shape, lay_out
+from gen.physics.kernel.compiling import LANES
 from gen.recipe import read_recipe
+from gen.scenarios import draw_scenarios
+from gen.simulation.inputs import kernel_input
+from gen.simulation.timeline import timeline
 
 
 def finite_rows(lines) -> dict[str, Row]:
@@ -42,11 +63,11 @@ def test_the_kernel_is_compared_with_its_rivals(brief_seed):
 
 
 def test_a_corpus_is_compared_with_the_kernel_alone(brief_full):
-    assert set(finite_rows(pipeline.throughput_rows(1, brief_full, 2))) == {"pipeline zlib", "pipeline zstd"}
+    assert set(finite_rows(pipeline.throughput_rows(1, brief_full, (4, 40)))) == {"pipeline zlib", "pipeline zstd"}
 
 
 def test_two_workers_are_compared_with_one(few_short):
-    assert set(finite_rows(pipeline.worker_rows(1, few_short, 12, 4))) == {"pipeline workers", "pipeline started"}
+    assert set(finite_rows(pipeline.worker_rows(1, few_short, 12, 4))) == {"pipeline workers"}
 
 
 def test_a_large_corpus_is_compared_with_a_small_one(few_short):
@@ -55,8 +76,36 @@ def test_a_large_corpus_is_compared_with_a_small_one(few_short):
 
 
 def test_a_cold_start_is_compared_with_a_warm_one(few_short):
-    (found,) = finite_rows(pipeline.start_rows(1, few_short)).values()
-    assert found.ratio > 1
+    found = finite_rows(starting.first_record_rows(1, few_short))
+    assert found["start cold"].ratio > 1
+    assert found["start warm"].value == found["start cold"].alternative_value
+
+
+def test_the_lanes_of_a_whole_corpus_are_counted(few_short, tmp_path):
+    """All batches, that of the check by half the step too, hold the twelve records of the only part."""
+    corpus = {"rigs": 1, "specimens_per_rig": 1, "records_per_specimen": 12, "records_per_part": 12}
+    (found,) = lanes.rows((variant(few_short, tmp_path / "twelve.yaml", corpus=corpus),))
+    assert found.what == "lanes at work, all 12 records of twelve"
+    assert found.value == pytest.approx(12 / LANES)
+
+
+def test_a_batch_of_three_records_has_three_lanes_at_work(brief_seed):
+    recipe = read_recipe(brief_seed)
+    given = [kernel_input(scenario, timeline(recipe)) for scenario in draw_scenarios(recipe, 0, 3)]
+    assert lanes.records_in(lay_out(given, input_shape(given[0]), 1e-4)) == 3
+
+
+def test_the_cost_of_a_million_records_is_that_of_a_corpus_and_of_one_record_at_a_time(brief_full):
+    found = finite_rows(million.rows(1, recipes={"some": (brief_full, 4)}, sampled_s=0.001))
+    assert {"million some", "million some disk", "million some memory"} <= set(found)
+    assert found["million some disk"].alternative_value == pytest.approx(51.2)
+    assert 10 < found["million some disk"].value < 1000
+    assert 20 < found["million some memory"].value < 4000
+
+
+def test_this_checkout_is_compared_with_another(few_short):
+    found = against.compared(against.ROOT, few_short, 8, 1)
+    assert 0.5 < found.ratio < 2
 
 
 def test_features_are_compared_where_tsfel_is_installed():
@@ -76,7 +125,7 @@ def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
 
 
 def test_short_commands_are_compared_with_the_import_of_the_libraries_they_need():
-    found = finite_rows(starting.rows(1))
+    found = finite_rows(starting.command_rows(1))
     names = ("help", "recipes", "info", "misspelt", "import gen", "import gen.corpus", "import features")
     assert set(found) == {f"starting {name}" for name in names}
     assert all(line.value < 5 for line in found.values())
