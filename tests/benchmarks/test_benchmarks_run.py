@@ -2,6 +2,7 @@
 
 import importlib.util
 import math
+from pathlib import Path
 
 import pytest
 
@@ -95,17 +96,33 @@ def test_a_batch_of_three_records_has_three_lanes_at_work(brief_seed):
     assert lanes.records_in(lay_out(given, input_shape(given[0]), 1e-4)) == 3
 
 
-def test_the_cost_of_a_million_records_is_that_of_a_corpus_and_of_one_record_at_a_time(brief_full):
+def test_the_cost_of_a_million_records_is_that_of_a_corpus(brief_full, monkeypatch):
+    monkeypatch.setattr(million, "corpus_cost", lambda *_: {"ms": 3.6, "MB": 100.0, "bytes": 25_600.0})
     found = finite_rows(million.rows(1, recipes={"some": (brief_full, 4)}, sampled_s=0.001))
-    assert {"million some", "million some disk", "million some memory"} <= set(found)
-    assert found["million some disk"].alternative_value == pytest.approx(51.2)
-    assert 10 < found["million some disk"].value < 1000
-    assert 20 < found["million some memory"].value < 4000
+    assert found["million some"].value == pytest.approx(1.0)  # core hours
+    disk = found["million some disk"]
+    assert (disk.value, disk.alternative_value) == pytest.approx((25.6, 51.2))  # GB, at 12,800 Hz
+    assert found["million some memory"].ratio == pytest.approx(0.2)
 
 
-def test_this_checkout_is_compared_with_another(few_short):
-    found = against.compared(against.ROOT, few_short, 8, 1)
-    assert 0.5 < found.ratio < 2
+def checkout(folder: Path, iterations: int) -> Path:
+    """A folder whose ``raceway`` only counts."""
+    (folder / "raceway").mkdir(parents=True)
+    (folder / "raceway" / "__init__.py").touch()
+    (folder / "raceway" / "__main__.py").write_text(f"for _ in range({iterations}):\n    pass\n", encoding="utf-8")
+    return folder
+
+
+def test_another_checkout_is_run_with_its_own_code(few_short, tmp_path, monkeypatch):
+    monkeypatch.setattr(against, "ROOT", checkout(tmp_path / "ours", 1))
+    found = against.compared(checkout(tmp_path / "theirs", 20_000_000), few_short, 8, 1)
+    assert found.ratio > 2
+
+
+def test_a_folder_without_raceway_is_no_checkout(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        against.main([str(tmp_path)])
+    assert "holds no checkout of Raceway" in capsys.readouterr().err
 
 
 def test_features_are_compared_where_tsfel_is_installed():
