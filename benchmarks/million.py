@@ -57,7 +57,8 @@ def _rows_of(name: str, recipe: Path, records: int, folder: Path, pairs: int, sa
     plain = [RECORDS * 4 * read_recipe(recipe).recording.sample_rate_hz / 1e9] * pairs
     yield row(f"million {name} disk", f"{what} on disk", "GB", size, "uncompressed float32", plain)
     memory = [cost["MB"] for cost in costs]
-    yield row(f"million {name} memory", f"peak of the process, {what}", "MB", memory, "500 MB", [500.0] * pairs)
+    what = f"peak memory of the process, one-second records of {name}"
+    yield row(f"million {name} memory", what, "MB", memory, "500 MB", [500.0] * pairs)
 
 
 def _core_hours(seconds_each: float) -> float:
