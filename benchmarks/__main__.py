@@ -1,46 +1,47 @@
-"""Run benchmarks and print a table of ratios; a run of all benchmarks writes ``benchmarks/results.json``.
+"""Run benchmarks, print a table of ratios, and keep the rows in the file of this processor, ``benchmarks/results-....json``.
 
-``python -m benchmarks [NAME...]``. Each row compares a value with that of a named alternative: medians over interleaved pairs, and the
-median of the ratios. Small values in s, ms or MB are good, large rates are good. All benchmarks take ten minutes.
+``python -m benchmarks [NAME...]`` runs all or some benchmarks, ``python -m benchmarks --pages`` makes the tables of docs/performance.md
+from the files, and ``python -m benchmarks against CHECKOUT`` compares with another checkout (:mod:`benchmarks.against`). Each row
+compares a value with that of a named alternative: medians over interleaved pairs, and the median of the ratios. Small values in s, ms,
+MB, GB or core hours are good, large rates are good. All benchmarks take about a quarter of an hour.
 """
 
 import argparse
-import json
-import os
 import sys
 from collections.abc import Callable, Iterator
-from importlib.metadata import PackageNotFoundError, version
-from pathlib import Path
-from typing import Any
 
-from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
+from benchmarks import (
+    against,
+    features,
+    kernel,
+    lanes,
+    million,
+    opening,
+    performance_pages,
+    pipeline,
+    reading,
+    rivals,
+    roofline,
+    starting,
+    truth,
+)
 from benchmarks.pairs import Line, Row, Skipped
-from raceway.studies.timing import machine
+from benchmarks.results import facts, keep, processor, results_file
 
 SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "roofline": roofline.rows,
     "kernel": kernel.rows,
     "rivals": rivals.rows,
     "pipeline": pipeline.rows,
+    "lanes": lanes.rows,
+    "million": million.rows,
     "features": features.rows,
     "opening": opening.rows,
     "reading": reading.rows,
     "starting": starting.rows,
     "truth": truth.rows,
 }
-RESULTS = Path(__file__).with_name("results.json")
 HEADS = ("", "what", "value", "alternative", "its value", "ratio", "pairs")
-
-
-def facts() -> dict[str, Any]:
-    """Processor, versions and settings that the values depend on."""
-    found = machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
-    for name in ("xarray", "netCDF4", "h5py", "dask", "jax", "tsfel"):
-        try:
-            found[name] = version(name)
-        except PackageNotFoundError:
-            found[name] = None
-    return found
 
 
 def table(lines: list[Line]) -> str:
@@ -56,25 +57,27 @@ def _cells(row: Row) -> tuple[str, ...]:
     return row.name, row.what, value, row.alternative, other, f"{row.ratio:.3g}", str(row.pairs)
 
 
-def main() -> None:
+def main(arguments: list[str]) -> None:
+    if arguments[:1] == ["against"]:
+        keep([against.main(arguments[1:])], results_file(processor()), facts())
+        return
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(SUBJECTS)}; by default all")
-    names = parser.parse_args().names or list(SUBJECTS)
-    if unknown := set(names) - set(SUBJECTS):
-        parser.error(f"{', '.join(sorted(unknown))}: no such benchmark; choose from {', '.join(SUBJECTS)}.")
+    parser.add_argument("--pages", action="store_true", help="only make the tables of docs/performance.md again")
+    given = parser.parse_args(arguments)
+    if unknown := set(given.names) - set(SUBJECTS):
+        parser.error(f"{', '.join(sorted(unknown))}: no such benchmark; choose from {', '.join(SUBJECTS)}, against.")
+    if given.pages:
+        performance_pages.write_page()
+        return
     lines: list[Line] = []
-    for name in names:
+    for name in given.names or SUBJECTS:
         for line in SUBJECTS[name]():
             print(f"{line.name}: {line.ratio:.3g}" if isinstance(line, Row) else line.why, file=sys.stderr)
             lines.append(line)
+            keep([line], results_file(processor()), facts())
     print(table(lines))
-    if set(names) == set(SUBJECTS):
-        rows = [line._asdict() for line in lines if isinstance(line, Row)]
-        skipped = [line._asdict() for line in lines if isinstance(line, Skipped)]
-        RESULTS.write_text(
-            json.dumps({"machine": facts(), "rows": rows, "skipped": skipped}, indent=1) + "\n", encoding="utf-8"
-        )
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -11,6 +11,7 @@ import numpy as np
 
 from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of
 from gen.physics.inputs import KernelInput
+from gen.physics.kernel.decimate import Decimation, Single, Stage
 
 HERE = Path(__file__).parent
 FLAGS = ("-std=gnu99", "-O3", "-march=native", "-ffast-math", "-fPIC")
@@ -20,6 +21,9 @@ SOURCES = {
     "fused": ("plain.c", ("-DFUSED=1",)),
     "intrinsics": ("intrinsics.c", ()),
 }
+
+BLOCK = 64  # samples between two runs of the filters of plain.c
+DOUBLES, SINGLES = (np.ctypeslib.ndpointer(kind, flags="C_CONTIGUOUS") for kind in (np.float64, np.float32))
 
 March = Callable[[FloatArray, FloatArray, FloatArray, float, int, int, FloatArray], None]
 
@@ -33,6 +37,9 @@ class Batch(NamedTuple):
     """Directions of cage and shaft, and position of the spall among the balls in units of their distance, shape (row, lane)."""
     params: FloatArray
     """Shape (parameter, lane)."""
+
+
+Filtered = Callable[[Batch, float, int], Single]
 
 
 def compiler() -> str | None:
@@ -50,17 +57,46 @@ def has_avx512() -> bool:
 
 def compiled(name: str, lanes: int, spall: int, folder: Path) -> March:
     """A kernel of ``SOURCES`` for a number of lanes and a profile of the spall."""
-    source, options = SOURCES[name]
-    library = folder / f"{name}-{lanes}-{spall}.so"
-    sizes = (f"-DLANES={lanes}", f"-DSPALL={spall}", *options)
-    subprocess.run(["cc", *FLAGS, *sizes, "-c", "-o", library.with_suffix(".o"), HERE / source], check=True)
-    # linking with -ffast-math would disable subnormal numbers in the whole process
-    subprocess.run(["cc", "-shared", "-o", library, library.with_suffix(".o"), "-lm"], check=True)
-    march = ctypes.CDLL(str(library)).march
-    array = np.ctypeslib.ndpointer(np.float64, flags="C_CONTIGUOUS")
-    march.argtypes = [array, array, array, ctypes.c_double, ctypes.c_long, ctypes.c_long, array]
+    march = _library(name, lanes, spall, folder).march
+    march.argtypes = [DOUBLES, DOUBLES, DOUBLES, ctypes.c_double, ctypes.c_long, ctypes.c_long, DOUBLES]
     march.restype = None
     return march
+
+
+def compiled_with_filters(name: str, lanes: int, spall: int, folder: Path, filters: Decimation) -> Filtered:
+    """Function that simulates a batch with steps of ``dt`` seconds, and returns so many outputs of the filters of our kernel.
+
+    The outputs are the accelerations x1 y1 x2 y2, shape (sample, coordinate, lane) [m s-2]; the history is zero before the first step.
+    """
+    first, last = _taps(filters.first), _taps(filters.last)
+    factor = filters.first.factor
+    steps = factor * filters.last.factor
+    sizes = (f"-DSTEPS={steps}", f"-DFIRST={factor}", f"-DFIRST_TAPS={len(first)}", f"-DLAST_TAPS={len(last)}")
+    march = _library(name, lanes, spall, folder, *sizes).march_decimated
+    march.argtypes = [DOUBLES, DOUBLES, DOUBLES, ctypes.c_double, ctypes.c_long, SINGLES, SINGLES, SINGLES]
+    march.restype = None
+
+    def outputs(batch: Batch, dt: float, samples: int) -> Single:
+        made = np.empty((-(-samples // BLOCK) * BLOCK, 4, lanes), np.float32)
+        march(batch.state.copy(), batch.turn.copy(), batch.params, dt, len(made), first, last, made)
+        return made[:samples]
+
+    return outputs
+
+
+def _taps(stage: Stage) -> Single:
+    """Taps of one output of a stage; none if the stage is left out."""
+    return np.ascontiguousarray(stage.taps[: stage.kept + 1, 0])
+
+
+def _library(name: str, lanes: int, spall: int, folder: Path, *sizes: str) -> ctypes.CDLL:
+    source, options = SOURCES[name]
+    library = folder / f"{'-'.join((name, str(lanes), str(spall), *sizes))}.so"
+    given = (f"-DLANES={lanes}", f"-DSPALL={spall}", *options, *sizes)
+    subprocess.run(["cc", *FLAGS, *given, "-c", "-o", library.with_suffix(".o"), HERE / source], check=True)
+    # linking with -ffast-math would disable subnormal numbers in the whole process
+    subprocess.run(["cc", "-shared", "-o", library, library.with_suffix(".o"), "-lm"], check=True)
+    return ctypes.CDLL(str(library))
 
 
 def in_lanes(records: list[KernelInput], lanes: int, dt: float) -> list[Batch]:

@@ -1,42 +1,44 @@
-"""Time from a recipe to validated parts: compared with the kernel alone, with two workers, for large corpora, and from a cold start.
+"""Cost from a recipe to validated parts: compared with the kernel alone, with two workers, and for large corpora.
 
-Everything goes through :func:`gen.generate` into a temporary folder, in this process unless the row says otherwise.
+CPU time of the process and its children, unless the row says otherwise.
 """
 
 import json
-import os
-import subprocess
-import sys
 import tempfile
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
-from distributed import LocalCluster
 from ruamel.yaml import YAML
 
-from benchmarks.kernel import FULL
-from benchmarks.pairs import Line, interleaved, row, seconds
+from benchmarks.kernel import FULL, integrate_every
+from benchmarks.pairs import Line, cpu_seconds, interleaved, row, run_python, seconds
 from gen.generation import generate
-from raceway.studies.timing import bench
+from gen.recipe import read_recipe
+from gen.scenarios import draw_scenarios
+from gen.simulation.simulate import laid_out
+from gen.simulation.timeline import timeline
 
 SHORT = Path(__file__).with_name("short.yaml")
 CODECS = ("zlib", "zstd")
+SIZES = (256, 768)  # records; a corpus of either size repeats as many records at half the step
 SCALES = (1000, 20_000)
 
 # VmHWM instead of ru_maxrss of getrusage, which a process inherits from its parent
-_PEAK = """
+_COST = """
 import json, sys, time
 from pathlib import Path
 from gen.generation import generate
 recipe, folder, records = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3])
 generate(recipe, folder / "first", records=1)
-start = time.perf_counter()
-generate(recipe, folder / "corpus", records=records)
-took = time.perf_counter() - start
+start = time.process_time()
+made = generate(recipe, folder / "corpus", records=records)
+took = time.process_time() - start
 status = Path("/proc/self/status").read_text().split()
-print(json.dumps({"ms": 1e3 * took / records, "MB": int(status[status.index("VmHWM:") + 1]) / 1e3}))
+size = sum(path.stat().st_size for path in made.directory.rglob("*") if path.is_file())
+print(json.dumps({
+    "ms": 1e3 * took / records, "MB": int(status[status.index("VmHWM:") + 1]) / 1e3, "bytes": size / made.records,
+}))
 """
 
 
@@ -45,84 +47,78 @@ def rows(pairs: int = 3) -> Iterator[Line]:
     yield from throughput_rows(pairs)
     yield from worker_rows(pairs)
     yield from growth_rows(pairs)
-    yield from start_rows(pairs)
 
 
-def throughput_rows(pairs: int, recipe: Path = FULL, kernel_records: int = 32) -> Iterator[Line]:
-    """Whole pipeline compared with the kernel alone, per record, without the first part, whose steps are checked by a second run."""
+def throughput_rows(pairs: int, recipe: Path = FULL, sizes: tuple[int, int] = SIZES) -> Iterator[Line]:
+    """Whole pipeline compared with the kernel alone.
+
+    The cost of a record is the difference of two corpora over the difference of their records, so that what every corpus costs once does
+    not count.
+    """
+    small, large = sizes
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
         recipes = {codec: variant(recipe, folder / f"{codec}.yaml", corpus={"codec": codec}) for codec in CODECS}
-        steady(recipes["zlib"], folder)  # compiles
+        recipes = {codec: variant(path, path, corpus={"specimens_per_rig": large}) for codec, path in recipes.items()}
 
-        def kernel_alone() -> float:
-            made = bench(recipe, kernel_records)
-            return made.records / made.stage_seconds["integrate"]
+        def made(path: Path, records: int) -> float:
+            with tempfile.TemporaryDirectory(dir=folder) as corpus:
+                return cpu_seconds(lambda: generate(path, Path(corpus) / "corpus", records=records))
 
+        made(recipes["zlib"], small)  # compiles
         found = interleaved(
             pairs,
-            zlib=lambda: steady(recipes["zlib"], folder),
-            zstd=lambda: steady(recipes["zstd"], folder),
-            kernel=kernel_alone,
+            kernel=_kernel_alone(recipes["zlib"], small),
+            **{
+                codec: lambda path=path: (large - small) / (made(path, large) - made(path, small))
+                for codec, path in recipes.items()
+            },
         )
     for codec in CODECS:
-        what = f"recipe to parts on disk, {codec}, full model, one worker"
+        what = f"recipe to validated parts, {codec}, full model, one worker"
         yield row(f"pipeline {codec}", what, "records/s", found[codec], "the kernel alone", found["kernel"])
 
 
+def _kernel_alone(recipe: Path, records: int) -> Callable[[], float]:
+    """Function that measures the records per second of the kernel; as in a corpus, a record with a fault is also run without it."""
+    checked = read_recipe(recipe)
+    batches = laid_out(draw_scenarios(checked, 0, records), checked)
+    return lambda: records / cpu_seconds(integrate_every, batches, timeline(checked))
+
+
 def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_per_part: int = 32) -> Iterator[Line]:
-    """Two workers compared with one, on running clusters and with the start of the cluster."""
-    with tempfile.TemporaryDirectory() as temporary, _cluster(1) as one, _cluster(2) as two:
+    """Two workers compared with one: wall time of the whole command."""
+    with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        small = variant(
-            recipe, folder / "small.yaml", corpus={"records_per_part": records_per_part, "specimens_per_rig": 256}
-        )
+        corpus = {"records_per_part": records_per_part, "specimens_per_rig": 256}
+        small = variant(recipe, folder / "small.yaml", corpus=corpus)
 
-        def running(cluster: LocalCluster) -> float:
-            return speed(small, folder, records=records, scheduler=cluster.scheduler_address)
+        def speed(workers: int, wanted: int = records) -> float:
+            with tempfile.TemporaryDirectory(dir=folder) as made:
+                line = ("-m", "raceway", "generate", small, "-o", Path(made) / "corpus", "--records", wanted)
+                return wanted / seconds(run_python, *line, "--workers", workers)
 
-        for cluster in (one, two):
-            running(cluster)  # every worker loads its kernels
-        found = interleaved(
-            pairs,
-            two=lambda: running(two),
-            one=lambda: running(one),
-            started=lambda: speed(small, folder, records=records, workers=2),
-            here=lambda: speed(small, folder, records=records),
-        )
-    what = f"recipe to {records:,} records on disk, full model, two workers"
-    yield row("pipeline workers", f"{what}, running", "records/s", found["two"], "one worker, running", found["one"])
-    yield row(
-        "pipeline started", f"{what} to be started", "records/s", found["started"], "in this process", found["here"]
-    )
+        speed(1, 2 * records_per_part)  # compiles
+        found = interleaved(pairs, two=lambda: speed(2), one=lambda: speed(1))
+    what = f"raceway generate of {records:,} one-second records, full model, two workers, wall time"
+    yield row("pipeline workers", what, "records/s", found["two"], "one worker", found["one"])
+
+
+def corpus_cost(recipe: Path, folder: Path, records: int) -> dict[str, float]:
+    """CPU time [ms] and file size [bytes] per record, and peak memory [MB], of a corpus that is generated in its own process."""
+    with tempfile.TemporaryDirectory(dir=folder) as own:
+        return json.loads(run_python("-c", _COST, recipe, own, records))
 
 
 def growth_rows(pairs: int, recipe: Path = SHORT, scales: tuple[int, int] = SCALES) -> Iterator[Line]:
-    """Time per record and peak memory of a large corpus compared with a small one, each in its own process."""
+    """Cost per record and peak memory of a large corpus compared with a small one, each in its own process."""
     small, large = (f"{scale:,} records" for scale in scales)
     with tempfile.TemporaryDirectory() as temporary:
-        runs: dict[str, list[dict[str, float]]] = {"small": [], "large": []}
-        for pair in range(pairs):
-            for name, scale in zip(runs, scales, strict=True):
-                folder = Path(temporary) / f"{name}-{pair}"
-                runs[name].append(json.loads(_python(_PEAK, recipe, folder, scale)))
+        costs = {scale: lambda scale=scale: corpus_cost(recipe, Path(temporary), scale) for scale in scales}
+        runs = [{scale: cost() for scale, cost in costs.items()} for _ in range(pairs)]
     for unit, name, what in (("ms", "growth cost", "short record"), ("MB", "growth memory", "peak of the process")):
-        found = {key: [run[unit] for run in series] for key, series in runs.items()}
-        yield row(name, f"{what}, {large}", unit, found["large"], small, found["small"])
-
-
-def start_rows(pairs: int, recipe: Path = FULL) -> Iterator[Line]:
-    """`raceway generate` of one record without compiled kernels, compared with all kernels in the cache."""
-    with tempfile.TemporaryDirectory() as temporary:
-        folder = Path(temporary)
-
-        def first_record(cache: Path) -> float:
-            with tempfile.TemporaryDirectory(dir=folder) as corpus:
-                return seconds(_first_record, recipe, Path(corpus) / "corpus", cache)
-
-        empty, filled = ((folder / f"cache-{pair}" for pair in range(pairs)) for _ in range(2))
-        found = interleaved(pairs, cold=lambda: first_record(next(empty)), warm=lambda: first_record(next(filled)))
-    yield row("start cold", "first record, nothing compiled", "s", found["cold"], "kernels in the cache", found["warm"])
+        found = [[run[scale][unit] for run in runs] for scale in scales]
+        yield row(name, f"{what}, {large}", unit, found[1], small, found[0])
 
 
 def variant(recipe: Path, path: Path, **sections: dict[str, Any]) -> Path:
@@ -133,36 +129,3 @@ def variant(recipe: Path, path: Path, **sections: dict[str, Any]) -> Path:
         content[section].update(values)
     yaml.dump(content, path)
     return path
-
-
-def speed(recipe: Path, folder: Path, **options: Any) -> float:
-    """Records per second of a whole corpus."""
-    with tempfile.TemporaryDirectory(dir=folder) as corpus:
-        start = time.perf_counter()
-        made = generate(recipe, Path(corpus) / "corpus", **options)
-        return made.records / (time.perf_counter() - start)
-
-
-def steady(recipe: Path, folder: Path) -> float:
-    """Records per second of a corpus from its second part on, including the files over all parts."""
-    done: list[tuple[int, float]] = []
-    with tempfile.TemporaryDirectory(dir=folder) as corpus:
-        made = generate(recipe, Path(corpus) / "corpus", progress=lambda n, _: done.append((n, time.perf_counter())))
-        end = time.perf_counter()
-    first, since = done[0]
-    return (made.records - first) / (end - since)
-
-
-def _cluster(workers: int) -> LocalCluster:
-    return LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0")
-
-
-def _first_record(recipe: Path, folder: Path, cache: Path) -> None:
-    arguments = ("generate", recipe, "-o", folder, "--records", 1)
-    _python("from raceway.cli import main; main()", *arguments, NUMBA_CACHE_DIR=str(cache))
-
-
-def _python(script: str, *arguments: object, **environment: str) -> str:
-    """Standard output of a script that runs in its own process."""
-    command = [sys.executable, "-c", script, *map(str, arguments)]
-    return subprocess.run(command, env=os.environ | environment, check=True, capture_output=True, text=True).stdout

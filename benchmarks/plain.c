@@ -4,9 +4,10 @@
    Runge-Kutta (docs/model.md). What the recipe of the seed sets to zero is left out. Balls stand still in the frame of the cage, directions
    are turned by half a step at a time, and the spall corrects the force of the one ball nearest to it: no trigonometry in the loop.
 
-   Given from outside: LANES, SPALL (0 none, 1 rectangular, 2 geometric) and FUSED (the balls in one loop over lanes, or a short loop for
-   each). */
+   Given from outside: LANES, SPALL (0 none, 1 rectangular, 2 geometric), FUSED (the balls in one loop over lanes, or a short loop for
+   each), and for the filters STEPS per sample, FIRST, FIRST_TAPS and LAST_TAPS. */
 #include <math.h>
+#include <string.h>
 
 enum { BALLS = 9, COORDINATES = 4, STATE = 8 };
 enum { X1, Y1, X2, Y2, U1, V1, U2, V2 };
@@ -127,37 +128,93 @@ static void move(const row *restrict q, const row *restrict rates, const row *re
         }
 }
 
-/* Advance state and turn by `steps`, and keep the accelerations at the start of each of `samples` groups of them,
-   shape (sample, coordinate, lane). */
-void march(double *state, double *turning, const double *params, double dt, long samples, long steps, double *out)
+/* One step: the state after it, the turn after it, and the accelerations `a` before it. `start` is the nearest ball, before and after. */
+static inline void step(row *restrict q, row *restrict turn, const row *restrict p, double dt, nearest *restrict start, row *restrict a)
 {
-    row *q = (row *)state, *turn = (row *)turning, *kept = (row *)out;
-    const row *p = (const row *)params;
-    row a[COORDINATES], odd[STATE], even[STATE], sum[STATE];
-    nearest start, middle;
-    find_nearest(turn, p, &start);
-    for (long sample = 0; sample < samples; sample++, kept += COORDINATES)
-        for (long step = 0; step < steps; step++) {
-            for (int k = 0; k < STATE; k++)
-                EACH sum[k][i] = q[k][i];
-            accelerations(q, turn, &start, p, a);
-            if (step == 0)
-                for (int k = 0; k < COORDINATES; k++)
-                    EACH kept[k][i] = a[k][i];
-            move(q, q + COORDINATES, a, dt / 2, dt / 6, odd, sum);
-            half_turn(turn, p);
-            find_nearest(turn, p, &middle);
-            accelerations(odd, turn, &middle, p, a);
-            move(q, odd + COORDINATES, a, dt / 2, dt / 3, even, sum);
-            accelerations(even, turn, &middle, p, a);
-            move(q, even + COORDINATES, a, dt, dt / 3, odd, sum);
-            half_turn(turn, p);
-            find_nearest(turn, p, &start);
-            accelerations(odd, turn, &start, p, a);
-            for (int k = 0; k < COORDINATES; k++)
-                EACH {
-                    q[k][i] = sum[k][i] + dt / 6 * odd[k + COORDINATES][i];
-                    q[k + COORDINATES][i] = sum[k + COORDINATES][i] + dt / 6 * a[k][i];
-                }
+    row stage[COORDINATES], odd[STATE], even[STATE], sum[STATE];
+    nearest middle;
+    for (int k = 0; k < STATE; k++)
+        EACH sum[k][i] = q[k][i];
+    accelerations(q, turn, start, p, a);
+    move(q, q + COORDINATES, a, dt / 2, dt / 6, odd, sum);
+    half_turn(turn, p);
+    find_nearest(turn, p, &middle);
+    accelerations(odd, turn, &middle, p, stage);
+    move(q, odd + COORDINATES, stage, dt / 2, dt / 3, even, sum);
+    accelerations(even, turn, &middle, p, stage);
+    move(q, even + COORDINATES, stage, dt, dt / 3, odd, sum);
+    half_turn(turn, p);
+    find_nearest(turn, p, start);
+    accelerations(odd, turn, start, p, stage);
+    for (int k = 0; k < COORDINATES; k++)
+        EACH {
+            q[k][i] = sum[k][i] + dt / 6 * odd[k + COORDINATES][i];
+            q[k + COORDINATES][i] = sum[k + COORDINATES][i] + dt / 6 * stage[k][i];
         }
 }
+
+/* Accelerations before the first of every `steps` steps, shape (sample, coordinate, lane). */
+void march(double *state, double *turning, const double *params, double dt, long samples, long steps, double *out)
+{
+    row *q = (row *)state, *turn = (row *)turning, *kept = (row *)out, a[COORDINATES];
+    const row *p = (const row *)params;
+    nearest start;
+    find_nearest(turn, p, &start);
+    for (long sample = 0; sample < samples; sample++, kept += COORDINATES)
+        for (long n = 0; n < steps; n++) {
+            step(q, turn, p, dt, &start, a);
+            if (n == 0)
+                memcpy(kept, a, sizeof a);
+        }
+}
+
+#ifdef STEPS
+/* The same with the four accelerations low-passed and decimated by STEPS, in two stages: FIRST_TAPS taps decimate by FIRST, and LAST_TAPS
+   taps by STEPS / FIRST; FIRST_TAPS is 0 for one stage. Single precision, all lanes of the four channels in one row. */
+enum { BLOCK = 64, LAST = STEPS / FIRST, LAST_KEPT = LAST_TAPS - 1, KEPT = FIRST_TAPS ? FIRST_TAPS - 1 : LAST_KEPT };
+typedef float output[COORDINATES * LANES];
+
+/* `n` outputs, each a sum of rows of the history weighted by the taps, `factor` rows apart. */
+static inline void decimate(const output *restrict history, const float *restrict taps, int n_taps, int factor, int n, output *restrict out)
+{
+    enum { WIDTH = LANES < 16 ? COORDINATES * LANES : 64 }; /* sums that stay in registers */
+    for (int place = 0; place < n; place++, history += factor)
+        for (int first = 0; first < COORDINATES * LANES; first += WIDTH) {
+            float total[WIDTH] = {0};
+            for (int tap = 0; tap < n_taps; tap++)
+                for (int i = 0; i < WIDTH; i++)
+                    total[i] += taps[tap] * history[tap][first + i];
+            for (int i = 0; i < WIDTH; i++)
+                out[place][first + i] = total[i];
+        }
+}
+
+/* Outputs of the filters, shape (sample, coordinate, lane), for a multiple of BLOCK samples; the history is zero before the first step. */
+void march_decimated(double *state, double *turning, const double *params, double dt, long samples, const float *first_taps,
+                     const float *last_taps, float *out)
+{
+    static output history[KEPT + BLOCK * STEPS], halfway[LAST_KEPT + BLOCK * LAST];
+    row *q = (row *)state, *turn = (row *)turning;
+    const row *p = (const row *)params;
+    row a[COORDINATES];
+    nearest start;
+    memset(history, 0, sizeof history);
+    memset(halfway, 0, sizeof halfway);
+    find_nearest(turn, p, &start);
+    for (long sample = 0; sample < samples; sample += BLOCK) {
+        for (int n = 0; n < BLOCK * STEPS; n++) {
+            step(q, turn, p, dt, &start, a);
+            for (int k = 0; k < COORDINATES; k++)
+                EACH history[KEPT + n][k * LANES + i] = (float)a[k][i];
+        }
+        output *made = (output *)out + sample;
+        if (FIRST_TAPS) {
+            decimate(history, first_taps, FIRST_TAPS, FIRST, BLOCK * LAST, halfway + LAST_KEPT);
+            decimate(halfway, last_taps, LAST_TAPS, LAST, BLOCK, made);
+            memmove(halfway, halfway + BLOCK * LAST, LAST_KEPT * sizeof *halfway);
+        } else
+            decimate(history, last_taps, LAST_TAPS, STEPS, BLOCK, made);
+        memmove(history, history + BLOCK * STEPS, KEPT * sizeof *history);
+    }
+}
+#endif

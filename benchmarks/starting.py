@@ -4,14 +4,12 @@ Each is a process of its own, with its files in the page cache; user and system 
 count less than in wall time.
 """
 
-import resource
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from benchmarks.pairs import Line, interleaved, row
+from benchmarks.kernel import FULL
+from benchmarks.pairs import Line, interleaved, process_seconds, row
 from benchmarks.pipeline import SHORT, variant
 from gen.generation import generate
 
@@ -19,8 +17,14 @@ IMPORTS = ("gen", "gen.corpus", "features")
 ALTERNATIVE = "import xarray, netCDF4"
 
 
-def rows(pairs: int = 9) -> Iterator[Line]:
+def rows(pairs: int = 9, first_records: int = 3) -> Iterator[Line]:
     """Lines of the table."""
+    yield from first_record_rows(first_records)
+    yield from command_rows(pairs)
+
+
+def command_rows(pairs: int) -> Iterator[Line]:
+    """Short commands and imports, compared with the import of the libraries they need."""
     with tempfile.TemporaryDirectory() as folder:
         recipe = variant(SHORT, Path(folder) / "short.yaml", corpus={"records_per_part": 20})
         corpus = str(generate(recipe, Path(folder) / "corpus", records=40).directory)
@@ -33,17 +37,31 @@ def rows(pairs: int = 9) -> Iterator[Line]:
         }
         found = interleaved(
             pairs,
-            alternative=lambda: processor_seconds("-c", ALTERNATIVE),
-            **{name: lambda given=given: processor_seconds(*given) for name, given in commands.items()},
+            alternative=lambda: process_seconds("-c", ALTERNATIVE),
+            **{name: lambda given=given: process_seconds(*given, check=False) for name, given in commands.items()},
         )
     for name, given in commands.items():
         what = "raceway " + " ".join(given[2:]).replace(corpus, "CORPUS") if given[0] == "-m" else given[1]
         yield row(f"starting {name}", f"{what}, CPU", "s", found[name], ALTERNATIVE, found["alternative"])
 
 
-def processor_seconds(*arguments: str) -> float:
-    """User and system time of a Python process and its children [s]."""
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    subprocess.run([sys.executable, *arguments], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, check=False)
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+def first_record_rows(pairs: int, recipe: Path = FULL) -> Iterator[Line]:
+    """`raceway generate` of one record without compiled kernels and with all of them in the cache."""
+    with tempfile.TemporaryDirectory() as temporary:
+        folder = Path(temporary)
+
+        def first_record(cache: Path) -> float:
+            with tempfile.TemporaryDirectory(dir=folder) as corpus:
+                line = ("-m", "raceway", "generate", recipe, "-o", Path(corpus) / "corpus", "--records", 1)
+                return process_seconds(*line, NUMBA_CACHE_DIR=str(cache))
+
+        empty, filled = ((folder / f"cache-{pair}" for pair in range(pairs)) for _ in range(2))
+        found = interleaved(
+            pairs,
+            cold=lambda: first_record(next(empty)),
+            warm=lambda: first_record(next(filled)),
+            imports=lambda: process_seconds("-c", ALTERNATIVE),
+        )
+    what = "raceway generate of one record, full model"
+    yield row("start cold", f"{what}, nothing compiled", "s", found["cold"], "kernels in the cache", found["warm"])
+    yield row("start warm", f"{what}, kernels in the cache", "s", found["warm"], ALTERNATIVE, found["imports"])

@@ -192,7 +192,7 @@ def bench(recipe: str, records: int | None, as_json: bool) -> None:
     """Measure the speed of this machine on RECIPE.
 
     (raceway benchmark measures scores.) One worker makes the first part of the corpus several times, stage by stage, and discards it;
-    the medians are shown. Integration steps are counted for records, settling time included, and not for empty lanes.
+    the medians of the CPU time are shown. Integration steps are counted for records, settling time included, and not for empty lanes.
 
       raceway bench quickstart
     """

@@ -2,13 +2,35 @@
 
 import importlib.util
 import math
+from pathlib import Path
 
-from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
+import pytest
+
+from benchmarks import (
+    against,
+    features,
+    kernel,
+    lanes,
+    million,
+    opening,
+    pipeline,
+    reading,
+    rivals,
+    roofline,
+    starting,
+    truth,
+)
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
+from benchmarks.pipeline import variant
 from benchmarks.profile import PARTS, kernel_parts
 from gen.generation import generate
+from gen.physics.kernel.batch import input_shape, lay_out
+from gen.physics.kernel.compiling import LANES
 from gen.recipe import read_recipe
+from gen.scenarios import draw_scenarios
+from gen.simulation.inputs import kernel_input
+from gen.simulation.timeline import timeline
 
 
 def finite_rows(lines) -> dict[str, Row]:
@@ -18,7 +40,7 @@ def finite_rows(lines) -> dict[str, Row]:
 
 
 def test_the_kernel_is_compared_with_c_and_the_full_model_with_the_seed(brief_seed, brief_full):
-    lines = list(kernel.rows(1, recipe=brief_seed, full=brief_full, records=4, samples=20))
+    lines = list(kernel.rows(1, recipe=brief_seed, full=brief_full, records=4, full_records=4))
     assert {line.name for line in lines} == {"kernel plain", "kernel fused", "kernel intrinsics", "kernel full"}
     assert "kernel full" in finite_rows(lines)
 
@@ -42,11 +64,11 @@ def test_the_kernel_is_compared_with_its_rivals(brief_seed):
 
 
 def test_a_corpus_is_compared_with_the_kernel_alone(brief_full):
-    assert set(finite_rows(pipeline.throughput_rows(1, brief_full, 2))) == {"pipeline zlib", "pipeline zstd"}
+    assert set(finite_rows(pipeline.throughput_rows(1, brief_full, (4, 40)))) == {"pipeline zlib", "pipeline zstd"}
 
 
 def test_two_workers_are_compared_with_one(few_short):
-    assert set(finite_rows(pipeline.worker_rows(1, few_short, 12, 4))) == {"pipeline workers", "pipeline started"}
+    assert set(finite_rows(pipeline.worker_rows(1, few_short, 12, 4))) == {"pipeline workers"}
 
 
 def test_a_large_corpus_is_compared_with_a_small_one(few_short):
@@ -55,8 +77,52 @@ def test_a_large_corpus_is_compared_with_a_small_one(few_short):
 
 
 def test_a_cold_start_is_compared_with_a_warm_one(few_short):
-    (found,) = finite_rows(pipeline.start_rows(1, few_short)).values()
-    assert found.ratio > 1
+    found = finite_rows(starting.first_record_rows(1, few_short))
+    assert found["start cold"].ratio > 1
+    assert found["start warm"].value == found["start cold"].alternative_value
+
+
+def test_the_lanes_of_a_whole_corpus_are_counted(few_short, tmp_path):
+    """All batches, that of the check by half the step too, hold the twelve records of the only part."""
+    corpus = {"rigs": 1, "specimens_per_rig": 1, "records_per_specimen": 12, "records_per_part": 12}
+    (found,) = lanes.rows((variant(few_short, tmp_path / "twelve.yaml", corpus=corpus),))
+    assert found.what == "lanes at work, all 12 records of twelve"
+    assert found.value == pytest.approx(12 / LANES)
+
+
+def test_a_batch_of_three_records_has_three_lanes_at_work(brief_seed):
+    recipe = read_recipe(brief_seed)
+    given = [kernel_input(scenario, timeline(recipe)) for scenario in draw_scenarios(recipe, 0, 3)]
+    assert lanes.records_in(lay_out(given, input_shape(given[0]), 1e-4)) == 3
+
+
+def test_the_cost_of_a_million_records_is_that_of_a_corpus(brief_full, monkeypatch):
+    monkeypatch.setattr(million, "corpus_cost", lambda *_: {"ms": 3.6, "MB": 100.0, "bytes": 25_600.0})
+    found = finite_rows(million.rows(1, recipes={"some": (brief_full, 4)}, sampled_s=0.001))
+    assert found["million some"].value == pytest.approx(1.0)  # core hours
+    disk = found["million some disk"]
+    assert (disk.value, disk.alternative_value) == pytest.approx((25.6, 51.2))  # GB, at 12,800 Hz
+    assert found["million some memory"].ratio == pytest.approx(0.2)
+
+
+def checkout(folder: Path, iterations: int) -> Path:
+    """A folder whose ``raceway`` only counts."""
+    (folder / "raceway").mkdir(parents=True)
+    (folder / "raceway" / "__init__.py").touch()
+    (folder / "raceway" / "__main__.py").write_text(f"for _ in range({iterations}):\n    pass\n", encoding="utf-8")
+    return folder
+
+
+def test_another_checkout_is_run_with_its_own_code(few_short, tmp_path, monkeypatch):
+    monkeypatch.setattr(against, "ROOT", checkout(tmp_path / "ours", 1))
+    found = against.compared(checkout(tmp_path / "theirs", 20_000_000), few_short, 8, 1)
+    assert found.ratio > 2
+
+
+def test_a_folder_without_raceway_is_no_checkout(tmp_path, capsys):
+    with pytest.raises(SystemExit):
+        against.main([str(tmp_path)])
+    assert "holds no checkout of Raceway" in capsys.readouterr().err
 
 
 def test_features_are_compared_where_tsfel_is_installed():
@@ -76,7 +142,7 @@ def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
 
 
 def test_short_commands_are_compared_with_the_import_of_the_libraries_they_need():
-    found = finite_rows(starting.rows(1))
+    found = finite_rows(starting.command_rows(1))
     names = ("help", "recipes", "info", "misspelt", "import gen", "import gen.corpus", "import features")
     assert set(found) == {f"starting {name}" for name in names}
     assert all(line.value < 5 for line in found.values())

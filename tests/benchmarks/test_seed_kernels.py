@@ -7,11 +7,14 @@ import numpy as np
 import pytest
 
 from benchmarks import rivals
-from benchmarks.compiled import accelerations, compiled, compiler, has_avx512, in_lanes
+from benchmarks.compiled import accelerations, compiled, compiled_with_filters, compiler, has_avx512, in_lanes
 from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_records
 from gen.physics.inputs import KernelInput
+from gen.physics.kernel.batch import lay_out
+from gen.physics.kernel.decimate import decimation
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import draw_scenarios
+from gen.simulation.batches import group_of, integrate_batch
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
 from tests.lanes import march_lanes
@@ -53,6 +56,25 @@ def test_a_kernel_in_c_computes_the_motion_of_ours(source: str, case: Case, tmp_
     (batch,) = in_lanes(case.records, LANES, 1 / FS)
     march = compiled(source, LANES, case.profile, tmp_path)
     assert distance(accelerations(march, batch, 1 / FS, SAMPLES, 1), case.ours) < 1e-9
+
+
+@pytest.mark.parametrize("steps", [3, 4])  # one filter, and two
+@pytest.mark.parametrize("source", ["plain", "fused"])
+def test_a_kernel_in_c_returns_the_outputs_of_ours(source: str, steps: int, brief_seed: Path, tmp_path: Path):
+    """In single precision, which rounds to 6e-8; the outputs of the filters are sums of some hundred terms."""
+    if compiler() is None:
+        pytest.skip("no C compiler")
+    recipe = read_recipe(brief_seed)
+    axis, filters = timeline(recipe), decimation(steps)
+    for profile, records in seed_records(recipe, 2 * LANES).items():
+        group, some = group_of(records[0], steps), records[:LANES]
+        ours = integrate_batch(group, lay_out(some, group.shape, 1 / axis.fs), axis).response[:, :, : len(some)]
+        (batch,) = in_lanes(some, LANES, 1 / (axis.fs * steps))
+        outputs = compiled_with_filters(source, LANES, profile, tmp_path, filters)
+        taps = filters.last.kept * filters.first.factor + filters.first.kept  # after the newest step of an output
+        skipped = axis.dropped + taps // (2 * steps)
+        made = outputs(batch, 1 / (axis.fs * steps), skipped + axis.returned)[skipped:, :, : len(some)]
+        assert distance(made, ours) < 1e-5
 
 
 @pytest.mark.parametrize(

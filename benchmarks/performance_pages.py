@@ -1,0 +1,151 @@
+"""Tables of docs/performance.md, made from the results of every processor.
+
+A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``. A test compares the page with the files.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from benchmarks.results import FOLDER, Rows, every_result
+
+PAGE = FOLDER.parent / "docs" / "performance.md"
+_TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+
+Results = Mapping[str, Rows]
+
+GROUPS = {
+    "kernel": ("roofline", "kernel"),
+    "pipeline": ("pipeline", "against", "lanes", "growth", "start"),
+    "million": ("million",),
+    "features": ("features",),
+    "reading": ("opening", "reading"),
+    "starting": ("starting",),
+    "truth": ("truth",),
+}
+"""First words of the names of the rows in each table."""
+
+
+class Target(NamedTuple):
+    """A figure of a row that has a limit."""
+
+    what: str
+    row: str
+    figure: str
+    """``ratio`` or ``value``."""
+    must: Mapping[str, float]
+    """Limit by vendor; the empty vendor is every other one."""
+    aim: float | None
+    small: bool = False
+    """Whether small figures are good."""
+
+
+TARGETS = (
+    Target("seed model over plain C, same outputs", "kernel plain", "ratio", {"amd": 1.3, "intel": 1.5}, 1.8),
+    Target("full model over seed model", "kernel full", "ratio", {"": 0.5}, 0.6),
+    Target("`domain_randomised` over the parent commit", "against domain_randomised", "ratio", {"": 1.4}, 1.8),
+    Target("recipe to parts over the kernel alone, zlib, full model", "pipeline zlib", "ratio", {"": 0.8}, 0.9),
+    Target("two workers over one, 1,024 records, start included", "pipeline workers", "ratio", {"": 1.6}, 1.9),
+    Target("first record, nothing compiled, CPU [s]", "start cold", "value", {"": 15}, 10, small=True),
+    Target("first record, kernels in the cache, CPU [s]", "start warm", "value", {"": 2.5}, 1.5, small=True),
+    Target("a record of 20,000 over one of 1,000, CPU", "growth cost", "ratio", {"": 1.02}, None, small=True),
+    Target("memory of a process, 20,000 records [MB]", "growth memory", "value", {"": 500}, None, small=True),
+    Target(
+        "memory, `domain_randomised` [MB]", "million domain_randomised memory", "value", {"": 500}, None, small=True
+    ),
+    Target("CPU of the driver per part, 10,000 parts over 100", "growth driver", "ratio", {"": 1.5}, 1.1, small=True),
+    Target("lanes at work, `domain_randomised`", "lanes domain_randomised", "value", {"": 0.9}, None),
+    Target("lanes at work, `quickstart`", "lanes quickstart", "value", {"": 0.9}, None),
+)
+
+
+def _targets(results: Results) -> str:
+    rows = []
+    for target in TARGETS:
+        must = ", ".join(f"{limit:g} ({vendor})" if vendor else f"{limit:g}" for vendor, limit in target.must.items())
+        aim = "-" if target.aim is None else f"{target.aim:g}"
+        cells = [_reached(target, name, found.get(target.row)) for name, found in results.items()]
+        rows.append([target.what, must, aim, *cells])
+    return _markdown(["", "must", "aim", *results], rows)
+
+
+def _reached(target: Target, processor: str, row: Mapping[str, Any] | None) -> str:
+    if row is None:
+        return "-"
+    vendor = processor.partition("-")[0]
+    figure, limit = row[target.figure], target.must.get(vendor, target.must.get("", None))
+    missed = limit is not None and (figure > limit if target.small else figure < limit)
+    return f"{short(figure)}{' (missed)' if missed else ''}{_clock(row)}"
+
+
+def _rows(results: Results, words: Sequence[str]) -> str:
+    """Rows whose names begin with one of some words: the figures of every processor."""
+    names = dict.fromkeys(
+        name for word in words for found in results.values() for name in found if name.split()[0] == word
+    )
+    lines = []
+    for name in names:
+        first = next(found[name] for found in results.values() if name in found)
+        cells = [_cell(found.get(name)) for found in results.values()]
+        lines.append([f"{name}: {first['what']}", first["alternative"], *cells])
+    return _markdown(["", "compared with", *results], lines)
+
+
+def _cell(row: Mapping[str, Any] | None) -> str:
+    if row is None:
+        return "-"
+    value, other = short(row["value"]), short(row["alternative_value"])
+    return f"{short(row['ratio'])} ({value} against {other} {row['unit']}{_clock(row)})"
+
+
+def _clock(row: Mapping[str, Any]) -> str:
+    return ", wall time" if row["facts"].get("clock") == "wall" else ""
+
+
+def _machines(results: Results) -> str:
+    """Processor and versions of every group of rows that were measured together."""
+    lines = []
+    for name, rows in results.items():
+        counts: dict[tuple[str, ...], int] = {}
+        for row in rows.values():
+            known = tuple(str(row["facts"][key]) for key in ("processor", "cores", "python", "numba", "numpy"))
+            counts[known] = counts.get(known, 0) + 1
+        lines += [[name, *known, str(count)] for known, count in counts.items()]
+    return _markdown(["", "processor", "cores", "Python", "numba", "NumPy", "rows"], lines)
+
+
+def short(value: float) -> str:
+    """Number with three digits.
+
+    >>> short(29_431_015.9), short(1234.5), short(0.7851), short(15.0)
+    ('29.4 M', '1,234', '0.785', '15')
+    """
+    for factor, letter in ((1e9, " G"), (1e6, " M")):
+        if value >= factor:
+            return f"{value / factor:.3g}{letter}"
+    return f"{value:,.0f}" if value >= 1000 else f"{value:.3g}"
+
+
+def _markdown(header: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    lines = [header, ["---"] * len(header), *rows]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def tables(results: Results) -> Iterator[tuple[str, Callable[[], str]]]:
+    """Name and maker of every table."""
+    yield "targets", lambda: _targets(results)
+    yield "machines", lambda: _machines(results)
+    for name, words in GROUPS.items():
+        yield name, lambda words=words: _rows(results, words)
+
+
+def with_tables(page: str, results: Results) -> str:
+    """A page with its tables made again."""
+    makers = dict(tables(results))
+    return _TABLE.sub(lambda found: f"{found[1]}\n{makers[found[2]]()}\n{found[3]}", page)
+
+
+def write_page(page: Path = PAGE) -> None:
+    """Make the tables of the page again."""
+    page.write_text(with_tables(page.read_text(encoding="utf-8"), every_result()), encoding="utf-8")

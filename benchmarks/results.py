@@ -1,0 +1,80 @@
+"""The measured rows, one file per processor: ``benchmarks/results-<vendor>-<family>-<model>.json``.
+
+A run replaces the rows that it measured and keeps the others, so each row has the facts of its own run.
+"""
+
+import json
+import os
+import platform
+from collections.abc import Iterable, Mapping
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from benchmarks.pairs import Line, Row
+from raceway.studies.timing import machine
+
+FOLDER = Path(__file__).parent
+PREFIX = "results-"
+VENDORS = {"GenuineIntel": "intel", "AuthenticAMD": "amd"}
+
+Rows = dict[str, dict[str, Any]]
+"""Rows by name: the fields of :class:`Row`, and ``facts``."""
+
+
+def processor() -> str:
+    """Vendor, family and model of the processor, by which a file of results is named.
+
+    >>> processor() == processor().lower()
+    True
+    """
+    try:
+        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        text = ""
+    return _processor(text) or platform.machine().lower()
+
+
+def _processor(cpuinfo: str) -> str | None:
+    """
+    >>> _processor("vendor_id : AuthenticAMD\\ncpu family : 26\\nmodel : 2\\nmodel name : AMD EPYC")
+    'amd-26-2'
+    """
+    lines = (line.partition(":") for line in cpuinfo.splitlines())
+    found = {key.strip(): value.strip() for key, _, value in lines}
+    if not {"vendor_id", "cpu family", "model"} <= set(found):
+        return None
+    vendor = VENDORS.get(found["vendor_id"], found["vendor_id"].lower())
+    return f"{vendor}-{found['cpu family']}-{found['model']}"
+
+
+def facts() -> dict[str, Any]:
+    """Processor, versions and settings that the values depend on."""
+    found = machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
+    for name in ("xarray", "netCDF4", "h5py", "dask", "jax", "tsfel"):
+        try:
+            found[name] = version(name)
+        except PackageNotFoundError:
+            found[name] = None
+    return found
+
+
+def results_file(name: str, folder: Path = FOLDER) -> Path:
+    """File of a processor."""
+    return folder / f"{PREFIX}{name}.json"
+
+
+def every_result(folder: Path = FOLDER) -> dict[str, Rows]:
+    """Rows of every processor, by its name."""
+    paths = sorted(folder.glob(f"{PREFIX}*.json"))
+    return {path.stem.removeprefix(PREFIX): json.loads(path.read_text(encoding="utf-8")) for path in paths}
+
+
+def keep(lines: Iterable[Line], path: Path, known: Mapping[str, Any]) -> None:
+    """Replace the rows of ``lines`` in a file, and keep its other rows."""
+    rows: Rows = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    for line in lines:
+        if isinstance(line, Row):
+            rows[line.name] = {key: value for key, value in line._asdict().items() if key != "name"} | {"facts": known}
+    text = ",\n".join(f" {json.dumps(name)}: {json.dumps(row)}" for name, row in rows.items())
+    path.write_text(f"{{\n{text}\n}}\n", encoding="utf-8")
