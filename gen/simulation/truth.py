@@ -11,7 +11,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over
-from gen.simulation.hits import load_zones, loaded_hits
+from gen.simulation.hits import loaded_hits
 from gen.simulation.motion import mean_motion, start_of
 from gen.simulation.timeline import Timeline
 
@@ -69,11 +69,11 @@ class WidestSpall(NamedTuple):
 
 def with_loaded_hits(truths: Sequence[Truth], inputs: Sequence[KernelInput | None], timeline: Timeline) -> list[Truth]:
     """Truths with the hits of loaded balls; 0 for a record without spalls or of which no machine is possible."""
-    spalled = {place: given for place, given in enumerate(inputs) if given is not None and given.spalls}
-    found = [truth._replace(loaded_hits=0) for truth in truths]
-    for (place, given), zone in zip(spalled.items(), load_zones(list(spalled.values())), strict=True):
-        turns = found[place].true_shaft_rate * timeline.duration
-        found[place] = found[place]._replace(loaded_hits=loaded_hits(given, zone, found[place].orders, turns))
+    found = []
+    for truth, given in zip(truths, inputs, strict=True):
+        turns = truth.true_shaft_rate * timeline.duration
+        hits = 0 if given is None else loaded_hits(given, truth.orders, turns)
+        found.append(truth._replace(loaded_hits=hits))
     return found
 
 
