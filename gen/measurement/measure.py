@@ -18,7 +18,7 @@ from scipy.fft import irfft, rfft
 from gen.corpus.visible import UNJUDGED
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
 from gen.measurement.gear import gear_in_channels
-from gen.measurement.judging import Judge, spectra_of
+from gen.measurement.judging import Judge, Parts, judges_of
 from gen.measurement.levels import (
     Gains,
     bearing_over_background,
@@ -111,9 +111,9 @@ def measure(
         some = slice(first, first + several)
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
         parts = _parts(acceleration[some], scenarios[some], filters, axis, twins, first)
-        for row, part in reversed(list(enumerate(parts, first))):
+        for row, (part, judge) in reversed(list(enumerate(zip(parts, _judges(parts), strict=True), first))):
             pair = scenarios[row].record.pair
-            found = _levelled(part, scenarios[row], recipe, rounding, level_tries, levels.get(pair))
+            found = _levelled(part, judge, scenarios[row], recipe, rounding, level_tries, levels.get(pair))
             if pair >= 0 and part.is_finite:
                 levels.setdefault(pair, found)
             mixed, flags[row] = disturbed(_mixed(part, found.gains), found.scenario, axis.fs)
@@ -141,6 +141,8 @@ class Part(NamedTuple):
     """Angle of the shaft, shape (time,) [rad]."""
     orders: tuple[float, ...]
     """Orders at which the faults repeat [1]."""
+    steady: bool
+    """True if the speed follows no profile."""
 
     @property
     def is_finite(self) -> bool:
@@ -202,7 +204,8 @@ def _parts(
         products = Products(*mix(*one, impulses[row], angles[row], lines[row], axis.kept.start, axis.kept.stop))
         added, bearing, noise = (some[..., axis.kept] if some.size else some for some in one)
         orders = twins.orders[first + row] if twins is not None else ()
-        parts.append(Part(added, bearing, noise, products, angles[row][axis.kept], orders))
+        steady = scenarios[row].record.speed_profile is None
+        parts.append(Part(added, bearing, noise, products, angles[row][axis.kept], orders, steady))
     return parts
 
 
@@ -227,18 +230,31 @@ def _to_counts(signal: Float32Array, counts_per_unit: float) -> int:
     return int(clipped)
 
 
+def _judges(parts: Sequence[Part]) -> list[Judge | None]:
+    """Judges of those records whose fault has a line."""
+    wanted = [bool(part.orders) and part.fault.size > 0 and part.is_finite for part in parts]
+    given = [
+        Parts(part.fault, part.healthy, part.background, part.orders, part.angles, part.steady)
+        for part, is_wanted in zip(parts, wanted, strict=True)
+        if is_wanted
+    ]
+    judges = iter(judges_of(given))
+    return [next(judges) if is_wanted else None for is_wanted in wanted]
+
+
 def _levelled(
-    part: Part, scenario: Scenario, recipe: Recipe, rounding: float, tries: int, of_group: Levelled | None
+    part: Part,
+    judge: Judge | None,
+    scenario: Scenario,
+    recipe: Recipe,
+    rounding: float,
+    tries: int,
+    of_group: Levelled | None,
 ) -> Levelled:
     """Level of a record: the drawn one, or if its fault cannot be seen the first of some more draws at which it can.
 
     A record of a group has the gains ``of_group``, those of its largest severity, so that all that differs is the fault.
     """
-    judge = None
-    if part.orders and part.fault.size and part.is_finite:
-        steady = scenario.record.speed_profile is None
-        of_record = spectra_of(part.fault, part.healthy, part.background, part.orders, part.angles, steady=steady)
-        judge = Judge(of_record)
     if of_group is not None:
         taken = with_level(scenario, recipe, of_group.scenario.record.level_try)
         return Levelled(taken, of_group.gains, *_seen(part, judge, taken, of_group.gains, rounding))
