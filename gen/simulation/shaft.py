@@ -26,7 +26,7 @@ def shaft_angles(scenario: Scenario, timeline: Timeline) -> FloatArray:
     ``eta``. With a speed profile the product of profile and wander is summed from sample to sample, at the middle of each, as in the
     kernel.
     """
-    start, record = start_of(scenario), scenario.record
+    start, record = start_of(scenario, SPEED_TERMS), scenario.record
     omega, wander = 2 * math.pi * record.conditions["shaft"], record.conditions["speed_wander"]
     if record.speed_profile is None:
         nodes = np.arange(timeline.dropped, timeline.dropped + timeline.returned + STRIDE, STRIDE) / timeline.fs
@@ -64,4 +64,4 @@ def _integrated_wander(start: Start, times: NDArray[np.floating]) -> FloatArray:
 
 def _speed_terms(start: Start) -> tuple[FloatArray, FloatArray]:
     """Rates [rad/s] and phases [rad] of the cosine terms of the speed wander, shape (term,)."""
-    return 2 * np.pi * start.frequencies[:SPEED_TERMS], start.phases[:SPEED_TERMS]
+    return 2 * np.pi * start.frequencies, start.phases

@@ -12,7 +12,7 @@ from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.hits import loaded_hits
-from gen.simulation.motion import mean_motion, start_of
+from gen.simulation.motion import mean_motion, start_of, turning_of
 from gen.simulation.timeline import Timeline
 
 
@@ -87,8 +87,11 @@ def lines_of_faults(scenario: Scenario, orders: Orders) -> tuple[float, ...]:
 def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) -> Truth:
     """Truth of a scenario; ``given`` is its kernel input, None if no such machine is possible."""
     record, duration = scenario.record, timeline.duration
-    start = start_of(scenario) if given is None else given
-    motion = mean_motion(scenario, timeline, start.frequencies, start.phases)
+    if given is None:
+        start = start_of(scenario)
+        motion = mean_motion(scenario, timeline, turning_of(scenario, start), start.frequencies, start.phases)
+    else:
+        motion = mean_motion(scenario, timeline, given.turning, given.frequencies, given.phases)
     nominal = record.conditions["shaft"]
     ends = [1.0, 1.0] if record.speed_profile is None else share_at(record.speed_profile, np.array([0.0, duration]))
     return Truth(
