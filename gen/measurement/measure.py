@@ -222,9 +222,13 @@ def _to_counts(signal: Float32Array, counts_per_unit: float) -> int:
 
     A record that diverged has no counts. It is left out of the corpus; here it becomes zeros.
     """
-    if not np.isfinite(signal).all():
+    lowest, highest = float(signal.min()), float(signal.max())
+    if not (math.isfinite(lowest) and math.isfinite(highest)):
         signal[:] = 0.0
+        return 0
     np.rint(np.multiply(signal, np.float32(counts_per_unit), out=signal), out=signal)
+    if max(-lowest, highest) * counts_per_unit < LARGEST_COUNT:
+        return 0
     clipped = np.count_nonzero(np.abs(signal) > LARGEST_COUNT)
     np.clip(signal, -LARGEST_COUNT, LARGEST_COUNT, out=signal)
     return int(clipped)

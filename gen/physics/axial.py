@@ -20,7 +20,7 @@ FloatArray = NDArray[np.float64]
 # least axial load, over radial load times the tangent of the contact angle, at which half of the balls are loaded
 HALF_LOADED = 1.25
 _BALANCED = 1e-9  # largest unbalanced force over the load
-_MOST_STEPS, _SMALLEST_SHARE = 100, 1e-3
+_MOST_STEPS, _SMALLEST_SHARE, _ROUNDING = 100, 1e-3, 1e-12
 
 
 def least_axial_load(radial_load: float, contact_angle: float) -> float:
@@ -77,7 +77,7 @@ def axial_approach(machine: Machine, axial_load: FloatArray, angles: FloatArray)
     equal_squeeze = power(axial_load / (np.count_nonzero(~missing, axis=0) * sine * factor), 1 / given.exponent)
     start = np.zeros((3, len(angles)))
     start[2] = (np.maximum(machine.half_clearance, 0.0) + equal_squeeze) / sine
-    # rounded to a picometre: the last step, at the limit of double precision, can be halved or not
+    # rounded to a picometre: earlier versions solved this with BLAS, whose last bits depend on the processor
     return [round(squeeze, 12) for squeeze in (_equilibrium(given, start)[2] * sine).tolist()]
 
 
@@ -112,7 +112,7 @@ def _sum(terms: FloatArray) -> FloatArray:
 def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
     """Displacement of the inner ring at which the forces of the balls balance the loads, shape (axis, record) [m].
 
-    Newton steps down the potential energy, which is convex; a step that does not lower it is halved. Converged records are frozen.
+    Newton steps down the potential energy, which is convex; a step that raises it is halved. Converged records are frozen.
     """
     places, found, q = np.arange(start.shape[1]), start.copy(), start
     for _ in range(_MOST_STEPS):
@@ -134,11 +134,11 @@ def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
 
 
 def _lowered(given: _Balls, q: FloatArray, step: FloatArray, before: FloatArray) -> FloatArray:
-    """Displacements after a step, or after the share of it that lowers the energy below ``before``, shape (axis, record) [m]."""
-    share = np.ones(q.shape[1])
+    """Displacements after a step, or after a share of it that does not raise the energy above ``before``, shape (axis, record) [m]."""
+    share, before = np.ones(q.shape[1]), before + _ROUNDING * np.abs(before)
     while True:
         moved = q + share * step
-        again = (given.energy(given.squeeze(moved), moved) >= before) & (share >= _SMALLEST_SHARE)
+        again = (given.energy(given.squeeze(moved), moved) > before) & (share >= _SMALLEST_SHARE)
         if not again.any():
             return moved
         share = np.where(again, share / 2, share)

@@ -5,6 +5,7 @@ Body 1 is the shaft with the inner ring, body 2 the housing with the outer ring,
 
 import math
 from collections.abc import Sequence
+from itertools import chain
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -53,7 +54,8 @@ class Machine(NamedTuple):
 def as_columns(items: Sequence[Fields]) -> Fields:
     """One item of the same type whose fields are arrays of the fields of several items, shape (item,)."""
     kind: Any = type(items[0])
-    return kind(*np.array(items, float).T.copy())
+    numbers = np.fromiter(chain.from_iterable(items), float, len(items) * len(kind._fields))
+    return kind(*numbers.reshape(len(items), -1).T.copy())
 
 
 def ball_angles(n_balls: Sequence[int], cage_angles: Sequence[float]) -> FloatArray:
@@ -121,25 +123,14 @@ def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) 
     force, stiffness : arrays, shape (record, ball)
         [N] and [N/m].
     """
-    directions = np.stack([np.cos(angles), np.sin(angles)]).transpose(0, 2, 1)
-    force, stiffness = _pressed(machine, displacement.T, directions)
+    given = _balance(machine, angles)
+    force, stiffness = given.pressed(displacement.T)
     return force.T, stiffness.T
-
-
-def _pressed(machine: Machine, displacement: FloatArray, directions: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Force and stiffness of every ball, shape (ball, record), from arrays of shape (axis, record) and (axis, ball, record)."""
-    along = displacement[0] * directions[0] + displacement[1] * directions[1]
-    cosine, n = machine.contact_cosine, machine.contact_exponent
-    squeeze = np.maximum(along * cosine - machine.half_clearance, 0.0)
-    root = power(squeeze, np.subtract(n, 1))
-    force = np.multiply(machine.load_deflection_factor, squeeze) * root * cosine
-    return force, np.multiply(n, machine.load_deflection_factor) * root * np.square(cosine)
 
 
 class _Balance(NamedTuple):
     """Constants of the static balance of some records; the last axis of every array is the record."""
 
-    machine: Machine
     load: FloatArray
     """Shape (axis, record), as are the next four."""
     support: FloatArray
@@ -149,12 +140,18 @@ class _Balance(NamedTuple):
     directions: FloatArray
     """Of the balls, shape (axis, ball, record)."""
     weight: FloatArray
-    """Size of the load, shape (record,)."""
+    """Size of the load, shape (record,), as are the next four."""
+    cosine: FloatArray
+    half_clearance: FloatArray
+    factor: FloatArray
+    exponent: FloatArray
 
-    def some(self, places: NDArray[np.bool_]) -> "_Balance":
-        """The constants of some of the records."""
-        machine = Machine(*(np.asarray(field)[places] for field in self.machine))
-        return _Balance(machine, *(array[..., places] for array in self[1:]))
+    def pressed(self, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Force and stiffness of every ball, shape (ball, record), under a displacement of shape (axis, record)."""
+        along = displacement[0] * self.directions[0] + displacement[1] * self.directions[1]
+        squeeze = np.maximum(along * self.cosine - self.half_clearance, 0.0)
+        root = power(squeeze, self.exponent - 1)
+        return self.factor * squeeze * root * self.cosine, self.exponent * self.factor * root * self.cosine**2
 
 
 def rest(machine: Machine, angles: FloatArray) -> FloatArray:
@@ -175,8 +172,9 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
         x1, y1, x2, y2 [m].
     """
     given = _balance(machine, angles)
-    reach = np.maximum(machine.half_clearance, 0) / machine.contact_cosine
-    reach = reach + 2 * power(given.weight / machine.load_deflection_factor, 1 / np.asarray(machine.contact_exponent))
+    reach = np.maximum(given.half_clearance, 0) / given.cosine + 2 * power(
+        given.weight / given.factor, 1 / given.exponent
+    )
     housing = given.load / (given.support + given.ground) + given.play * np.sign(given.load)
     q = np.concatenate([housing + given.load / given.weight * reach, housing])
     places, found = np.arange(q.shape[1]), q.copy()
@@ -186,8 +184,10 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
         moving = largest >= 1e-9 * given.weight
         if not moving.all():
             found[:, places[~moving]] = q[:, ~moving]
-            places, given, q = places[moving], given.some(moving), q[:, moving]
-            residual, jacobian, largest = residual[:, moving], jacobian[..., moving], largest[moving]
+            given = _Balance(*(array[..., moving] for array in given))
+            places, q, residual, jacobian, largest = (
+                some[..., moving] for some in (places, q, residual, jacobian, largest)
+            )
         if not len(places):
             break
         # one loaded ball has no stiffness across its direction: a soft spring keeps the step finite, and becomes 0 with the residual
@@ -203,7 +203,6 @@ def _balance(machine: Machine, angles: FloatArray) -> _Balance:
     load = np.stack([machine.load_x, machine.load_y])
     loose = np.isnan(angles.T)
     return _Balance(
-        machine=machine,
         load=load,
         support=np.stack([machine.support_stiffness_x, machine.support_stiffness_y]),
         ring=np.stack([machine.ring_stiffness_x, machine.ring_stiffness_y]),
@@ -212,13 +211,17 @@ def _balance(machine: Machine, angles: FloatArray) -> _Balance:
         # balls without a direction press on nothing
         directions=np.where(loose, 0.0, np.stack([np.cos(angles).T, np.sin(angles).T])),
         weight=np.maximum(np.hypot(*load), 1e-12),
+        cosine=np.asarray(machine.contact_cosine),
+        half_clearance=np.asarray(machine.half_clearance),
+        factor=np.asarray(machine.load_deflection_factor),
+        exponent=np.asarray(machine.contact_exponent),
     )
 
 
 def _unbalanced_force(given: _Balance, q: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Sum of the forces on each coordinate, shape (4, record), and its negative derivative, shape (4, 4, record)."""
     relative = q[:2] - q[2:]
-    force, stiffness = _pressed(given.machine, relative, given.directions)
+    force, stiffness = given.pressed(relative)
     of_balls = np.empty((6, *force.shape))
     np.multiply(force, given.directions, out=of_balls[:2])
     stiff = stiffness * given.directions

@@ -171,9 +171,12 @@ class MeanMotion(NamedTuple):
 
 def _walk(bearing: Bearing, turning: Turning, timeline: Timeline) -> FloatArray:
     """Slip of the random walk of the cage at the knots of the record, as the kernel draws it, shape (time,) [1]."""
-    strides = np.arange(timeline.settle, timeline.settle + timeline.record) // STRIDE
-    normals = standard_normals(np.arange(strides[0], strides[-1] + 1), turning.walk_seed)
-    return walk_slip_rms(bearing, turning, STRIDE / timeline.fs) * normals[strides - strides[0]]
+    first, later = divmod(timeline.settle, STRIDE)
+    normals = standard_normals(
+        np.arange(first, (timeline.settle + timeline.record - 1) // STRIDE + 1), turning.walk_seed
+    )
+    slips = walk_slip_rms(bearing, turning, STRIDE / timeline.fs) * normals
+    return np.repeat(slips, STRIDE)[later : later + timeline.record]
 
 
 def mean_motion(
@@ -204,7 +207,7 @@ def mean_motion(
         walk, weights = _walk(scenario.specimen.bearing, turning, timeline), None
         if profile is not None:
             weights = share_at(profile, (np.arange(timeline.record) + 0.5) / timeline.fs)
-        slip += float(np.average(walk, weights=weights))
+        slip += float(walk.mean() if weights is None else np.average(walk, weights=weights))
     found = slipping_orders(scenario.specimen.bearing, slip)
     wander = conditions["spin_wander"] * mean(SPIN_FIRST, SPIN_TERMS)
     return MeanMotion(rate, found._replace(bsf=found.bsf * (1 + wander)))
