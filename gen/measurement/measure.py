@@ -179,13 +179,13 @@ def _parts(
     """The parts of some records, of which ``first`` is the place of the first one in ``twins``."""
     count, n_channels, _ = acceleration.shape
     faulty = [row for row in range(count) if twins is not None and scenarios[row].specimen.fault != "healthy"]
-    healthy, difference = acceleration, np.empty((0, *acceleration.shape[1:]), np.float32)
-    if twins is not None and faulty:
-        healthy = acceleration.copy()
-        healthy[faulty] = twins.acceleration[first : first + count][faulty]
-        difference = acceleration[faulty] - healthy[faulty]
-    bare = np.concatenate([healthy, difference]) if faulty else healthy
-    both = _through_paths(bare, [*filters, *(filters[row] for row in faulty)])
+    # the bearings without their faults, and then what the faults add
+    both = np.empty((count + len(faulty), *acceleration.shape[1:]), np.float32)
+    both[:count] = acceleration
+    for place, row in enumerate(faulty, count):
+        both[row] = twins.acceleration[first + row]
+        np.subtract(acceleration[row], both[row], out=both[place])
+    _through_paths(both, [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
     angles = [shaft_angles(scenario, axis) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
@@ -287,19 +287,17 @@ def _seen(
     return level, share, int(rise)
 
 
-def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) -> Float32Array:
-    """Accelerations behind the transfer paths, shape (record, channel, time) [m s-2].
+def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) -> None:
+    """Filter accelerations by the transfer paths, in place, shape (record, channel, time) [m s-2].
 
     The convolution is circular; its wrap-around falls into the lead, which is dropped.
     """
-    filtered = acceleration.copy()
     resonant = [row for row, found in enumerate(filters) if found.direct is None]
     for row, found in enumerate(filters):
         if found.direct is not None:
-            filtered[row] *= found.direct
+            acceleration[row] *= found.direct
     if resonant:
-        spectra = rfft(filtered[resonant], filters[0].n)
+        spectra = rfft(acceleration[resonant], filters[0].n)
         for spectrum, row in zip(spectra, resonant, strict=True):
             spectrum *= filters[row].paths
-        filtered[resonant] = irfft(spectra, filters[0].n)[..., : filtered.shape[2]]
-    return filtered
+        acceleration[resonant] = irfft(spectra, filters[0].n)[..., : acceleration.shape[2]]
