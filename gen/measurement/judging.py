@@ -160,9 +160,11 @@ def judged_bands(spectra: Sequence[Spectra], bands: list[tuple[int, int]]) -> li
     """Lines and powers of some records in some of their bands."""
     found = [
         Bands(
-            np.zeros((len(one.cycles), len(one.fault), len(bands))),
-            *np.zeros((3, len(one.fault), len(bands))),
-            np.array([math.sqrt(one.chance / (high - low)) for low, high in bands]),
+            lines=np.zeros((len(one.cycles), len(one.fault), len(bands))),
+            bearing=np.zeros((len(one.fault), len(bands))),
+            background=np.zeros((len(one.fault), len(bands))),
+            cross=np.zeros((len(one.fault), len(bands))),
+            thresholds=np.array([math.sqrt(one.chance / (high - low)) for low, high in bands]),
         )
         for one in spectra
     ]

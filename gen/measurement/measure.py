@@ -181,9 +181,8 @@ def _parts(
     faulty = [row for row in range(count) if twins is not None and scenarios[row].specimen.fault != "healthy"]
     # the bearings without their faults, and then what the faults add
     both = np.empty((count + len(faulty), *acceleration.shape[1:]), np.float32)
-    both[:count] = acceleration
+    both[:count] = acceleration if twins is None else twins.acceleration[first : first + count]
     for place, row in enumerate(faulty, count):
-        both[row] = twins.acceleration[first + row]
         np.subtract(acceleration[row], both[row], out=both[place])
     _through_paths(both, [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]

@@ -114,7 +114,8 @@ def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
 
     Newton steps down the potential energy, which is convex; a step that raises it is halved. Converged records are frozen.
     """
-    places, found, q = np.arange(start.shape[1]), start.copy(), start
+    places = np.arange(start.shape[1], dtype=np.intp)
+    found, q = start.copy(), start
     for _ in range(_MOST_STEPS):
         squeeze = given.squeeze(q)
         root = power(squeeze, given.exponent - 1)
@@ -123,7 +124,8 @@ def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
         if not moving.all():
             found[:, places[~moving]] = q[:, ~moving]
             given = _Balls(*(array[..., moving] for array in given))
-            places, q, squeeze, root, residual = (some[..., moving] for some in (places, q, squeeze, root, residual))
+            places, q, squeeze = places[moving], q[:, moving], squeeze[:, moving]
+            root, residual = root[:, moving], residual[:, moving]
         if not len(places):
             break
         stiff = given.exponent * given.factor * root * given.directions

@@ -177,7 +177,8 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     )
     housing = given.load / (given.support + given.ground) + given.play * np.sign(given.load)
     q = np.concatenate([housing + given.load / given.weight * reach, housing])
-    places, found = np.arange(q.shape[1]), q.copy()
+    places: NDArray[np.intp] = np.arange(q.shape[1])
+    found = q.copy()
     for _ in range(200):
         residual, jacobian = _unbalanced_force(given, q)
         largest = np.abs(residual).max(axis=0)
@@ -185,9 +186,8 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
         if not moving.all():
             found[:, places[~moving]] = q[:, ~moving]
             given = _Balance(*(array[..., moving] for array in given))
-            places, q, residual, jacobian, largest = (
-                some[..., moving] for some in (places, q, residual, jacobian, largest)
-            )
+            places, q, largest = places[moving], q[:, moving], largest[moving]
+            residual, jacobian = residual[:, moving], jacobian[..., moving]
         if not len(places):
             break
         # one loaded ball has no stiffness across its direction: a soft spring keeps the step finite, and becomes 0 with the residual

@@ -90,10 +90,10 @@ def _processes(
     bearing: Bearing, shaft_rate: float, rng: np.random.Generator, n_terms: int | None
 ) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and phases [rad] of the first terms of all processes, shape (term,): log-uniform within each process's band."""
-    lowest, widths, unit = (of_terms[:n_terms] for of_terms in _bands(bearing.n_balls))
+    lowest, widths, unit = _bands(bearing.n_balls)
     u = rng.random((2, n_process_terms(bearing.n_balls)))[:, :n_terms]
     units = np.array([1.0, shaft_rate, orders(bearing).ftf * shaft_rate])
-    return lowest * units[unit] * exponential(widths * u[0]), 2 * np.pi * u[1]
+    return lowest[:n_terms] * units[unit[:n_terms]] * exponential(widths[:n_terms] * u[0]), 2 * np.pi * u[1]
 
 
 @functools.lru_cache(maxsize=64)
