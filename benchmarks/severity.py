@@ -20,7 +20,7 @@ from gen.physics.rotor import Machine, as_columns, ball_forces, rest
 from gen.recipe import find_recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.damage import largest_drop_over
-from gen.simulation.inputs import bare_input
+from gen.simulation.inputs import bare_inputs, only
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 
@@ -67,7 +67,7 @@ def unloads(scenario: Scenario, number: int = 0) -> bool | None:
     A spall that turns, on the inner race or on a ball, is taken where the load is largest.
     """
     try:
-        machine = bare_input(scenario).machine
+        machine = only(bare_inputs([scenario])).machine
     except (SimulationError, ValueError):
         return None
     spall = scenario.specimen.spalls[number]
@@ -110,7 +110,9 @@ def main() -> None:
 def narrowest(kind: str, load_n: float) -> float:
     """Width from which on a spall in the direction of the load unloads a ball of the reference machine [m]."""
     scenario = _reference(kind, 1.0, load_n)
-    drop = unloading_drop(bare_input(scenario).machine, scenario.specimen.bearing, scenario.rig.machine["load_angle"])
+    drop = unloading_drop(
+        only(bare_inputs([scenario])).machine, scenario.specimen.bearing, scenario.rig.machine["load_angle"]
+    )
     return 2 * unloading_length(kind, drop, scenario.specimen.bearing)
 
 

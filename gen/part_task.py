@@ -11,7 +11,6 @@ from importlib.metadata import version
 from pathlib import Path
 
 from gen.corpus import PartRow, open_part, part_name, sha256, write_part
-from gen.errors import SimulationError
 from gen.labels import part_dataset
 from gen.measurement.measure import compile_mixing
 from gen.physics.kernel.batch import input_shape
@@ -19,7 +18,7 @@ from gen.recipe import Recipe, recipe_hash
 from gen.records import made_records
 from gen.scenarios import draw_scenarios
 from gen.simulation.inputs import kernel_input
-from gen.simulation.outline import outlined_input
+from gen.simulation.outline import outlined_inputs
 from gen.simulation.simulate import compile_kernel, step_errors
 from gen.simulation.timeline import timeline
 
@@ -93,12 +92,11 @@ def compile_kernels(recipe: Recipe) -> None:
     compile_mixing(draw_scenarios(recipe, 0, 1)[0], recipe)
     done = set()
     for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
-        for scenario in draw_scenarios(recipe, first, first + recipe.corpus.records_per_part):
-            for one in [scenario, scenario.without_fault()][: 2 if recipe.corpus.truth == "full" else 1]:
-                try:
-                    shape = input_shape(outlined_input(one, timeline(recipe)))
-                except SimulationError:  # the record is left out when its part is made
-                    continue
-                if shape not in done:
-                    done.add(shape)
-                    compile_kernel(kernel_input(one, timeline(recipe)))
+        scenarios = draw_scenarios(recipe, first, first + recipe.corpus.records_per_part)
+        if recipe.corpus.truth == "full":
+            scenarios += [scenario.without_fault() for scenario in scenarios]
+        for one, given in zip(scenarios, outlined_inputs(scenarios, timeline(recipe))[0], strict=True):
+            # a record of which no machine is possible is left out when its part is made
+            if given is not None and input_shape(given) not in done:
+                done.add(input_shape(given))
+                compile_kernel(kernel_input(one, timeline(recipe)))

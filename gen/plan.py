@@ -19,7 +19,7 @@ from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Scenario, draw_scenarios
 from gen.simulation.batches import Group, filled_lanes, group_of
-from gen.simulation.outline import outlined_input
+from gen.simulation.outline import outlined_inputs
 from gen.simulation.simulate import integrations
 from gen.simulation.steps import checked_places, steps_per_sample
 from gen.simulation.timeline import timeline
@@ -176,13 +176,11 @@ def most_drawn(recipe: Recipe) -> int:
 def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> Groups:
     """Records of a part by group; the sentence of each record that cannot be simulated goes to ``failures``."""
     groups: Groups = defaultdict(list)
-    for place, scenario in enumerate(scenarios):
-        try:
-            given = outlined_input(scenario, timeline(recipe))
-        except SimulationError as error:
-            failures.append(str(error))
-            continue
-        groups[group_of(given, steps_per_sample(given, scenario.record.number, recipe))].append(place)
+    inputs, impossible = outlined_inputs(scenarios, timeline(recipe))
+    failures += impossible.values()
+    for place, (given, scenario) in enumerate(zip(inputs, scenarios, strict=True)):
+        if given is not None:
+            groups[group_of(given, steps_per_sample(given, scenario.record.number, recipe))].append(place)
     return groups
 
 

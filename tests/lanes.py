@@ -3,7 +3,7 @@
 import numpy as np
 from numba import njit
 
-from gen.physics.inputs import KernelInput
+from gen.physics.inputs import KernelInput, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import KERNEL, LANES
 from gen.physics.kernel.integrate import kernel_sources, prepare, to_next_knot
@@ -31,7 +31,7 @@ def march_lanes(
     """The same by the lane kernel, one trip per record; all of one shape, from static rest unless a ``start`` is given."""
     every = [record._replace(pickups=EVERY_ACCELERATION) for record in records]
     shape = input_shape(every[0])
-    batch = lay_out(every, shape, knot)
+    batch = lay_out(at_rest(every), shape, knot)
     if start is not None:
         batch.state.reshape(-1, LANES)[:N_DYNAMIC] = np.asarray(start)[:, None]
     return march_batch(shape, batch, n_knots, n_steps, knot)[: len(records)]

@@ -57,7 +57,8 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)
             # all variables are declared before any is written: alternating takes 50 % longer
-            declared = [_declare(file, str(name), dataset, codec) for name in dataset.variables]
+            labels = " ".join(sorted(str(label) for label in set(dataset.coords) - set(dataset.dims)))
+            declared = [_declare(file, str(name), dataset, codec, labels) for name in dataset.variables]
             for stored, values in declared:
                 if stored.name != SIGNAL or not chunks:
                     stored[:] = values
@@ -67,9 +68,9 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
 
 
 def _declare(
-    file: netCDF4.Dataset, name: str, dataset: xr.Dataset, codec: Codec
+    file: netCDF4.Dataset, name: str, dataset: xr.Dataset, codec: Codec, labels: str
 ) -> tuple[netCDF4.Variable, NDArray[Any]]:
-    """Declare a variable, and return it with its values.
+    """Declare a variable, and return it with its values; ``labels`` are the text variables that belong to all others.
 
     Text is stored as fixed-length characters: HDF5 2.2 can crash on variable-length strings after another file was closed.
     """
@@ -90,7 +91,7 @@ def _declare(
         storage |= {"zlib": True, "complevel": 1}
         attributes["_Encoding"] = "utf-8"
     if name in dataset.data_vars:
-        attributes["coordinates"] = " ".join(sorted(str(label) for label in set(dataset.coords) - set(dataset.dims)))
+        attributes["coordinates"] = labels
     stored = file.createVariable(name, values.dtype, dimensions, **storage)
     stored.set_auto_maskandscale(False)
     stored.set_auto_chartostring(False)

@@ -5,7 +5,7 @@ other records, and counted when a part is written; the manifest holds the counts
 """
 
 from collections.abc import Iterable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -49,21 +49,22 @@ def judge(signal: NDArray[np.integer] | NDArray[np.floating]) -> NDArray[np.int8
     signal : array, shape (record, channel, time)
         Counts of a 16-bit converter, or accelerations [m s-2].
     """
-    return np.array([_verdict(record) for record in signal], np.int8)  # one by one: a part can take most of the memory
-
-
-def _verdict(record: NDArray[Any]) -> int:
-    lowest, highest = record.min(axis=1), record.max(axis=1)
-    counts = np.issubdtype(record.dtype, np.integer)
+    lowest, highest = signal.min(axis=2), signal.max(axis=2)
+    counts = np.issubdtype(signal.dtype, np.integer)
     lost = lowest == MISSING_COUNT if counts else ~(np.isfinite(lowest) & np.isfinite(highest))
-    low, high = (MISSING_COUNT + 1, -MISSING_COUNT - 1) if counts else (lowest[:, None], highest[:, None])
-    at_ends = np.count_nonzero((record == low) | (record == high), axis=1)
+    low = np.full_like(lowest, MISSING_COUNT + 1) if counts else lowest
+    high = -low if counts else highest
+    at_ends = np.zeros(lowest.shape, int)
+    for place in zip(
+        *np.nonzero((lowest <= low) | (highest >= high)), strict=True
+    ):  # one by one, for a part can take most of the memory
+        at_ends[place] = np.count_nonzero((signal[place] == low[place]) | (signal[place] == high[place]))
     channels = np.select(
-        [lost, (lowest == 0) & (highest == 0), lowest == highest, at_ends > CLIPPED_SHARE * record.shape[1]],
+        [lost, (lowest == 0) & (highest == 0), lowest == highest, at_ends > CLIPPED_SHARE * signal.shape[2]],
         [VERDICTS.index(verdict) for verdict in ("not_finite", "dead", "constant", "clipped")],
         VERDICTS.index("sound"),
     )
-    return int(channels.max())
+    return channels.max(axis=1).astype(np.int8)
 
 
 def counted(verdicts: NDArray[np.int8]) -> SignalCounts:

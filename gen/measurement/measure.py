@@ -18,7 +18,7 @@ from scipy.fft import irfft, rfft
 from gen.corpus.visible import UNJUDGED
 from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_of
 from gen.measurement.gear import gear_in_channels
-from gen.measurement.judging import Judge, spectra_of
+from gen.measurement.judging import Judge, Parts, judges_of
 from gen.measurement.levels import (
     Gains,
     bearing_over_background,
@@ -111,9 +111,9 @@ def measure(
         some = slice(first, first + several)
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
         parts = _parts(acceleration[some], scenarios[some], filters, axis, twins, first)
-        for row, part in reversed(list(enumerate(parts, first))):
+        for row, (part, judge) in reversed(list(enumerate(zip(parts, _judges(parts), strict=True), first))):
             pair = scenarios[row].record.pair
-            found = _levelled(part, scenarios[row], recipe, rounding, level_tries, levels.get(pair))
+            found = _levelled(part, judge, scenarios[row], recipe, rounding, level_tries, levels.get(pair))
             if pair >= 0 and part.is_finite:
                 levels.setdefault(pair, found)
             mixed, flags[row] = disturbed(_mixed(part, found.gains), found.scenario, axis.fs)
@@ -141,6 +141,8 @@ class Part(NamedTuple):
     """Angle of the shaft, shape (time,) [rad]."""
     orders: tuple[float, ...]
     """Orders at which the faults repeat [1]."""
+    steady: bool
+    """True if the speed follows no profile."""
 
     @property
     def is_finite(self) -> bool:
@@ -177,13 +179,12 @@ def _parts(
     """The parts of some records, of which ``first`` is the place of the first one in ``twins``."""
     count, n_channels, _ = acceleration.shape
     faulty = [row for row in range(count) if twins is not None and scenarios[row].specimen.fault != "healthy"]
-    healthy, difference = acceleration, np.empty((0, *acceleration.shape[1:]), np.float32)
-    if twins is not None and faulty:
-        healthy = acceleration.copy()
-        healthy[faulty] = twins.acceleration[first : first + count][faulty]
-        difference = acceleration[faulty] - healthy[faulty]
-    bare = np.concatenate([healthy, difference]) if faulty else healthy
-    both = _through_paths(bare, [*filters, *(filters[row] for row in faulty)])
+    # the bearings without their faults, and then what the faults add
+    both = np.empty((count + len(faulty), *acceleration.shape[1:]), np.float32)
+    both[:count] = acceleration if twins is None else twins.acceleration[first : first + count]
+    for place, row in enumerate(faulty, count):
+        np.subtract(acceleration[row], both[row], out=both[place])
+    _through_paths(both, [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
     angles = [shaft_angles(scenario, axis) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
@@ -202,7 +203,8 @@ def _parts(
         products = Products(*mix(*one, impulses[row], angles[row], lines[row], axis.kept.start, axis.kept.stop))
         added, bearing, noise = (some[..., axis.kept] if some.size else some for some in one)
         orders = twins.orders[first + row] if twins is not None else ()
-        parts.append(Part(added, bearing, noise, products, angles[row][axis.kept], orders))
+        steady = scenarios[row].record.speed_profile is None
+        parts.append(Part(added, bearing, noise, products, angles[row][axis.kept], orders, steady))
     return parts
 
 
@@ -219,26 +221,43 @@ def _to_counts(signal: Float32Array, counts_per_unit: float) -> int:
 
     A record that diverged has no counts. It is left out of the corpus; here it becomes zeros.
     """
-    if not np.isfinite(signal).all():
+    lowest, highest = float(signal.min()), float(signal.max())
+    if not (math.isfinite(lowest) and math.isfinite(highest)):
         signal[:] = 0.0
+        return 0
     np.rint(np.multiply(signal, np.float32(counts_per_unit), out=signal), out=signal)
+    if max(-lowest, highest) * counts_per_unit < LARGEST_COUNT:
+        return 0
     clipped = np.count_nonzero(np.abs(signal) > LARGEST_COUNT)
     np.clip(signal, -LARGEST_COUNT, LARGEST_COUNT, out=signal)
     return int(clipped)
 
 
+def _judges(parts: Sequence[Part]) -> list[Judge | None]:
+    """Judges of those records whose fault has a line."""
+    wanted = [bool(part.orders) and part.fault.size > 0 and part.is_finite for part in parts]
+    given = [
+        Parts(part.fault, part.healthy, part.background, part.orders, part.angles, part.steady)
+        for part, is_wanted in zip(parts, wanted, strict=True)
+        if is_wanted
+    ]
+    judges = iter(judges_of(given))
+    return [next(judges) if is_wanted else None for is_wanted in wanted]
+
+
 def _levelled(
-    part: Part, scenario: Scenario, recipe: Recipe, rounding: float, tries: int, of_group: Levelled | None
+    part: Part,
+    judge: Judge | None,
+    scenario: Scenario,
+    recipe: Recipe,
+    rounding: float,
+    tries: int,
+    of_group: Levelled | None,
 ) -> Levelled:
     """Level of a record: the drawn one, or if its fault cannot be seen the first of some more draws at which it can.
 
     A record of a group has the gains ``of_group``, those of its largest severity, so that all that differs is the fault.
     """
-    judge = None
-    if part.orders and part.fault.size and part.is_finite:
-        steady = scenario.record.speed_profile is None
-        of_record = spectra_of(part.fault, part.healthy, part.background, part.orders, part.angles, steady=steady)
-        judge = Judge(of_record)
     if of_group is not None:
         taken = with_level(scenario, recipe, of_group.scenario.record.level_try)
         return Levelled(taken, of_group.gains, *_seen(part, judge, taken, of_group.gains, rounding))
@@ -267,19 +286,17 @@ def _seen(
     return level, share, int(rise)
 
 
-def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) -> Float32Array:
-    """Accelerations behind the transfer paths, shape (record, channel, time) [m s-2].
+def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) -> None:
+    """Filter accelerations by the transfer paths, in place, shape (record, channel, time) [m s-2].
 
     The convolution is circular; its wrap-around falls into the lead, which is dropped.
     """
-    filtered = acceleration.copy()
     resonant = [row for row, found in enumerate(filters) if found.direct is None]
     for row, found in enumerate(filters):
         if found.direct is not None:
-            filtered[row] *= found.direct
+            acceleration[row] *= found.direct
     if resonant:
-        spectra = rfft(filtered[resonant], filters[0].n)
+        spectra = rfft(acceleration[resonant], filters[0].n)
         for spectrum, row in zip(spectra, resonant, strict=True):
             spectrum *= filters[row].paths
-        filtered[resonant] = irfft(spectra, filters[0].n)[..., : filtered.shape[2]]
-    return filtered
+        acceleration[resonant] = irfft(spectra, filters[0].n)[..., : acceleration.shape[2]]

@@ -59,6 +59,8 @@ class RigFilters:
 
         ``motion``, shape (channel, line), and the paths at ``frequencies`` [Hz] divide each line among the channels.
         """
+        if not len(amplitudes):
+            return motion
         at = np.clip(frequencies, 0.0, self.fs / 2) * (self.n / self.fs)
         below = np.minimum(at.astype(int), self.paths.shape[1] - 2)
         share = at - below

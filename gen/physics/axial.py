@@ -8,16 +8,19 @@ half of the balls are loaded, and the bearing has no stable axial position [1]_.
 .. [1] T. A. Harris, *Rolling Bearing Analysis*, 4th ed., Wiley, 2001, ch. 7, combined radial and thrust load.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.physics.rotor import Machine
+from gen.physics.elementary import power
+from gen.physics.rotor import Machine, solved
 
 FloatArray = NDArray[np.float64]
 # least axial load, over radial load times the tangent of the contact angle, at which half of the balls are loaded
 HALF_LOADED = 1.25
 _BALANCED = 1e-9  # largest unbalanced force over the load
-_MOST_STEPS, _SMALLEST_SHARE = 100, 1e-3
+_MOST_STEPS, _SMALLEST_SHARE, _ROUNDING = 100, 1e-3, 1e-12
 
 
 def least_axial_load(radial_load: float, contact_angle: float) -> float:
@@ -29,70 +32,115 @@ def least_axial_load(radial_load: float, contact_angle: float) -> float:
     return float(HALF_LOADED * radial_load * np.tan(abs(contact_angle)))
 
 
-def axial_approach(machine: Machine, axial_load: float, angles: FloatArray, largest_load_share: float = 1.0) -> float:
-    """Squeeze that an axial load adds to every ball [m].
+def check_axial_load(machine: Machine, axial_load: float, largest_load_share: float = 1.0) -> None:
+    """Raise ValueError if the contact angle is 0, or if an axial load [N] is too small to load half of the balls.
 
-    Parameters
-    ----------
-    machine : Machine
-        Its radial load, clearance, contact angle and load-deflection law are used.
-    axial_load : float
-        Above 0 [N].
-    angles : array, shape (ball,)
-        Angular positions of the balls [rad].
-    largest_load_share : float
-        Largest radial load of the record over the load of ``machine``; the axial load must suffice for it [1].
-
-    Raises
-    ------
-    ValueError
-        If the contact angle is 0, or if the axial load is too small to load half of the balls.
+    It must suffice for ``largest_load_share`` times the radial load of ``machine``.
     """
     cosine = machine.contact_cosine
     sine = np.sqrt(1 - cosine**2)
     least = HALF_LOADED * largest_load_share * np.hypot(machine.load_x, machine.load_y) * sine / cosine
-    if sine == 0 or axial_load < least:
+    if sine == 0:
+        message = f"an axial load of {axial_load:g} N needs a contact angle above 0."
+        raise ValueError(message)
+    if axial_load < least:
         message = (
             f"an axial load of {axial_load:.4g} N is too small to hold its rings together; give at least {least:.4g} N."
         )
-        if sine == 0:
-            message = f"an axial load of {axial_load:g} N needs a contact angle above 0."
         raise ValueError(message)
-    directions = np.stack([cosine * np.cos(angles), cosine * np.sin(angles), np.full(len(angles), sine)], axis=1)
-    load = np.array([machine.load_x, machine.load_y, axial_load])
-    factor, n = machine.load_deflection_factor, machine.contact_exponent
-    # every ball carries the same part of the axial load
-    equal_squeeze = (axial_load / (len(angles) * sine * factor)) ** (1 / n)
-    start = np.array([0.0, 0.0, (max(machine.half_clearance, 0.0) + equal_squeeze) / sine])
-    found = _equilibrium(directions, load, factor, n, machine.half_clearance, start)
-    # rounded to a picometre: further digits depend on the linear algebra library of the processor
-    return round(float(found[2] * sine), 12)
 
 
-def _equilibrium(
-    directions: FloatArray, load: FloatArray, factor: float, exponent: float, half_clearance: float, start: FloatArray
-) -> FloatArray:
-    """Displacement of the inner ring at which the forces of the balls along ``directions`` balance ``load``, shape (3,) [m].
+def axial_approach(machine: Machine, axial_load: FloatArray, angles: FloatArray) -> list[float]:
+    """Squeeze that an axial load adds to every ball, of each record [m].
 
-    Newton steps down the potential energy, which is convex; a step that does not lower it is halved.
+    Parameters
+    ----------
+    machine : Machine
+        Arrays of shape (record,): radial load, clearance, contact angle and load-deflection law are used. All records have the same
+        ``contact_exponent``.
+    axial_load : array, shape (record,)
+        Those that :func:`check_axial_load` allows [N].
+    angles : array, shape (record, ball)
+        Angular positions of the balls, NaN for balls that a bearing does not have [rad].
     """
+    cosine, factor, n = machine.contact_cosine, machine.load_deflection_factor, machine.contact_exponent
+    missing, sine = np.isnan(angles.T), np.sqrt(1 - np.square(cosine))
+    directions = np.stack([cosine * np.cos(angles).T, cosine * np.sin(angles).T, np.broadcast_to(sine, missing.shape)])
+    given = _Balls(
+        directions=np.where(missing, 0.0, directions),
+        load=np.stack([machine.load_x, machine.load_y, axial_load]),
+        factor=np.asarray(factor),
+        exponent=np.asarray(n),
+        half_clearance=np.where(missing, np.inf, machine.half_clearance),  # never squeezed
+    )
+    # every ball carries the same part of the axial load
+    equal_squeeze = power(axial_load / (np.count_nonzero(~missing, axis=0) * sine * factor), 1 / given.exponent)
+    start = np.zeros((3, len(angles)))
+    start[2] = (np.maximum(machine.half_clearance, 0.0) + equal_squeeze) / sine
+    # rounded to a picometre: earlier versions solved this with BLAS, whose last bits depend on the processor
+    return [round(squeeze, 12) for squeeze in (_equilibrium(given, start)[2] * sine).tolist()]
 
-    def energy(squeeze: FloatArray, q: FloatArray) -> float:
-        return float(factor / (exponent + 1) * np.sum(squeeze ** (exponent + 1)) - load @ q)
 
-    q, squeeze = start, np.maximum(directions @ start - half_clearance, 0.0)
+class _Balls(NamedTuple):
+    """Balls of some records; the last axis of every array is the record."""
+
+    directions: FloatArray
+    """Shape (axis, ball, record)."""
+    load: FloatArray
+    """Shape (axis, record)."""
+    factor: FloatArray
+    exponent: FloatArray
+    half_clearance: FloatArray
+    """Shape (ball, record)."""
+
+    def squeeze(self, q: FloatArray) -> FloatArray:
+        """Squeeze of every ball under a displacement, shape (ball, record)."""
+        x, y, z = self.directions
+        return np.maximum(x * q[0] + y * q[1] + z * q[2] - self.half_clearance, 0.0)
+
+    def energy(self, squeeze: FloatArray, q: FloatArray) -> FloatArray:
+        """Potential energy, shape (record,)."""
+        stored = _sum(squeeze * squeeze * power(squeeze, self.exponent - 1))
+        return self.factor / (self.exponent + 1) * stored - _sum(self.load * q)
+
+
+def _sum(terms: FloatArray) -> FloatArray:
+    """Sum over the last axis but one, term by term; the order of NumPy's sum would depend on the number of records."""
+    return np.add.accumulate(terms, axis=-2)[..., -1, :]
+
+
+def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
+    """Displacement of the inner ring at which the forces of the balls balance the loads, shape (axis, record) [m].
+
+    Newton steps down the potential energy, which is convex; a step that raises it is halved. Converged records are frozen.
+    """
+    places = np.arange(start.shape[1], dtype=np.intp)
+    found, q = start.copy(), start
     for _ in range(_MOST_STEPS):
-        residual = load - (factor * squeeze**exponent) @ directions
-        if np.abs(residual).max() < _BALANCED * np.abs(load).max():
+        squeeze = given.squeeze(q)
+        root = power(squeeze, given.exponent - 1)
+        residual = given.load - _sum(given.factor * squeeze * root * given.directions)
+        moving = np.abs(residual).max(axis=0) >= _BALANCED * np.abs(given.load).max(axis=0)
+        if not moving.all():
+            found[:, places[~moving]] = q[:, ~moving]
+            given = _Balls(*(array[..., moving] for array in given))
+            places, q, squeeze = places[moving], q[:, moving], squeeze[:, moving]
+            root, residual = root[:, moving], residual[:, moving]
+        if not len(places):
             break
-        stiffness = exponent * factor * squeeze ** (exponent - 1)
-        step = np.linalg.solve((directions.T * stiffness) @ directions, residual)
-        before, share = energy(squeeze, q), 1.0
-        while True:
-            moved = q + share * step
-            squeezed = np.maximum(directions @ moved - half_clearance, 0.0)
-            if energy(squeezed, moved) < before or share < _SMALLEST_SHARE:
-                break
-            share /= 2
-        q, squeeze = moved, squeezed
-    return q
+        stiff = given.exponent * given.factor * root * given.directions
+        step = solved(_sum(stiff[:, None] * given.directions), residual)
+        q = _lowered(given, q, step, given.energy(squeeze, q))
+    found[:, places] = q
+    return found
+
+
+def _lowered(given: _Balls, q: FloatArray, step: FloatArray, before: FloatArray) -> FloatArray:
+    """Displacements after a step, or after a share of it that does not raise the energy above ``before``, shape (axis, record) [m]."""
+    share, before = np.ones(q.shape[1]), before + _ROUNDING * np.abs(before)
+    while True:
+        moved = q + share * step
+        again = (given.energy(given.squeeze(moved), moved) > before) & (share >= _SMALLEST_SHARE)
+        if not again.any():
+            return moved
+        share = np.where(again, share / 2, share)

@@ -4,13 +4,15 @@ A :class:`KernelInput` holds a :class:`~gen.physics.rotor.Machine`, a :class:`Tu
 """
 
 import math
+from collections import defaultdict
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.bearing import Bearing
-from gen.physics.rotor import Machine
+from gen.physics.rotor import Machine, as_columns, ball_angles, rest
 
 FloatArray = NDArray[np.float64]
 
@@ -142,6 +144,24 @@ class KernelInput(NamedTuple):
     """Mass of a ball that strikes the edges of spalls; 0 for balls that only change their gap [kg]."""
     hertz_time: float = 0.0
     """Length of the impact of a ball times the fifth root of its speed, see :mod:`gen.physics.impact` [s (m/s)^(1/5)]."""
+    start: tuple[float, ...] = (0.0, 0.0, 0.0, 0.0)
+    """x1, y1, x2, y2 at the start of the integration, see :func:`at_rest` [m]."""
+
+
+def at_rest(inputs: Sequence[KernelInput]) -> list[KernelInput]:
+    """The same inputs, which start from static rest; each rests where it rests alone."""
+    alike: dict[float, list[int]] = defaultdict(list)
+    for place, given in enumerate(inputs):
+        alike[given.machine.contact_exponent].append(place)
+    resting = list(inputs)
+    for places in alike.values():
+        some = [inputs[place] for place in places]
+        balls = ball_angles([given.bearing.n_balls for given in some], [given.turning.cage_angle for given in some])
+        for place, start in zip(
+            places, rest(as_columns([given.machine for given in some]), balls).tolist(), strict=True
+        ):
+            resting[place] = inputs[place]._replace(start=tuple(start))
+    return resting
 
 
 def is_wavy(waviness: Waviness) -> bool:

@@ -5,6 +5,7 @@ Body 1 is the shaft with the inner ring, body 2 the housing with the outer ring,
 
 import math
 from collections.abc import Sequence
+from itertools import chain
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
@@ -53,7 +54,14 @@ class Machine(NamedTuple):
 def as_columns(items: Sequence[Fields]) -> Fields:
     """One item of the same type whose fields are arrays of the fields of several items, shape (item,)."""
     kind: Any = type(items[0])
-    return kind(**{name: np.array([getattr(item, name) for item in items], float) for name in kind._fields})
+    numbers = np.fromiter(chain.from_iterable(items), float, len(items) * len(kind._fields))
+    return kind(*numbers.reshape(len(items), -1).T.copy())
+
+
+def ball_angles(n_balls: Sequence[int], cage_angles: Sequence[float]) -> FloatArray:
+    """Angles of the balls of some bearings, NaN where a bearing has fewer balls than another, shape (record, ball) [rad]."""
+    count, place = np.array(n_balls)[:, None], np.arange(max(n_balls))
+    return np.where(place < count, np.array(cage_angles)[:, None] + 2 * np.pi * place / count, np.nan)
 
 
 def likely_stiffness(machine: Machine, n_balls: int, pull: float = 0.0) -> float:
@@ -115,92 +123,140 @@ def ball_forces(machine: Machine, displacement: FloatArray, angles: FloatArray) 
     force, stiffness : arrays, shape (record, ball)
         [N] and [N/m].
     """
-    along = displacement[:, :1] * np.cos(angles) + displacement[:, 1:] * np.sin(angles)
-    cosine = np.asarray(machine.contact_cosine)[:, None]
-    squeeze = np.maximum(along * cosine - np.asarray(machine.half_clearance)[:, None], 0.0)
-    factor, n = np.asarray(machine.load_deflection_factor)[:, None], np.asarray(machine.contact_exponent)[:, None]
-    root = power(squeeze, n - 1)
-    return factor * squeeze * root * cosine, n * factor * root * cosine**2
+    given = _balance(machine, angles)
+    force, stiffness = given.pressed(displacement.T)
+    return force.T, stiffness.T
+
+
+class _Balance(NamedTuple):
+    """Constants of the static balance of some records; the last axis of every array is the record."""
+
+    load: FloatArray
+    """Shape (axis, record), as are the next four."""
+    support: FloatArray
+    ring: FloatArray
+    ground: FloatArray
+    play: FloatArray
+    directions: FloatArray
+    """Of the balls, shape (axis, ball, record)."""
+    weight: FloatArray
+    """Size of the load, shape (record,), as are the next four."""
+    cosine: FloatArray
+    half_clearance: FloatArray
+    factor: FloatArray
+    exponent: FloatArray
+
+    def pressed(self, displacement: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Force and stiffness of every ball, shape (ball, record), under a displacement of shape (axis, record)."""
+        along = displacement[0] * self.directions[0] + displacement[1] * self.directions[1]
+        squeeze = np.maximum(along * self.cosine - self.half_clearance, 0.0)
+        root = power(squeeze, self.exponent - 1)
+        return self.factor * squeeze * root * self.cosine, self.exponent * self.factor * root * self.cosine**2
 
 
 def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     """Static equilibrium under the load, without spalls, by damped Newton steps; a loose housing is at the limit of its play.
 
+    A record does not depend on the others: it is frozen when it has converged, and every sum has a fixed order.
+
     Parameters
     ----------
     machine : Machine
-        Arrays of shape (record,).
+        Arrays of shape (record,); all records have the same ``contact_exponent``.
     angles : array, shape (record, ball)
-        Angular positions of the balls [rad].
+        Angular positions of the balls, NaN for balls that a bearing does not have [rad].
 
     Returns
     -------
     array, shape (record, coordinate)
         x1, y1, x2, y2 [m].
     """
-    load = np.stack([machine.load_x, machine.load_y], axis=1)
-    weight = np.maximum(np.hypot(*load.T), 1e-12)
-    support = np.stack([machine.support_stiffness_x, machine.support_stiffness_y], axis=1)
-    ring = np.stack([machine.ring_stiffness_x, machine.ring_stiffness_y], axis=1)
-    ground = np.broadcast_to(np.asarray(machine.shaft_stiffness)[:, None], support.shape)
-    play = np.broadcast_to(np.asarray(machine.looseness)[:, None], support.shape)
-    reach = np.maximum(machine.half_clearance, 0) / machine.contact_cosine
-    reach = reach + 2 * power(weight / machine.load_deflection_factor, 1 / np.asarray(machine.contact_exponent))
-    housing = load / (support + ground) + play * np.sign(load)
-    q = np.concatenate([housing + load / weight[:, None] * reach[:, None], housing], axis=1)
+    given = _balance(machine, angles)
+    reach = np.maximum(given.half_clearance, 0) / given.cosine + 2 * power(
+        given.weight / given.factor, 1 / given.exponent
+    )
+    housing = given.load / (given.support + given.ground) + given.play * np.sign(given.load)
+    q = np.concatenate([housing + given.load / given.weight * reach, housing])
+    places: NDArray[np.intp] = np.arange(q.shape[1])
+    found = q.copy()
     for _ in range(200):
-        residual, jacobian = _unbalanced_force(machine, q, angles, load, support, ring, ground, play)
-        moving = np.abs(residual).max(axis=1) >= 1e-9 * weight
-        if not moving.any():
+        residual, jacobian = _unbalanced_force(given, q)
+        largest = np.abs(residual).max(axis=0)
+        moving = largest >= 1e-9 * given.weight
+        if not moving.all():
+            found[:, places[~moving]] = q[:, ~moving]
+            given = _Balance(*(array[..., moving] for array in given))
+            places, q, largest = places[moving], q[:, moving], largest[moving]
+            residual, jacobian = residual[:, moving], jacobian[..., moving]
+        if not len(places):
             break
         # one loaded ball has no stiffness across its direction: a soft spring keeps the step finite, and becomes 0 with the residual
-        soft = 1e-3 * np.abs(residual).max(axis=1) / 1e-6 + 1e-3
-        step = _solved(jacobian + soft[:, None, None] * np.eye(4), residual)
-        longest = np.abs(step).max(axis=1, keepdims=True)
-        step *= np.minimum(1.0, 2e-6 / np.maximum(longest, 1e-30))
-        q = np.where(
-            moving[:, None], q + step, q
-        )  # converged records are frozen, so that results do not depend on the batch
-    return q
+        for row in range(4):
+            jacobian[row, row] += 1e-3 * largest / 1e-6 + 1e-3
+        step = solved(jacobian, residual)
+        q += step * np.minimum(1.0, 2e-6 / np.maximum(np.abs(step).max(axis=0), 1e-30))
+    found[:, places] = q
+    return found.T
 
 
-def _unbalanced_force(
-    machine: Machine,
-    q: FloatArray,
-    angles: FloatArray,
-    load: FloatArray,
-    support: FloatArray,
-    ring: FloatArray,
-    ground: FloatArray,
-    play: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Sum of the forces on each coordinate, shape (record, 4), and its negative derivative, shape (record, 4, 4)."""
-    relative = q[:, :2] - q[:, 2:]
-    force, stiffness = ball_forces(machine, relative, angles)
-    directions = np.stack([np.cos(angles), np.sin(angles)], axis=2)
-    pushed = np.einsum("rb,rba->ra", force, directions) + ring * relative
-    stretch = q[:, 2:] - np.clip(q[:, 2:], -play, play)
-    held = np.where((stretch != 0) | (play == 0), support, 0.0)
-    residual = np.concatenate([load - pushed - ground * q[:, :2], pushed - support * stretch], axis=1)
-    contact = np.einsum("rb,rba,rbc->rac", stiffness, directions, directions) + ring[:, :, None] * np.eye(2)
-    jacobian = np.empty((len(q), 4, 4))
-    jacobian[:, :2, :2] = contact + ground[:, :, None] * np.eye(2)
-    jacobian[:, :2, 2:] = jacobian[:, 2:, :2] = -contact
-    jacobian[:, 2:, 2:] = contact + held[:, :, None] * np.eye(2)
+def _balance(machine: Machine, angles: FloatArray) -> _Balance:
+    load = np.stack([machine.load_x, machine.load_y])
+    loose = np.isnan(angles.T)
+    return _Balance(
+        load=load,
+        support=np.stack([machine.support_stiffness_x, machine.support_stiffness_y]),
+        ring=np.stack([machine.ring_stiffness_x, machine.ring_stiffness_y]),
+        ground=np.stack([machine.shaft_stiffness] * 2),
+        play=np.stack([machine.looseness] * 2),
+        # balls without a direction press on nothing
+        directions=np.where(loose, 0.0, np.stack([np.cos(angles).T, np.sin(angles).T])),
+        weight=np.maximum(np.hypot(*load), 1e-12),
+        cosine=np.asarray(machine.contact_cosine),
+        half_clearance=np.asarray(machine.half_clearance),
+        factor=np.asarray(machine.load_deflection_factor),
+        exponent=np.asarray(machine.contact_exponent),
+    )
+
+
+def _unbalanced_force(given: _Balance, q: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Sum of the forces on each coordinate, shape (4, record), and its negative derivative, shape (4, 4, record)."""
+    relative = q[:2] - q[2:]
+    force, stiffness = given.pressed(relative)
+    of_balls = np.empty((6, *force.shape))
+    np.multiply(force, given.directions, out=of_balls[:2])
+    stiff = stiffness * given.directions
+    np.multiply(stiff[:, None], given.directions, out=of_balls[2:].reshape(2, 2, *force.shape))
+    # accumulate adds ball by ball; the order of a sum would depend on the number of records
+    sums = np.add.accumulate(of_balls, axis=1)[:, -1]
+    pushed, contact = sums[:2] + given.ring * relative, sums[2:].reshape(2, 2, -1)
+    stretch = q[2:] - np.clip(q[2:], -given.play, given.play)
+    held = np.where((stretch != 0) | (given.play == 0), given.support, 0.0)
+    residual = np.concatenate([given.load - pushed - given.ground * q[:2], pushed - given.support * stretch])
+    for axis in range(2):
+        contact[axis, axis] += given.ring[axis]
+    jacobian = np.empty((4, 4, q.shape[1]))
+    jacobian[:2, :2] = jacobian[2:, 2:] = contact
+    jacobian[:2, 2:] = jacobian[2:, :2] = -contact
+    for axis in range(2):
+        jacobian[axis, axis] += given.ground[axis]
+        jacobian[2 + axis, 2 + axis] += held[axis]
     return residual, jacobian
 
 
-def _solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
-    """Solution of positive definite systems by elimination, shape (record, row); LAPACK has other bits on other processors."""
-    matrix, right = matrix.copy(), right.copy()
-    size = right.shape[1]
-    for pivot in range(size):
-        share = matrix[:, pivot + 1 :, pivot] / matrix[:, pivot, pivot, None]
-        matrix[:, pivot + 1 :] -= share[..., None] * matrix[:, pivot, None]
-        right[:, pivot + 1 :] -= share * right[:, pivot, None]
-    for row in reversed(range(size)):
-        right[:, row] -= np.einsum("rk,rk->r", matrix[:, row, row + 1 :], right[:, row + 1 :])
-        right[:, row] /= matrix[:, row, row]
+def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+    """Solution of some positive definite equations by elimination, shape (row, record); LAPACK has other bits on other processors.
+
+    ``matrix``, of shape (row, column, record), and ``right``, of shape (row, record), are changed.
+    """
+    last = len(right) - 1
+    for pivot in range(last):
+        below = slice(pivot + 1, None)
+        share = matrix[below, pivot] / matrix[pivot, pivot]
+        matrix[below, below] -= share[:, None] * matrix[pivot, below]
+        right[below] -= share * right[pivot]
+    for row in range(last, -1, -1):
+        columns = *range(row + 1, last + 1, 2), *range(row + 2, last + 1, 2)
+        right[row] = (right[row] - sum(matrix[row, at] * right[at] for at in columns)) / matrix[row, row]
     return right
 
 

@@ -5,8 +5,10 @@ one number: to change the distribution of one key does not move the values of th
 quantity: :mod:`gen.recipe.shares` says which quantities can be named, and :mod:`gen.scenarios.draws` multiplies when all are drawn.
 """
 
+import functools
 import math
 import reprlib
+from bisect import bisect_right
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
@@ -210,8 +212,13 @@ def weighted_index(weights: tuple[float, ...], u: float) -> int:
     >>> [weighted_index((1, 2, 1), u) for u in (0.0, 0.25, 0.74, 0.75)]
     [0, 1, 1, 2]
     """
-    edges = np.cumsum(weights) / np.sum(weights)
-    return min(int(np.searchsorted(edges, u, side="right")), len(weights) - 1)
+    return min(bisect_right(_edges(weights), u), len(weights) - 1)
+
+
+@functools.lru_cache(maxsize=256)
+def _edges(weights: tuple[float, ...]) -> list[float]:
+    """Upper end of the quantiles of each index."""
+    return (np.cumsum(weights) / np.sum(weights)).tolist()
 
 
 def _from_number(value: Any) -> Any:

@@ -41,7 +41,7 @@ class _Scope(NamedTuple):
 
 def quantities(section: Section) -> dict[str, Any]:
     """Distribution of every quantity of a section, by key."""
-    return {key: value for key, value in section if isinstance(value, DISTRIBUTIONS)}
+    return {key: value for key, value in vars(section).items() if type(value) in DISTRIBUTIONS}
 
 
 def share_problem(recipe: "Recipe") -> str | None:

@@ -28,7 +28,7 @@ from gen.recipe import (
 )
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.classes import fault_of_each_specimen
-from gen.scenarios.draws import Draws, known_of, known_of_rig
+from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import damaged
 from gen.scenarios.model import (
     Background,
@@ -43,6 +43,7 @@ from gen.scenarios.model import (
     Tone,
     stream,
 )
+from gen.scenarios.operating import operating_of
 from gen.scenarios.points import points_of
 from gen.scenarios.records import draw_record, record_points, source_of
 from gen.scenarios.sensor_faults import draw_gear, draw_rig_sensor_faults
@@ -74,6 +75,7 @@ def draw_scenarios(
         for number, point in points_of(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
     }
     rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
+    known = {number: known_of_rig(recipe, rig) for number, rig in rigs.items()}
     classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
     specimen_draws = {
         number: Draws(
@@ -85,6 +87,7 @@ def draw_scenarios(
         number: _draw_specimen(
             recipe,
             rigs[number // per_rig],
+            known[number // per_rig],
             number,
             draws,
             classes[number // per_rig],
@@ -92,9 +95,16 @@ def draw_scenarios(
         )
         for number, draws in specimen_draws.items()
     }
+    operating = {entry: operating_of(recipe, entry) for entry in {specimen.entry for specimen in specimens.values()}}
     sources = {
         number: source_of(
-            recipe, rigs[number // per_rig], specimen, rig_draws[number // per_rig], specimen_draws[number]
+            recipe,
+            rigs[number // per_rig],
+            known[number // per_rig],
+            specimen,
+            operating[specimen.entry],
+            rig_draws[number // per_rig],
+            specimen_draws[number],
         )
         for number, specimen in specimens.items()
     }
@@ -222,8 +232,9 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     )
 
 
-def _draw_specimen(recipe: Recipe, rig: Rig, number: int, draws: Draws, classes: list[str], fault_try: int) -> Specimen:
-    known = known_of_rig(recipe, rig)
+def _draw_specimen(
+    recipe: Recipe, rig: Rig, known: Known, number: int, draws: Draws, classes: list[str], fault_try: int
+) -> Specimen:
     properties = draws.section(recipe.specimen, {**known, FREE_ANGLE: functools.partial(_free_angle, rig.bearing)})
     bearing = replace(
         rig.bearing,

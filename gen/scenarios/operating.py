@@ -21,10 +21,10 @@ class Operating(NamedTuple):
     """Distributions of the operating quantities of a specimen, by key."""
 
     section: Section
-    usual: Distributions
-    """Those of ``operation``."""
-    changes: Distributions
-    """Those that the entry of its fault replaces."""
+    usual: Mapping[Level, Distributions]
+    """Those of ``operation``, by the level at which they are drawn."""
+    changes: Mapping[Level, Distributions]
+    """Those that the entry of its fault replaces, likewise."""
     wanted: Distributions
     """Those that it has: the usual ones with the changes."""
     levels: Mapping[str, Level]
@@ -45,7 +45,14 @@ def operating_of(recipe: Recipe, number: int) -> Operating:
     changes = {} if entry is None else quantities(entry)
     wanted = {**usual, **changes}
     levels: dict[str, Level] = {key: _level_of(distribution) for key, distribution in wanted.items()}
-    return Operating(recipe.operation, usual, changes, wanted, levels)
+    return Operating(recipe.operation, _by_level(usual), _by_level(changes), wanted, levels)
+
+
+def _by_level(distributions: Distributions) -> dict[Level, Distributions]:
+    found: dict[Level, dict[str, Any]] = {"rig": {}, "specimen": {}, "record": {}}
+    for key, distribution in distributions.items():
+        found[_level_of(distribution)][key] = distribution
+    return {**found}
 
 
 def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> Common:
@@ -81,13 +88,11 @@ def _values(
     quantity; for the same reason ``combination`` is left as ``operation`` leaves it.
     """
     found: dict[str, float] = {}
-    for key, distribution in operating.usual.items():
-        if _level_of(distribution) == level:
-            found[key] = combination.value(distribution, numbers[key])
+    for key, distribution in operating.usual[level].items():
+        found[key] = combination.value(distribution, numbers[key])
     further = Combination(combination.number)
-    for key, distribution in operating.changes.items():
-        if _level_of(distribution) == level:
-            found[key] = further.value(distribution, numbers[key])
+    for key, distribution in operating.changes[level].items():
+        found[key] = further.value(distribution, numbers[key])
     return {key: value for key, value in found.items() if operating.levels[key] == level}
 
 

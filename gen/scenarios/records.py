@@ -13,9 +13,9 @@ from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
 from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
-from gen.scenarios.draws import Combination, Draws, Known, known_of, known_of_rig
+from gen.scenarios.draws import Combination, Draws, Known, known_of
 from gen.scenarios.model import Operation, Purpose, Rig, Scenario, Specimen, stream
-from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions, operating_of
+from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of
 from gen.scenarios.sensor_faults import draw_record_sensor_faults
 from gen.units import percent_to_share
@@ -34,10 +34,14 @@ class Source(NamedTuple):
     """Quantities of rig and specimen."""
 
 
-def source_of(recipe: Recipe, rig: Rig, specimen: Specimen, of_rig: Draws, of_specimen: Draws) -> Source:
-    """Origin of the records of a specimen; its operating grids go on with the combinations of ``of_rig`` and ``of_specimen``."""
+def source_of(
+    recipe: Recipe, rig: Rig, known: Known, specimen: Specimen, operating: Operating, of_rig: Draws, of_specimen: Draws
+) -> Source:
+    """Origin of the records of a specimen; its operating grids go on with the combinations of ``of_rig`` and ``of_specimen``.
+
+    ``known`` are the quantities of its rig.
+    """
     rungs = recipe.corpus.rungs if recipe.corpus.rungs is not None and specimen.fault != "healthy" else (1.0,)
-    operating = operating_of(recipe, specimen.entry)
     commons: dict[Level, Common] = {}
     if "rig" in operating.levels.values():
         rng = stream(recipe.seed, rig.number, 0, 0, Purpose.RIG_OPERATION)
@@ -46,7 +50,7 @@ def source_of(recipe: Recipe, rig: Rig, specimen: Specimen, of_rig: Draws, of_sp
         rng = stream(recipe.seed, rig.number, specimen.number, 0, Purpose.SPECIMEN_OPERATION)
         commons["specimen"] = common_numbers(recipe, rng, of_specimen.combination.number)
     known = {
-        **known_of_rig(recipe, rig),
+        **known,
         **known_of(recipe.specimen, specimen.properties),
         STATIC_RATING: lambda _: static_rating(rig.bearing),
         LEAST_AXIAL_LOAD: lambda value: least_axial_load(value("load_n"), specimen.bearing.contact_angle),

@@ -3,6 +3,7 @@
 A record does not depend on the others in its batch.
 """
 
+import functools
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import NamedTuple
@@ -38,6 +39,9 @@ class Integrated(NamedTuple):
     """Largest contact stiffness, shape (record,) [N/m]."""
 
 
+_filters = functools.lru_cache(maxsize=16)(decimation)
+
+
 def group_of(given: KernelInput, steps: int) -> Group:
     """Group of a record that takes ``steps`` per sample."""
     return Group(input_shape(given), steps)
@@ -60,8 +64,8 @@ def filled_lanes(count: int) -> int:
 
 def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     """Integrate one batch along the time axis of the recipe."""
-    step, filters = 1 / (timeline.fs * group.steps), decimation(group.steps)
-    return integrate(group.shape, batch, step, group.steps, filters, timeline.dropped, timeline.returned)
+    step = 1 / (timeline.fs * group.steps)
+    return integrate(group.shape, batch, step, group.steps, _filters(group.steps), timeline.dropped, timeline.returned)
 
 
 def integrate_all(

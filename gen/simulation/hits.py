@@ -5,18 +5,14 @@ outer race outside the zone is never felt; a spall of the inner race or of a bal
 """
 
 import math
-from collections import defaultdict
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from gen.physics.bearing import Orders
 from gen.physics.inputs import KernelInput
-from gen.physics.rotor import as_columns, rest
 from gen.scenarios import Scenario
 from gen.simulation.damage import untabulated_spalls
-from gen.simulation.inputs import bare_input
+from gen.simulation.inputs import bare_inputs, resting
 
 
 class LoadZone(NamedTuple):
@@ -28,30 +24,20 @@ class LoadZone(NamedTuple):
     """Half of its width: pi if all balls are loaded, 0 if none is [rad]."""
 
 
-def load_zones(inputs: Sequence[KernelInput]) -> list[LoadZone]:
-    """Load zone of each record, without its spalls."""
-    places: dict[int, list[int]] = defaultdict(list)
-    for place, given in enumerate(inputs):
-        places[given.bearing.n_balls].append(place)
-    zones: dict[int, LoadZone] = {}
-    for n_balls, members in places.items():
-        machines = as_columns([inputs[place].machine for place in members])
-        cages = np.array([inputs[place].turning.cage_angle for place in members])
-        rings = rest(machines, cages[:, None] + 2 * np.pi * np.arange(n_balls) / n_balls)
-        for place, (x1, y1, x2, y2) in zip(members, rings.tolist(), strict=True):
-            machine = inputs[place].machine
-            approach = math.hypot(x1 - x2, y1 - y2) * machine.contact_cosine
-            share = machine.half_clearance / max(approach, 1e-15)
-            zones[place] = LoadZone(math.atan2(y1 - y2, x1 - x2), math.acos(min(max(share, -1.0), 1.0)))
-    return [zones[place] for place in range(len(inputs))]
+def load_zone(given: KernelInput) -> LoadZone:
+    """Load zone of a record that starts from static rest."""
+    machine, (x1, y1, x2, y2) = given.machine, given.start
+    approach = math.hypot(x1 - x2, y1 - y2) * machine.contact_cosine
+    share = machine.half_clearance / max(approach, 1e-15)
+    return LoadZone(math.atan2(y1 - y2, x1 - x2), math.acos(min(max(share, -1.0), 1.0)))
 
 
-def loaded_hits(given: KernelInput, zone: LoadZone, orders: Orders, turns: float) -> int:
+def loaded_hits(given: KernelInput, orders: Orders, turns: float) -> int:
     """Expected number of passages of loaded balls over all spalls in ``turns`` of the shaft, rounded [1].
 
     ``orders`` are the mean fault orders of the record. The tilt of the spin axis of a damaged ball does not count.
     """
-    passages = 0.0
+    passages, zone = 0.0, load_zone(given)
     for spall in given.spalls:
         if spall.site == "outer":
             passages += orders.bpfo * turns if _reaches(given, spall.angle, spall.width, zone) else 0.0
@@ -63,14 +49,12 @@ def loaded_hits(given: KernelInput, zone: LoadZone, orders: Orders, turns: float
 def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
     """False for each record whose only faults are spalls of the outer race that no loaded ball meets."""
     places = [place for place, scenario in enumerate(scenarios) if _only_outer_spalls(scenario)]
-    felt, inputs = [True] * len(scenarios), {}
-    for place in places:
-        try:
-            inputs[place] = bare_input(scenarios[place])._replace(spalls=untabulated_spalls(scenarios[place]))
-        except ValueError:  # no such machine is possible; the simulation says so
-            continue
-    for (place, given), zone in zip(inputs.items(), load_zones(list(inputs.values())), strict=True):
-        felt[place] = any(_reaches(given, spall.angle, spall.width, zone) for spall in given.spalls)
+    felt = [True] * len(scenarios)
+    inputs, _ = bare_inputs([scenarios[place] for place in places])
+    for place, given in zip(places, resting(inputs), strict=True):
+        if given is not None:  # otherwise no such machine is possible; the simulation says so
+            zone, spalls = load_zone(given), untabulated_spalls(scenarios[place])
+            felt[place] = any(_reaches(given, spall.angle, spall.width, zone) for spall in spalls)
     return felt
 
 

@@ -1,47 +1,93 @@
-"""Kernel input of a scenario, put together from machine, motion and damage."""
+"""Kernel inputs of scenarios, put together from machine, motion and damage.
+
+Static rest and axial load are solved for all records at once; the result does not depend on the other records.
+"""
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
 
 import numpy as np
 
 from gen.errors import SimulationError
 from gen.physics.impact import hertz_time, rolling_mass
-from gen.physics.inputs import KernelInput
+from gen.physics.inputs import KernelInput, at_rest
 from gen.scenarios import Scenario
 from gen.simulation.damage import spall_inputs, waviness_of
-from gen.simulation.machine import check_load, heaviest_ball_load, machine_of
-from gen.simulation.motion import schedule_of, start_of, turning_of
+from gen.simulation.machine import check_load, heaviest_ball_load, machine_of, with_axial_loads
+from gen.simulation.motion import Start, schedule_of, start_of, turning_of
 from gen.simulation.timeline import Timeline
 
 _FIRST_COORDINATE = {"shaft": 0, "housing": 2, "sensor": 4}
 
+Failures = dict[int, str]
+"""A sentence for each scenario of which no machine is possible, by its place."""
+
+
+def kernel_inputs(scenarios: Sequence[Scenario], timeline: Timeline) -> tuple[list[KernelInput | None], Failures]:
+    """Everything the kernel needs of each scenario, None where no machine is possible."""
+    inputs, failures = bare_inputs(scenarios)
+    for place, (given, scenario) in enumerate(zip(inputs, scenarios, strict=True)):
+        if given is None:
+            continue
+        try:
+            inputs[place] = given._replace(
+                spalls=spall_inputs(scenario, heaviest_ball_load(scenario)),
+                waviness=waviness_of(scenario, timeline.fs),
+                schedule=schedule_of(scenario, timeline),
+            )
+        except ValueError as error:
+            inputs[place], failures[place] = None, _named(scenario, error)
+    return resting(inputs), failures
+
 
 def kernel_input(scenario: Scenario, timeline: Timeline) -> KernelInput:
-    """Everything the kernel needs of a scenario.
-
-    Raises
-    ------
-    SimulationError
-        If no such machine is possible, with the number of the record.
-    """
-    with failures_named(scenario):
-        return bare_input(scenario)._replace(
-            spalls=spall_inputs(scenario, heaviest_ball_load(scenario)),
-            waviness=waviness_of(scenario, timeline.fs),
-            schedule=schedule_of(scenario, timeline),
-        )
+    """Everything the kernel needs of one scenario; SimulationError if no such machine is possible."""
+    return only(kernel_inputs([scenario], timeline))
 
 
-def bare_input(scenario: Scenario) -> KernelInput:
-    """A kernel input without spalls, waviness and schedule, which take most of the time to make.
+def only(found: tuple[list[KernelInput | None], Failures]) -> KernelInput:
+    """The kernel input of the only scenario; SimulationError if no such machine is possible."""
+    (given,), failures = found
+    if given is None:
+        raise SimulationError(failures[0])
+    return given
 
-    Raises
-    ------
-    ValueError
-        If no such machine is possible.
-    """
+
+def bare_inputs(scenarios: Sequence[Scenario]) -> tuple[list[KernelInput | None], Failures]:
+    """Kernel inputs without spalls, waviness, schedule and rest, which take most of the time to make; None as above."""
+    inputs: list[KernelInput | None] = [None] * len(scenarios)
+    failures: Failures = {}
+    possible: dict[int, KernelInput] = {}
+    for place, scenario in enumerate(scenarios):
+        try:
+            possible[place] = _without_axial_load(scenario)
+        except ValueError as error:
+            failures[place] = _named(scenario, error)
+    machines = with_axial_loads(
+        [given.machine for given in possible.values()],
+        [scenarios[place] for place in possible],
+        [given.turning.cage_angle for given in possible.values()],
+    )
+    for (place, given), machine in zip(possible.items(), machines, strict=True):
+        inputs[place] = given._replace(machine=machine)
+    return inputs, failures
+
+
+def resting(inputs: Sequence[KernelInput | None]) -> list[KernelInput | None]:
+    """The same inputs, which start from static rest."""
+    starts = iter(at_rest([given for given in inputs if given is not None]))
+    return [None if given is None else next(starts) for given in inputs]
+
+
+def without_fault(given: KernelInput, scenario: Scenario, timeline: Timeline) -> KernelInput:
+    """Kernel input of a record without its fault, from that with it: the machine is the same."""
+    sound = scenario.without_fault()
+    turning = given.turning
+    start = Start(turning.shaft_angle, turning.cage_angle, turning.spin_angle, given.frequencies, given.phases)
+    return given._replace(spalls=(), turning=turning_of(sound, start), waviness=waviness_of(sound, timeline.fs))
+
+
+def _without_axial_load(scenario: Scenario) -> KernelInput:
     check_load(scenario)
     start, bearing = start_of(scenario), scenario.specimen.bearing
     channels = scenario.rig.channels
@@ -51,7 +97,7 @@ def bare_input(scenario: Scenario) -> KernelInput:
         weights[first : first + 2] = math.cos(channel.angle), math.sin(channel.angle)
     return KernelInput(
         bearing=bearing,
-        machine=machine_of(scenario, start.cage),
+        machine=machine_of(scenario),
         turning=turning_of(scenario, start),
         spalls=(),
         frequencies=start.frequencies,
@@ -62,10 +108,5 @@ def bare_input(scenario: Scenario) -> KernelInput:
     )
 
 
-@contextmanager
-def failures_named(scenario: Scenario) -> Iterator[None]:
-    """Turn the ValueError of a machine that is not possible into a SimulationError with the number of the record."""
-    try:
-        yield
-    except ValueError as error:
-        raise SimulationError(f"record {scenario.record.number}: {error}") from None
+def _named(scenario: Scenario, error: ValueError) -> str:
+    return f"record {scenario.record.number}: {error}"

@@ -5,14 +5,16 @@ Temperature, oil and axial load act here, once per record: they change clearance
 
 import functools
 import math
+from collections import defaultdict
+from collections.abc import Sequence
 
 import numpy as np
 
-from gen.physics.axial import axial_approach
+from gen.physics.axial import axial_approach, check_axial_load
 from gen.physics.hertz import contact_exponent, load_deflection_factor
 from gen.physics.lubricant import Lubricant, film, lubricated_factor, warm_clearance
 from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
-from gen.physics.rotor import STRIBECK, Machine, sensor_springs
+from gen.physics.rotor import STRIBECK, Machine, as_columns, ball_angles, sensor_springs
 from gen.scenarios import Scenario
 
 THICKEST_FILM = 10e-6  # m, both contacts together; measured films are below 2 um
@@ -33,8 +35,8 @@ def check_load(scenario: Scenario) -> None:
         )
 
 
-def machine_of(scenario: Scenario, cage_angle: float) -> Machine:
-    """Constants of the equations of motion of a record, whose cage starts at ``cage_angle`` [rad].
+def machine_of(scenario: Scenario) -> Machine:
+    """Constants of the equations of motion of a record; :func:`with_axial_loads` adds the squeeze by its axial load.
 
     Raises
     ------
@@ -76,15 +78,29 @@ def machine_of(scenario: Scenario, cage_angle: float) -> Machine:
         looseness=drawn["looseness"],
         contact_exponent=contact_exponent(bearing),
     )
-    axial = scenario.record.conditions["axial_load"]
-    if axial == 0:
-        return machine
-    angles = cage_angle + 2 * np.pi * np.arange(bearing.n_balls) / bearing.n_balls
-    profile = scenario.record.load_profile
-    return machine._replace(
-        half_clearance=half_clearance
-        - axial_approach(machine, axial, angles, largest_load_share=1.0 if profile is None else max(profile.shares))
-    )
+    axial, profile = scenario.record.conditions["axial_load"], scenario.record.load_profile
+    if axial != 0:
+        check_axial_load(machine, axial, 1.0 if profile is None else max(profile.shares))
+    return machine
+
+
+def with_axial_loads(
+    machines: Sequence[Machine], scenarios: Sequence[Scenario], cage_angles: Sequence[float]
+) -> list[Machine]:
+    """Machines of some records whose balls are squeezed by the axial loads too; the cages start at ``cage_angles`` [rad]."""
+    loaded, alike = list(machines), defaultdict[float, list[int]](list)
+    for place, scenario in enumerate(scenarios):
+        if scenario.record.conditions["axial_load"] != 0:
+            alike[machines[place].contact_exponent].append(place)
+    for places in alike.values():
+        loads = np.array([scenarios[place].record.conditions["axial_load"] for place in places])
+        n_balls = [scenarios[place].specimen.bearing.n_balls for place in places]
+        balls = ball_angles(n_balls, [cage_angles[place] for place in places])
+        found = axial_approach(as_columns([machines[place] for place in places]), loads, balls)
+        for place, squeeze in zip(places, found, strict=True):
+            machine = machines[place]
+            loaded[place] = machine._replace(half_clearance=machine.half_clearance - squeeze)
+    return loaded
 
 
 def _contact(scenario: Scenario) -> tuple[float, float, float]:

@@ -45,11 +45,11 @@ class Start(NamedTuple):
     """Shape (term,) [rad]."""
 
 
-def start_of(scenario: Scenario) -> Start:
-    """Draw the start of a record from its own random stream."""
+def start_of(scenario: Scenario, n_terms: int | None = None) -> Start:
+    """Draw the start of a record from its own random stream, with the first ``n_terms`` of its cosine terms, or all."""
     rng = scenario.rng(Purpose.MOTION)
     shaft, cage, spin = (2 * np.pi * rng.random(3)).tolist()
-    frequencies, phases = _processes(scenario.specimen.bearing, scenario.record.conditions["shaft"], rng)
+    frequencies, phases = _processes(scenario.specimen.bearing, scenario.record.conditions["shaft"], rng, n_terms)
     return Start(shaft, cage, spin, frequencies, phases)
 
 
@@ -86,12 +86,14 @@ def turning_of(scenario: Scenario, start: Start) -> Turning:
     )
 
 
-def _processes(bearing: Bearing, shaft_rate: float, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
-    """Frequencies [Hz] and phases [rad] of the terms of all processes, shape (term,): log-uniform within each process's band."""
+def _processes(
+    bearing: Bearing, shaft_rate: float, rng: np.random.Generator, n_terms: int | None
+) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and phases [rad] of the first terms of all processes, shape (term,): log-uniform within each process's band."""
     lowest, widths, unit = _bands(bearing.n_balls)
-    u = rng.random((2, n_process_terms(bearing.n_balls)))
+    u = rng.random((2, n_process_terms(bearing.n_balls)))[:, :n_terms]
     units = np.array([1.0, shaft_rate, orders(bearing).ftf * shaft_rate])
-    return lowest * units[unit] * exponential(widths * u[0]), 2 * np.pi * u[1]
+    return lowest[:n_terms] * units[unit[:n_terms]] * exponential(widths[:n_terms] * u[0]), 2 * np.pi * u[1]
 
 
 @functools.lru_cache(maxsize=64)
@@ -167,16 +169,20 @@ class MeanMotion(NamedTuple):
     """Fault frequencies in orders of the mean shaft rate [1]."""
 
 
-def _walk(scenario: Scenario, timeline: Timeline) -> FloatArray:
+def _walk(bearing: Bearing, turning: Turning, timeline: Timeline) -> FloatArray:
     """Slip of the random walk of the cage at the knots of the record, as the kernel draws it, shape (time,) [1]."""
-    turning = turning_of(scenario, Start(0.0, 0.0, 0.0, np.empty(0), np.empty(0)))
-    strides = np.arange(timeline.settle, timeline.settle + timeline.record) // STRIDE
-    normals = standard_normals(np.arange(strides[0], strides[-1] + 1), turning.walk_seed)
-    return walk_slip_rms(scenario.specimen.bearing, turning, STRIDE / timeline.fs) * normals[strides - strides[0]]
+    first, later = divmod(timeline.settle, STRIDE)
+    normals = standard_normals(
+        np.arange(first, (timeline.settle + timeline.record - 1) // STRIDE + 1), turning.walk_seed
+    )
+    slips = walk_slip_rms(bearing, turning, STRIDE / timeline.fs) * normals
+    return np.repeat(slips, STRIDE)[later : later + timeline.record]
 
 
-def mean_motion(scenario: Scenario, timeline: Timeline, frequencies: FloatArray, phases: FloatArray) -> MeanMotion:
-    """Mean shaft rate and fault orders over the record.
+def mean_motion(
+    scenario: Scenario, timeline: Timeline, turning: Turning, frequencies: FloatArray, phases: FloatArray
+) -> MeanMotion:
+    """Mean shaft rate and fault orders over a record with the motion ``turning``.
 
     ``frequencies`` [Hz] and ``phases`` [rad] are those of the cosine terms of all processes, shape (term,).
     """
@@ -198,9 +204,10 @@ def mean_motion(scenario: Scenario, timeline: Timeline, frequencies: FloatArray,
     rate *= 1 + conditions["speed_wander"] * mean(0, SPEED_TERMS)
     slip = conditions["mean_slip"] + conditions["slip"] * mean(SLIP_FIRST, SLIP_TERMS)
     if "slip_walk" in conditions:
-        walk = _walk(scenario, timeline)
-        times = (np.arange(timeline.record) + 0.5) / timeline.fs
-        slip += float(np.average(walk, weights=None if profile is None else share_at(profile, times)))
+        walk, weights = _walk(scenario.specimen.bearing, turning, timeline), None
+        if profile is not None:
+            weights = share_at(profile, (np.arange(timeline.record) + 0.5) / timeline.fs)
+        slip += float(walk.mean() if weights is None else np.average(walk, weights=weights))
     found = slipping_orders(scenario.specimen.bearing, slip)
     wander = conditions["spin_wander"] * mean(SPIN_FIRST, SPIN_TERMS)
     return MeanMotion(rate, found._replace(bsf=found.bsf * (1 + wander)))

@@ -5,6 +5,7 @@ highest load matter. So an outline has spalls without tables, waviness of no hei
 """
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from gen.physics.inputs import CONSTANT, ROUND, KernelInput, Waviness
 from gen.physics.profile import Profile, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import is_wavy, untabulated_spalls
-from gen.simulation.inputs import bare_input, failures_named
+from gen.simulation.inputs import Failures, bare_inputs, only
 from gen.simulation.motion import is_scheduled, load_wander, wander_terms
 from gen.simulation.timeline import Timeline
 
@@ -26,21 +27,27 @@ MOST_APART = 1024  # knots between two such samples, at most
 FLAT = Waviness(np.zeros((2, 1), complex), ROUND.balls)
 
 
-def outlined_input(scenario: Scenario, timeline: Timeline) -> KernelInput:
-    """Kernel input with the shape and steps per sample of :func:`gen.simulation.inputs.kernel_input`, and nothing else of it.
+def outlined_inputs(scenarios: Sequence[Scenario], timeline: Timeline) -> tuple[list[KernelInput | None], Failures]:
+    """Kernel inputs with the shape and steps per sample of :func:`gen.simulation.inputs.kernel_inputs`, and nothing else of them.
 
-    Raises
-    ------
-    SimulationError
-        If no such machine is possible, with the same sentence.
+    None and the same sentence where no machine is possible.
     """
-    with failures_named(scenario):
-        bare = bare_input(scenario)
-    return bare._replace(
-        spalls=untabulated_spalls(scenario),
-        waviness=FLAT if is_wavy(scenario) else ROUND,
-        schedule=_peaks(scenario, timeline) if is_scheduled(scenario) else CONSTANT,
-    )
+    bare, failures = bare_inputs(scenarios)
+    inputs = [
+        given
+        and given._replace(
+            spalls=untabulated_spalls(scenario),
+            waviness=FLAT if is_wavy(scenario) else ROUND,
+            schedule=_peaks(scenario, timeline) if is_scheduled(scenario) else CONSTANT,
+        )
+        for given, scenario in zip(bare, scenarios, strict=True)
+    ]
+    return inputs, failures
+
+
+def outlined_input(scenario: Scenario, timeline: Timeline) -> KernelInput:
+    """Outline of one scenario; SimulationError if no such machine is possible."""
+    return only(outlined_inputs([scenario], timeline))
 
 
 def _peaks(scenario: Scenario, timeline: Timeline) -> FloatArray:

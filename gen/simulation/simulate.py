@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.errors import SimulationError
 from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.decimate import decimation
@@ -15,7 +14,7 @@ from gen.physics.kernel.layout import Batch
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
 from gen.simulation.batches import Group, batches, group_of, integrate_all
-from gen.simulation.inputs import kernel_input
+from gen.simulation.inputs import kernel_inputs, without_fault
 from gen.simulation.steps import checked_places, failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
@@ -83,7 +82,7 @@ def simulate(
         Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft.
     """
     axis = timeline(recipe)
-    inputs, failures = possible_inputs(scenarios, recipe)
+    inputs, failures = kernel_inputs(scenarios, axis)
     given = {place: some for place, some in enumerate(inputs) if some is not None}
     steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
     known_twins = known_twins or {}
@@ -139,22 +138,10 @@ def _healthy_inputs(
     for place, some in given.items():
         specimen = scenarios[place].specimen
         if specimen.wear is not None or specimen.cage or specimen.axis.get("jumps"):
-            healthy[place] = kernel_input(scenarios[place].without_fault(), timeline(recipe))
+            healthy[place] = without_fault(some, scenarios[place], timeline(recipe))
         elif specimen.fault != "healthy":  # spalls are the only difference
             healthy[place] = some._replace(spalls=())
     return healthy
-
-
-def possible_inputs(scenarios: list[Scenario], recipe: Recipe) -> tuple[list[KernelInput | None], dict[int, str]]:
-    """Kernel input of each scenario, None where no such machine is possible; and a sentence for each of these, by place."""
-    axis, inputs, failures = timeline(recipe), [], {}
-    for place, scenario in enumerate(scenarios):
-        try:
-            inputs.append(kernel_input(scenario, axis))
-        except SimulationError as error:
-            inputs.append(None)
-            failures[place] = str(error)
-    return inputs, failures
 
 
 def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -> FloatArray:
@@ -175,7 +162,7 @@ def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -
 def laid_out(scenarios: list[Scenario], recipe: Recipe) -> list[tuple[Group, Batch]]:
     """Scenarios in lanes, batch by batch, as :func:`simulate` integrates them; all must be possible."""
     axis = timeline(recipe)
-    given = {place: kernel_input(scenario, axis) for place, scenario in enumerate(scenarios)}
+    given = {place: some for place, some in enumerate(kernel_inputs(scenarios, axis)[0]) if some is not None}
     steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
     healthy = _healthy_inputs(scenarios, given, recipe)
     inputs = [*given.values(), *healthy.values()]

@@ -11,8 +11,8 @@ from gen.physics.inputs import KernelInput
 from gen.physics.profile import mean_share, share_at
 from gen.scenarios import Scenario
 from gen.simulation.damage import largest_drop_over
-from gen.simulation.hits import load_zones, loaded_hits
-from gen.simulation.motion import mean_motion, start_of
+from gen.simulation.hits import loaded_hits
+from gen.simulation.motion import mean_motion, start_of, turning_of
 from gen.simulation.timeline import Timeline
 
 
@@ -69,11 +69,11 @@ class WidestSpall(NamedTuple):
 
 def with_loaded_hits(truths: Sequence[Truth], inputs: Sequence[KernelInput | None], timeline: Timeline) -> list[Truth]:
     """Truths with the hits of loaded balls; 0 for a record without spalls or of which no machine is possible."""
-    spalled = {place: given for place, given in enumerate(inputs) if given is not None and given.spalls}
-    found = [truth._replace(loaded_hits=0) for truth in truths]
-    for (place, given), zone in zip(spalled.items(), load_zones(list(spalled.values())), strict=True):
-        turns = found[place].true_shaft_rate * timeline.duration
-        found[place] = found[place]._replace(loaded_hits=loaded_hits(given, zone, found[place].orders, turns))
+    found = []
+    for truth, given in zip(truths, inputs, strict=True):
+        turns = truth.true_shaft_rate * timeline.duration
+        hits = 0 if given is None else loaded_hits(given, truth.orders, turns)
+        found.append(truth._replace(loaded_hits=hits))
     return found
 
 
@@ -87,8 +87,11 @@ def lines_of_faults(scenario: Scenario, orders: Orders) -> tuple[float, ...]:
 def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) -> Truth:
     """Truth of a scenario; ``given`` is its kernel input, None if no such machine is possible."""
     record, duration = scenario.record, timeline.duration
-    start = start_of(scenario) if given is None else given
-    motion = mean_motion(scenario, timeline, start.frequencies, start.phases)
+    if given is None:
+        start = start_of(scenario)
+        motion = mean_motion(scenario, timeline, turning_of(scenario, start), start.frequencies, start.phases)
+    else:
+        motion = mean_motion(scenario, timeline, given.turning, given.frequencies, given.phases)
     nominal = record.conditions["shaft"]
     ends = [1.0, 1.0] if record.speed_profile is None else share_at(record.speed_profile, np.array([0.0, duration]))
     return Truth(

@@ -143,7 +143,7 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
         shape = input_shape(records[0])
         for first in range(0, len(records), LANES):
             some = records[first : first + LANES]
-            lanes = lay_out(some, shape, 1 / fs, at_rest=False)
+            lanes = lay_out(some, shape, 1 / fs)
             made = integrate(shape, lanes, 1 / fs, 1, decimation(1), 0, round(SECONDS * fs))
             response = made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)]
             found[cracked] += list(1e6 * np.ascontiguousarray(response, dtype=float))  # sums over float32 would be off

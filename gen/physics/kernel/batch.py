@@ -31,7 +31,7 @@ from gen.physics.kernel.layout import (
 )  # fmt: skip
 from gen.physics.kernel.spalls import NEVER
 from gen.physics.kernel.turning import STRIDE
-from gen.physics.rotor import Machine, as_columns, rest
+from gen.physics.rotor import Machine, as_columns
 
 _SITES = {"inner": Site.INNER, "outer": Site.OUTER, "ball": Site.BALL}
 
@@ -56,8 +56,8 @@ def input_shape(record: KernelInput) -> Shape:
     )
 
 
-def lay_out(records: list[KernelInput], shape: Shape, knot: float, *, at_rest: bool = True) -> Batch:
-    """Records in lanes, at most ``LANES`` of them and all of ``shape``, starting from rest or from zero.
+def lay_out(records: list[KernelInput], shape: Shape, knot: float) -> Batch:
+    """Records in lanes, at most ``LANES`` of them and all of ``shape``.
 
     ``knot`` is the time between two knots [s].
     """
@@ -66,7 +66,7 @@ def lay_out(records: list[KernelInput], shape: Shape, knot: float, *, at_rest: b
     turnings = as_columns([record.turning for record in padded])
     spalls, tables, strikes = _spalls(padded)
     return Batch(
-        state=_state(machines, turnings, shape, at_rest=at_rest).ravel(),
+        state=_state(padded, turnings).ravel(),
         params=_params(padded, machines, shape).ravel(),
         drive=_drive(padded, turnings, machines, knot).ravel(),
         angles=_angles(turnings).ravel(),
@@ -85,14 +85,11 @@ def unset(*shape: int) -> FloatArray:
     return np.full(shape, np.nan)
 
 
-def _state(machine: Machine, turning: Turning, shape: Shape, *, at_rest: bool) -> FloatArray:
+def _state(records: list[KernelInput], turning: Turning) -> FloatArray:
     state = np.zeros((STATE_ROWS, LANES))
-    cage = np.asarray(turning.cage_angle)
-    if at_rest:
-        n_balls = len(shape.balls)
-        state[:4] = rest(machine, cage[:, None] + 2 * np.pi * np.arange(n_balls) / n_balls).T
-        state[4:AXES] = state[2:4]  # the sensor rests with the housing
-    state[State.CAGE_COS], state[State.CAGE_SIN] = np.cos(cage), np.sin(cage)
+    state[:4] = np.array([record.start for record in records]).T
+    state[4:AXES] = state[2:4]  # the sensor starts with the housing
+    state[State.CAGE_COS], state[State.CAGE_SIN] = np.cos(turning.cage_angle), np.sin(turning.cage_angle)
     state[State.SHAFT_COS], state[State.SHAFT_SIN] = np.cos(turning.shaft_angle), np.sin(turning.shaft_angle)
     return state
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen.measurement import judging
-from gen.measurement.judging import FALSE_ALARM, Judge, judged_bands, parts_seen, spectra_of
+from gen.measurement.judging import FALSE_ALARM, Parts, bands_of, judged_bands, judges_of, parts_seen, spectra_of
 from gen.measurement.levels import Gains
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
@@ -27,7 +27,7 @@ def ringing(order, frequency=3000.0, angles=ANGLES):
 
 
 def judged(fault, rest, orders=(ORDER,), angles=ANGLES, *, steady=True, bearing=1.0):
-    return Judge(spectra_of(fault, np.zeros_like(fault), rest, orders, angles, steady=steady)).sees(Gains(bearing, 1.0))
+    return judges_of([Parts(fault, np.zeros_like(fault), rest, orders, angles, steady)])[0].sees(Gains(bearing, 1.0))
 
 
 def test_noise_in_place_of_a_fault_is_called_a_fault_as_rarely_as_stated():
@@ -45,20 +45,20 @@ def test_more_channels_do_not_give_more_false_alarms(monkeypatch):
 
 def test_a_line_at_the_threshold_has_the_stated_probability_in_the_whole_search():
     fault = np.concatenate([ringing(ORDER), ringing(ORDER)])
-    spectra = spectra_of(fault, np.zeros_like(fault), fault, (ORDER,), ANGLES, steady=True)
-    searched = 2 * sum(len(cycles) for band in spectra.bands for cycles in spectra.searched(band))
-    for (low, high), threshold in zip(spectra.bands, judged_bands(spectra, spectra.bands).thresholds, strict=True):
+    (spectra,), bands = spectra_of([Parts(fault, np.zeros_like(fault), fault, (ORDER,), ANGLES, True)]), bands_of(N)
+    searched = 2 * sum(len(cycles) for band in bands for cycles in spectra.searched(band))
+    for (low, high), threshold in zip(bands, judged_bands([spectra], bands)[0].thresholds, strict=True):
         assert searched * math.exp(-(high - low) * threshold**2) == pytest.approx(FALSE_ALARM)
 
 
 def test_the_power_of_a_record_is_that_of_bearing_and_background_together():
     """A background that cancels the healthy bearing leaves the fault alone, and one that adds to it hides the fault."""
     healthy = 30 * noise(1)
-    cancelled, hidden = (
-        spectra_of(ringing(ORDER), healthy, sign * healthy, (ORDER,), ANGLES, steady=True) for sign in (-1, 1)
+    cancelled, hidden = judges_of(
+        [Parts(ringing(ORDER), healthy, sign * healthy, (ORDER,), ANGLES, True) for sign in (-1, 1)]
     )
-    assert Judge(cancelled).sees(Gains(1.0, 1.0))
-    assert not Judge(hidden).sees(Gains(1.0, 1.0))
+    assert cancelled.sees(Gains(1.0, 1.0))
+    assert not hidden.sees(Gains(1.0, 1.0))
 
 
 def test_a_train_of_impacts_is_seen_down_to_some_level_and_not_below():
@@ -95,11 +95,11 @@ def test_one_loud_channel_does_not_hide_a_fault_that_another_shows():
 def test_a_fault_that_is_loud_in_one_band_is_seen_behind_noise_in_another():
     time = np.arange(N) / FS
     hum = 30 * np.sin(2 * np.pi * 700 * time)[None].astype(np.float32)
-    spectra = spectra_of(ringing(ORDER), np.zeros_like(hum), hum, (ORDER,), ANGLES, steady=True)
-    whole, *quarters = spectra.bands
-    assert parts_seen(judged_bands(spectra, [whole]), Gains(1.0, 1.0)).tolist() == [False]
-    assert parts_seen(judged_bands(spectra, quarters), Gains(1.0, 1.0)).tolist() == [True]
-    assert Judge(spectra).sees(Gains(1.0, 1.0))
+    record = Parts(ringing(ORDER), np.zeros_like(hum), hum, (ORDER,), ANGLES, True)
+    spectra, (whole, *quarters) = spectra_of([record]), bands_of(N)
+    assert parts_seen(judged_bands(spectra, [whole])[0], Gains(1.0, 1.0)).tolist() == [False]
+    assert parts_seen(judged_bands(spectra, quarters)[0], Gains(1.0, 1.0)).tolist() == [True]
+    assert judges_of([record])[0].sees(Gains(1.0, 1.0))
 
 
 def test_a_fault_is_seen_in_a_run_up_by_the_angle_of_the_shaft():
@@ -112,3 +112,19 @@ def test_a_fault_is_seen_in_a_run_up_by_the_angle_of_the_shaft():
 @pytest.mark.parametrize("n", [64, 1000, 6001])
 def test_records_of_any_length_are_judged(n):
     assert judged(noise(1, n), noise(2, n), angles=ANGLES[:1] + 2 * np.pi * RATE * np.arange(n) / FS) in (True, False)
+
+
+def test_what_is_judged_of_a_record_does_not_depend_on_the_others():
+    """Neither on their number, which decides how many are transformed at once, nor on their orders."""
+    up = 2 * np.pi * (10 * np.arange(N) / FS + 40 * (np.arange(N) / FS) ** 2)
+    records = [
+        Parts(ringing(order), noise(k), noise(k + 9), (order,) * parts, ANGLES if steady else up, steady)
+        for k, (order, parts, steady) in enumerate(
+            [(ORDER, 1, True), (5.0, 2, True), (0.4, 1, False), (90.0, 1, True), (4.0, 0, True)]
+        )
+    ]
+    spectra, bands = spectra_of(records), bands_of(N)
+    for record, together in zip(records, judged_bands(spectra, bands), strict=True):
+        (alone,) = judged_bands(spectra_of([record]), bands)
+        for one, other in zip(alone, together, strict=True):
+            np.testing.assert_array_equal(one, other)

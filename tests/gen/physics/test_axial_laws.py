@@ -10,8 +10,9 @@ from scipy.optimize import root
 
 from gen.corpus import open_corpus
 from gen.generation import generate
-from gen.physics.axial import HALF_LOADED, axial_approach
+from gen.physics.axial import HALF_LOADED, axial_approach, check_axial_load
 from gen.physics.hertz import LINE_EXPONENT
+from gen.physics.rotor import as_columns, ball_angles
 from gen.plan import plan
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
@@ -32,6 +33,12 @@ def slanted(angle, half_clearance, rolling, load=0.0, direction=0.0):
     )  # fmt: skip
 
 
+def approach_of(machine, axial, places):
+    """Approach of one record whose axial load is allowed [m]."""
+    check_axial_load(machine, axial)
+    return axial_approach(as_columns([machine]), np.array([axial]), places[None])[0]
+
+
 def ball_forces(machine, approach, displacement, angles):
     """Along the lines of contact, shape (ball,) [N]."""
     out = displacement[0] * np.cos(angles) + displacement[1] * np.sin(angles)
@@ -47,7 +54,7 @@ def test_balls_squeezed_by_the_approach_carry_radial_and_axial_load_at_once(
     """A root finder that uses no energy solves the radial balance again; the axial sum of the forces is then the axial load."""
     machine = slanted(angle, clearance, rolling, load, direction)
     axial = times * HALF_LOADED * load * math.tan(angle)
-    approach = axial_approach(machine, axial, places)
+    approach = approach_of(machine, axial, places)
     towards = np.array([math.cos(direction), math.sin(direction)])
 
     def unbalanced(micrometres):
@@ -65,7 +72,7 @@ def test_balls_squeezed_by_the_approach_carry_radial_and_axial_load_at_once(
 def test_without_a_radial_load_all_balls_share_the_axial_one(angle, clearance, rolling, places, axial):
     factor, exponent = rolling
     each = (axial / (N_BALLS * math.sin(angle) * factor)) ** (1 / exponent)
-    found = axial_approach(slanted(angle, clearance, rolling), axial, places)
+    found = approach_of(slanted(angle, clearance, rolling), axial, places)
     assert found == pytest.approx(each + clearance, rel=1e-5, abs=1e-11)
 
 
@@ -74,7 +81,26 @@ def test_without_a_radial_load_all_balls_share_the_axial_one(angle, clearance, r
 def test_more_axial_load_squeezes_more(angle, clearance, rolling, places, load, times, more):
     machine = slanted(angle, clearance, rolling, load)
     axial = times * HALF_LOADED * load * math.tan(angle)
-    assert axial_approach(machine, more * axial, places) > axial_approach(machine, axial, places)
+    assert approach_of(machine, more * axial, places) > approach_of(machine, axial, places)
+
+
+@law
+@given(
+    st.lists(
+        st.tuples(slants, clearances, st.integers(5, 20), st.floats(10, 3000), st.floats(1.05, 20)),
+        min_size=2,
+        max_size=9,
+    ),
+    rolling,
+)
+def test_the_approach_of_a_record_does_not_depend_on_the_others(drawn, rolling):
+    machines = [slanted(angle, clearance, rolling, load, angle) for angle, clearance, _, load, _ in drawn]
+    axial = np.array([times * HALF_LOADED * load * math.tan(angle) for angle, _, _, load, times in drawn])
+    balls = ball_angles([n_balls for _, _, n_balls, _, _ in drawn], [angle for angle, *_ in drawn])
+    together = axial_approach(as_columns(machines), axial, balls)
+    for place, (_, _, n_balls, _, _) in enumerate(drawn):
+        alone = axial_approach(as_columns(machines[place : place + 1]), axial[[place]], balls[[place], :n_balls])
+        assert alone == together[place : place + 1]
 
 
 @pytest.mark.parametrize("angle", [math.radians(10), math.radians(40)])
@@ -83,14 +109,14 @@ def test_rings_that_an_axial_load_cannot_hold_together_are_refused(angle):
     least = 1.25 * 300 * math.tan(angle)
     places = 2 * np.pi * np.arange(N_BALLS) / N_BALLS
     with pytest.raises(ValueError, match=rf"is too small to hold its rings together; give at least {least:.4g} N\."):
-        axial_approach(machine, 0.99 * least, places)
-    assert axial_approach(machine, 1.01 * least, places) > 0
+        approach_of(machine, 0.99 * least, places)
+    assert approach_of(machine, 1.01 * least, places) > 0
 
 
 def test_an_axial_load_needs_a_slanted_contact():
     machine = slanted(0.0, 5e-6, (9.26e9, 1.5), 300.0)
     with pytest.raises(ValueError, match=r"an axial load of 500 N needs a contact angle above 0\."):
-        axial_approach(machine, 500.0, np.zeros(1))
+        approach_of(machine, 500.0, np.zeros(1))
 
 
 def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write_recipe, tmp_path):

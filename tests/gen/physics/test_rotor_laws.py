@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gen.physics import rotor
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import (
     Machine,
@@ -68,6 +69,16 @@ def test_where_a_machine_rests_does_not_depend_on_the_others_in_its_batch(some, 
     mixed = rest(as_columns([some[lane % len(some)] for lane in range(LANES)]), places)
     alike = rest(as_columns([some[0]] * LANES), places)
     np.testing.assert_array_equal(mixed[:: len(some)], alike[:: len(some)])
+
+
+@law
+@given(st.lists(machines(), min_size=2, max_size=9), angles, st.data())
+def test_a_machine_rests_alone_where_it_rests_beside_bearings_with_more_balls(some, cage, data):
+    counts = data.draw(st.lists(st.integers(4, 20), min_size=len(some), max_size=len(some)))
+    together = rest(as_columns(some), rotor.ball_angles(counts, [cage] * len(some)))
+    for place, count in enumerate(counts):
+        alone = rest(as_columns(some[place : place + 1]), rotor.ball_angles([count], [cage]))
+        np.testing.assert_array_equal(alone[0], together[place])
 
 
 @law

@@ -183,7 +183,7 @@ def test_a_share_above_1_of_the_least_axial_load_holds_the_rings_together(recipe
             conditions, angle = scenario.record.conditions, scenario.specimen.bearing.contact_angle
             assert conditions["axial_load"] == pytest.approx(times * 1.25 * math.tan(angle) * conditions["load"])
             with nullcontext() if possible else pytest.raises(ValueError, match="too small to hold its rings together"):
-                machine_of(scenario, 0.0)
+                machine_of(scenario)
 
 
 def test_the_shares_of_the_parts_of_a_compound_are_those_of_the_part(recipe_with):

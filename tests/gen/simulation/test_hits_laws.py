@@ -2,12 +2,14 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from gen.scenarios import draw_scenarios
-from gen.simulation.hits import felt_places, load_zones, loaded_hits
-from gen.simulation.inputs import kernel_input
+from gen.simulation.hits import felt_places, load_zone, loaded_hits
+from gen.simulation.inputs import kernel_input, kernel_inputs, without_fault
 from gen.simulation.timeline import timeline
+from tests.recipes import EVERYTHING
 from tests.responses import truth
 
 LOADED = {"machine.load_angle_deg": -90, "operation.load_n": 300, "operation.mean_slip_percent": 0}
@@ -22,14 +24,14 @@ def first_of(recipe_with, fault, **changes):
 @pytest.mark.parametrize(("clearance", "half"), [(-8, math.pi), (0, math.pi / 2)])
 def test_the_load_zone_is_half_the_bearing_without_clearance_and_all_of_it_under_preload(recipe_with, clearance, half):
     _, _, given = first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": clearance})
-    zone = load_zones([given])[0]
+    zone = load_zone(given)
     assert zone.half == pytest.approx(half, abs=0.02)
     assert math.remainder(zone.direction + math.pi / 2, 2 * math.pi) == pytest.approx(0.0, abs=0.05)
 
 
 def test_clearance_narrows_the_load_zone(recipe_with):
     halves = [
-        load_zones([first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": c})[2]])[0].half
+        load_zone(first_of(recipe_with, {"kind": "healthy"}, **{"specimen.diametral_clearance_um": c})[2]).half
         for c in (0, 10, 40, 160)
     ]
     assert halves == sorted(halves, reverse=True)
@@ -49,7 +51,7 @@ def test_an_outer_spall_is_hit_at_the_ball_pass_frequency_in_the_load_zone_and_n
 def test_an_inner_spall_is_hit_during_the_part_of_a_turn_that_the_load_zone_takes(recipe_with):
     fault = {"kind": "inner", "width_mm": 0.5}
     recipe, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
-    found, zone = truth(scenario, recipe), load_zones([given])[0]
+    found, zone = truth(scenario, recipe), load_zone(given)
     every = found.true_bpfi * found.true_shaft_rate * 2.0
     assert found.loaded_hits == pytest.approx(every * zone.half / math.pi, abs=1)
     assert 0 < zone.half < math.pi
@@ -57,19 +59,19 @@ def test_an_inner_spall_is_hit_during_the_part_of_a_turn_that_the_load_zone_take
 
 def test_an_outer_spall_is_hit_if_its_nearer_edge_lies_in_the_load_zone(recipe_with):
     _, scenario, given = first_of(recipe_with, {"kind": "outer", "width_mm": 4})
-    orders, zone, spall = truth(scenario, recipe_with()).orders, load_zones([given])[0], given.spalls[0]
+    orders, zone, spall = truth(scenario, recipe_with()).orders, load_zone(given), given.spalls[0]
     reach = 0.002 / given.bearing.outer_radius
     for share, hit in ((0.9, True), (1.1, False)):
         for side in (-1, 1):
             angle = zone.direction + side * (zone.half + share * reach)
             moved = given._replace(spalls=(spall._replace(angle=angle),))
-            assert (loaded_hits(moved, zone, orders, 100) > 0) == hit
+            assert (loaded_hits(moved, orders, 100) > 0) == hit
 
 
 def test_a_spall_of_a_ball_is_hit_twice_in_each_turn_of_the_ball(recipe_with):
     fault = {"kind": "ball", "width_mm": 0.5}
     recipe, scenario, given = first_of(recipe_with, fault, **{"recording.duration_s": 2.0})
-    found, zone = truth(scenario, recipe), load_zones([given])[0]
+    found, zone = truth(scenario, recipe), load_zone(given)
     assert found.loaded_hits == pytest.approx(
         2 * found.true_bsf * found.true_shaft_rate * 2.0 * zone.half / math.pi, abs=1
     )
@@ -78,12 +80,22 @@ def test_a_spall_of_a_ball_is_hit_twice_in_each_turn_of_the_ball(recipe_with):
 def test_two_spalls_are_hit_twice_as_often(recipe_with):
     fault = {"kind": "outer", "width_mm": 0.5, "n_spalls": 2}
     _, scenario, given = first_of(recipe_with, fault)
-    orders, zone = truth(scenario, recipe_with()).orders, load_zones([given])[0]
-    one = loaded_hits(given._replace(spalls=given.spalls[:1]), zone, orders, 100)
-    assert loaded_hits(given, zone, orders, 100) == pytest.approx(2 * one, abs=1)
+    orders = truth(scenario, recipe_with()).orders
+    one = loaded_hits(given._replace(spalls=given.spalls[:1]), orders, 100)
+    assert loaded_hits(given, orders, 100) == pytest.approx(2 * one, abs=1)
 
 
-def test_the_zone_of_a_record_does_not_depend_on_the_others(recipe_with):
-    recipe = recipe_with()
-    inputs = [kernel_input(scenario, timeline(recipe)) for scenario in draw_scenarios(recipe, 0, 6)]
-    assert load_zones(inputs) == [load_zones([given])[0] for given in inputs]
+def test_the_input_of_a_record_does_not_depend_on_the_others(recipe_with):
+    recipe = recipe_with(EVERYTHING)
+    scenarios = draw_scenarios(recipe)
+    for scenario, together in zip(scenarios, kernel_inputs(scenarios, timeline(recipe))[0], strict=True):
+        for field, other in zip(kernel_input(scenario, timeline(recipe)), together, strict=True):
+            np.testing.assert_equal(field, other)
+
+
+def test_a_record_without_its_fault_has_the_input_of_a_sound_record(recipe_with):
+    recipe = recipe_with(EVERYTHING)
+    for scenario in draw_scenarios(recipe):
+        found = without_fault(kernel_input(scenario, timeline(recipe)), scenario, timeline(recipe))
+        for field, other in zip(found, kernel_input(scenario.without_fault(), timeline(recipe)), strict=True):
+            np.testing.assert_equal(field, other)

@@ -15,7 +15,7 @@ from benchmarks.visibility import reference_recipe
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.kernel.drop import GEOMETRIC, drop
 from gen.scenarios import draw_scenarios
-from gen.simulation.inputs import bare_input
+from gen.simulation.inputs import bare_inputs, only
 
 
 def scenario_of(width_mm, load_n, **fault):
@@ -83,7 +83,9 @@ def test_a_deeper_spall_changes_nothing_once_the_ball_is_unloaded():
 
 def test_a_heavier_load_needs_a_wider_spall():
     needed = [
-        unloading_drop(bare_input(scenario).machine, scenario.specimen.bearing, scenario.rig.machine["load_angle"])
+        unloading_drop(
+            only(bare_inputs([scenario])).machine, scenario.specimen.bearing, scenario.rig.machine["load_angle"]
+        )
         for scenario in (scenario_of(1.0, load) for load in (100, 300, 1000, 2000))
     ]
     assert np.all(np.diff(needed) > 0)

@@ -7,7 +7,7 @@ from scipy.signal import find_peaks, hilbert
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.inputs import SpallInput, Turning
+from gen.physics.inputs import SpallInput, Turning, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
@@ -25,7 +25,7 @@ def responses(records, n_steps, n_settle, n_out):
     """Signals of the two channels of every record, shape (record, channel, time) [m s-2]."""
     records = [drawn._replace(pickups=Y_OF_SENSOR) for drawn in records]
     shape = input_shape(records[0])
-    batch = lay_out(records, shape, 1 / FS)
+    batch = lay_out(at_rest(records), shape, 1 / FS)
     made = integrate(shape, batch, 1 / (FS * n_steps), n_steps, decimation(n_steps), n_settle, n_out)
     assert (made.diverged == -1).all()
     return made.response.T[: len(records)]
@@ -124,6 +124,6 @@ def test_a_late_ball_comes_late_once_a_turn_of_the_cage():
 def test_a_record_comes_out_of_every_lane_with_the_same_bits(drawn):
     drawn = drawn._replace(pickups=Y_OF_SENSOR)
     shape = input_shape(drawn)
-    made = integrate(shape, lay_out([drawn] * LANES, shape, 1 / FS), 1 / (4 * FS), 4, decimation(4), 0, 32)
+    made = integrate(shape, lay_out(at_rest([drawn] * LANES), shape, 1 / FS), 1 / (4 * FS), 4, decimation(4), 0, 32)
     assert (made.response == made.response[..., :1]).all()
     assert (made.steepest == made.steepest[0]).all()

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gen.physics.inputs import SpallInput, Strike, Turning, Waviness
+from gen.physics.inputs import SpallInput, Strike, Turning, Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.drop import PROFILES
@@ -56,7 +56,7 @@ def laid_out():
         ball_mass=2e-3, hertz_time=3e-5,
     )  # fmt: skip
     shape = input_shape(drawn)
-    return shape, lay_out([drawn], shape, KNOT)
+    return shape, lay_out(at_rest([drawn]), shape, KNOT)
 
 
 def test_every_row_that_a_batch_needs_is_written(laid_out):

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import HIGHEST_ORDER, LOWEST_ORDER
-from gen.physics.inputs import SpallInput, Waviness
+from gen.physics.inputs import SpallInput, Waviness, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import N_DYNAMIC
@@ -57,7 +57,7 @@ def turned_record(there, turn):
 
 def rest_of(drawn):
     """State in which a record starts, shape (coordinate,)."""
-    return lay_out([drawn], input_shape(drawn), KNOT).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
+    return lay_out(at_rest([drawn]), input_shape(drawn), KNOT).state.reshape(-1, LANES)[:N_DYNAMIC, 0]
 
 
 @law
