@@ -85,8 +85,8 @@ def run_tasks(
 ) -> Iterator[Result]:
     """Results of ``task`` on every item, in the order in which the tasks finish.
 
-    ``meanwhile`` is called every ``POLL_S`` seconds in which no task finishes. What a task costs here does not depend on the number of tasks
-    or workers: a finished task reports itself, and the tasks that have finished are fetched, and replaced, in one message each.
+    ``meanwhile`` is called every ``POLL_S`` seconds in which no task finishes. The cost of a task in this process does not depend on the
+    number of tasks or workers: finished tasks report themselves, and their results are fetched together.
 
     Raises
     ------

@@ -59,7 +59,7 @@ class Manifest(Strict):
     recipe: str | None = None
     recipe_sha256: str | None = None
     overrides: Overrides | None = None
-    versions: dict[str, str] = {}
+    versions: Annotated[dict[str, str], Field(default_factory=dict)]
     failures: _Texts = ()
     importer: str | None = None
     recordings: Count | None = None
