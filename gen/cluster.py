@@ -160,9 +160,10 @@ def _results(client: Client, batch: list[Future]) -> list[Any]:
     """
     gather: Any = partial(client.gather, batch, asynchronous=True)
     try:
-        return client.sync(gather, callback_timeout=POLL_S)
+        found: Any = client.sync(gather, callback_timeout=POLL_S)
     except (CancelledError, CommClosedError) as error:
         raise _lost(client) from error
+    return found
 
 
 def _raise_error(future: Future) -> None:

@@ -149,12 +149,15 @@ def read_journal(directory: Path) -> list[ListedPart]:
 def _checked(line: bytes, place: str) -> ListedPart:
     try:
         found = ListedPart.model_validate_json(line)
-        problem = name_problem(found.name)
     except ValidationError as error:
-        problem = first_problem(error)
-    if problem is None:
-        return found
-    raise CorpusError(f"{place} is not the row of a part ({problem}); delete this file, and its parts are made again.")
+        raise _not_a_row(place, first_problem(error)) from None
+    if (problem := name_problem(found.name)) is not None:
+        raise _not_a_row(place, problem)
+    return found
+
+
+def _not_a_row(place: str, problem: str) -> CorpusError:
+    return CorpusError(f"{place} is not the row of a part ({problem}); delete this file, and its parts are made again.")
 
 
 def first_problem(error: ValidationError) -> str:
