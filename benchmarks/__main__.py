@@ -13,7 +13,7 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
-from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
+from benchmarks import features, growth, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
 from benchmarks.pairs import Line, Row, Skipped
 from raceway.studies.timing import machine
 
@@ -27,6 +27,7 @@ SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "reading": reading.rows,
     "starting": starting.rows,
     "truth": truth.rows,
+    "growth": growth.rows,
 }
 RESULTS = Path(__file__).with_name("results.json")
 HEADS = ("", "what", "value", "alternative", "its value", "ratio", "pairs")

@@ -3,7 +3,7 @@
 import importlib.util
 import math
 
-from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
+from benchmarks import features, growth, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
 from benchmarks.profile import PARTS, kernel_parts
@@ -57,6 +57,11 @@ def test_a_large_corpus_is_compared_with_a_small_one(few_short):
 def test_a_cold_start_is_compared_with_a_warm_one(few_short):
     (found,) = finite_rows(pipeline.start_rows(1, few_short)).values()
     assert found.ratio > 1
+
+
+def test_a_corpus_of_many_parts_is_compared_with_one_of_few():
+    found = finite_rows(growth.rows(1, parts=(2, 4), workers=2, task_s=0.01))
+    assert set(found) == {"growth driver", "growth scheduler", "growth ending"}
 
 
 def test_features_are_compared_where_tsfel_is_installed():
