@@ -28,7 +28,7 @@ from distributed import Client, Scheduler, Worker
 from benchmarks.pairs import Line, Row
 from benchmarks.pipeline import SHORT, variant
 from gen import generation
-from gen.corpus import PartRow, part_name, read_manifest, write_index
+from gen.corpus import PartRow, part_name, read_manifest
 from gen.part_task import Outcome
 
 PARTS = (100, 10_000)
@@ -42,10 +42,10 @@ class Cost(NamedTuple):
 
     parts: int
     driver: float
-    """Of the process that called :func:`gen.generate`, with all of its threads, without the index."""
+    """Of the process that called :func:`gen.generate`, with all of its threads, without the ending."""
     scheduler: float
     ending: float
-    """Of the index, which the driver writes at the end."""
+    """Of index, manifest and data card, which the driver writes at the end."""
     memory: float
     """Largest memory of the driver so far."""
 
@@ -56,40 +56,43 @@ def rows(
     """Lines of the table."""
     few, many = simulated_runs(parts, workers, task_s)
     what = f"CPU per part, {workers} workers, {many.parts:,} parts"
-    subjects = {"driver": "driver", "scheduler": "dask's scheduler", "ending": "index"}
+    subjects = {"driver": "driver", "scheduler": "dask's scheduler", "ending": "index, manifest and data card"}
     for name, subject in subjects.items():
         value, other = 1e3 * getattr(many, name), 1e3 * getattr(few, name)
         alternative = f"{few.parts:,} parts"
         yield Row(f"growth {name}", f"{subject}, {what}", value, "ms", alternative, other, value / other, 1)
 
 
-def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float) -> list[Cost]:
-    """Costs of corpora with some numbers of parts of one record each."""
+def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float, per_part: int = 1) -> list[Cost]:
+    """Costs of corpora with some numbers of parts, each of ``per_part`` records."""
     with tempfile.TemporaryDirectory() as temporary, _cluster(workers) as (address, scheduler):
         folder = Path(temporary)
-        largest = {"records_per_part": 1, "specimens_per_rig": 1, "records_per_specimen": 1, "rigs": max(sizes)}
-        recipe = variant(SHORT, folder / "parts.yaml", corpus=largest)
-        model = generation.generate(recipe, folder / "model", records=1).directory
+        largest = {"records_per_part": per_part, "records_per_specimen": per_part, "specimens_per_rig": 1}
+        recipe = variant(SHORT, folder / "parts.yaml", corpus=largest | {"rigs": max(*sizes, 2 * workers)})
+        model = generation.generate(recipe, folder / "model", records=per_part).directory
         made = partial(_made, model / "parts" / part_name(0), read_manifest(model).parts[0], task_s)
         with patch.object(generation, "_made", made):
-            generation.generate(recipe, folder / "first", records=2 * workers, scheduler=address)  # loads libraries
-            return [_cost(recipe, folder / str(size), size, address, scheduler) for size in sizes]
+            first = 2 * workers * per_part
+            generation.generate(recipe, folder / "first", records=first, scheduler=address)  # loads libraries
+            return [_cost(recipe, folder / str(size), size, per_part, address, scheduler) for size in sizes]
 
 
-def _cost(recipe: Path, folder: Path, parts: int, address: str, scheduler: psutil.Process) -> Cost:
-    of_index = []
+def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, scheduler: psutil.Process) -> Cost:
+    ending = []
+    finish = vars(generation)["_finished"]
 
-    def timed_index(*given: Any) -> None:
+    def timed(*given: Any) -> Any:
         start = time.process_time()
-        write_index(*given)
-        of_index.append(time.process_time() - start)
+        done = finish(*given)
+        ending.append(time.process_time() - start)
+        return done
 
     before = time.process_time(), _cpu_seconds(scheduler)
-    with patch.object(generation, "write_index", timed_index):
-        generation.generate(recipe, folder, records=parts, scheduler=address)
-    driver, of_scheduler = time.process_time() - before[0] - of_index[0], _cpu_seconds(scheduler) - before[1]
+    with patch.object(generation, "_finished", timed):
+        generation.generate(recipe, folder, records=parts * per_part, scheduler=address)
+    driver, of_scheduler = time.process_time() - before[0] - ending[0], _cpu_seconds(scheduler) - before[1]
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
-    return Cost(parts, driver / parts, of_scheduler / parts, of_index[0] / parts, memory)
+    return Cost(parts, driver / parts, of_scheduler / parts, ending[0] / parts, memory)
 
 
 def _made(
@@ -168,11 +171,12 @@ def _cpu_seconds(process: psutil.Process) -> float:
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m benchmarks.growth", description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--parts", type=int, nargs="+", default=PARTS, help="numbers of parts")
+    parser.add_argument("--records-per-part", type=int, default=1, help="records of each part")
     parser.add_argument("--workers", type=int, default=WORKERS, help="number of workers")
     parser.add_argument("--task-seconds", type=float, default=TASK_S, help="time that a task waits [s]")
     given = parser.parse_args()
-    print("  parts   driver  scheduler    index  memory of the driver")
-    for cost in simulated_runs(tuple(given.parts), given.workers, given.task_seconds):
+    print("  parts   driver  scheduler   ending  memory of the driver")
+    for cost in simulated_runs(tuple(given.parts), given.workers, given.task_seconds, given.records_per_part):
         of_part = "  ".join(f"{1e3 * seconds:6.2f} ms" for seconds in (cost.driver, cost.scheduler, cost.ending))
         print(f"{cost.parts:7,}{of_part}  {cost.memory:6.0f} MB", flush=True)
 
