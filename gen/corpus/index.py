@@ -81,10 +81,12 @@ def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
     ):
         first.set_auto_maskandscale(False)
         first.set_auto_chartostring(False)
-        copied = [
-            name for name, variable in first.variables.items() if name != SIGNAL and variable.dimensions[0] == "record"
-        ]
-        texts = [name for name in copied if first[name].dtype == "S1"]
+        copied: dict[str, np.dtype[Any]] = {
+            name: variable.dtype
+            for name, variable in first.variables.items()
+            if name != SIGNAL and variable.dimensions[0] == "record"
+        }
+        texts = [name for name, dtype in copied.items() if dtype == "S1"]
         lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
         lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
         _declare_like(first, index, lengths)
@@ -100,18 +102,18 @@ def _widths(directory: Path, rows: list[PartRow], texts: list[str]) -> dict[str,
     widths = dict.fromkeys(texts, 0)
     for row in rows:
         with h5py.File(directory / "parts" / row.name, "r", locking=False) as part:
-            for name in texts:
+            for name in filter(part.__contains__, texts):
                 widths[name] = max(widths[name], h5py.h5d.open(part.id, name.encode()).shape[1])
     return {f"{name}_length": width for name, width in widths.items()}
 
 
-def _blocks(directory: Path, rows: list[PartRow], names: list[str]) -> Iterator[list[NDArray[Any]]]:
+def _blocks(directory: Path, rows: list[PartRow], types: dict[str, np.dtype[Any]]) -> Iterator[list[NDArray[Any]]]:
     """Values of each variable over as many consecutive parts as fill ``_COPIED_BYTES``."""
     block: list[list[NDArray[Any]]] = []
     size = 0
     for row in rows:
         with h5py.File(directory / "parts" / row.name, "r", locking=False) as part:
-            block.append([_values(part, name) for name in names])
+            block.append([_values(part, name, dtype, row.records) for name, dtype in types.items()])
         size += sum(values.nbytes for values in block[-1])
         if size > _COPIED_BYTES:
             yield [_joined(values) for values in zip(*block, strict=True)]
@@ -120,8 +122,10 @@ def _blocks(directory: Path, rows: list[PartRow], names: list[str]) -> Iterator[
         yield [_joined(values) for values in zip(*block, strict=True)]
 
 
-def _values(part: h5py.File, name: str) -> NDArray[Any]:
-    """Values of a per-record variable of a part; through the objects of h5py it takes twice as long."""
+def _values(part: h5py.File, name: str, dtype: np.dtype[Any], records: int) -> NDArray[Any]:
+    """Values of a per-record variable of a part, 0 if it has none; through the objects of h5py it takes twice as long."""
+    if name not in part:
+        return np.zeros((records, 0) if dtype == "S1" else records, dtype)
     stored = h5py.h5d.open(part.id, name.encode())
     values = np.empty(stored.shape, stored.dtype)
     stored.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
