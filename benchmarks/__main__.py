@@ -13,6 +13,7 @@ from collections.abc import Callable, Iterator
 from benchmarks import (
     against,
     features,
+    growth,
     kernel,
     lanes,
     million,
@@ -40,6 +41,7 @@ SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "reading": reading.rows,
     "starting": starting.rows,
     "truth": truth.rows,
+    "growth": growth.rows,
 }
 HEADS = ("", "what", "value", "alternative", "its value", "ratio", "pairs")
 

@@ -1,11 +1,13 @@
 """Generate a corpus from a recipe, part by part, on one machine or many.
 
-One task draws, simulates, measures and writes one part and returns its row of the manifest. The same call completes an interrupted
-corpus: a part is kept if the manifest lists it with the size and hash of the file; every other part is made again.
+One task draws, simulates, measures and writes one part and returns its row of the manifest. The row is appended to the journal, so that
+the same call completes an interrupted corpus: a part is kept if manifest or journal list it with the size and hash of the file; every
+other part is made again.
 """
 
 import fcntl
 import os
+import threading
 from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from dataclasses import dataclass
@@ -14,10 +16,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from gen.corpus import (
+    JOURNAL_NAME,
     PartRow,
     SignalCounts,
     check_name,
     data_card,
+    new_journal,
     open_corpus,
     part_name,
     read_manifest,
@@ -100,16 +104,15 @@ def generate(
         raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
     directory = Path(directory)
     facts = _facts(checked, seed, records)
-    tally = Tally(checked, progress, [0] * checked.n_parts)
+    tally = Tally(checked, progress)
     with _client_of(scheduler) as client, _claimed(directory):
         known = _prepare(directory, Path(find_recipe(recipe)), facts)
         outcomes: dict[int, Outcome] = {}
-        with closing(_made(tally, directory, known, workers, client)) as made:
+        with new_journal(directory) as append, closing(_made(tally, directory, known, workers, client)) as made:
             for part, outcome in made:
                 outcomes[part] = outcome
-                if len(outcomes) < checked.n_parts:
-                    rows = [outcomes[number].row for number in sorted(outcomes) if outcomes[number].row.records]
-                    write_manifest(directory, rows, complete=False, **facts)
+                if outcome.row.records and not outcome.kept:
+                    append(outcome.row)
                 tally.note(part, len(record_numbers(checked, part)))
                 tally.show()
         return _finished(directory, [outcomes[number] for number in sorted(outcomes)], checked, facts)
@@ -124,6 +127,7 @@ def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: d
     signals = summed(row.signals for row in rows)
     write_index(directory, rows)
     write_manifest(directory, rows, complete=True, failures=failures, **facts)
+    (directory / JOURNAL_NAME).unlink()
     with open_corpus(directory, check="size") as corpus:
         write_text_durably(data_card(corpus, _HOW.format(recipe=recipe.name), signals), directory / "README.md")
     kept = sum(outcome.kept for outcome in outcomes)
@@ -159,9 +163,11 @@ def _claimed(directory: Path) -> Iterator[None]:
 def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, PartRow]:
     """Prepare the folder, and return the rows of the parts that may be kept, by name.
 
-    The manifest is written first: it tells a corpus without any part from a folder that holds something else.
+    The manifest is written first: it tells a corpus without any part from a folder that holds something else. It lists the parts that may
+    be kept, and the journal of an earlier call is removed.
     """
     known: dict[str, PartRow] = {}
+    journal = directory / JOURNAL_NAME
     begun = (directory / "manifest.json").exists()
     try:
         for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
@@ -176,8 +182,10 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
                 known = {row.name: row for row in manifest.parts}
         elif manifest is None and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
-        else:
-            write_manifest(directory, [], complete=False, **facts)
+        if not known:
+            journal.unlink(missing_ok=True)  # first: no row of other versions may stand beside the new manifest
+        write_manifest(directory, known.values(), complete=False, **facts)
+        journal.unlink(missing_ok=True)
         if not known:
             write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
@@ -197,23 +205,27 @@ def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, A
     }
 
 
-@dataclass(frozen=True)
 class Tally:
-    """Number of records of each part that are done; ``counts`` is changed by the thread that listens to the workers too."""
+    """Number of records that are done; it is changed by the thread that listens to the workers too."""
 
-    recipe: Recipe
-    progress: Progress | None
-    counts: list[int]
+    def __init__(self, recipe: Recipe, progress: Progress | None) -> None:
+        self.recipe = recipe
+        self._progress = progress
+        self._of_parts = [0] * recipe.n_parts
+        self._done = 0  # their sum, which takes longer to compute the more parts there are
+        self._lock = threading.Lock()
 
     def note(self, part: int, records: int) -> None:
         """Set the count of a part; a task that dask repeats does not lower it."""
-        self.counts[part] = max(self.counts[part], records)
+        with self._lock:
+            added = max(0, records - self._of_parts[part])
+            self._of_parts[part] += added
+            self._done += added
 
     def show(self) -> None:
-        """Call ``progress`` with the sum of the counts, once it is not 0."""
-        done = sum(self.counts)
-        if self.progress is not None and done:
-            self.progress(done, self.recipe.n_records)
+        """Call ``progress`` with the number of records done, once it is not 0."""
+        if self._progress is not None and self._done:
+            self._progress(self._done, self.recipe.n_records)
 
     def note_and_show(self, part: int, records: int) -> None:
         """Set the count of a part and call ``progress``."""

@@ -11,6 +11,7 @@ layout      allowed shapes, types and attributes in a file
 files       atomic writing, hashes
 signals     records that cannot be used
 part        one netCDF-4 file of records
+journal     finished parts of an unfinished corpus
 manifest    files of a corpus with size and hash
 reading     lazy reading, with a few files open at a time
 index       ``corpus.nc`` over the parts; opening a corpus
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
     )
     from gen.corpus.hdf5 import LIBRARY_LOCK
     from gen.corpus.index import open_corpus, write_index
+    from gen.corpus.journal import JOURNAL_NAME, new_journal
     from gen.corpus.manifest import Manifest, part_paths, read_manifest, write_manifest
     from gen.corpus.part import PartRow, part_name, write_part
     from gen.corpus.reading import open_part, read_channel
@@ -72,6 +74,7 @@ __all__ = [
     "FAULTS",
     "FAULT_NAMES",
     "FORMAT",
+    "JOURNAL_NAME",
     "LIBRARY_LOCK",
     "MISSING_COUNT",
     "ROLES",
@@ -94,6 +97,7 @@ __all__ = [
     "fault_counts",
     "format_page",
     "make_dataset",
+    "new_journal",
     "open_corpus",
     "open_part",
     "part_name",
@@ -128,6 +132,7 @@ __getattr__, __dir__ = lazy_names(
         ),
         "gen.corpus.hdf5": ("LIBRARY_LOCK",),
         "gen.corpus.index": ("open_corpus", "write_index"),
+        "gen.corpus.journal": ("JOURNAL_NAME", "new_journal"),
         "gen.corpus.manifest": ("Manifest", "part_paths", "read_manifest", "write_manifest"),
         "gen.corpus.part": ("PartRow", "part_name", "write_part"),
         "gen.corpus.reading": ("open_part", "read_channel"),

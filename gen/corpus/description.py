@@ -13,6 +13,7 @@ A corpus is a folder:
 | `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: any netCDF-4 reader sees one file |
 | `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
 | `manifest.json` | whether the corpus is complete; `signals`; bytes and SHA-256 of `corpus.nc` and of each part; recipe hash, versions |
+| `parts.jsonl` | while the corpus is unfinished: one line for each finished part, as in `parts` of the manifest |
 | `recipe.yaml` | the recipe, if the corpus was simulated |
 | `README.md` | the data card |
 

@@ -1,20 +1,32 @@
 """The manifest of a corpus: its files with size and hash, and whether it is complete.
 
-All checks start at ``manifest.json``: a part or an index with another size or hash is refused before anything is read from it.
+All checks start at ``manifest.json``: a part or an index with another size or hash is refused before anything is read from it. The
+manifest of an unfinished corpus is completed by the rows of the journal (:mod:`gen.corpus.journal`).
 """
 
 import json
 import os
-import re
+from collections import Counter
 from collections.abc import Iterable
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+from pydantic import Field, ValidationError
 
 from gen.corpus.files import plain_file, sha256, stamp, write_text_durably
+from gen.corpus.journal import (
+    Count,
+    FileRow,
+    ListedPart,
+    Strict,
+    first_problem,
+    listed,
+    name_problem,
+    part_number,
+    read_journal,
+)
 from gen.corpus.part import PartRow
 from gen.corpus.schema import FORMAT
 from gen.corpus.signals import SignalCounts, summed
@@ -24,71 +36,40 @@ from gen.limits import check_limit
 Check = Literal["sha256", "size"]
 
 INDEX_NAME = "corpus.nc"
-_PART_NAME = re.compile(r"part-\d{5,9}\.nc")
-
-_Count = Annotated[int, Field(ge=0, lt=2**63)]
-_Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 _Texts = tuple[str, ...]
 
 
-class _Strict(BaseModel):
-    model_config = ConfigDict(strict=True, frozen=True, extra="allow")
-
-
-class FileRow(_Strict):
-    """Size and SHA-256 of a file, as listed in the manifest."""
-
-    bytes: _Count
-    sha256: _Hash
-
-
-class _ListedSignals(_Strict):
-    clipped: _Count
-    dead: _Count
-    constant: _Count
-    not_finite: _Count
-
-
-class _ListedPart(FileRow):
-    name: str
-    records: _Count
-    signals_: Annotated[_ListedSignals, Field(alias="signals")]
-
-
-class Overrides(_Strict):
+class Overrides(Strict):
     """Seed and number of records that replaced those of the recipe."""
 
     seed: int | None = None
     records: int | None = None
 
 
-class Manifest(_Strict):
+class Manifest(Strict):
     """Contents of ``manifest.json`` after its check; fields of simulated corpora are None in imported ones, and the other way round."""
 
     raceway_format: int
     complete: bool
-    records: _Count
+    records: Count
     index: FileRow | None = None
     """``corpus.nc``; None until the corpus is complete."""
-    parts_: Annotated[tuple[_ListedPart, ...], Field(alias="parts")]
+    parts_: Annotated[tuple[ListedPart, ...], Field(alias="parts")]
     title: str | None = None
     recipe: str | None = None
     recipe_sha256: str | None = None
     overrides: Overrides | None = None
-    versions: dict[str, str] = {}
+    versions: Annotated[dict[str, str], Field(default_factory=dict)]
     failures: _Texts = ()
     importer: str | None = None
-    recordings: _Count | None = None
+    recordings: Count | None = None
     skipped: _Texts = ()
     warnings: _Texts = ()
 
     @property
     def parts(self) -> list[PartRow]:
         """Rows of the parts, in the order of their records."""
-        return [
-            PartRow(part.name, part.records, part.bytes, part.sha256, SignalCounts(**dict(part.signals_)))
-            for part in self.parts_
-        ]
+        return [part.row for part in self.parts_]
 
     @property
     def signals(self) -> SignalCounts:
@@ -102,7 +83,6 @@ def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, 
     For a complete corpus the index must exist.
     """
     rows = list(rows)
-    parts = [row._asdict() | {"signals": row.signals._asdict()} for row in rows]
     index = directory / INDEX_NAME
     content = {
         "raceway_format": FORMAT,
@@ -111,13 +91,13 @@ def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, 
         "signals": summed(row.signals for row in rows)._asdict(),
         "index": {"bytes": stamp(index)[0], "sha256": sha256(index)} if complete else None,
         **facts,
-        "parts": parts,
+        "parts": [listed(row) for row in rows],
     }
     write_text_durably(json.dumps(content, indent=1) + "\n", directory / "manifest.json")
 
 
 def read_manifest(directory: Path) -> Manifest:
-    """Read and check ``manifest.json``; names of parts that lead out of the corpus are refused.
+    """Read and check ``manifest.json``, and the journal if the corpus is unfinished; names that lead out of the corpus are refused.
 
     Raises
     ------
@@ -141,7 +121,7 @@ def read_manifest(directory: Path) -> Manifest:
         raise CorpusError(f"{path}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
     except ValidationError as error:
         raise CorpusError(
-            f"{path}: not a corpus manifest ({_first(error)}); generate or copy the corpus again."
+            f"{path}: not a corpus manifest ({first_problem(error)}); generate or copy the corpus again."
         ) from None
     if manifest.raceway_format != FORMAT:
         found = manifest.raceway_format
@@ -151,25 +131,25 @@ def read_manifest(directory: Path) -> Manifest:
     problem = _inconsistency(manifest)
     if problem is not None:
         raise CorpusError(f"{path}: {problem}; do not trust this corpus.")
-    return manifest
+    return manifest if manifest.complete else _with_journal(manifest, directory)
 
 
-def _first(error: ValidationError) -> str:
-    """Place and reason of the first error."""
-    item = error.errors(include_url=False, include_input=False)[0]
-    place = ".".join(str(step) for step in item["loc"])
-    reason = item["msg"][0].lower() + item["msg"][1:]
-    return f"{place}: {reason}" if place else reason
+def _with_journal(manifest: Manifest, directory: Path) -> Manifest:
+    """Manifest of an unfinished corpus with the parts of its journal, in the order of their records; of a part, the last row counts."""
+    rows = {part.name: part for part in (*manifest.parts_, *read_journal(directory))}
+    parts = tuple(sorted(rows.values(), key=lambda part: part_number(part.name)))
+    records = sum(part.records for part in parts)
+    check_limit("records", records, f"{directory}: holds", CorpusError)
+    return manifest.model_copy(update={"parts_": parts, "records": records})
 
 
 def _inconsistency(manifest: Manifest) -> str | None:
-    names = [row.name for row in manifest.parts]
-    for name in names:
-        if not _PART_NAME.fullmatch(name):
-            return f"{name!r} is not the name of a part (part-00000.nc, ...)"
-    if len(set(names)) < len(names):
-        return f"it lists {next(name for name in names if names.count(name) > 1)} more than once"
-    records = sum(row.records for row in manifest.parts)
+    names = [part.name for part in manifest.parts_]
+    if (problem := next(filter(None, map(name_problem, names)), None)) is not None:
+        return problem
+    if (repeated := next((name for name, count in Counter(names).items() if count > 1), None)) is not None:
+        return f"it lists {repeated} more than once"
+    records = sum(part.records for part in manifest.parts_)
     if manifest.records != records:
         return f"it counts {manifest.records} records, its parts {records}"
     if manifest.complete and (manifest.index is None or not names):

@@ -9,6 +9,7 @@ import pytest
 from benchmarks import (
     against,
     features,
+    growth,
     kernel,
     lanes,
     million,
@@ -123,6 +124,11 @@ def test_a_folder_without_raceway_is_no_checkout(tmp_path, capsys):
     with pytest.raises(SystemExit):
         against.main([str(tmp_path)])
     assert "holds no checkout of Raceway" in capsys.readouterr().err
+
+
+def test_a_corpus_of_many_parts_is_compared_with_one_of_few():
+    found = finite_rows(growth.rows(1, parts=(2, 4), workers=2, task_s=0.01))
+    assert set(found) == {"growth driver", "growth scheduler", "growth ending"}
 
 
 def test_features_are_compared_where_tsfel_is_installed():

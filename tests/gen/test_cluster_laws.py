@@ -94,6 +94,44 @@ def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
             assert taken - done <= 2 * 8 + 1
 
 
+def test_workers_that_come_later_are_given_tasks(threaded, monkeypatch):
+    """With one worker of four threads 8 tasks are in hand, with two 16."""
+    monkeypatch.setattr(cluster, "COUNT_AGAIN_S", 0.0)
+    taken = 0
+
+    def items():
+        nonlocal taken
+        for taken in range(1, 201):  # noqa: B007
+            yield 0
+
+    threaded.scale(1)
+    with Client(threaded, set_as_default=False) as client:
+        while len(client.nthreads()) != 1:
+            time.sleep(0.05)
+        tasks = cluster.run_tasks(client, abs, items())
+        next(tasks)
+        assert taken == 8
+        threaded.scale(2)
+        client.wait_for_workers(2)
+        assert 8 < max(taken - done for done, _ in enumerate(tasks, start=2)) <= 16
+
+
+def _inverse(number):
+    time.sleep(0.2 * (number != 1))
+    return 1 / number
+
+
+def test_results_that_arrive_together_with_an_error_come_before_it(threaded):
+    found = []
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _inverse, [1, 2, 0, 4, 8])
+        found.append(next(tasks))
+        time.sleep(1)  # until all others have finished
+        with pytest.raises(ZeroDivisionError):
+            found.extend(tasks)
+    assert sorted(found) == [0.125, 0.25, 0.5, 1]
+
+
 def test_messages_of_tasks_reach_the_client(threaded):
     found = []
     with Client(threaded, set_as_default=False) as client:

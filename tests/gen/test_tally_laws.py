@@ -17,7 +17,7 @@ def test_the_parts_hold_every_record_once(recipe_with, per_part, records):
 
 def test_a_task_that_dask_repeats_does_not_lower_the_count_of_its_part(recipe_with):
     shown = []
-    tally = Tally(recipe_with(), lambda *counts: shown.append(counts), [0, 0, 0])
+    tally = Tally(recipe_with(), lambda *counts: shown.append(counts))
     tally.show()
     for part, records in ((0, 7), (1, 3), (0, 2), (1, 8)):
         tally.note_and_show(part, records)

@@ -1,16 +1,16 @@
 """After any interruption finished files are kept, no file is incomplete, and the same command completes the work."""
 
-import json
 import os
 import re
 import shutil
 import signal
 import time
 
+import numpy as np
 import pytest
 
 from gen import generate
-from gen.corpus import validate_corpus
+from gen.corpus import read_manifest, validate_corpus
 from gen.recipe import read_recipe
 from raceway.commands.corpora import _kept
 
@@ -28,19 +28,21 @@ def recipe(tiny_recipe, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def whole(recipe, tmp_path_factory):
-    """Bytes of the parts that an uninterrupted call writes."""
+    """Bytes of the parts and of the manifest that an uninterrupted call writes."""
     return part_bytes(generate(recipe, tmp_path_factory.mktemp("whole") / "corpus").directory)
 
 
 def part_bytes(folder):
-    return {path.name: path.read_bytes() for path in sorted((folder / "parts").iterdir())}
+    """Bytes of the parts and of the manifest, and of a journal, which a finished corpus does not have."""
+    paths = (*(folder / "parts").iterdir(), folder / "manifest.json", *folder.glob("*.jsonl"))
+    return {path.name: path.read_bytes() for path in sorted(paths)}
 
 
 def listed(folder):
-    """Names of the parts in the manifest."""
+    """Names of the parts in the manifest and in the journal."""
     if not (folder / "manifest.json").exists():
         return []
-    return [row["name"] for row in json.loads((folder / "manifest.json").read_text())["parts"]]
+    return [row.name for row in read_manifest(folder).parts]
 
 
 def wait_for(found, process, pause=5e-3):
@@ -90,16 +92,24 @@ def test_the_last_sentence_counts_the_parts_after_the_files_of_killed_workers_ar
     assert not list(folder.glob("**/.*"))
 
 
-def test_a_process_killed_while_it_writes_leaves_no_half_part(start, recipe, whole, tmp_path):
-    folder = tmp_path / "corpus"
-    process = start("generate", recipe, "-o", folder, "--workers", 1)
-    wait_for(a_file(folder, r"\.part-00003\.nc\.\d+\.\d+\.tmp"), process, pause=1e-4)
-    process.kill()
-    assert process.wait(PATIENCE_S) == -signal.SIGKILL
+def test_a_process_killed_at_any_moment_leaves_no_half_part(start, recipe, whole, tmp_path):
+    """The second process continues the work of the first, and is killed too."""
+    folder, drawn = tmp_path / "corpus", np.random.default_rng(0)
+    finished = 0
+    for begun in np.sort(drawn.choice(np.arange(2, N_PARTS - 1), 2, replace=False)):
+        process = start("generate", recipe, "-o", folder, "--workers", 1)
+        wait_for(a_file(folder, rf"\.part-{begun:05d}\.nc\.\d+\.\d+\.tmp"), process, pause=1e-4)
+        time.sleep(drawn.uniform(0, 0.02))
+        process.kill()
+        assert process.wait(PATIENCE_S) == -signal.SIGKILL
+        assert len(listed(folder)) >= begun
+        finished = len(listed(folder))
     (folder / "parts" / ".part-00009.nc.1.1.tmp").write_bytes(b"half a part")
     (folder / ".manifest.json.1.1.tmp").write_bytes(b"half a manifest")
+    with (folder / "parts.jsonl").open("ab") as journal:
+        journal.write(b'{"name": "part-000')
     made = generate(recipe, folder)
-    assert made.kept >= 3
+    assert made.kept == finished
     assert part_bytes(folder) == whole
     assert not list(folder.glob("**/.*"))
     assert validate_corpus(folder) == []
