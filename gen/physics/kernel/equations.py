@@ -90,7 +90,9 @@ def add_ball(
     squeeze = max(squeeze, 0.0)
     if len(shape.roller):
         power = ninth_root(squeeze)
-    elif ball % 2 == 1:  # in hardware on every processor: a slow divider takes every other root beside the arithmetic
+    elif ball % 4 < 2 and ball + 1 < len(
+        shape.balls
+    ):  # in hardware: so many a slow divider takes beside the arithmetic
         power = math.sqrt(squeeze)
     else:
         power = root(squeeze)
