@@ -143,8 +143,8 @@ def square_root(x: float) -> float:
     Half the exponent gives 0.79 / sqrt(x) to some per cent, a Newton step with matching constants [1]_ ``root`` = sqrt(x) and ``half`` =
     0.5 / sqrt(x) to 9e-4, and the series of ``(1 - 2 e)**-0.5`` the rest of both, to 9e-16. Then the remainder ``x - root**2``, which has
     no rounding error where it matters, corrects the last bits [2]_. The coefficients are fitted so that this also rounds the numbers
-    correctly whose roots lie nearest to the middle of two floating-point numbers; ``tests/gen/physics/kernel/test_root_laws.py`` counts
-    them out.
+    correctly whose roots lie nearest to the middle of two floating-point numbers; ``tests/gen/physics/kernel/test_root_laws.py`` lists
+    all of them.
 
     .. [1] L. Moroz et al., "Fast calculation of inverse square root with the use of magic constant: analytical approach", *Appl. Math.
            Comput.* 316 (2018) 245-255.

@@ -90,9 +90,7 @@ def add_ball(
     squeeze = max(squeeze, 0.0)
     if len(shape.roller):
         power = ninth_root(squeeze)
-    elif ball % 4 < 2 and ball + 1 < len(
-        shape.balls
-    ):  # in hardware: so many a slow divider takes beside the arithmetic
+    elif ball % 4 < 2 and ball + 1 < len(shape.balls):  # a slow divider computes these beside the others
         power = math.sqrt(squeeze)
     else:
         power = root(squeeze)
