@@ -15,8 +15,8 @@ from numba import njit
 from benchmarks.kernel import FULL
 from benchmarks.pairs import seconds
 from gen.physics.kernel.compiling import LANES, zeros
-from gen.physics.kernel.decimate import OUTPUTS, decimation, filter_rows
-from gen.physics.kernel.integrate import prepare, set_out, to_next_knot
+from gen.physics.kernel.decimate import decimation, filter_rows
+from gen.physics.kernel.integrate import BLOCK, prepare, set_out, to_next_knot
 from gen.physics.kernel.layout import Batch
 from gen.physics.kernel.outer_forces import move_forces
 from gen.physics.kernel.spalls import move_spalls
@@ -49,9 +49,9 @@ def repeat(part: int, shape: Any, batch: Batch, n_steps: int, dt: float, filters
     own = set_out(shape, batch, n_steps)
     work = prepare(shape, own, n_steps)
     width = len(shape.channels) * LANES
-    totals = zeros(OUTPUTS * width, np.float32)
+    totals = zeros(2 * BLOCK * width, np.float32)
     history, halfway = (
-        zeros((len(filters.first.taps) + 8 * n_steps) * width, np.float32),
+        zeros((len(filters.first.taps) + BLOCK * n_steps) * width, np.float32),
         zeros((len(filters.last.taps) + 64) * width, np.float32),
     )
     for knot in range(STRIDE):
@@ -78,10 +78,10 @@ def repeat(part: int, shape: Any, batch: Batch, n_steps: int, dt: float, filters
                 for i in range(own.angles.size):
                     own.angles[i] += work.moves[i]
         elif part == FIRST_FILTER:
-            if knot % 2 == 0 and len(filters.first.taps):
-                filter_rows(shape.channels, filters.first.taps, history, 0, halfway, 0, totals)
-        elif part == LAST_FILTER and knot % OUTPUTS == 0:
-            filter_rows(shape.channels, filters.last.taps, halfway, 0, history, 0, totals)
+            if knot % BLOCK == 0 and len(filters.first.taps):
+                filter_rows(shape.channels, filters.first, 2 * BLOCK, history, 0, halfway, 0, totals)
+        elif part == LAST_FILTER and knot % BLOCK == 0:
+            filter_rows(shape.channels, filters.last, BLOCK, halfway, 0, history, 0, totals)
 
 
 def kernel_parts(recipe: Recipe) -> tuple[dict[str, float], int]:

@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from gen.physics.extent import MAX_BALLS
-from gen.physics.kernel.compiling import INLINE, LANES, fma, square_root
+from gen.physics.kernel.compiling import INLINE, LANES, fma, root
 from gen.physics.kernel.layout import FloatArray, Param, Shape, direction_row, gap_row
 
 _COUNT, _BALL = np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None], np.arange(MAX_BALLS)
@@ -38,7 +38,7 @@ def ninth_root(x: float) -> float:
     Three steps of Halley's method start from 1.25 times the eighth root, which is three square roots: over that range the ninth root is
     1.08 to 1.42 times the eighth.
     """
-    y = 1.25 * square_root(square_root(square_root(x))) + 1e-300
+    y = 1.25 * root(root(root(x))) + 1e-300
     for _ in range(3):
         cube = y * y * y
         ninth = cube * cube * cube
@@ -90,10 +90,10 @@ def add_ball(
     squeeze = max(squeeze, 0.0)
     if len(shape.roller):
         power = ninth_root(squeeze)
-    elif ball % 4 == 3:  # every fourth root in hardware, beside the others in software: a step takes 8 % less time
+    elif ball % 4 < 2 and ball + 1 < len(shape.balls):  # a slow divider computes these beside the others
         power = math.sqrt(squeeze)
     else:
-        power = square_root(squeeze)
+        power = root(squeeze)
     force = squeeze * power
     if len(shape.damped):
         damped = max(fma(params[Param.CONTACT_DAMPING * LANES + lane], fma(u, c, v * s), force), 0.0)

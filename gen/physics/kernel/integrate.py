@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gen.physics import extent
 from gen.physics.kernel.compiling import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
-from gen.physics.kernel.decimate import OUTPUTS, Decimation, Single, filter_rows
+from gen.physics.kernel.decimate import Decimation, Single, filter_rows
 from gen.physics.kernel.layout import (
     AXES,
     Batch,
@@ -42,7 +42,7 @@ from gen.physics.kernel.turning import (
 from gen.physics.kernel.waviness import N_ROTATION_ROWS, ball_gaps, move_gaps
 
 FAR_OFF = 1.0  # displacement beyond which a record has diverged [m]; soft supports sag by millimetres
-BLOCK = 8  # knots between two runs of the filters, a multiple of OUTPUTS
+BLOCK = 8  # knots between two runs of the filters, a multiple of ``OUTPUTS`` of the filters
 ROOM = 16  # blocks of outputs of the first stage; then the newest are moved to the front
 
 Columns = tuple[Single, NDArray[np.int64], FloatArray]
@@ -176,7 +176,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
         halfway = zeros((half_kept + 2 * BLOCK * ROOM + 4) * width, np.float32)
         lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
         response = np.empty((n_out + 2 * BLOCK) * width, np.float32)
-        totals = zeros(OUTPUTS * width, np.float32)
+        totals = zeros(2 * BLOCK * width, np.float32)
         diverged = np.full(LANES, -1)
         work = prepare(shape, batch, n_steps)
         for first in range(0, lead + n_settle + n_out, BLOCK):
@@ -188,19 +188,13 @@ def _cached(sources: str) -> Callable[..., Columns]:
                 watch(batch.state, knot, diverged)
             start = 2 * BLOCK * (first // BLOCK % ROOM) if two_stages else 0
             if two_stages:
-                for output in range(0, 2 * BLOCK, OUTPUTS):
-                    filter_rows(
-                        shape.channels, first_stage.taps, history, output * first_stage.factor, halfway, half_kept + start + output,
-                        totals,
-                    )  # fmt: skip
+                filter_rows(
+                    shape.channels, first_stage, 2 * BLOCK, history, 0, halfway, half_kept + start, totals,
+                )  # fmt: skip
             out = first - lead - n_settle + BLOCK  # one block later, so that earlier outputs have room before the first
             if out >= 0:
                 source = halfway if two_stages else history
-                for output in range(0, BLOCK, OUTPUTS):
-                    filter_rows(
-                        shape.channels, filters.last.taps, source, start + output * filters.last.factor, response, out + output,
-                        totals,
-                    )  # fmt: skip
+                filter_rows(shape.channels, filters.last, BLOCK, source, start, response, out, totals)
             keep(history, kept * width, BLOCK * n_steps * width)
             if start == 2 * BLOCK * (ROOM - 1):
                 keep(halfway, half_kept * width, 2 * BLOCK * ROOM * width)

@@ -5,6 +5,7 @@ vector instructions. While the forces of one group of lanes add up, the processo
 is not faster, and compiling it takes twice as long.
 """
 
+import numpy as np
 from numba import njit
 
 from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
@@ -61,18 +62,16 @@ def moved(shape: Shape, q: Dynamic, slope: Dynamic, h: float) -> Dynamic:
 
 
 @njit(**INLINE)
-def half_turn(state: FloatArray, params: FloatArray) -> None:
+def half_turn(state: FloatArray, params: FloatArray, lane: int) -> None:
     """Rotate the directions of cage and shaft by half a step."""
-    wide()
-    for lane in range(lane_count()):
-        c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
-        dc, ds = params[Param.CAGE_TURN_COS * LANES + lane], params[Param.CAGE_TURN_SIN * LANES + lane]
-        state[State.CAGE_COS * LANES + lane] = fma(c, dc, -(s * ds))
-        state[State.CAGE_SIN * LANES + lane] = fma(s, dc, c * ds)
-        c, s = state[State.SHAFT_COS * LANES + lane], state[State.SHAFT_SIN * LANES + lane]
-        dc, ds = params[Param.SHAFT_TURN_COS * LANES + lane], params[Param.SHAFT_TURN_SIN * LANES + lane]
-        state[State.SHAFT_COS * LANES + lane] = fma(c, dc, -(s * ds))
-        state[State.SHAFT_SIN * LANES + lane] = fma(s, dc, c * ds)
+    c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
+    dc, ds = params[Param.CAGE_TURN_COS * LANES + lane], params[Param.CAGE_TURN_SIN * LANES + lane]
+    state[State.CAGE_COS * LANES + lane] = fma(c, dc, -(s * ds))
+    state[State.CAGE_SIN * LANES + lane] = fma(s, dc, c * ds)
+    c, s = state[State.SHAFT_COS * LANES + lane], state[State.SHAFT_SIN * LANES + lane]
+    dc, ds = params[Param.SHAFT_TURN_COS * LANES + lane], params[Param.SHAFT_TURN_SIN * LANES + lane]
+    state[State.SHAFT_COS * LANES + lane] = fma(c, dc, -(s * ds))
+    state[State.SHAFT_SIN * LANES + lane] = fma(s, dc, c * ds)
 
 
 @njit(**INLINE)
@@ -105,15 +104,20 @@ def first_stage(shape: Shape, state: FloatArray, params: FloatArray, dt: float, 
 
 @njit(**INLINE)
 def later_stage(
-    shape: Shape, state: FloatArray, params: FloatArray, instant: Instant, weight: float, ahead: float, along_all: float
+    shape: Shape, state: FloatArray, params: FloatArray, dt: float, instant: Instant, stage: int | np.int64
 ) -> None:
-    """A later stage: add its slope to the weighted sum of slopes, and compute the state at which the next stage begins.
+    """Stage 1, 2 or 3: add its slope to the weighted sum of slopes, and compute the state at which the next stage begins.
 
     That state is the beginning of the step plus ``along_all`` times the sum plus ``ahead`` times the new slope [s]; the sum counts at the
-    end of the step only.
+    end of the step only. Stages 1 and 2 are at the same time, so the directions turn before stages 1 and 3; in a loop of their own they
+    would take 2 % more of a step.
     """
+    last = stage == 3
+    weight, ahead, along_all = (1.0, 0.0, dt / 6) if last else (2.0, dt * (0.5 * stage), 0.0)
     wide()
     for lane in range(LANES):
+        if stage != 2:
+            half_turn(state, params, lane)
         _, slope, _ = slopes_of(shape, state, params, instant, lane)
         total = moved(shape, read(shape, state, State.SLOPES, lane), slope, weight)
         write(shape, state, State.SLOPES, lane, total)
@@ -179,11 +183,7 @@ def advance(
         pick_up(shape, state, params, history[(at + step * len(shape.channels)) * LANES :])
         for stage in range(1, 4):
             passed = 1 if stage < 3 else 2
-            if stage != 2:
-                half_turn(state, params)
             instant = Instant(
                 half_step + passed, since + half_step + passed, params[drops + (2 * step + passed) * width :]
             )
-            last = stage == 3
-            ahead = 0.0 if last else dt * (0.5 * stage)
-            later_stage(shape, state, params, instant, 1.0 if last else 2.0, ahead, dt / 6 if last else 0.0)
+            later_stage(shape, state, params, dt, instant, stage)
