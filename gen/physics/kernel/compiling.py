@@ -6,13 +6,13 @@ compiles one kernel for each combination and keeps it in its cache on disk, whic
 """
 
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any, Protocol, cast
 
 import numpy as np
 from llvmlite import ir
 from numba import njit, types
 from numba.core.compiler import Compiler
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 
 # Records advanced side by side. With 32 the kernel is as fast, but more lanes stay free (domain_randomised: 36 % of all instead of 19 %);
 # with 8 LLVM unrolls the loop over lanes and leaves it scalar.
@@ -30,7 +30,13 @@ class _NoAlias(Compiler):
         self.state.flags.noalias = True
 
 
-CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # also callable from Python
+class _Function(Protocol):
+    """A function whose arguments are not checked, as those of a compiled function."""
+
+    def __call__(self, *given: Any) -> Any: ...
+
+
+CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # also callable from Python, which compiles it
 # Without wrappers for Python no machine code is made of functions that are only inlined: a kernel compiles in half the time.
 # Without _nrt references to arrays are not counted: inlined functions make no arrays, and counting views took a third of the time
 # between two knots. Such a function must not write to an array that another of its arguments shares.
@@ -42,9 +48,19 @@ INLINE: dict[str, Any] = {
     "pipeline_class": _NoAlias,
 }
 ALLOCATING: dict[str, Any] = {**INLINE, "_nrt": True}
+# inlined into the kernel, and plain Python elsewhere: to compile it for a call from Python takes a tenth of a second in each process
+in_both = cast("Callable[[Callable[..., Any]], _Function]", register_jitable(**INLINE))
 # Every other function is inlined into the kernel: a helper compiled on its own is optimised separately in the process that compiles the
 # kernel, and rounds differently there from the cached kernel in other processes.
 KERNEL: dict[str, Any] = {"error_model": "numpy", "nogil": True, "cache": True}
+
+
+def compiled_to_disk(function: Callable[..., Any]) -> Any:
+    """Compile a kernel and keep it in numba's cache on disk; only in memory where no folder can be written."""
+    try:
+        return njit(**KERNEL)(function)
+    except RuntimeError:  # numba found no folder
+        return njit(error_model="numpy", nogil=True)(function)
 
 
 def _make_wide(context: Any) -> Any:  # noqa: ARG001
