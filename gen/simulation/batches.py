@@ -16,6 +16,7 @@ from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import Integral, integrate
 from gen.physics.kernel.layout import Batch, Shape
+from gen.simulation.kernels import load_kernel
 from gen.simulation.timeline import Timeline
 
 
@@ -60,6 +61,7 @@ def filled_lanes(count: int) -> int:
 
 def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     """Integrate one batch along the time axis of the recipe."""
+    load_kernel(group.shape)
     step, filters = 1 / (timeline.fs * group.steps), decimation(group.steps)
     return integrate(group.shape, batch, step, group.steps, filters, timeline.dropped, timeline.returned)
 
