@@ -6,7 +6,7 @@ compiles one kernel for each combination and keeps it in its cache on disk, whic
 """
 
 from collections.abc import Callable
-from typing import Any, Protocol, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from llvmlite import ir
@@ -30,11 +30,7 @@ class _NoAlias(Compiler):
         self.state.flags.noalias = True
 
 
-class _Function(Protocol):
-    """A function whose arguments are not checked, as those of a compiled function."""
-
-    def __call__(self, *given: Any) -> Any: ...
-
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # also callable from Python, which compiles it
 # Without wrappers for Python no machine code is made of functions that are only inlined: a kernel compiles in half the time.
@@ -48,11 +44,14 @@ INLINE: dict[str, Any] = {
     "pipeline_class": _NoAlias,
 }
 ALLOCATING: dict[str, Any] = {**INLINE, "_nrt": True}
-# inlined into the kernel, and plain Python elsewhere: to compile it for a call from Python takes a tenth of a second in each process
-in_both = cast("Callable[[Callable[..., Any]], _Function]", register_jitable(**INLINE))
 # Every other function is inlined into the kernel: a helper compiled on its own is optimised separately in the process that compiles the
 # kernel, and rounds differently there from the cached kernel in other processes.
 KERNEL: dict[str, Any] = {"error_model": "numpy", "nogil": True, "cache": True}
+
+
+def in_both(function: Function) -> Function:
+    """Inline a function into the kernel, and leave it plain Python elsewhere: each process would compile it for calls from Python."""
+    return register_jitable(**INLINE)(function)
 
 
 def compiled_to_disk(function: Callable[..., Any]) -> Any:
