@@ -24,6 +24,7 @@ labels      variables written beside each record
 pace        seconds that some records take on this machine
 records     records drawn, simulated and measured; faults that cannot be seen drawn again
 part_task   one part: made, labelled, written
+compilation kernels of a recipe compiled before its first record
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
 plan        counts, size and steps of a corpus before it is made

@@ -15,6 +15,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from gen.compilation import compile_kernels
 from gen.corpus import (
     JOURNAL_NAME,
     PartRow,
@@ -33,7 +34,7 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.errors import CorpusError, RecipeError
-from gen.part_task import Outcome, compile_kernels, library_versions, make_part, record_numbers
+from gen.part_task import Outcome, library_versions, make_part, record_numbers
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 
 if TYPE_CHECKING:
@@ -71,6 +72,7 @@ def generate(
     seed: int | None = None,
     records: int | None = None,
     progress: Progress | None = None,
+    notice: Callable[[str], None] = lambda _: None,
 ) -> Generated:
     """Generate a corpus, or complete an interrupted one.
 
@@ -89,6 +91,8 @@ def generate(
     progress : callable, optional
         Called in this thread with the number of records done and of all records. The last record of a part counts when the part is
         written, every other record when it is simulated.
+    notice : callable, optional
+        Called with a sentence when a kernel is about to be compiled.
 
     Raises
     ------
@@ -107,6 +111,8 @@ def generate(
     tally = Tally(checked, progress)
     with _client_of(scheduler) as client, _claimed(directory):
         known = _prepare(directory, Path(find_recipe(recipe)), facts)
+        if client is None and len(known) < checked.n_parts:
+            compile_kernels(checked, notice)
         outcomes: dict[int, Outcome] = {}
         with new_journal(directory) as append, closing(_made(tally, directory, known, workers, client)) as made:
             for part, outcome in made:
@@ -253,8 +259,6 @@ def _made(
         return
     from gen.cluster import listen, local_client, publish, run_tasks
 
-    if client is None:
-        compile_kernels(recipe)
     with local_client(workers) if client is None else nullcontext(client) as crew:
         report = partial(publish, listen(crew, tally.note))
         task = partial(_numbered_part, recipe, directory.resolve(), report)

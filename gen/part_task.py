@@ -12,15 +12,9 @@ from pathlib import Path
 
 from gen.corpus import PartRow, open_part, part_name, sha256, write_part
 from gen.labels import part_dataset
-from gen.measurement.measure import compile_mixing
-from gen.physics.kernel.batch import input_shape
 from gen.recipe import Recipe, recipe_hash
 from gen.records import made_records
-from gen.scenarios import draw_scenarios
-from gen.simulation.inputs import kernel_input
-from gen.simulation.outline import outlined_inputs
-from gen.simulation.simulate import compile_kernel, step_errors
-from gen.simulation.timeline import timeline
+from gen.simulation.simulate import step_errors
 
 
 @dataclass(frozen=True)
@@ -85,18 +79,3 @@ def _kept_part(path: Path, known: PartRow) -> Outcome | None:
     with open_part(path) as dataset:
         failures = tuple(json.loads(dataset.attrs["failures"]))
     return Outcome(known, kept=True, failures=failures)
-
-
-def compile_kernels(recipe: Recipe) -> None:
-    """Compile the kernels of a recipe into numba's cache on disk, before several processes compile the same ones."""
-    compile_mixing(draw_scenarios(recipe, 0, 1)[0], recipe)
-    done = set()
-    for first in range(0, min(recipe.n_records, 4096), recipe.corpus.records_per_part):
-        scenarios = draw_scenarios(recipe, first, first + recipe.corpus.records_per_part)
-        if recipe.corpus.truth == "full":
-            scenarios += [scenario.without_fault() for scenario in scenarios]
-        for one, given in zip(scenarios, outlined_inputs(scenarios, timeline(recipe))[0], strict=True):
-            # a record of which no machine is possible is left out when its part is made
-            if given is not None and input_shape(given) not in done:
-                done.add(input_shape(given))
-                compile_kernel(kernel_input(one, timeline(recipe)))

@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics.kernel.compiling import cosine, sine
+from gen.physics.kernel.compiling import INLINE, compiled_to_disk, cosine, sine
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
@@ -45,7 +45,7 @@ class Products(NamedTuple):
     hn: float
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled_to_disk
 def mix(
     fault: Float32Array,
     healthy: Float32Array,
@@ -113,7 +113,7 @@ def mix(
     return Products(means[0], means[1], means[2], means[3], means[4], means[5])
 
 
-@njit(forceinline=True, error_model="numpy")
+@njit(**INLINE)
 def _turn_block(angles: FloatArray, start: int, size: int, turn: Float32Array) -> None:
     """Cosine and sine of the shaft angle for the block from sample ``start`` on, into ``turn``, shape (2, BLOCK).
 
@@ -126,7 +126,7 @@ def _turn_block(angles: FloatArray, start: int, size: int, turn: Float32Array) -
         turn[0, j], turn[1, j] = c * c - s * s, 2 * c * s
 
 
-@njit(forceinline=True, error_model="numpy")
+@njit(**INLINE)
 def _sum_harmonics(
     lines: Lines, channel: int, start: int, size: int, turn: Float32Array, real: Float32Array, imaginary: Float32Array
 ) -> None:
@@ -144,7 +144,7 @@ def _sum_harmonics(
             real[j] *= np.float32(lines.growth[start + j])
 
 
-@njit(forceinline=True, error_model="numpy")
+@njit(**INLINE)
 def _add_tones(
     lines: Lines, channel: int, tables: Float32Array, start: int, size: int, turn: Float32Array, real: Float32Array
 ) -> None:
@@ -161,7 +161,7 @@ def _add_tones(
             real[j] += wave * (np.float32(1) + a * turn[0, j] - b * turn[1, j])
 
 
-@njit(forceinline=True, error_model="numpy")
+@njit(**INLINE)
 def _advance(step: float, table: Float32Array) -> None:
     """Cosine and sine of ``step`` times 0, 1, ..., into ``table``, shape (2, BLOCK)."""
     c, s = math.cos(step), math.sin(step)
@@ -171,7 +171,7 @@ def _advance(step: float, table: Float32Array) -> None:
         x, y = x * c - y * s, x * s + y * c
 
 
-@njit(forceinline=True, error_model="numpy")
+@njit(**INLINE)
 def _modulation(turn: Float32Array, parts: Float32Array, gain: Float32Array) -> None:
     """Gain with modulation once and twice per turn of the shaft, into ``gain``, shape (BLOCK,) [1]."""
     for j in range(BLOCK):

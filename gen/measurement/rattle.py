@@ -13,8 +13,9 @@ which it may lift off again. Without a flight ``d`` stays 0 and the sensor measu
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from gen.physics.kernel.compiling import compiled_to_disk
 
 FloatArray = NDArray[np.floating]
 
@@ -50,7 +51,7 @@ def rattling(
     return _rattle(held.astype(float), omega, 2 * decay, holding, step, steps, advance)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@compiled_to_disk
 def _rattle(
     held: NDArray[np.float64],
     omega: float,

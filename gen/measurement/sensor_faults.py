@@ -13,12 +13,11 @@ Every function takes signals of shape (channel, time) [m s-2] and returns new on
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
-from scipy.signal import lfilter
 
 from gen.measurement.rattle import rattling
 from gen.measurement.rig import base_excited
@@ -150,7 +149,14 @@ def drift(drawn: Drawn, shape: tuple[int, ...], fs: float, rng: np.random.Genera
     noise = rng.standard_normal(shape) * (drawn["wander"] * math.sqrt(1 - kept**2))
     noise[:, 0] = drawn["wander"] * rng.standard_normal(shape[0])
     settling = drawn["settling"] * np.exp(np.arange(shape[1]) / (-drawn["settling_time"] * fs))
-    return lfilter([1.0], [1.0, -kept], noise) + settling
+    return _recursive(1.0, kept, noise) + settling
+
+
+def _recursive(gain: float, pole: complex, signal: NDArray[Any]) -> NDArray[Any]:
+    """Filter of first order: ``gain`` times the signal plus ``pole`` times the output one sample before."""
+    from scipy.signal import lfilter  # loads for half a second, and few recipes need it
+
+    return lfilter([gain], [1.0, -pole], signal)
 
 
 def mains_hum(drawn: Drawn, deviation: float, length: int, fs: float, rng: np.random.Generator) -> FloatArray:
@@ -174,7 +180,7 @@ def emi_bursts(drawn: Drawn, length: int, fs: float, rng: np.random.Generator) -
     hits = np.zeros(length, complex)
     np.add.at(hits, starts, peaks)
     pole = np.exp((-1 / drawn["decay"] + 2j * math.pi * drawn["frequency"]) / fs)
-    return lfilter([1.0], [1.0, -pole], hits).real, count
+    return np.real(_recursive(1.0, pole, hits)), count
 
 
 def gain_steps(steps: tuple[Drawn, ...], length: int) -> FloatArray:
@@ -195,7 +201,7 @@ def saturated(signal: FloatArray, drawn: Drawn, fs: float) -> tuple[FloatArray, 
     if drawn["recovery"] > 0:
         kept = math.exp(-1 / (drawn["recovery"] * fs))
         beyond = signal - np.clip(signal, -limit, limit)
-        signal = signal - lfilter([1 - kept], [1.0, -kept], beyond)
+        signal = signal - _recursive(1 - kept, kept, beyond)
     count = int(np.count_nonzero(np.abs(signal) >= limit + knee))
     output = np.clip(signal, -limit - knee, limit + knee)
     if knee > 0:

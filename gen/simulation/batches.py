@@ -17,6 +17,7 @@ from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import Integral, integrate
 from gen.physics.kernel.layout import Batch, Shape
+from gen.simulation.kernels import load_kernel
 from gen.simulation.timeline import Timeline
 
 
@@ -64,6 +65,7 @@ def filled_lanes(count: int) -> int:
 
 def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     """Integrate one batch along the time axis of the recipe."""
+    load_kernel(group.shape)
     step = 1 / (timeline.fs * group.steps)
     return integrate(group.shape, batch, step, group.steps, _filters(group.steps), timeline.dropped, timeline.returned)
 

@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 
 from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
-from gen.physics.kernel.decimate import decimation
-from gen.physics.kernel.integrate import integrate
 from gen.physics.kernel.layout import Batch
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
@@ -171,9 +169,3 @@ def laid_out(scenarios: list[Scenario], recipe: Recipe) -> list[tuple[Group, Bat
     return [
         (group, lay_out([inputs[row] for row in rows], group.shape, 1 / axis.fs)) for group, rows in batches(groups)
     ]
-
-
-def compile_kernel(given: KernelInput) -> None:
-    """Compile the kernel that a record needs, or fetch it from numba's cache on disk."""
-    shape = group_of(given, 1).shape
-    integrate(shape, lay_out([given], shape, 1e-4), 1e-5, 1, decimation(1), 0, 1)

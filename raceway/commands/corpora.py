@@ -191,10 +191,10 @@ def generate(
 
 
 def _generated(recipe: str, output: Path, **options: Any) -> "Generated":
-    from gen.generation import generate as generate_corpus
+    from gen import generate as generate_corpus
 
-    with compilation_noticed(), progress("generating", "records") as report:
-        return generate_corpus(recipe, output, **options, progress=report)
+    with progress("generating", "records") as report:
+        return generate_corpus(recipe, output, **options, progress=report, notice=notice)
 
 
 def _show_generated(made: "Generated") -> None:

@@ -7,13 +7,13 @@ compiles one kernel for each combination and keeps it in its cache on disk, whic
 
 import math
 from collections.abc import Callable
-from typing import Any, cast
+from typing import Any, TypeVar, cast
 
 import numpy as np
 from llvmlite import ir
 from numba import njit, types
 from numba.core.compiler import Compiler
-from numba.extending import intrinsic
+from numba.extending import intrinsic, register_jitable
 
 # Records advanced side by side. With 32 the kernel is as fast, but more lanes stay free (domain_randomised: 36 % of all instead of 19 %);
 # with 8 LLVM unrolls the loop over lanes and leaves it scalar.
@@ -31,7 +31,9 @@ class _NoAlias(Compiler):
         self.state.flags.noalias = True
 
 
-CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # also callable from Python
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+CALLED: dict[str, Any] = {"forceinline": True, "error_model": "numpy"}  # also callable from Python, which compiles it
 # Without wrappers for Python no machine code is made of functions that are only inlined: a kernel compiles in half the time.
 # Without _nrt references to arrays are not counted: inlined functions make no arrays, and counting views took a third of the time
 # between two knots. Such a function must not write to an array that another of its arguments shares.
@@ -46,6 +48,19 @@ ALLOCATING: dict[str, Any] = {**INLINE, "_nrt": True}
 # Every other function is inlined into the kernel: a helper compiled on its own is optimised separately in the process that compiles the
 # kernel, and rounds differently there from the cached kernel in other processes.
 KERNEL: dict[str, Any] = {"error_model": "numpy", "nogil": True, "cache": True}
+
+
+def in_both(function: Function) -> Function:
+    """Inline a function into the kernel, and leave it plain Python elsewhere: each process would compile it for calls from Python."""
+    return register_jitable(**INLINE)(function)
+
+
+def compiled_to_disk(function: Callable[..., Any]) -> Any:
+    """Compile a kernel and keep it in numba's cache on disk; only in memory where no folder can be written."""
+    try:
+        return njit(**KERNEL)(function)
+    except RuntimeError:  # numba found no folder
+        return njit(error_model="numpy", nogil=True)(function)
 
 
 def _make_wide(context: Any) -> Any:  # noqa: ARG001

@@ -17,7 +17,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
-from scipy.signal import firwin
 
 from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
 
@@ -68,7 +67,10 @@ def decimation(n_steps: int) -> Decimation:
 
 
 def _low_pass(half_taps: int, factor: int, cutoff: float) -> NDArray[np.float64]:
-    return firwin(2 * half_taps * factor + 1, cutoff, window=("kaiser", BETA))
+    """Low-pass filter up to ``cutoff`` Nyquist frequencies, as ``scipy.signal.firwin`` designs it, which takes half a second to load."""
+    samples = np.arange(-half_taps * factor, half_taps * factor + 1)
+    taps = np.sinc(cutoff * samples) * np.kaiser(len(samples), BETA)
+    return taps / taps.sum()
 
 
 def _stage(taps: NDArray[np.float64], factor: int) -> Stage:

@@ -9,7 +9,7 @@ import math
 
 from numba import njit
 
-from gen.physics.kernel.compiling import CALLED, cosine, sine
+from gen.physics.kernel.compiling import CALLED, cosine, in_both, sine
 
 PROFILES = ("geometric", "half_sine", "raised_cosine", "rectangular", "table")
 GEOMETRIC, HALF_SINE, RAISED_COSINE, RECTANGULAR, TABLE = range(5)
@@ -17,7 +17,7 @@ RAISED_EDGE = 0.25  # share of the half width taken by each cosine flank
 FAR_INSIDE = 0.7  # rad from an edge, within the range of sine()
 
 
-@njit(**CALLED)
+@in_both
 def sagitta(chord: float, radius: float) -> float:
     """Height of an arc of signed ``radius`` over half its ``chord`` [m].
 

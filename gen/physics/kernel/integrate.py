@@ -14,7 +14,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from gen.physics import extent
-from gen.physics.kernel.compiling import ALLOCATING, INLINE, KERNEL, LANES, copied, lane_count, zeros
+from gen.physics.kernel.compiling import ALLOCATING, INLINE, LANES, compiled_to_disk, copied, lane_count, zeros
 from gen.physics.kernel.decimate import Decimation, Single, filter_rows
 from gen.physics.kernel.layout import (
     AXES,
@@ -162,7 +162,7 @@ def _cached(sources: str) -> Callable[..., Columns]:
     returns a plain tuple: numba builds a named tuple in Python, where a signal could interrupt it half way.
     """
 
-    @njit(**KERNEL)
+    @compiled_to_disk
     def integrate_lanes(
         shape: Shape, batch: Batch, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
     ) -> Columns:

@@ -8,11 +8,10 @@ from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from gen.physics.extent import HIGHEST_ORDER
-from gen.physics.kernel.compiling import CALLED
+from gen.physics.kernel.compiling import in_both
 
 FloatArray = NDArray[np.float64]
 
@@ -258,49 +257,49 @@ class Batch(NamedTuple):
     path [1], and angle over which the slope changes [rad]. Row 0 has no strikes; a ball spall has two rows."""
 
 
-@njit(**CALLED)
+@in_both
 def direction_row(shape: Shape) -> int:
     """First row of the directions of jittered balls in ``params``: cosine, sine, and their slopes per half step, of each ball."""
     return PICKUPS + len(shape.channels) * AXES
 
 
-@njit(**CALLED)
+@in_both
 def gap_row(shape: Shape) -> int:
     """First row of the gaps in ``params``: gap and its slope per half step, of each ball."""
     return direction_row(shape) + (4 * len(shape.balls) if len(shape.jittered) else 0)
 
 
-@njit(**CALLED)
+@in_both
 def drop_row(shape: Shape) -> int:
     """First row of the drops into spalls in ``params``: half step after half step, ``drop_width`` rows of each."""
     return gap_row(shape) + (2 * len(shape.balls) if len(shape.wavy) else 0)
 
 
-@njit(**CALLED)
+@in_both
 def drop_width(shape: Shape) -> int:
     """Rows of one half step: the drop of every ball, then with strikes their force on shaft and housing, x and y of each."""
     return len(shape.balls) + (4 if len(shape.struck) else 0)
 
 
-@njit(**CALLED)
+@in_both
 def param_rows(shape: Shape, n_steps: int) -> int:
     """Number of rows of ``params``."""
     return drop_row(shape) + ((2 * n_steps + 1) * drop_width(shape) if len(shape.spalled) else 0)
 
 
-@njit(**CALLED)
+@in_both
 def n_folds(shape: Shape) -> int:
     """Number of waviness orders of a race that differ by a multiple of the number of balls."""
     return HIGHEST_ORDER // len(shape.balls) + 1
 
 
-@njit(**CALLED)
+@in_both
 def race_rows(shape: Shape) -> int:
     """Number of rows of ``waves`` that belong to the races."""
     return 4 * n_folds(shape) * len(shape.balls)
 
 
-@njit(**CALLED)
+@in_both
 def slow_rows(shape: Shape) -> int:
     """Number of processes."""
     return Process.JITTER + (len(shape.balls) if len(shape.jittered) else 0)

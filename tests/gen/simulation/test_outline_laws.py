@@ -1,14 +1,11 @@
 """Laws of outlines: kernel and steps of a record, found without its kernel input, equal those of the full record."""
 
-import importlib
-
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.errors import SimulationError
-from gen.part_task import compile_kernels
 from gen.physics.kernel.batch import input_shape
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
@@ -19,8 +16,6 @@ from gen.simulation.outline import outlined_input
 from gen.simulation.steps import steps_per_sample
 from gen.simulation.timeline import timeline
 from tests.recipes import EVERYTHING
-
-GENERATE = importlib.import_module("gen.part_task")
 
 percents = st.floats(10, 1000)
 times = st.floats(-0.1, 0.3).map(lambda time: round(time, 5))
@@ -128,15 +123,6 @@ def test_a_plan_builds_no_whole_record_outside_its_timed_sample(write_recipe, tm
     for name in ("spall_inputs", "waviness_of", "schedule_of"):
         monkeypatch.setattr(f"gen.simulation.inputs.{name}", refused)
     assert plan(write_recipe(tmp_path / "r.yaml", EVERYTHING)).steps_per_sample.keys()
-
-
-def test_one_whole_record_is_built_for_each_kernel_that_is_compiled(recipe_with, monkeypatch):
-    built = []
-    monkeypatch.setattr(GENERATE, "kernel_input", lambda scenario, _recipe: built.append(scenario))
-    monkeypatch.setattr(GENERATE, "compile_kernel", lambda _record: None)
-    recipe = recipe_with({"operation.jitter_deg": {"kind": "grid", "values": [0, 0.3]}})
-    compile_kernels(recipe)
-    assert len(built) == len({input_shape(kernel_input(s, timeline(recipe))) for s in draw_scenarios(recipe)}) == 2
 
 
 def test_a_plan_with_dear_loads_draws_fewer_records_and_says_so(write_recipe, tmp_path):
