@@ -6,7 +6,7 @@ import math
 from benchmarks import features, kernel, opening, pipeline, reading, rivals, roofline, starting, truth
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
-from benchmarks.profile import PARTS, kernel_parts
+from benchmarks.profile import PARTS, REST, kernel_parts
 from gen.generation import generate
 from gen.recipe import read_recipe
 
@@ -29,9 +29,12 @@ def test_the_step_is_compared_with_its_roofline():
 
 
 def test_the_time_of_the_kernel_is_told_part_by_part(brief_full):
-    parts, n_steps = kernel_parts(read_recipe(brief_full))
-    assert set(parts) == set(PARTS)
+    parts, n_steps, load = kernel_parts(read_recipe(brief_full))
+    assert set(parts) == {*PARTS, REST}
     assert n_steps > 1
+    assert load.steps == n_steps
+    assert 0 < load.busy <= 1
+    assert load.lanes >= 1
     assert 0 < sum(parts.values()) < 1e-4
 
 
