@@ -130,15 +130,15 @@ def pass_spall(
     """
     wide()
     start, slope, share, race = passage
-    this, n_half_steps = spall, 2 * n_steps + 1
+    n_half_steps = 2 * n_steps + 1
     if not passes(spall, lane, start, slope, n_steps, 0.0):
         return
     met[ball] = 1.0
-    half = this[SpallRow.HALF * LANES + lane]
-    arc, depth = this[SpallRow.ARC * LANES + lane], this[SpallRow.DEPTH * LANES + lane]
+    half = spall[SpallRow.HALF * LANES + lane]
+    arc, depth = spall[SpallRow.ARC * LANES + lane], spall[SpallRow.DEPTH * LANES + lane]
     radius = batch.drive[Drive.BALL_RADIUS * LANES + lane]
-    profile, table = int(this[SpallRow.PROFILE * LANES + lane]), int(this[SpallRow.TABLE * LANES + lane])
-    if int(this[SpallRow.SITE * LANES + lane]) == Site.BALL and race < 0.0:
+    profile, table = int(spall[SpallRow.PROFILE * LANES + lane]), int(spall[SpallRow.TABLE * LANES + lane])
+    if int(spall[SpallRow.SITE * LANES + lane]) == Site.BALL and race < 0.0:
         table += 1
     if profile == TABLE:
         for half_step in range(n_half_steps):
