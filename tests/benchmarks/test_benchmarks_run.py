@@ -24,7 +24,7 @@ from benchmarks import (
 from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
 from benchmarks.pipeline import variant
-from benchmarks.profile import PARTS, kernel_parts
+from benchmarks.profile import PARTS, REST, kernel_parts
 from gen.generation import generate
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
@@ -52,9 +52,12 @@ def test_the_step_is_compared_with_its_roofline():
 
 
 def test_the_time_of_the_kernel_is_told_part_by_part(brief_full):
-    parts, n_steps = kernel_parts(read_recipe(brief_full))
-    assert set(parts) == set(PARTS)
+    parts, n_steps, load = kernel_parts(read_recipe(brief_full))
+    assert set(parts) == {*PARTS, REST}
     assert n_steps > 1
+    assert load.steps == n_steps
+    assert 0 < load.busy <= 1
+    assert load.lanes >= 1
     assert 0 < sum(parts.values()) < 1e-4
 
 

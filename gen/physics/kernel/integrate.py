@@ -28,7 +28,7 @@ from gen.physics.kernel.layout import (
     slow_rows,
 )  # fmt: skip
 from gen.physics.kernel.outer_forces import move_forces
-from gen.physics.kernel.spalls import move_spalls
+from gen.physics.kernel.spalls import move_spalls, none_met
 from gen.physics.kernel.step import advance
 from gen.physics.kernel.turning import (
     N_ANGLES,
@@ -66,8 +66,8 @@ class Work(NamedTuple):
     """Angles by which shaft, cage and ball spin turn up to the next knot, rows of :class:`Angle` [rad]."""
     gaps: FloatArray
     """Gap of every ball at the next knot without spalls [m]."""
-    dropped: FloatArray
-    """1 if a ball was in a spall before the last knot, shape (1,)."""
+    met: FloatArray
+    """Which balls meet spalls, see :func:`gen.physics.kernel.spalls.none_met`."""
     scratch: FloatArray
     """Scratch of the function that runs."""
 
@@ -99,7 +99,7 @@ def prepare(shape: Shape, batch: Batch, n_steps: int) -> Work:
     n_balls = len(shape.balls)
     rows = N_ROTATION_ROWS + 2 * n_balls + Process.JITTER
     scratch = zeros(rows * LANES + 2 * n_steps + 1)
-    work = Work(zeros(N_ANGLES * LANES), zeros(n_balls * LANES), zeros(1), scratch)
+    work = Work(zeros(N_ANGLES * LANES), zeros(n_balls * LANES), none_met(shape, batch), scratch)
     start_processes(shape, batch)
     if len(shape.wavy):
         ball_gaps(shape, batch, work.moves, work.scratch, work.gaps)
@@ -118,7 +118,7 @@ def to_next_knot(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float,
     if len(shape.wavy):
         move_gaps(shape, batch, n_steps, work.moves, work.scratch, work.gaps)
     if len(shape.spalled):
-        move_spalls(shape, batch, n_steps, dt, work.moves, work.scratch, work.dropped)
+        move_spalls(shape, batch, n_steps, dt, work.moves, work.scratch, work.met)
     keep_turning(shape, batch, work.moves)
 
 

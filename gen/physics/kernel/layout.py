@@ -271,8 +271,11 @@ def gap_row(shape: Shape) -> int:
 
 @in_both
 def drop_row(shape: Shape) -> int:
-    """First row of the drops into spalls in ``params``: half step after half step, ``drop_width`` rows of each."""
-    return gap_row(shape) + (2 * len(shape.balls) if len(shape.wavy) else 0)
+    """First row of the drops into spalls in ``params``: half step after half step, ``drop_width`` rows of each.
+
+    The row before it is 1 in lane 0 if a ball of any lane drops or strikes before the next knot.
+    """
+    return gap_row(shape) + (2 * len(shape.balls) if len(shape.wavy) else 0) + 1
 
 
 @in_both

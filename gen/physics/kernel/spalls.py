@@ -15,7 +15,7 @@ from numba import njit
 
 from gen.physics.extent import TABLE_POINTS
 from gen.physics.kernel.chance import standard_normal, uniform
-from gen.physics.kernel.compiling import INLINE, LANES, fma, lane_count, wide
+from gen.physics.kernel.compiling import ALLOCATING, INLINE, LANES, fma, lane_count, wide, zeros
 from gen.physics.kernel.drop import GEOMETRIC, RECTANGULAR, TABLE, drop
 from gen.physics.kernel.layout import (
     Angle,
@@ -80,29 +80,65 @@ def tabulated(tables: FloatArray, row: int, offset: float, half: float) -> float
     return (1 - part) * tables[row, point] + part * tables[row, point + 1]
 
 
+@njit(**ALLOCATING)
+def none_met(shape: Shape, batch: Batch) -> FloatArray:
+    """Work array of the spalls: for each row of a half step 1 if it holds drops or forces that are to be cleared.
+
+    Then, spall after spall, the number of the last passage of each lane and the factor of its drop.
+    """
+    rows, n_spalls = drop_width(shape), batch.spalls.size // (SPALL_ROWS * LANES)
+    met = zeros(rows + 2 * n_spalls * LANES)
+    for i in range(2 * n_spalls * LANES):
+        met[rows + i] = NEVER
+    return met
+
+
 @njit(**INLINE)
-def scatter(spall: FloatArray, lane: int, number: float) -> float:
-    """Factor of the drop in one passage of a spall, whose rows are ``spall`` [1]."""
+def scatter(spall: FloatArray, lane: int, number: float, last: FloatArray) -> float:
+    """Factor of the drop in one passage of a spall, whose rows are ``spall`` [1]; ``last`` keeps that of its last passage."""
     rms = spall[SpallRow.SCATTER * LANES + lane]
-    return math.exp(rms * standard_normal(number, spall[SpallRow.SEED * LANES + lane])) if rms > 0.0 else 1.0
+    if rms <= 0.0:
+        return 1.0
+    if last[lane] != number:
+        last[lane] = number
+        last[LANES + lane] = math.exp(rms * standard_normal(number, spall[SpallRow.SEED * LANES + lane]))
+    return last[LANES + lane]
+
+
+@njit(**INLINE)
+def passes(spall: FloatArray, lane: int, start: float, slope: float, n_steps: int, further: float) -> bool:
+    """Whether a ball is within ``further`` of a spall before the next knot [rad]."""
+    end, half = start + 2 * n_steps * slope, spall[SpallRow.HALF * LANES + lane] + further
+    return min(start, end) < half and max(start, end) > -half
 
 
 @njit(**INLINE)
 def pass_spall(
-    shape: Shape, batch: Batch, spall: int, lane: int, ball: int, passage: Passage, n_steps: int, falls: FloatArray
+    shape: Shape,
+    batch: Batch,
+    spall: FloatArray,
+    lane: int,
+    ball: int,
+    passage: Passage,
+    n_steps: int,
+    falls: FloatArray,
+    met: FloatArray,
 ) -> None:
-    """Add the drops of one ball over one spall at every half step up to the next knot; ``falls`` is a work array."""
+    """Add the drops of one ball over one spall, whose rows are ``spall``, at every half step up to the next knot.
+
+    ``falls`` is a work array.
+    """
     wide()
     start, slope, share, race = passage
-    this = batch.spalls[spall * SPALL_ROWS * LANES :]
-    half, n_half_steps = this[SpallRow.HALF * LANES + lane], 2 * n_steps + 1
-    end = start + 2 * n_steps * slope
-    if min(start, end) >= half or max(start, end) <= -half:
+    n_half_steps = 2 * n_steps + 1
+    if not passes(spall, lane, start, slope, n_steps, 0.0):
         return
-    arc, depth = this[SpallRow.ARC * LANES + lane], this[SpallRow.DEPTH * LANES + lane]
+    met[ball] = 1.0
+    half = spall[SpallRow.HALF * LANES + lane]
+    arc, depth = spall[SpallRow.ARC * LANES + lane], spall[SpallRow.DEPTH * LANES + lane]
     radius = batch.drive[Drive.BALL_RADIUS * LANES + lane]
-    profile, table = int(this[SpallRow.PROFILE * LANES + lane]), int(this[SpallRow.TABLE * LANES + lane])
-    if int(this[SpallRow.SITE * LANES + lane]) == Site.BALL and race < 0.0:
+    profile, table = int(spall[SpallRow.PROFILE * LANES + lane]), int(spall[SpallRow.TABLE * LANES + lane])
+    if int(spall[SpallRow.SITE * LANES + lane]) == Site.BALL and race < 0.0:
         table += 1
     if profile == TABLE:
         for half_step in range(n_half_steps):
@@ -132,6 +168,7 @@ def meet_spall(
     start: float,
     slope: float,
     falls: FloatArray,
+    met: FloatArray,
 ) -> None:
     """Add the drops of all balls that meet one spall of one lane before the next knot, and the forces of those that strike it.
 
@@ -142,19 +179,19 @@ def meet_spall(
     this = batch.spalls[spall * SPALL_ROWS * LANES :]
     site, period = int(this[SpallRow.SITE * LANES + lane]), this[SpallRow.PERIOD * LANES + lane]
     nearest = np.int64(np.rint((start + 0.5 * slope) / period))
+    last = met[drop_width(shape) + 2 * spall * LANES :]
+    further = longest_pulse(slope, n_steps, dt) if len(shape.struck) else 0.0
     inner, outer = batch.drive[Drive.INNER_RADIUS * LANES + lane], -batch.drive[Drive.OUTER_RADIUS * LANES + lane]
     if site == Site.BALL:
         race, ball = inner if nearest & 1 == 0 else outer, int(this[SpallRow.CARRIER * LANES + lane])
-        share = share_on_track(shape, batch, lane) * scatter(this, lane, float(nearest))
+        share = share_on_track(shape, batch, lane) * scatter(this, lane, float(nearest), last)
         passage = Passage(start - nearest * period, rate, share, race)
-        pass_spall(shape, batch, spall, lane, ball, passage, n_steps, falls)
+        pass_spall(shape, batch, this, lane, ball, passage, n_steps, falls, met)
         if len(shape.struck):
-            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt)
+            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt, met)
         return
     race = inner if site == Site.INNER else outer
-    reach = this[SpallRow.REACH * LANES + lane] + 0.5 * abs(slope)
-    if len(shape.struck):
-        reach += longest_pulse(slope, n_steps, dt)
+    reach = this[SpallRow.REACH * LANES + lane] + 0.5 * abs(slope) + further
     around = min(int(reach / period + 0.5), n_balls // 2)
     for rank in range(-around, n_balls - around if 2 * around >= n_balls else around + 1):
         ball = int((rank - nearest) % n_balls)
@@ -163,26 +200,39 @@ def meet_spall(
             source = (Process.JITTER + ball) * LANES + lane
             offset += batch.slow[source]
             passing += batch.slow[slow_rows(shape) * LANES + source] / (2 * n_steps)
-        passage = Passage(offset, passing, scatter(this, lane, float(nearest - rank)), race)
-        pass_spall(shape, batch, spall, lane, ball, passage, n_steps, falls)
         if len(shape.struck):
-            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt)
+            further = longest_pulse(2 * n_steps * passing, n_steps, dt)
+        if not passes(this, lane, offset, passing, n_steps, further):
+            continue
+        passage = Passage(offset, passing, scatter(this, lane, float(nearest - rank), last), race)
+        pass_spall(shape, batch, this, lane, ball, passage, n_steps, falls, met)
+        if len(shape.struck):
+            strike_edges(shape, batch, this, lane, ball, passage, n_steps, dt, met)
+
+
+@njit(**INLINE)
+def clear_drops(shape: Shape, batch: Batch, n_steps: int, met: FloatArray) -> None:
+    """Set the drops and forces of the last knot back to zero, of the balls that have any: a knot writes a few of all rows."""
+    wide()
+    for row in range(drop_width(shape)):
+        if met[row] > 0.0:
+            met[row] = 0.0
+            for half_step in range(2 * n_steps + 1):
+                drops = batch.params[(drop_row(shape) + half_step * drop_width(shape) + row) * LANES :]
+                for lane in range(LANES):  # of a length that LLVM knows: otherwise it calls memset for each row
+                    drops[lane] = 0.0
 
 
 @njit(**INLINE)
 def move_spalls(
-    shape: Shape, batch: Batch, n_steps: int, dt: float, moves: FloatArray, work: FloatArray, dropped: FloatArray
+    shape: Shape, batch: Batch, n_steps: int, dt: float, moves: FloatArray, work: FloatArray, met: FloatArray
 ) -> None:
     """Set the drops of all balls over all spalls, and the forces of strikes, at every half step up to the next knot.
 
-    ``work`` has four rows and room for all half steps. ``dropped[0]`` is 1 if there are drops of the last knot to clear.
+    ``work`` has four rows and room for all half steps; ``met`` is the array of :func:`none_met`.
     """
     wide()
-    if dropped[0] > 0.0:
-        drops = batch.params[drop_row(shape) * LANES :]
-        for i in range((2 * n_steps + 1) * drop_width(shape) * lane_count()):
-            drops[i] = 0.0
-        dropped[0] = 0.0
+    clear_drops(shape, batch, n_steps, met)
     jump_axes(batch)
     angles, starts, slopes, near, falls = batch.angles, 0, LANES, 2 * LANES, work[3 * LANES :]
     for spall in range(batch.spalls.size // (SPALL_ROWS * LANES)):
@@ -204,5 +254,8 @@ def move_spalls(
         for lane in range(lane_count()):
             if work[near + lane] > 0.0:
                 start, slope = work[starts + lane], work[slopes + lane]
-                meet_spall(shape, batch, spall, lane, n_steps, dt, start, slope, falls)
-                dropped[0] = 1.0
+                meet_spall(shape, batch, spall, lane, n_steps, dt, start, slope, falls, met)
+    dropping = 0.0
+    for row in range(drop_width(shape)):
+        dropping = max(dropping, met[row])
+    batch.params[(drop_row(shape) - 1) * LANES] = dropping

@@ -174,7 +174,9 @@ def advance(
     at : int
         First row of ``history`` to fill; a row is a step and a channel.
     """
-    drops, width = drop_row(shape) * LANES, drop_width(shape) * LANES if len(shape.spalled) else 0
+    drops, width = drop_row(shape) * LANES, 0
+    if len(shape.spalled) and params[drops - LANES] > 0.0:  # otherwise the zeros of one half step serve them all
+        width = drop_width(shape) * LANES
     for step in range(n_steps):
         half_step = 2.0 * step
         # a view of the drops: for an index, numba would test whether it counts from the end

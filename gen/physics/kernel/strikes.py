@@ -73,9 +73,20 @@ def squeezed(shape: Shape, batch: Batch, lane: int, ball: int) -> tuple[float, f
 
 @njit(**INLINE)
 def strike_edges(
-    shape: Shape, batch: Batch, spall: FloatArray, lane: int, ball: int, passage: Passage, n_steps: int, dt: float
+    shape: Shape,
+    batch: Batch,
+    spall: FloatArray,
+    lane: int,
+    ball: int,
+    passage: Passage,
+    n_steps: int,
+    dt: float,
+    met: FloatArray,
 ) -> None:
-    """Add the forces of one ball that strikes the edges of one spall, whose rows are ``spall``, at every half step up to the next knot."""
+    """Add the forces of one ball that strikes the edges of one spall, whose rows are ``spall``, at every half step up to the next knot.
+
+    ``met`` receives the rows that are set.
+    """
     wide()
     rate, row = 2 * passage.slope / dt, int(spall[SpallRow.STRIKES * LANES + lane])
     on_shaft = passage.race > 0.0
@@ -105,8 +116,9 @@ def strike_edges(
             if on_shaft
             else batch.params[Param.CONTACT_COSINE * LANES + lane]
         )
-        first = drop_row(shape) + len(shape.balls) + (0 if on_shaft else 2)
-        forces = batch.params[first * LANES + lane :]
+        first = len(shape.balls) + (0 if on_shaft else 2)
+        met[first] = met[first + 1] = 1.0
+        forces = batch.params[(drop_row(shape) + first) * LANES + lane :]
         for half_step in range(2 * n_steps + 1):
             force = size * second_difference(since + 0.5 * dt * half_step, length, dt)
             at = half_step * drop_width(shape) * LANES

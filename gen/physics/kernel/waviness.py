@@ -22,53 +22,78 @@ SIN_OF_TURNS[2 * np.arange(MAX_BALLS // 2 + 1), :, np.arange(MAX_BALLS // 2 + 1)
 
 
 class Rotation(IntEnum):
-    """Rows of the work array of the waviness: three complex numbers per lane, real and imaginary part."""
+    """Rows of the work array of a race: three complex numbers per lane, real and imaginary part."""
 
     DIRECTION = 0  # e^(i angle) of ball 0 relative to the race
     POWER = 2  # DIRECTION to the power of the number of balls
     TURN = 4  # DIRECTION to the power of the order
 
 
-N_ROTATION_ROWS = 6
+N_ROTATION_ROWS = 12  # of both races, the inner race first
+OUTER = N_ROTATION_ROWS // 2 * LANES  # where the outer race begins
+
+
+@njit(**INLINE)
+def multiplied(c: float, s: float, p: float, q: float) -> tuple[float, float]:
+    """Product of two complex numbers."""
+    return fma(c, p, -(s * q)), fma(c, q, s * p)
+
+
+@njit(**INLINE)
+def powered(c: float, s: float, exponent: int) -> tuple[float, float]:
+    """A complex number to a power of 1 to 31, by squaring: a chain of single products takes as long as a fold."""
+    p, q = 1.0, 0.0
+    for bit in range(5):
+        shift = 4 - bit
+        if exponent >> shift > 1:
+            p, q = multiplied(p, q, p, q)
+        if exponent >> shift & 1:
+            p, q = (c, s) if exponent >> shift == 1 else multiplied(p, q, c, s)
+    return p, q
 
 
 @njit(**INLINE)
 def start_rotations(shape: Shape, z: FloatArray) -> None:
-    """Set ``TURN`` to 1, and ``POWER`` from ``DIRECTION``."""
+    """Set ``TURN`` of both races to 1, and ``POWER`` from ``DIRECTION``."""
     wide()
     for lane in range(lane_count()):
-        c, s = z[lane], z[LANES + lane]
-        p, q = c, s
-        for _ in range(len(shape.balls) - 1):
-            p, q = fma(p, c, -(q * s)), fma(p, s, q * c)
-        z[Rotation.POWER * LANES + lane], z[(Rotation.POWER + 1) * LANES + lane] = p, q
-        z[Rotation.TURN * LANES + lane], z[(Rotation.TURN + 1) * LANES + lane] = 1.0, 0.0
+        for race in range(2):
+            i = race * OUTER + lane
+            c, s = powered(z[i], z[i + LANES], len(shape.balls))
+            z[i + Rotation.POWER * LANES], z[i + (Rotation.POWER + 1) * LANES] = c, s
+            z[i + Rotation.TURN * LANES], z[i + (Rotation.TURN + 1) * LANES] = 1.0, 0.0
+
+
+@njit(**INLINE)
+def folded_orders(shape: Shape, amplitudes: FloatArray, z: FloatArray, i: int, lane: int) -> tuple[float, float]:
+    """Sum of the orders of one race that differ by a multiple of the number of balls, rotated to its direction; ``TURN`` moves on."""
+    n_balls = len(shape.balls)
+    c, s = z[i + Rotation.POWER * LANES], z[i + (Rotation.POWER + 1) * LANES]
+    top = 2 * (n_folds(shape) - 1) * n_balls * LANES + lane
+    real, imag = amplitudes[top], amplitudes[top + LANES]
+    for term in range(1, n_folds(shape)):
+        row = top - 2 * term * n_balls * LANES
+        real, imag = (
+            fma(real, c, fma(-imag, s, amplitudes[row])), fma(real, s, fma(imag, c, amplitudes[row + LANES])),
+        )  # fmt: skip
+    c, s = z[i + Rotation.TURN * LANES], z[i + (Rotation.TURN + 1) * LANES]
+    p, q = z[i], z[i + LANES]
+    z[i + Rotation.TURN * LANES], z[i + (Rotation.TURN + 1) * LANES] = multiplied(c, s, p, q)
+    return multiplied(real, imag, c, s)
 
 
 @njit(**INLINE)
 def fold_waviness(shape: Shape, waves: FloatArray, z: FloatArray, folded: FloatArray) -> None:
-    """Add the waviness of one race, rotated to the direction in ``z``, to the folded sums: two rows of ``folded`` for each ball."""
+    """Fold the waviness of both races, rotated to the directions in ``z``: two rows of ``folded`` for each ball."""
     wide()
-    n_balls = len(shape.balls)
     start_rotations(shape, z)
-    for first in range(n_balls):
-        amplitudes, sums = waves[2 * first * LANES :], folded[2 * first * LANES :]
+    for first in range(len(shape.balls)):
+        inner, outer = waves[2 * first * LANES :], waves[(race_rows(shape) // 2 + 2 * first) * LANES :]
+        sums = folded[2 * first * LANES :]
         for lane in range(lane_count()):
-            c, s = z[Rotation.POWER * LANES + lane], z[(Rotation.POWER + 1) * LANES + lane]
-            real = imag = 0.0
-            for term in range(n_folds(shape)):
-                row = 2 * (n_folds(shape) - 1 - term) * n_balls * LANES + lane
-                real, imag = (
-                    fma(real, c, fma(-imag, s, amplitudes[row])), fma(real, s, fma(imag, c, amplitudes[row + LANES])),
-                )  # fmt: skip
-            c, s = z[Rotation.TURN * LANES + lane], z[(Rotation.TURN + 1) * LANES + lane]
-            sums[lane] += fma(real, c, -(imag * s))
-            sums[LANES + lane] += fma(real, s, imag * c)
-            p, q = z[Rotation.DIRECTION * LANES + lane], z[(Rotation.DIRECTION + 1) * LANES + lane]
-            z[Rotation.TURN * LANES + lane], z[(Rotation.TURN + 1) * LANES + lane] = (
-                fma(c, p, -(s * q)),
-                fma(c, q, s * p),
-            )
+            a, b = folded_orders(shape, inner, z, lane, lane)
+            c, d = folded_orders(shape, outer, z, OUTER + lane, lane)
+            sums[lane], sums[LANES + lane] = a + c, b + d
 
 
 @njit(**INLINE)
@@ -129,20 +154,15 @@ def ball_gaps(shape: Shape, batch: Batch, moves: FloatArray, work: FloatArray, g
             gaps[ball * LANES + lane] = batch.drive[Drive.HALF_CLEARANCE * LANES + lane]
     z, folded = work, work[N_ROTATION_ROWS * LANES :]
     for lane in range(lane_count()):
-        for row in range(2 * n_balls):
-            folded[row * LANES + lane] = 0.0
-    for race in range(2):
-        for lane in range(lane_count()):
-            c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
-            dc, ds = cosine(moves[Angle.CAGE * LANES + lane]), sine(moves[Angle.CAGE * LANES + lane])
-            c, s = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
-            if race == 0:
-                p, q = state[State.SHAFT_COS * LANES + lane], state[State.SHAFT_SIN * LANES + lane]
-                dc, ds = cosine(moves[Angle.SHAFT * LANES + lane]), sine(moves[Angle.SHAFT * LANES + lane])
-                p, q = fma(p, dc, -(q * ds)), fma(q, dc, p * ds)
-                c, s = fma(c, p, s * q), fma(s, p, -(c * q))
-            z[Rotation.DIRECTION * LANES + lane], z[(Rotation.DIRECTION + 1) * LANES + lane] = c, s
-        fold_waviness(shape, batch.waves[race * (race_rows(shape) // 2) * LANES :], z, folded)
+        c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
+        dc, ds = cosine(moves[Angle.CAGE * LANES + lane]), sine(moves[Angle.CAGE * LANES + lane])
+        c, s = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
+        p, q = state[State.SHAFT_COS * LANES + lane], state[State.SHAFT_SIN * LANES + lane]
+        dc, ds = cosine(moves[Angle.SHAFT * LANES + lane]), sine(moves[Angle.SHAFT * LANES + lane])
+        p, q = fma(p, dc, -(q * ds)), fma(q, dc, p * ds)
+        z[lane], z[LANES + lane] = fma(c, p, s * q), fma(s, p, -(c * q))
+        z[OUTER + lane], z[OUTER + LANES + lane] = c, s
+    fold_waviness(shape, batch.waves, z, folded)
     unfold(shape, folded, gaps)
     if batch.waves.size > race_rows(shape) * LANES:
         subtract_ball_waviness(shape, batch, moves, z, gaps)
