@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager, closing, contextmanager, nullcont
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from gen.corpus import (
     PartRow,
@@ -29,8 +29,9 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.errors import CorpusError, RecipeError
-from gen.part_task import Outcome, compile_kernels, library_versions, make_part, record_numbers
+from gen.part_task import Outcome, compile_kernels, library_versions, make_parts, record_numbers, units
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
+from gen.workers import MOST_THREADS, stream, threads_of
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -77,7 +78,7 @@ def generate(
     directory : path
         Folder of the corpus; created if it does not exist. It must be empty or hold the same corpus, unfinished or finished.
     workers : int
-        Number of processes on this machine; 1 works in this process.
+        Number of parts that are made at a time: 1 in this thread, some in threads of this process, more in processes on this machine.
     scheduler : str, optional
         Address of a dask scheduler whose workers see ``directory`` under the same path; replaces ``workers``.
     seed, records : int, optional
@@ -234,23 +235,26 @@ def _made(
     tally: Tally, directory: Path, known: dict[str, PartRow], workers: int, client: "Client | None"
 ) -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
-    recipe = tally.recipe
-    tasks = ((part, known.get(part_name(part))) for part in range(recipe.n_parts))
-    if client is None and workers == 1:
-        yield from map(partial(_numbered_part, recipe, directory, tally.note_and_show), tasks)
-        return
-    from gen.cluster import listen, local_client, publish, run_tasks
-
-    if client is None:
+    recipe, crew = tally.recipe, workers
+    threads = threads_of(workers)
+    if client is not None:
+        of_workers: list[int] = list(cast("Any", client).nthreads().values())
+        crew, threads = max(sum(of_workers), 1), max(of_workers, default=1)
+    elif workers > MOST_THREADS:
         compile_kernels(recipe)
-    with local_client(workers) if client is None else nullcontext(client) as crew:
-        report = partial(publish, listen(crew, tally.note))
-        task = partial(_numbered_part, recipe, directory.resolve(), report)
-        yield from run_tasks(crew, task, tasks, meanwhile=tally.show)
+    numbered = {part: known[part_name(part)] for part in range(recipe.n_parts) if part_name(part) in known}
+    tasks = ((some, {part: numbered[part] for part in some if part in numbered}) for some in units(recipe, crew))
+    report = tally.note_and_show if client is None and workers == 1 else tally.note
+    task = partial(_unit, recipe, directory.resolve(), 1 / threads)
+    yield from stream(task, tasks, workers=workers, scheduler=client, report=report, meanwhile=tally.show)
 
 
-def _numbered_part(
-    recipe: Recipe, directory: Path, report: Callable[[int, int], None], task: tuple[int, PartRow | None]
-) -> tuple[int, Outcome]:
-    part, known = task
-    return part, make_part(recipe, part, directory, known, partial(report, part))
+def _unit(
+    recipe: Recipe,
+    directory: Path,
+    share: float,
+    report: Callable[[int, int], None],
+    task: tuple[range, dict[int, PartRow]],
+) -> Iterator[tuple[int, Outcome]]:
+    parts, known = task
+    return make_parts(recipe, parts, directory, known, report, share)
