@@ -151,6 +151,7 @@ class _Making:
         families = sorted(self._ready, key=lambda family: family.scenarios[0].record.number)
         self._ready = []
         made, again = self._families.judged(families)
+        made = Records(replace(made.response, twins=None), made.measured)
         redrawn = {scenario.record.number for family in again for scenario in family.scenarios}
         light = _light(made)
         for place, scenario in enumerate(made.measured.scenarios):
@@ -199,9 +200,7 @@ def _bytes_of_a_record(recipe: Recipe) -> int:
 
 
 def _light(made: Records) -> Records:
-    """Records without their accelerations, inputs and twins."""
+    """Records without their accelerations and inputs."""
     count = len(made.measured.scenarios)
-    response = replace(
-        made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=[None] * count, twins=None
-    )
+    response = replace(made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=[None] * count)
     return Records(response, made.measured)
