@@ -29,9 +29,10 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.errors import CorpusError, RecipeError
+from gen.making import Crew
 from gen.part_task import Outcome, compile_kernels, library_versions, make_parts, record_numbers, units
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
-from gen.workers import MOST_THREADS, stream, threads_of
+from gen.workers import stream, threads_of
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -235,26 +236,35 @@ def _made(
     tally: Tally, directory: Path, known: dict[str, PartRow], workers: int, client: "Client | None"
 ) -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
-    recipe, crew = tally.recipe, workers
-    threads = threads_of(workers)
-    if client is not None:
-        of_workers: list[int] = list(cast("Any", client).nthreads().values())
-        crew, threads = max(sum(of_workers), 1), max(of_workers, default=1)
-    elif workers > MOST_THREADS:
-        compile_kernels(recipe)
+    recipe = tally.recipe
     numbered = {part: known[part_name(part)] for part in range(recipe.n_parts) if part_name(part) in known}
-    tasks = ((some, {part: numbered[part] for part in some if part in numbered}) for some in units(recipe, crew))
-    report = tally.note_and_show if client is None and workers == 1 else tally.note
-    task = partial(_unit, recipe, directory.resolve(), 1 / threads)
-    yield from stream(task, tasks, workers=workers, scheduler=client, report=report, meanwhile=tally.show)
+    of_this_process = Crew(threads_of(workers))
+    processes = workers // of_this_process.threads
+    if client is None and processes == 1:
+        report = tally.note_and_show if workers == 1 else tally.note
+        for some in units(recipe, 1):
+            yield from make_parts(recipe, some, directory, numbered, report, tally.show, of_this_process)
+        return
+    from gen.cluster import local_client
+
+    if client is None:
+        compile_kernels(recipe)
+    with local_client(processes) if client is None else nullcontext(client) as cluster:
+        crew, count = of_this_process, processes
+        if client is not None:
+            threads: list[int] = list(cast("Any", client).nthreads().values())
+            crew, count = Crew(1, 1 / max(threads, default=1)), max(sum(threads), 1)
+        tasks = ((some, {part: numbered[part] for part in some if part in numbered}) for some in units(recipe, count))
+        task = partial(_unit, recipe, directory.resolve(), crew)
+        yield from stream(task, tasks, scheduler=cluster, report=tally.note, meanwhile=tally.show)
 
 
 def _unit(
     recipe: Recipe,
     directory: Path,
-    share: float,
+    crew: Crew,
     report: Callable[[int, int], None],
     task: tuple[range, dict[int, PartRow]],
 ) -> Iterator[tuple[int, Outcome]]:
     parts, known = task
-    return make_parts(recipe, parts, directory, known, report, share)
+    return make_parts(recipe, parts, directory, known, report, crew=crew)

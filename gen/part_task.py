@@ -15,7 +15,7 @@ from pathlib import Path
 from gen.corpus import PartRow, open_part, part_name, sha256, write_part
 from gen.errors import SimulationError
 from gen.labels import part_dataset
-from gen.making import MadePart, made_parts
+from gen.making import ALONE, Crew, MadePart, made_parts
 from gen.measurement.measure import compile_mixing
 from gen.physics.kernel.batch import input_shape
 from gen.recipe import Recipe, recipe_hash
@@ -67,7 +67,8 @@ def make_parts(
     directory: Path,
     known: Mapping[int, PartRow],
     report: Callable[[int, int], None] = lambda _part, _count: None,
-    share: float = 1.0,
+    meanwhile: Callable[[], None] = lambda: None,
+    crew: Crew = ALONE,
 ) -> Iterator[tuple[int, Outcome]]:
     """Write parts, together and each as soon as it is complete; yields number and outcome of each.
 
@@ -83,8 +84,10 @@ def make_parts(
         Rows of the manifest by number of the part: a part that is the file listed there is kept.
     report : callable
         Called with the number of a part and the number of its simulated records; the last is not reported before the part is written.
-    share : float
-        Of the memory for records under way in this process.
+    meanwhile : callable
+        Called in this thread now and then while several threads work.
+    crew : Crew
+        Threads that work on these parts together.
     """
     missing = []
     for part in parts:
@@ -93,10 +96,13 @@ def make_parts(
             missing.append(part)
         else:
             yield part, kept
-    numbers = [record_numbers(recipe, part) for part in missing]
-    for made in made_parts(recipe, numbers, lambda place, count: report(missing[place], count), share):
+
+    def written(made: MadePart) -> tuple[int, Outcome]:
         part = missing[made.place]
-        yield part, _written(made, recipe, directory / "parts" / part_name(part))
+        return part, _written(made, recipe, directory / "parts" / part_name(part))
+
+    numbers = [record_numbers(recipe, part) for part in missing]
+    yield from made_parts(recipe, numbers, written, lambda place, count: report(missing[place], count), meanwhile, crew)
 
 
 def _written(made: MadePart, recipe: Recipe, path: Path) -> Outcome:

@@ -93,6 +93,12 @@ def _listed(task: Callable[..., Iterable[Any]], item: Any) -> list[Any]:
     return list(task(item))
 
 
+def _publishing(task: Callable[..., Iterable[Any]], topic: str, item: Any) -> Iterable[Any]:
+    from gen.cluster import publisher
+
+    return task(publisher(topic), item)
+
+
 def threads_of(workers: int) -> int:
     """Number of threads of each process for a number of workers: the largest one up to ``MOST_THREADS`` that divides it.
 
@@ -115,7 +121,7 @@ def _on_dask(
     report: Callable[..., None] | None,
     meanwhile: Callable[[], None],
 ) -> Generator[Any]:
-    from gen.cluster import client_of, listen, local_client, publish, run_tasks  # distributed takes 0.3 s to load
+    from gen.cluster import client_of, listen, local_client, run_tasks  # distributed takes 0.3 s to load
 
     if scheduler is None:
         threads = threads_of(workers)
@@ -124,7 +130,7 @@ def _on_dask(
         opened = client_of(scheduler) if isinstance(scheduler, str) else nullcontext(scheduler)
     with opened as client:
         if report is not None:
-            task = partial(task, partial(publish, listen(client, report)))
+            task = partial(_publishing, task, listen(client, report))
         for results in run_tasks(client, partial(_listed, task), items, meanwhile):
             yield from results
 

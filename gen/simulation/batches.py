@@ -77,8 +77,7 @@ def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
 class Waiting(Generic[Owner]):
     """Integrations that wait until their batch is full, each with its owner."""
 
-    def __init__(self, timeline: Timeline) -> None:
-        self._timeline = timeline
+    def __init__(self) -> None:
         self._groups: dict[Group, _Members[Owner]] = defaultdict(list)
         self._added = 0
 
@@ -95,34 +94,34 @@ class Waiting(Generic[Owner]):
         """Whether a group has a record for every lane."""
         return any(len(members) >= LANES for members in self._groups.values())
 
-    def integrate_fullest(self) -> list[tuple[Integration, Owner]]:
-        """Integrate the batch with the most records, of several full ones that of the lowest record number."""
-        return self._integrate(lambda members: (-min(len(members), LANES), members[0][:2]))
+    def fullest(self) -> list[tuple[Integration, Owner]]:
+        """Take the batch with the most records, of several full ones that of the lowest record number."""
+        return self._taken(lambda members: (-min(len(members), LANES), members[0][:2]))
 
-    def integrate_oldest(self) -> list[tuple[Integration, Owner]]:
-        """Integrate the batch of the lowest record number."""
-        return self._integrate(lambda members: members[0][:2])
+    def oldest(self) -> list[tuple[Integration, Owner]]:
+        """Take the batch of the lowest record number."""
+        return self._taken(lambda members: members[0][:2])
 
-    def _integrate(self, order: Callable[[_Members[Owner]], Any]) -> list[tuple[Integration, Owner]]:
+    def _taken(self, order: Callable[[_Members[Owner]], Any]) -> list[tuple[Integration, Owner]]:
         members = min((members for members in self._groups.values() if members), key=order)
-        taken = [heappop(members)[2:] for _ in range(min(LANES, len(members)))]
-        _integrate_together([one for one, _ in taken], self._timeline)
-        return taken
+        return [heappop(members)[2:] for _ in range(min(LANES, len(members)))]
 
 
 def integrate_all(
     integrations: Iterable[Integration], timeline: Timeline, report: Callable[[int], None] = lambda _: None
 ) -> None:
     """Integrate records; ``report`` is called with the number of integrations done after each batch."""
-    waiting: Waiting[None] = Waiting(timeline)
+    waiting: Waiting[None] = Waiting()
     waiting.add(integrations, None)
     done = 0
     while waiting:
-        done += len(waiting.integrate_fullest())
+        batch = [one for one, _ in waiting.fullest()]
+        integrate_together(batch, timeline)
+        done += len(batch)
         report(done)
 
 
-def _integrate_together(integrations: Sequence[Integration], timeline: Timeline) -> None:
+def integrate_together(integrations: Sequence[Integration], timeline: Timeline) -> None:
     """Integrate records of one group in one batch."""
     group = integrations[0].group
     batch = lay_out([one.given for one in integrations], group.shape, 1 / timeline.fs)
