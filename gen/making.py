@@ -211,20 +211,36 @@ class _Making(Generic[Result]):
         """Measure and judge families; those that are final go to their parts."""
         made, again = self._families.judged(families)
         made = Records(replace(made.response, twins=None), made.measured)
-        light, redrawn = _light(made), {one.record.number for family in again for one in family.scenarios}
+        redrawn = {one.record.number for family in again for one in family.scenarios}
         waits = [(family.integrations, partial(self._integrated, family)) for family in again]
+        # copies, so that no part holds the accelerations of another
+        pieces = [
+            (
+                part,
+                [number for _, number in rows],
+                picked([(made if part.checked else _light(made), place) for place, _ in rows]),
+            )
+            for part, rows in self._final(made, redrawn)
+        ]
         with self._change:
             self._growing -= 1
-            for place, scenario in enumerate(made.measured.scenarios):
-                number = scenario.record.number
-                part = None if number in redrawn else self._part_of(number)
-                if part is not None:
-                    part.rows[number] = (made if part.checked else light, place)
-                    if len(part.rows) == len(part.numbers):
-                        self._complete.append(part)
+            for part, numbers, piece in pieces:
+                part.rows |= {number: (piece, place) for place, number in enumerate(numbers)}
+                if len(part.rows) == len(part.numbers):
+                    self._complete.append(part)
             for integrations, then in waits:
                 self._wait(integrations, then)
         return ()
+
+    def _final(self, made: Records, redrawn: set[int]) -> list[tuple[_Part, list[tuple[int, int]]]]:
+        """Place and number of the records of each part that are not drawn again."""
+        found: dict[_Part, list[tuple[int, int]]] = {}
+        for place, scenario in enumerate(made.measured.scenarios):
+            number = scenario.record.number
+            part = None if number in redrawn else self._part_of(number)
+            if part is not None:
+                found.setdefault(part, []).append((place, number))
+        return list(found.items())
 
     def _check_steps(self, part: _Part, report: Report) -> Iterable[Result]:
         """Let the step checks of a part wait whose records are final, or write it if it has none."""
