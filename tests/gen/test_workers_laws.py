@@ -55,7 +55,7 @@ def test_the_error_of_a_task_is_raised_and_no_further_task_begins():
         begun.append(item)
         raise ValueError(item)
 
-    with pytest.raises(ValueError, match="[01]"):
+    with pytest.raises(ValueError, match=r"[01]"):
         list(run(failing, itertools.count(), workers=2))
     assert len(begun) <= 4
 
