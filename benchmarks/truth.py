@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchmarks.pairs import Line, interleaved, row
-from gen.part_task import make_part
+from gen.part_task import make_parts
 from gen.recipe import Recipe, read_recipe
 
 SETTINGS = {
@@ -39,5 +39,5 @@ def cpu_per_record(recipe: Recipe) -> float:
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "parts").mkdir()
         start = time.process_time()
-        made = make_part(recipe, 0, Path(folder))
+        ((_, made),) = make_parts(recipe, range(1), Path(folder), {})
         return 1e3 * (time.process_time() - start) / max(made.row.records, 1)

@@ -143,17 +143,21 @@ def _seconds_per_record(parts: list[tuple[list[Scenario], Groups]], recipe: Reci
     pace = measured_pace([scenarios[place] for place in places[:LANES]], recipe, samples * steps)
     if pace is None:
         return None
-    lane_steps = samples * sum(_lane_steps(scenarios, groups, recipe) for scenarios, groups in parts)
+    lane_steps = samples * _lane_steps(parts, recipe)
     return lane_steps * pace.lane_step / sum(len(scenarios) for scenarios, _ in parts) + pace.record
 
 
-def _lane_steps(scenarios: list[Scenario], groups: Groups, recipe: Recipe) -> int:
-    """Integration steps per sample of all lanes of a part, with the records whose step is checked at half the step."""
-    of_place = {place: group for group, places in groups.items() for place in places}
-    in_order = {place: of_place[place] for place in sorted(of_place)}
-    checked = Counter(in_order[place] for place in checked_places(scenarios, recipe, in_order))
-    needed = {group: integrations((scenarios[place] for place in places), recipe) for group, places in groups.items()}
-    return sum(group.steps * (filled_lanes(needed[group]) + 2 * filled_lanes(checked[group])) for group in groups)
+def _lane_steps(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> int:
+    """Integration steps per sample of all lanes, with the records whose step is checked at half the step; parts fill batches together."""
+    needed: Counter[Group] = Counter()
+    for scenarios, groups in parts:
+        for group, places in groups.items():
+            needed[group] += integrations((scenarios[place] for place in places), recipe)
+        of_place = {place: group for group, places in groups.items() for place in places}
+        in_order = {place: of_place[place] for place in sorted(of_place)}
+        for place in checked_places(scenarios, recipe, in_order):
+            needed[in_order[place]._replace(steps=2 * in_order[place].steps)] += 1
+    return sum(group.steps * filled_lanes(count) for group, count in needed.items())
 
 
 def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:

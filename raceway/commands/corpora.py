@@ -140,7 +140,12 @@ def _show_plan(planned: "Plan", recipe: str) -> None:
 @click.command()
 @recipe_argument
 @folder_option("DIR", "Folder of the corpus: new, empty, or begun by this command.")
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes on this machine.")
+@click.option(
+    "--workers",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Number of threads; above four, of processes with some threads each.",
+)
 @click.option("--scheduler", metavar="ADDR", help="Address of a dask scheduler, in place of --workers.")
 @seed_option
 @records_option
@@ -157,8 +162,8 @@ def generate(
     """Generate the corpus of RECIPE in DIR, or complete one.
 
     The corpus is generated in parts. If the command is interrupted, finished parts are kept, and the same command completes the corpus.
-    The bytes of the parts do not depend on the number of workers. By default there is one worker per core for more than 1000 records in
-    at least two parts, else one worker.
+    The bytes of the parts do not depend on the number of workers. By default there is one worker per core, but at most four for up to
+    1000 records: up to four workers are threads, which start at once; more are processes, which take seconds to start.
 
     Exits with 1 if more than 1 % of the records cannot be used, because they are clipped, all zeros or not numbers; the corpus is kept.
 
@@ -223,9 +228,12 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
 
 
 def _default_workers(recipe: "Recipe") -> int:
+    from gen.workers import MOST_THREADS
+
+    cores = len(os.sched_getaffinity(0))
     if recipe.n_parts < 2 or recipe.n_records <= WORTH_WORKERS:
-        return 1
-    return min(len(os.sched_getaffinity(0)), recipe.n_parts)
+        return min(cores, MOST_THREADS)
+    return min(cores, max(recipe.n_parts, MOST_THREADS))
 
 
 @click.command()

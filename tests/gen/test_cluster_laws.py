@@ -32,6 +32,10 @@ def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, t
     assert validate_corpus(made.directory) == []
 
 
+def told(topic, item):
+    cluster.publisher(topic)(item)
+
+
 def _slow(number):
     time.sleep(0.2)
     return number
@@ -136,7 +140,7 @@ def test_messages_of_tasks_reach_the_client(threaded):
     found = []
     with Client(threaded, set_as_default=False) as client:
         topic = cluster.listen(client, lambda *message: found.append(message))
-        list(cluster.run_tasks(client, partial(cluster.publish, topic), [4, 7]))
+        list(cluster.run_tasks(client, partial(told, topic), [4, 7]))
         stop = time.monotonic() + 10
         while len(found) < 2 and time.monotonic() < stop:
             time.sleep(0.01)

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import shutil
+import threading
 import time
 
 import h5py
@@ -23,17 +24,6 @@ from gen.replaying import replay
 from gen.scenarios import draw_scenarios, read_scenario
 
 GENERATE = importlib.import_module("gen.generation")
-
-
-class InterruptedAt:
-    """Progress that is interrupted once so many records are done."""
-
-    def __init__(self, records):
-        self.records = records
-
-    def __call__(self, done, _total):
-        if done >= self.records:
-            raise KeyboardInterrupt
 
 
 def hashes(folder):
@@ -82,11 +72,29 @@ def test_one_call_makes_a_complete_and_valid_corpus(whole):
     assert leftovers == []
 
 
-def test_two_workers_make_the_same_corpus_as_one(recipe_file, whole, tmp_path):
+@pytest.mark.parametrize("workers", [2, 3], ids="{} threads".format)
+def test_threads_make_the_same_corpus_as_one(recipe_file, whole, tmp_path, workers):
     done = []
-    generate(recipe_file, tmp_path / "two", workers=2, progress=lambda *counts: done.append(counts))
-    assert_the_same_corpus(tmp_path / "two", whole)
+    generate(recipe_file, tmp_path / "c", workers=workers, progress=lambda *counts: done.append(counts))
+    assert_the_same_corpus(tmp_path / "c", whole)
     assert done[-1] == (24, 24)
+
+
+def test_processes_with_threads_make_the_same_corpus_as_one(recipe_file, whole, tmp_path, monkeypatch):
+    monkeypatch.setattr("gen.generation.threads_of", lambda _: 2)
+    generate(recipe_file, tmp_path / "four", workers=4)
+    assert_the_same_corpus(tmp_path / "four", whole)
+
+
+def test_an_error_in_a_thread_ends_all_threads_and_is_told(recipe_file, tmp_path, monkeypatch):
+    def full_disk(*_args):
+        raise CorpusError("no space left")
+
+    monkeypatch.setattr("gen.part_task.write_part", full_disk)
+    before = threading.active_count()
+    with pytest.raises(CorpusError, match="no space left"):
+        generate(recipe_file, tmp_path / "c", workers=2)
+    assert threading.active_count() == before
 
 
 def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, tmp_path):
@@ -95,14 +103,18 @@ def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, t
     assert_the_same_corpus(tmp_path / "given", whole)
 
 
-@pytest.mark.parametrize("done", [8, 16])
-def test_an_interrupted_corpus_is_refused_until_the_same_call_completes_it(recipe_file, whole, tmp_path, done):
+@pytest.mark.parametrize("kept", [0, 1, 2])
+def test_an_interrupted_corpus_is_refused_until_the_same_call_completes_it(recipe_file, whole, tmp_path, kept):
+    def interrupted(*_counts):
+        if len(hashes(tmp_path / "c")) >= kept:
+            raise KeyboardInterrupt
+
     with pytest.raises(KeyboardInterrupt):
-        generate(recipe_file, tmp_path / "c", progress=InterruptedAt(done))
+        generate(recipe_file, tmp_path / "c", progress=interrupted)
     with pytest.raises(CorpusError, match="unfinished"):
         open_corpus(tmp_path / "c")
     again = generate(recipe_file, tmp_path / "c")
-    assert again.kept == done // 8
+    assert again.kept == kept
     assert_the_same_corpus(tmp_path / "c", whole)
 
 
@@ -113,7 +125,7 @@ def test_a_corpus_interrupted_before_its_first_part_was_done_is_completed_too(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(GENERATE, "make_part", interrupted)
+        patch.setattr(GENERATE, "make_parts", interrupted)
         with pytest.raises(KeyboardInterrupt):
             generate(recipe_file, tmp_path / "c")
     generate(recipe_file, tmp_path / "c")

@@ -45,7 +45,7 @@ def test_more_records_take_more_time_and_room(write_recipe, tmp_path, monkeypatc
 
 
 def test_the_time_of_a_plan_counts_every_lane_that_generation_integrates(write_recipe, tmp_path, monkeypatch):
-    """One second per step of a lane: the lanes of all batches of a part, and those of the check at half the step."""
+    """One second per step of a lane: the lanes of all batches, filled across parts, and those of the check at half the step."""
     counted = []
 
     def count(shape, lanes, dt, n_steps, taps, n_settle, n_out):
