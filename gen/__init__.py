@@ -10,6 +10,7 @@ lazy        public names that are imported when they are first used
 limits      how much a file from elsewhere may ask for
 units       units of recipes and mapping files, turned into SI
 cluster     independent tasks on dask
+workers     independent tasks in this thread, threads, processes or a cluster
 plain_files files opened only if they are no pipes or devices
 yaml_files  recipes and mapping files, read within the limits
 physics     pure: bearing, Hertz contact, spalls, machine, kernel

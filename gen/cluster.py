@@ -27,10 +27,10 @@ PATIENCE_S = 60.0
 
 
 @contextmanager
-def local_client(workers: int | None = None) -> Iterator[Client]:
-    """Client of a cluster of processes on this machine, by default one for each core."""
+def local_client(workers: int | None = None, threads: int = 1) -> Iterator[Client]:
+    """Client of a cluster of processes on this machine, by default one for each core, with some threads each."""
     with (
-        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster,
+        LocalCluster(n_workers=workers, threads_per_worker=threads, dashboard_address="127.0.0.1:0") as cluster,
         Client(cluster) as client,
     ):
         yield client
