@@ -1,6 +1,5 @@
 """Commands that make corpora and look at them: recipes, plan, generate, validate, info, replay."""
 
-import os
 import shlex
 import time
 from functools import partial
@@ -12,7 +11,9 @@ import click
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import (
+    cores,
     corpus_argument,
+    crew_options,
     file_option,
     folder_option,
     json_option,
@@ -140,8 +141,7 @@ def _show_plan(planned: "Plan", recipe: str) -> None:
 @click.command()
 @recipe_argument
 @folder_option("DIR", "Folder of the corpus: new, empty, or begun by this command.")
-@click.option("--workers", type=click.IntRange(min=1), metavar="N", help="Number of processes on this machine.")
-@click.option("--scheduler", metavar="ADDR", help="Address of a dask scheduler, in place of --workers.")
+@crew_options
 @seed_option
 @records_option
 @json_option
@@ -225,7 +225,7 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
 def _default_workers(recipe: "Recipe") -> int:
     if recipe.n_parts < 2 or recipe.n_records <= WORTH_WORKERS:
         return 1
-    return min(len(os.sched_getaffinity(0)), recipe.n_parts)
+    return min(cores(), recipe.n_parts)
 
 
 @click.command()
