@@ -59,9 +59,10 @@ def test_a_cold_start_is_compared_with_a_warm_one(few_short):
     assert found.ratio > 1
 
 
-def test_features_are_compared_where_tsfel_is_installed():
-    (line,) = features.rows(1, records=2, theirs=1)
+def test_features_are_compared_where_tsfel_is_installed_and_their_memory_does_not_grow():
+    memory, line = features.rows(1, records=2, theirs=1, scales=(250, 4000))
     assert isinstance(line, Row if importlib.util.find_spec("tsfel") else Skipped)
+    assert 0 < memory.value < memory.alternative_value + 15  # MB; the signals are 20 MB
 
 
 def test_opening_a_corpus_is_compared_with_opening_its_parts():
