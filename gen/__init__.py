@@ -23,7 +23,8 @@ measurement accelerations to stored counts, as a data-acquisition card gives
 labels      variables written beside each record
 pace        seconds that some records take on this machine
 records     records drawn, simulated and measured; faults that cannot be seen drawn again
-part_task   one part: made, labelled, written
+making      records of several parts made together, so that batches are full
+part_task   parts labelled and written
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
 plan        counts, size and steps of a corpus before it is made

@@ -70,9 +70,10 @@ def listen(client: Client, handler: Callable[..., None]) -> str:
     return topic
 
 
-def publish(topic: str, *message: int) -> None:
-    """Send a message from inside a task to the client that listens to a topic."""
-    get_worker().log_event(topic, message)
+def publisher(topic: str) -> Callable[..., None]:
+    """Function for a task that sends a message to the client that listens to a topic; its threads may call it too."""
+    worker = get_worker()
+    return lambda *message: worker.log_event(topic, message)
 
 
 def run_tasks(

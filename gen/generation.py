@@ -11,7 +11,7 @@ from contextlib import AbstractContextManager, closing, contextmanager, nullcont
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from gen.corpus import (
     PartRow,
@@ -29,8 +29,10 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.errors import CorpusError, RecipeError
-from gen.part_task import Outcome, compile_kernels, library_versions, make_part, record_numbers
+from gen.making import Crew
+from gen.part_task import Outcome, compile_kernels, library_versions, make_parts, record_numbers, units
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
+from gen.workers import stream, threads_of
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -77,7 +79,7 @@ def generate(
     directory : path
         Folder of the corpus; created if it does not exist. It must be empty or hold the same corpus, unfinished or finished.
     workers : int
-        Number of processes on this machine; 1 works in this process.
+        Number of parts that are made at a time: 1 in this thread, some in threads of this process, more in processes on this machine.
     scheduler : str, optional
         Address of a dask scheduler whose workers see ``directory`` under the same path; replaces ``workers``.
     seed, records : int, optional
@@ -235,22 +237,34 @@ def _made(
 ) -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
     recipe = tally.recipe
-    tasks = ((part, known.get(part_name(part))) for part in range(recipe.n_parts))
-    if client is None and workers == 1:
-        yield from map(partial(_numbered_part, recipe, directory, tally.note_and_show), tasks)
+    numbered = {part: known[part_name(part)] for part in range(recipe.n_parts) if part_name(part) in known}
+    of_this_process = Crew(threads_of(workers))
+    processes = workers // of_this_process.threads
+    if client is None and processes == 1:
+        report = tally.note_and_show if workers == 1 else tally.note
+        for some in units(recipe, 1):
+            yield from make_parts(recipe, some, directory, numbered, report, tally.show, of_this_process)
         return
-    from gen.cluster import listen, local_client, publish, run_tasks
+    from gen.cluster import local_client
 
     if client is None:
         compile_kernels(recipe)
-    with local_client(workers) if client is None else nullcontext(client) as crew:
-        report = partial(publish, listen(crew, tally.note))
-        task = partial(_numbered_part, recipe, directory.resolve(), report)
-        yield from run_tasks(crew, task, tasks, meanwhile=tally.show)
+    with local_client(processes) if client is None else nullcontext(client) as cluster:
+        crew, count = of_this_process, processes
+        if client is not None:
+            threads: list[int] = list(cast("Any", client).nthreads().values())
+            crew, count = Crew(1, 1 / max(threads, default=1)), max(sum(threads), 1)
+        tasks = ((some, {part: numbered[part] for part in some if part in numbered}) for some in units(recipe, count))
+        task = partial(_unit, recipe, directory.resolve(), crew)
+        yield from stream(task, tasks, scheduler=cluster, report=tally.note, meanwhile=tally.show)
 
 
-def _numbered_part(
-    recipe: Recipe, directory: Path, report: Callable[[int, int], None], task: tuple[int, PartRow | None]
-) -> tuple[int, Outcome]:
-    part, known = task
-    return part, make_part(recipe, part, directory, known, partial(report, part))
+def _unit(
+    recipe: Recipe,
+    directory: Path,
+    crew: Crew,
+    report: Callable[[int, int], None],
+    task: tuple[range, dict[int, PartRow]],
+) -> Iterator[tuple[int, Outcome]]:
+    parts, known = task
+    return make_parts(recipe, parts, directory, known, report, crew=crew)

@@ -1,11 +1,13 @@
-"""One part of a corpus: drawn, simulated, measured, labelled and written.
+"""Parts of a corpus: drawn, simulated and measured together, labelled and written one by one.
 
 A part is kept if the manifest lists it and its file is the one it lists; every other part is made again, with the same bytes.
 """
 
 import functools
+import itertools
 import json
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -13,15 +15,17 @@ from pathlib import Path
 from gen.corpus import PartRow, open_part, part_name, sha256, write_part
 from gen.errors import SimulationError
 from gen.labels import part_dataset
+from gen.making import ALONE, Crew, MadePart, made_parts
 from gen.measurement.measure import compile_mixing
 from gen.physics.kernel.batch import input_shape
 from gen.recipe import Recipe, recipe_hash
-from gen.records import made_records
 from gen.scenarios import draw_scenarios
 from gen.simulation.inputs import kernel_input
 from gen.simulation.outline import outlined_input
-from gen.simulation.simulate import compile_kernel, step_errors
+from gen.simulation.simulate import compile_kernel
 from gen.simulation.timeline import timeline
+
+UNIT_SAMPLES = 64e6  # knots of the kernel; about a minute of work
 
 
 @dataclass(frozen=True)
@@ -45,30 +49,70 @@ def record_numbers(recipe: Recipe, part: int) -> range:
     return range(part * size, min((part + 1) * size, recipe.n_records))
 
 
-def make_part(
-    recipe: Recipe,
-    part: int,
-    directory: Path,
-    known: PartRow | None = None,
-    report: Callable[[int], None] = lambda _: None,
-) -> Outcome:
-    """Write one part, unless the file is the one that ``known``, its row of the manifest, lists.
+def units(recipe: Recipe, workers: int) -> list[range]:
+    """Parts in units: consecutive parts that one task makes together, as evenly as possible.
 
-    ``report`` is called with the number of simulated records; the last record is not reported before the part is written.
+    A unit has as many parts as ``UNIT_SAMPLES`` allows, but there are at least as many units as workers, if there are parts enough.
     """
-    path = directory / "parts" / part_name(part)
-    kept = None if known is None else _kept_part(path, known)
-    if kept is not None:
-        return kept
-    numbers = record_numbers(recipe, part)
-    made = made_records(recipe, numbers, lambda done: report(min(done, len(numbers) - 1)))
-    response, scenarios = made.response, made.measured.scenarios
+    per_part = recipe.corpus.records_per_part * timeline(recipe).integrated
+    n_parts, wanted = recipe.n_parts, math.ceil(recipe.n_parts * per_part / UNIT_SAMPLES)
+    count = min(n_parts, math.ceil(wanted / workers) * workers)
+    edges = [place * n_parts // count for place in range(count + 1)]
+    return [range(*some) for some in itertools.pairwise(edges)]
+
+
+def make_parts(
+    recipe: Recipe,
+    parts: range,
+    directory: Path,
+    known: Mapping[int, PartRow],
+    report: Callable[[int, int], None] = lambda _part, _count: None,
+    meanwhile: Callable[[], None] = lambda: None,
+    crew: Crew = ALONE,
+) -> Iterator[tuple[int, Outcome]]:
+    """Write parts, together and each as soon as it is complete; yields number and outcome of each.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        The recipe.
+    parts : range
+        Numbers of the parts.
+    directory : path
+        Folder of the corpus.
+    known : mapping
+        Rows of the manifest by number of the part: a part that is the file listed there is kept.
+    report : callable
+        Called with the number of a part and the number of its simulated records; the last is not reported before the part is written.
+    meanwhile : callable
+        Called in this thread now and then while several threads work.
+    crew : Crew
+        Threads that work on these parts together.
+    """
+    missing = []
+    for part in parts:
+        kept = None if part not in known else _kept_part(directory / "parts" / part_name(part), known[part])
+        if kept is None:
+            missing.append(part)
+        else:
+            yield part, kept
+
+    def written(made: MadePart) -> tuple[int, Outcome]:
+        part = missing[made.place]
+        return part, _written(made, recipe, directory / "parts" / part_name(part))
+
+    numbers = [record_numbers(recipe, part) for part in missing]
+    yield from made_parts(recipe, numbers, written, lambda place, count: report(missing[place], count), meanwhile, crew)
+
+
+def _written(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
+    """Write one part."""
+    response, scenarios = made.records.response, made.records.measured.scenarios
     failures = tuple(response.failures[place] for place in sorted(response.failures))
     fine = [place for place in range(len(scenarios)) if place not in response.failures]
     if not fine:
-        return Outcome(PartRow(part_name(part), 0, 0, ""), kept=False, failures=failures)
-    errors = step_errors(scenarios, recipe, response)
-    dataset = part_dataset(made.measured, scenarios, recipe, response, errors)
+        return Outcome(PartRow(path.name, 0, 0, ""), kept=False, failures=failures)
+    dataset = part_dataset(made.records.measured, scenarios, recipe, response, made.step_error)
     if failures:
         dataset = dataset.isel(record=fine)
     dataset.attrs |= {

@@ -6,8 +6,9 @@ operating conditions of a class do not depend on what can be seen in them. All r
 another part, so that every part finds the same fault.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,8 +16,10 @@ from numpy.typing import NDArray
 from gen.measurement.measure import LEVEL_TRIES, Measured, measure
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, draw_scenarios, with_level
+from gen.simulation.batches import Integration, integrate_all
 from gen.simulation.hits import felt_places
-from gen.simulation.simulate import Response, simulate
+from gen.simulation.simulate import Response, Run, response_of, runs_of
+from gen.simulation.timeline import timeline
 
 FAULT_TRIES = 12  # faults drawn for a specimen until one can be seen in all of its records
 
@@ -29,32 +32,92 @@ class Records:
     measured: Measured
 
 
-def made_records(recipe: Recipe, numbers: range, report: Callable[[int], None] = lambda _: None) -> Records:
-    """Make the records with the given numbers; ``report`` is called with the number of simulated records."""
-    redraws = recipe.corpus.undetected == "redraw" and recipe.corpus.truth == "full"
-    # all records of a specimen are judged together, and those of a group have one level
-    unit = recipe.corpus.records_of_a_specimen if redraws else recipe.corpus.n_rungs
-    whole = range(numbers.start // unit * unit, min(-(-numbers.stop // unit) * unit, recipe.n_records))
-    if not redraws:
-        made = _made(draw_scenarios(recipe, whole.start, whole.stop), recipe, 1, report)
-        return _rows(made, range(numbers.start - whole.start, numbers.stop - whole.start))
-    tries: dict[int, int] = {}
-    scenarios = _with_hits(draw_scenarios(recipe, whole.start, whole.stop), recipe, tries)
-    made = _made(scenarios, recipe, LEVEL_TRIES, report)
-    again = _unseen(made, tries)
-    while again:
-        redrawn = _with_hits(_redrawn(again, recipe, tries), recipe, tries)
-        places = [scenario.record.number - whole.start for scenario in redrawn]
-        _replace(made, _made(redrawn, recipe, LEVEL_TRIES, known_twins=_twins_at(made, places)), places)
-        again = _unseen(made, tries)
-    advice = "raise level.faulty_db" if recipe.level.kind == "snr" else "lower level.background_m_s2"
-    for place in _unseen_places(made):
-        scenario = made.measured.scenarios[place]
-        made.response.failures[place] = (
-            f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen in it; "
-            f"{advice}, or choose corpus.undetected: keep."
-        )
-    return _rows(made, range(numbers.start - whole.start, numbers.stop - whole.start))
+@dataclass(eq=False)
+class Family:
+    """Records that are judged together, and the integrations that they wait for."""
+
+    scenarios: list[Scenario]
+    runs: list[Run]
+
+    @property
+    def integrations(self) -> list[Integration]:
+        """Those that have not been done yet."""
+        every = (one for run in self.runs for one in (run.own, run.twin) if one is not None)
+        return [one for one in every if one.response is None]
+
+
+class Families:
+    """The families of a recipe: drawn, and judged once they are integrated."""
+
+    def __init__(self, recipe: Recipe) -> None:
+        self.recipe = recipe
+        self._redraws = recipe.corpus.undetected == "redraw" and recipe.corpus.truth == "full"
+        # all records of a specimen are judged together, and those of a group have one level
+        self.size = recipe.corpus.records_of_a_specimen if self._redraws else recipe.corpus.n_rungs
+        self._tries: dict[int, int] = {}
+
+    def numbers(self, of: range) -> range:
+        """Numbers of the records of all families that some records belong to."""
+        size = self.size
+        return range(of.start // size * size, min(-(-of.stop // size) * size, self.recipe.n_records))
+
+    def drawn(self, numbers: range) -> list[Family]:
+        """Families with the given numbers of records, which are those of whole families."""
+        scenarios = draw_scenarios(self.recipe, numbers.start, numbers.stop)
+        return self._cut(self._with_hits(scenarios) if self._redraws else scenarios, {})
+
+    def judged(self, families: list[Family]) -> tuple[Records, list[Family]]:
+        """Records of integrated families, and the families again whose fault is drawn again."""
+        tries = LEVEL_TRIES if self._redraws else 1
+        made = made_of([run for family in families for run in family.runs], self.recipe, tries)
+        if not self._redraws:
+            return made, []
+        unseen = _unseen_places(made)
+        specimens = dict.fromkeys(made.measured.scenarios[place].specimen.number for place in unseen)
+        again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
+        twins = {
+            run.scenario.record.number: run.twin
+            for place, run in enumerate(run for family in families for run in family.runs)
+            if run.twin is not None and place not in made.response.failures  # another fault does not change them
+        }
+        advice = "raise level.faulty_db" if self.recipe.level.kind == "snr" else "lower level.background_m_s2"
+        for place in unseen:
+            scenario = made.measured.scenarios[place]
+            if scenario.specimen.number not in again:
+                made.response.failures[place] = (
+                    f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen "
+                    f"in it; {advice}, or choose corpus.undetected: keep."
+                )
+        return made, self._cut(self._with_hits(self._redrawn(again)), twins)
+
+    def _cut(self, scenarios: list[Scenario], twins: dict[int, Integration]) -> list[Family]:
+        """Families of scenarios, of which some twins are known."""
+        runs, size = runs_of(scenarios, self.recipe, twins), self.size
+        return [Family(scenarios[at : at + size], runs[at : at + size]) for at in range(0, len(scenarios), size)]
+
+    def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
+        """Scenarios of all records of some specimens with their next fault."""
+        per, found = self.size, []
+        for number in specimens:
+            self._tries[number] = self._tries.get(number, 0) + 1
+            found += draw_scenarios(self.recipe, number * per, (number + 1) * per, fault_tries=self._tries)
+        return found
+
+    def _with_hits(self, scenarios: list[Scenario]) -> list[Scenario]:
+        """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record.
+
+        Of a group, the largest severity alone counts, as in :func:`_unseen_places`.
+        """
+        found = {scenario.record.number: scenario for scenario in scenarios}
+        tried = scenarios
+        while tried:
+            largest = [tried[place] for place in _largest_places(tried)]
+            missed = {
+                one.specimen.number for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt
+            }
+            tried = self._redrawn(sorted(n for n in missed if self._tries.get(n, 0) < FAULT_TRIES - 1))
+            found.update({scenario.record.number: scenario for scenario in tried})
+        return list(found.values())
 
 
 def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> Records:
@@ -62,60 +125,37 @@ def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> R
     n_rungs = recipe.corpus.n_rungs
     first, tries = number // n_rungs * n_rungs, {number // recipe.corpus.records_of_a_specimen: fault_try}
     group = draw_scenarios(recipe, first, first + n_rungs, fault_tries=tries)
-    made = _made([with_level(scenario, recipe, level_try) for scenario in group], recipe, 1)
-    return _rows(made, range(number - first, number - first + 1))
+    runs = runs_of([with_level(scenario, recipe, level_try) for scenario in group], recipe)
+    integrate_all((one for run in runs for one in (run.own, run.twin) if one is not None), timeline(recipe))
+    return picked([(made_of(runs, recipe, 1), number - first)])
 
 
-def _made(
-    scenarios: list[Scenario],
-    recipe: Recipe,
-    level_tries: int,
-    report: Callable[[int], None] = lambda _: None,
-    known_twins: Mapping[int, NDArray[np.float32]] | None = None,
-) -> Records:
-    response = simulate(scenarios, recipe, report=report, known_twins=known_twins)
-    measured = measure(response.acceleration, scenarios, recipe, response.twins, level_tries=level_tries)
-    return Records(response, measured)
+def made_of(runs: list[Run], recipe: Recipe, level_tries: int) -> Records:
+    """Records of scenarios that have been integrated."""
+    response, scenarios = response_of(runs, recipe), [run.scenario for run in runs]
+    return Records(response, measure(response.acceleration, scenarios, recipe, response.twins, level_tries=level_tries))
 
 
-def _twins_at(made: Records, places: list[int]) -> dict[int, NDArray[np.float32]]:
-    """Accelerations without the fault at some places, by rank: another fault does not change them."""
-    twins = made.response.twins
-    if twins is None:
-        return {}
-    return {rank: twins.acceleration[place] for rank, place in enumerate(places) if place not in made.response.failures}
+def picked(rows: list[tuple[Records, int]]) -> Records:
+    """Records from some places of others, without their twins."""
+    response, measured = rows[0][0].response, rows[0][0].measured
+    failures = {
+        new: made.response.failures[place] for new, (made, place) in enumerate(rows) if place in made.response.failures
+    }
+    columns = [
+        {name: _column([getattr(getattr(made, of), name)[place] for made, place in rows]) for name in _columns(one)}
+        for of, one in (("response", response), ("measured", measured))
+    ]
+    return Records(replace(response, failures=failures, twins=None, **columns[0]), replace(measured, **columns[1]))
 
 
-def _redrawn(specimens: Iterable[int], recipe: Recipe, tries: dict[int, int]) -> list[Scenario]:
-    """Scenarios of all records of some specimens with their next fault, which ``tries`` counts."""
-    per, found = recipe.corpus.records_of_a_specimen, []
-    for number in specimens:
-        tries[number] = tries.get(number, 0) + 1
-        found += draw_scenarios(recipe, number * per, (number + 1) * per, fault_tries=tries)
-    return found
+def _column(rows: list[Any]) -> NDArray[Any] | list[Any]:
+    return np.stack(rows) if isinstance(rows[0], np.ndarray | np.generic) else rows
 
 
-def _with_hits(scenarios: list[Scenario], recipe: Recipe, tries: dict[int, int]) -> list[Scenario]:
-    """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record.
-
-    Of a group, the largest severity alone counts, as in :func:`_unseen_places`.
-    """
-    found = {scenario.record.number: scenario for scenario in scenarios}
-    tried = scenarios
-    while tried:
-        largest = [tried[place] for place in _largest_places(tried)]
-        missed = {
-            one.specimen.number for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt
-        }
-        tried = _redrawn(sorted(n for n in missed if tries.get(n, 0) < FAULT_TRIES - 1), recipe, tries)
-        found.update({scenario.record.number: scenario for scenario in tried})
-    return list(found.values())
-
-
-def _unseen(made: Records, tries: dict[int, int]) -> list[int]:
-    """Numbers of the specimens that have a record whose fault cannot be seen, and may have another fault."""
-    unseen = {made.measured.scenarios[place].specimen.number for place in _unseen_places(made)}
-    return sorted(number for number in unseen if tries.get(number, 0) < FAULT_TRIES - 1)
+def _columns(of: Response | Measured) -> list[str]:
+    """Fields that have one row for each record."""
+    return [field.name for field in fields(of) if field.name not in ("failures", "twins", "counts_per_unit")]
 
 
 def _unseen_places(made: Records) -> list[int]:
@@ -133,31 +173,3 @@ def _largest_places(scenarios: list[Scenario]) -> list[int]:
         if scenario.specimen.fault != "healthy"
         and (place + 1 == len(scenarios) or scenarios[place + 1].record.rung <= scenario.record.rung)
     ]
-
-
-def _replace(made: Records, by: Records, places: list[int]) -> None:
-    """Replace the records at some places, in place."""
-    for new, place in enumerate(places):
-        made.response.failures.pop(place, None)
-        if new in by.response.failures:
-            made.response.failures[place] = by.response.failures[new]
-    for old, new in ((made.response, by.response), (made.measured, by.measured)):
-        for name in _columns(old):
-            for row, place in enumerate(places):
-                getattr(old, name)[place] = getattr(new, name)[row]
-
-
-def _rows(made: Records, places: range) -> Records:
-    """The records at some places alone."""
-    response, measured = made.response, made.measured
-    if len(places) == len(measured.scenarios):
-        return made
-    failures = {place - places.start: said for place, said in response.failures.items() if place in places}
-    some = slice(places.start, places.stop)
-    rows = [{name: getattr(old, name)[some] for name in _columns(old)} for old in (response, measured)]
-    return Records(replace(response, failures=failures, **rows[0]), replace(measured, **rows[1]))
-
-
-def _columns(of: Response | Measured) -> list[str]:
-    """Fields that have one row for each record."""
-    return [field.name for field in fields(of) if field.name not in ("failures", "twins", "counts_per_unit")]

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 MOST_THREADS = 4  # of a process: about a fifth of the time of a record holds the interpreter lock
 POLL_S = 0.5
+_END = object()
 
 
 def run(
@@ -34,8 +35,8 @@ def run(
     """Results of ``task`` on every item, in the order in which the tasks finish.
 
     About two items per worker are taken in advance, so ``items`` may be a long generator. The first error of a task is raised here, and no
-    further task begins. The same holds when the generator is closed. Both wait for the tasks
-    that run in threads of this process; KeyboardInterrupt does not.
+    further task begins. The same holds when the generator is closed. Both wait for the tasks that run in threads of this process;
+    KeyboardInterrupt does not.
 
     Parameters
     ----------
@@ -43,7 +44,7 @@ def run(
         Called with an item; or with ``report`` and an item, if ``report`` is given. Where it may run in another process, task, items and
         results are pickled.
     items : iterable
-        What the tasks work on; taken in this thread.
+        Inputs of the tasks; taken in this thread.
     workers : int
         Number of tasks that run at a time: 1 in this thread, up to ``MOST_THREADS`` in threads of this process, more in processes on this
         machine with some threads each.
@@ -59,11 +60,43 @@ def run(
     ClusterError
         If the scheduler does not answer or has no workers, or if the cluster is lost.
     """
+    return stream(
+        partial(_alone, task), items, workers=workers, scheduler=scheduler, report=report, meanwhile=meanwhile
+    )
+
+
+def stream(
+    task: Callable[..., Iterable[Any]],
+    items: Iterable[Any],
+    *,
+    workers: int = 1,
+    scheduler: "Client | str | None" = None,
+    report: Callable[..., None] | None = None,
+    meanwhile: Callable[[], None] = lambda: None,
+) -> Generator[Any]:
+    """All results of tasks that give several, one after the other; all else as in :func:`run`.
+
+    Results come when the task yields them, those from another process when the task is finished.
+    """
     if scheduler is None and workers == 1:
         return _here(task if report is None else partial(task, report), items)
     if scheduler is None and workers <= MOST_THREADS:
         return _in_threads(task, items, workers, report, meanwhile)
     return _on_dask(task, items, workers, scheduler, report, meanwhile)
+
+
+def _alone(task: Callable[..., Any], *given: Any) -> tuple[Any]:
+    return (task(*given),)
+
+
+def _listed(task: Callable[..., Iterable[Any]], item: Any) -> list[Any]:
+    return list(task(item))
+
+
+def _publishing(task: Callable[..., Iterable[Any]], topic: str, item: Any) -> Iterable[Any]:
+    from gen.cluster import publisher
+
+    return task(publisher(topic), item)
 
 
 def threads_of(workers: int) -> int:
@@ -75,19 +108,20 @@ def threads_of(workers: int) -> int:
     return next(threads for threads in range(MOST_THREADS, 0, -1) if workers % threads == 0)
 
 
-def _here(task: Callable[[Any], Any], items: Iterable[Any]) -> Generator[Any]:
-    yield from map(task, items)
+def _here(task: Callable[[Any], Iterable[Any]], items: Iterable[Any]) -> Generator[Any]:
+    for item in items:
+        yield from task(item)
 
 
 def _on_dask(
-    task: Callable[..., Any],
+    task: Callable[..., Iterable[Any]],
     items: Iterable[Any],
     workers: int,
     scheduler: "Client | str | None",
     report: Callable[..., None] | None,
     meanwhile: Callable[[], None],
 ) -> Generator[Any]:
-    from gen.cluster import client_of, listen, local_client, publish, run_tasks  # distributed takes 0.3 s to load
+    from gen.cluster import client_of, listen, local_client, run_tasks  # distributed takes 0.3 s to load
 
     if scheduler is None:
         threads = threads_of(workers)
@@ -96,8 +130,9 @@ def _on_dask(
         opened = client_of(scheduler) if isinstance(scheduler, str) else nullcontext(scheduler)
     with opened as client:
         if report is not None:
-            task = partial(task, partial(publish, listen(client, report)))
-        yield from run_tasks(client, task, items, meanwhile)
+            task = partial(_publishing, task, listen(client, report))
+        for results in run_tasks(client, partial(_listed, task), items, meanwhile):
+            yield from results
 
 
 class _StoppedError(RacewayError):
@@ -105,9 +140,9 @@ class _StoppedError(RacewayError):
 
 
 class _Threads:
-    """Threads that take items from a queue until they are stopped; an error of a task is put among the results."""
+    """Threads that take items from a queue until they are stopped; among the results are errors, and ``_END`` after each task."""
 
-    def __init__(self, task: Callable[..., Any], count: int, report: Callable[..., None] | None) -> None:
+    def __init__(self, task: Callable[..., Iterable[Any]], count: int, report: Callable[..., None] | None) -> None:
         self.items: SimpleQueue[Any] = SimpleQueue()
         self.results: SimpleQueue[tuple[Any, BaseException | None]] = SimpleQueue()
         self.stopped = threading.Event()
@@ -138,7 +173,11 @@ class _Threads:
     def _work(self) -> None:
         while (item := self.items.get()) is not None and not self.stopped.is_set():
             try:
-                self.results.put((self._task(item[0]), None))
+                for result in self._task(item[0]):
+                    self.results.put((result, None))
+                    if self.stopped.is_set():
+                        return
+                self.results.put((_END, None))
             except BaseException as error:  # noqa: BLE001 - raised in the thread that takes the results
                 self.results.put((None, error))
 
@@ -149,7 +188,7 @@ class _Threads:
 
 
 def _in_threads(
-    task: Callable[..., Any],
+    task: Callable[..., Iterable[Any]],
     items: Iterable[Any],
     count: int,
     report: Callable[..., None] | None,
@@ -167,11 +206,13 @@ def _in_threads(
             except Empty:
                 meanwhile()
                 continue
+            if result is not _END:
+                yield result
+                continue
             under_way -= 1
             for item in islice(waiting, 1):
                 threads.items.put((item,))
                 under_way += 1
-            yield result
     except KeyboardInterrupt:
         threads.stop()
         raise

@@ -4,8 +4,10 @@ A record does not depend on the others in its batch.
 """
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import NamedTuple
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from heapq import heappop, heappush
+from typing import Any, Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +20,9 @@ from gen.physics.kernel.integrate import Integral, integrate
 from gen.physics.kernel.layout import Batch, Shape
 from gen.simulation.timeline import Timeline
 
+Owner = TypeVar("Owner")
+_Members = list[tuple[int, int, "Integration", Owner]]
+
 
 class Group(NamedTuple):
     """Records of one group share their compiled kernel and their step, so they may share batches."""
@@ -27,15 +32,20 @@ class Group(NamedTuple):
     """Steps per sample."""
 
 
-class Integrated(NamedTuple):
-    """Result of the kernel for some records, in the order they were given."""
+@dataclass(slots=True, eq=False)
+class Integration:
+    """One record that is integrated, with or without its fault, and the result."""
 
-    response: NDArray[np.float32]
-    """Shape (record, channel, time) [m s-2, or m]."""
-    diverged: NDArray[np.int64]
-    """Knot at which a record left the finite range, -1 if never, shape (record,)."""
-    steepest: NDArray[np.float64]
-    """Largest contact stiffness, shape (record,) [N/m]."""
+    number: int
+    """Of the record."""
+    given: KernelInput
+    group: Group
+    response: NDArray[np.float32] | None = None
+    """Shape (channel, time) [m s-2, or m]; None until it is integrated."""
+    diverged: int = -1
+    """Knot at which the record left the finite range, -1 if never."""
+    steepest: float = 0.0
+    """Largest contact stiffness [N/m]."""
 
 
 def group_of(given: KernelInput, steps: int) -> Group:
@@ -64,23 +74,58 @@ def integrate_batch(group: Group, batch: Batch, timeline: Timeline) -> Integral:
     return integrate(group.shape, batch, step, group.steps, filters, timeline.dropped, timeline.returned)
 
 
+class Waiting(Generic[Owner]):
+    """Integrations that wait until their batch is full, each with its owner."""
+
+    def __init__(self) -> None:
+        self._groups: dict[Group, _Members[Owner]] = defaultdict(list)
+        self._added = 0
+
+    def __bool__(self) -> bool:
+        return any(self._groups.values())
+
+    def add(self, integrations: Iterable[Integration], owner: Owner) -> None:
+        """Let integrations wait. In their group, those of a record with a lower number come first."""
+        for one in integrations:
+            self._added += 1
+            heappush(self._groups[one.group], (one.number, self._added, one, owner))
+
+    def has_full_batch(self) -> bool:
+        """Whether a group has a record for every lane."""
+        return any(len(members) >= LANES for members in self._groups.values())
+
+    def fullest(self) -> list[tuple[Integration, Owner]]:
+        """Take the batch with the most records, of several full ones that of the lowest record number."""
+        return self._taken(lambda members: (-min(len(members), LANES), members[0][:2]))
+
+    def oldest(self) -> list[tuple[Integration, Owner]]:
+        """Take the batch of the lowest record number."""
+        return self._taken(lambda members: members[0][:2])
+
+    def _taken(self, order: Callable[[_Members[Owner]], Any]) -> list[tuple[Integration, Owner]]:
+        members = min((members for members in self._groups.values() if members), key=order)
+        return [heappop(members)[2:] for _ in range(min(LANES, len(members)))]
+
+
 def integrate_all(
-    inputs: Sequence[KernelInput],
-    steps: Sequence[int],
-    timeline: Timeline,
-    report: Callable[[int], None] = lambda _: None,
-) -> Integrated:
-    """Integrate records, each with its steps per sample; ``report`` is called with the number of records done after each batch."""
-    groups = {place: group_of(given, steps[place]) for place, given in enumerate(inputs)}
-    n_channels = len(inputs[0].pickups) if inputs else 0
-    response = np.empty((len(inputs), n_channels, timeline.returned), np.float32)
-    diverged, steepest = np.empty(len(inputs), np.int64), np.empty(len(inputs))
+    integrations: Iterable[Integration], timeline: Timeline, report: Callable[[int], None] = lambda _: None
+) -> None:
+    """Integrate records; ``report`` is called with the number of integrations done after each batch."""
+    waiting: Waiting[None] = Waiting()
+    waiting.add(integrations, None)
     done = 0
-    for group, places in batches(groups):
-        batch = lay_out([inputs[place] for place in places], group.shape, 1 / timeline.fs)
-        made = integrate_batch(group, batch, timeline)
-        response[places] = made.response.T[: len(places)]
-        diverged[places], steepest[places] = made.diverged[: len(places)], made.steepest[: len(places)]
-        done += len(places)
+    while waiting:
+        batch = [one for one, _ in waiting.fullest()]
+        integrate_together(batch, timeline)
+        done += len(batch)
         report(done)
-    return Integrated(response, diverged, steepest)
+
+
+def integrate_together(integrations: Sequence[Integration], timeline: Timeline) -> None:
+    """Integrate records of one group in one batch."""
+    group = integrations[0].group
+    batch = lay_out([one.given for one in integrations], group.shape, 1 / timeline.fs)
+    made = integrate_batch(group, batch, timeline)
+    for lane, one in enumerate(integrations):
+        one.response = made.response[:, :, lane].T.copy()
+        one.diverged, one.steepest = int(made.diverged[lane]), float(made.steepest[lane])

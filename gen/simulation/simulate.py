@@ -1,7 +1,8 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from gen.physics.kernel.integrate import integrate
 from gen.physics.kernel.layout import Batch
 from gen.recipe import Recipe
 from gen.scenarios import Scenario
-from gen.simulation.batches import Group, batches, group_of, integrate_all
+from gen.simulation.batches import Group, Integration, batches, group_of, integrate_all
 from gen.simulation.inputs import kernel_input
 from gen.simulation.steps import checked_places, failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
@@ -52,13 +53,21 @@ class Response:
     """None with ``corpus.truth: none``."""
 
 
-def simulate(
-    scenarios: list[Scenario],
-    recipe: Recipe,
-    *,
-    report: Callable[[int], None] = lambda _: None,
-    known_twins: Mapping[int, NDArray[np.float32]] | None = None,
-) -> Response:
+class Run(NamedTuple):
+    """A scenario with the integrations that it needs."""
+
+    scenario: Scenario
+    given: KernelInput | None
+    """None if no such machine is possible."""
+    impossible: str
+    """Why it is not possible, else empty."""
+    own: Integration | None
+    """None if no such machine is possible."""
+    twin: Integration | None
+    """Without the fault; None for a record without a fault, and with ``corpus.truth: none``."""
+
+
+def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int], None] = lambda _: None) -> Response:
     """Integrate scenarios.
 
     Parameters
@@ -69,8 +78,6 @@ def simulate(
         Gives sample rate, duration and settling time.
     report : callable, optional
         Called after each batch with the number of records integrated so far.
-    known_twins : mapping, optional
-        Accelerations of records without their faults that are known already, by place, each of shape (channel, time) [m s-2].
 
     Returns
     -------
@@ -82,42 +89,72 @@ def simulate(
     SimulationError
         Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft.
     """
-    axis = timeline(recipe)
+    runs = runs_of(scenarios, recipe)
+    wanted = [one for run in runs for one in (run.own, run.twin) if one is not None]
+    integrate_all(wanted, timeline(recipe), lambda done: report(done * len(scenarios) // len(wanted)))
+    return response_of(runs, recipe)
+
+
+def runs_of(
+    scenarios: list[Scenario], recipe: Recipe, known_twins: Mapping[int, Integration] | None = None
+) -> list[Run]:
+    """Integrations that scenarios need; ``known_twins`` are records without their faults that were integrated before, by number.
+
+    Raises
+    ------
+    SimulationError
+        If a step would be too coarse for the stiffest mode of a scenario, or for its shaft.
+    """
+    known_twins, runs = known_twins or {}, []
     inputs, failures = possible_inputs(scenarios, recipe)
-    given = {place: some for place, some in enumerate(inputs) if some is not None}
-    steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
-    known_twins = known_twins or {}
-    healthy = _healthy_inputs(
-        scenarios, {place: some for place, some in given.items() if place not in known_twins}, recipe
-    )
-    twin_rows = {place: row for row, place in enumerate(healthy, len(given))}
-    every, of_steps = [*given.values(), *healthy.values()], [*steps.values(), *(steps[place] for place in healthy)]
-    made = integrate_all(every, of_steps, axis, lambda done: report(done * len(given) // len(every)))
-    acceleration = np.full((len(scenarios), len(recipe.recording.channels), axis.returned), np.nan, np.float32)
-    oversampling, phases = np.zeros(len(scenarios), np.int64), np.full(len(scenarios), np.nan)
-    for row, (place, some) in enumerate(given.items()):
-        oversampling[place] = steps[place]
-        phases[place] = step_phase(some, made.steepest[row], steps[place], axis.fs)
-        # with its twin: if that diverged, what the fault adds is not known
-        diverged = made.diverged[[row, twin_rows.get(place, row)]].max() / axis.fs
-        sentence = failure(scenarios[place].record.number, steps[place], diverged, phases[place])
-        if sentence is None:
-            acceleration[place] = made.response[row]
-        else:
+    for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True)):
+        number = scenario.record.number
+        if given is None:
+            runs.append(Run(scenario, None, failures[place], None, None))
+            continue
+        steps = steps_per_sample(given, number, recipe)
+        twin = known_twins.get(number)
+        if twin is None:
+            healthy = _healthy_input(scenario, given, recipe)
+            # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
+            twin = None if healthy is None else Integration(number, healthy, group_of(healthy, steps))
+        runs.append(Run(scenario, given, "", Integration(number, given, group_of(given, steps)), twin))
+    return runs
+
+
+def response_of(runs: Sequence[Run], recipe: Recipe) -> Response:
+    """Response and truth of scenarios that have been integrated."""
+    axis, full = timeline(recipe), recipe.corpus.truth == "full"
+    acceleration = np.empty((len(runs), len(recipe.recording.channels), axis.returned), np.float32)
+    healthy = np.empty_like(acceleration) if full else acceleration
+    oversampling, phases, failures = np.zeros(len(runs), np.int64), np.full(len(runs), np.nan), {}
+    for place, run in enumerate(runs):
+        sentence = run.impossible
+        if run.own is not None and run.given is not None:
+            steps = oversampling[place] = run.own.group.steps
+            phases[place] = step_phase(run.given, run.own.steepest, steps, axis.fs)
+            # with its twin: if that diverged, what the fault adds is not known
+            diverged = max(one.diverged for one in (run.own, run.twin) if one is not None) / axis.fs
+            sentence = failure(run.scenario.record.number, steps, diverged, phases[place])
+        if sentence:
             failures[place] = sentence
-    truth = [truth_of(scenario, axis, some) for scenario, some in zip(scenarios, inputs, strict=True)]
+        acceleration[place] = np.nan if sentence else _motion(run.own)
+        if full:
+            healthy[place] = acceleration[place] if sentence or run.twin is None else _motion(run.twin)
+    truth, inputs = [truth_of(run.scenario, axis, run.given) for run in runs], [run.given for run in runs]
     twins = None
-    if recipe.corpus.truth == "full":
+    if full:
         truth = with_loaded_hits(truth, inputs, axis)
-        orders = [lines_of_faults(scenario, known.orders) for scenario, known in zip(scenarios, truth, strict=True)]
-        twins = Twins(acceleration.copy(), orders)
-        for place, row in twin_rows.items():
-            if place not in failures:
-                twins.acceleration[place] = made.response[row]
-        for place, alone in known_twins.items():
-            if place not in failures:
-                twins.acceleration[place] = alone
+        twins = Twins(
+            healthy, [lines_of_faults(run.scenario, one.orders) for run, one in zip(runs, truth, strict=True)]
+        )
     return Response(acceleration, oversampling, phases, failures, inputs, truth, twins)
+
+
+def _motion(of: Integration | None) -> NDArray[np.float32]:
+    """Response of a record that has been integrated, shape (channel, time) [m s-2]."""
+    assert of is not None and of.response is not None  # noqa: S101, PT018
+    return of.response
 
 
 def integrations(scenarios: Iterable[Scenario], recipe: Recipe) -> int:
@@ -126,23 +163,14 @@ def integrations(scenarios: Iterable[Scenario], recipe: Recipe) -> int:
     return sum(2 if twice and scenario.specimen.fault != "healthy" else 1 for scenario in scenarios)
 
 
-def _healthy_inputs(
-    scenarios: list[Scenario], given: Mapping[int, KernelInput], recipe: Recipe
-) -> dict[int, KernelInput]:
-    """Kernel inputs of the records with a fault, as they were without it, by place; none with ``corpus.truth: none``.
-
-    They take the steps of the records with the fault, so the difference of the two is due to the fault alone.
-    """
-    if recipe.corpus.truth == "none":
-        return {}
-    healthy = {}
-    for place, some in given.items():
-        specimen = scenarios[place].specimen
-        if specimen.wear is not None or specimen.cage or specimen.axis.get("jumps"):
-            healthy[place] = kernel_input(scenarios[place].without_fault(), timeline(recipe))
-        elif specimen.fault != "healthy":  # spalls are the only difference
-            healthy[place] = some._replace(spalls=())
-    return healthy
+def _healthy_input(scenario: Scenario, given: KernelInput, recipe: Recipe) -> KernelInput | None:
+    """Kernel input of a record as it was without its fault; None if it has none, and with ``corpus.truth: none``."""
+    specimen = scenario.specimen
+    if recipe.corpus.truth == "none" or specimen.fault == "healthy":
+        return None
+    if specimen.wear is not None or specimen.cage or specimen.axis.get("jumps"):
+        return kernel_input(scenario.without_fault(), timeline(recipe))
+    return given._replace(spalls=())  # spalls are the only difference
 
 
 def possible_inputs(scenarios: list[Scenario], recipe: Recipe) -> tuple[list[KernelInput | None], dict[int, str]]:
@@ -159,30 +187,42 @@ def possible_inputs(scenarios: list[Scenario], recipe: Recipe) -> tuple[list[Ker
 
 def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -> FloatArray:
     """Relative rms change of some records of a part when their step is halved, NaN for the others, shape (record,)."""
-    errors, axis = np.full(len(scenarios), np.nan), timeline(recipe)
+    finer = step_checks(scenarios, recipe, response)
+    integrate_all(finer.values(), timeline(recipe))
+    return step_changes(finer, response, recipe)
+
+
+def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Integration]:
+    """Integrations of some records of a part at half their step, by place."""
     usable = {place: some for place, some in enumerate(response.inputs) if some and place not in response.failures}
     groups = {place: group_of(some, int(response.oversampling[place])) for place, some in usable.items()}
-    tried = checked_places(scenarios, recipe, groups)
-    if not tried:
-        return errors
-    finer = integrate_all([usable[place] for place in tried], [2 * groups[place].steps for place in tried], axis)
-    coarse, halved = response.acceleration[tried][..., axis.kept], finer.response[..., axis.kept]
-    change, whole = (np.sum(some**2, axis=(1, 2), dtype=np.float64) for some in (coarse - halved, halved))
-    errors[tried] = np.sqrt(change / whole)
+    return {
+        place: Integration(
+            scenarios[place].record.number, usable[place], groups[place]._replace(steps=2 * groups[place].steps)
+        )
+        for place in checked_places(scenarios, recipe, groups)
+    }
+
+
+def step_changes(finer: Mapping[int, Integration], response: Response, recipe: Recipe) -> FloatArray:
+    """Relative rms change between records and the same at half the step, NaN for the other records, shape (record,)."""
+    errors, kept = np.full(len(response.oversampling), np.nan), timeline(recipe).kept
+    tried = list(finer)
+    if tried:
+        coarse, halved = response.acceleration[tried], np.stack([_motion(one) for one in finer.values()])
+        pair = coarse[..., kept] - halved[..., kept], halved[..., kept]
+        change, whole = (np.sum(some**2, axis=(1, 2), dtype=np.float64) for some in pair)
+        errors[tried] = np.sqrt(change / whole)
     return errors
 
 
 def laid_out(scenarios: list[Scenario], recipe: Recipe) -> list[tuple[Group, Batch]]:
     """Scenarios in lanes, batch by batch, as :func:`simulate` integrates them; all must be possible."""
-    axis = timeline(recipe)
-    given = {place: kernel_input(scenario, axis) for place, scenario in enumerate(scenarios)}
-    steps = {place: steps_per_sample(some, scenarios[place].record.number, recipe) for place, some in given.items()}
-    healthy = _healthy_inputs(scenarios, given, recipe)
-    inputs = [*given.values(), *healthy.values()]
-    places = [*given, *healthy]
-    groups = {row: group_of(some, steps[place]) for row, (some, place) in enumerate(zip(inputs, places, strict=True))}
+    runs = runs_of(scenarios, recipe)
+    every = [one for run in runs for one in (run.own, run.twin) if one is not None]
     return [
-        (group, lay_out([inputs[row] for row in rows], group.shape, 1 / axis.fs)) for group, rows in batches(groups)
+        (group, lay_out([every[place].given for place in places], group.shape, 1 / recipe.recording.sample_rate_hz))
+        for group, places in batches({place: one.group for place, one in enumerate(every)})
     ]
 
 

@@ -125,6 +125,12 @@ def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[in
     return chosen
 
 
+def has_checks(recipe: Recipe, numbers: range) -> bool:
+    """Whether the step of any of the records of a part may be checked, by :func:`checked_places`."""
+    every = numbers.start % (CHECKED_PARTS * recipe.corpus.records_per_part) == 0
+    return every or any(number in numbers for number in first_records(recipe).values())
+
+
 def _with_full_batches(chosen: list[int], groups: Mapping[int, Group]) -> list[int]:
     """The chosen places, and others of their groups that fill the last batch of each group."""
     filled = list(chosen)

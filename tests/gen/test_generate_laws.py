@@ -113,7 +113,7 @@ def test_a_corpus_interrupted_before_its_first_part_was_done_is_completed_too(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(GENERATE, "make_part", interrupted)
+        patch.setattr(GENERATE, "make_parts", interrupted)
         with pytest.raises(KeyboardInterrupt):
             generate(recipe_file, tmp_path / "c")
     generate(recipe_file, tmp_path / "c")

@@ -5,9 +5,10 @@ import pytest
 
 from gen.corpus import FAULTS
 from gen.labels import part_dataset
+from gen.making import made_records
 from gen.measurement.measure import measure
 from gen.recipe.sensing import FloatConverter
-from gen.records import FAULT_TRIES, made_again, made_records
+from gen.records import FAULT_TRIES, made_again
 from gen.scenarios import draw_scenarios
 from gen.simulation import simulate as simulation
 from gen.simulation.hits import felt_places
@@ -173,10 +174,10 @@ def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
     recipe = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}]})
     integrate = simulation.integrate_all
 
-    def second_twin_diverges(*given):
-        made = integrate(*given)
-        made.diverged[3] = 100
-        return made
+    def second_twin_diverges(integrations, *given):
+        integrate(integrations, *given)
+        (twin,) = (one for one in integrations if one.number == 1 and not one.given.spalls)
+        twin.diverged = 100
 
     monkeypatch.setattr(simulation, "integrate_all", second_twin_diverges)
     response = simulate(draw_scenarios(recipe, 0, 2), recipe)
