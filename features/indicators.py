@@ -49,7 +49,7 @@ ENERGY_HZ = (20.0, 100.0, 200.0, 400.0, 800.0, 1500.0, 2500.0, 3500.0, TOP)
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 FAINTEST_ENERGY = 1e-12  # of the total energy, 120 dB below it
 
-BATCH = 8  # records computed together, so that their arrays fit into the cache of a core
+BATCH = 16  # records computed together, so that their arrays fit into the cache of a core; features do not depend on it
 
 VIEWS = ("cepstral", "whitened", "bands_max", "bands_mean")
 RIVALS = tuple(combinations(range(len(FAMILIES)), 2))

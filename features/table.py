@@ -3,21 +3,21 @@
 ``parts -> one task per part: read signal and operating variables -> indicators -> rows, in corpus order``
 
 Features are computed from the signal and the ``operating`` variables only; labels, simulator truth and provenance are
-copied unchanged. A task returns features and no signals, so that memory does not grow with the signals of a corpus. A
+copied unchanged. A task returns features and no signals, and its rows are copied into a table that is allocated once: a worker needs
+memory for the signals of one part, and this process needs that of the table, which is 1.4 kB per record with all groups. A
 task is one part, so the features do not depend on the number of workers. If shaft speeds are wanted, a pass over all
 parts before that of the features estimates them, since the records of a recording may lie in several parts.
 """
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Generator, Sequence
+from contextlib import closing
 from functools import partial
 from itertools import count
 from pathlib import Path
-from typing import TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import xarray as xr
-from distributed import Client
 
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.recording_speeds import (
@@ -30,15 +30,16 @@ from features.recording_speeds import (
     with_speeds,
 )
 from features.signal.rows import FloatArray
-from gen.cluster import client_of, local_client, run_tasks
 from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
 from gen.errors import CorpusError
+from gen.workers import run
+
+if TYPE_CHECKING:
+    from distributed import Client
 
 Progress = Callable[[int, int], None]
 Item = TypeVar("Item")
 Result = TypeVar("Result")
-
-INLINE_RECORDS = 2000  # their features take about as long as a local cluster takes to start
 
 
 def feature_table(
@@ -47,7 +48,8 @@ def feature_table(
     *,
     speed: Speed = "off",
     channel: int = 0,
-    scheduler: Client | str | None = None,
+    workers: int = 1,
+    scheduler: "Client | str | None" = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
     """Features of every record of a corpus.
@@ -63,9 +65,10 @@ def feature_table(
         computes the features at the found speed where it is clear. Simulated corpora are not checked.
     channel
         Number of the channel, from 0.
+    workers
+        Number of parts at work at a time: 1 in this thread, a few in threads of this process, more in processes on this machine.
     scheduler
-        A dask client, the address of a dask scheduler, or ``"local"`` for a cluster with one process per core, which
-        is not started for a small corpus; by default this process.
+        A dask client, or the address of a dask scheduler whose workers see ``corpus`` under the same path; replaces ``workers``.
     progress
         Called after each part with the number of parts done and of all parts; speeds count every part twice.
 
@@ -94,25 +97,25 @@ def feature_table(
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
     treatment = checked_speed(speed, table)
-    paths = part_paths(corpus, check="size")
-    small = len(paths) == 1 or table.sizes["record"] <= INLINE_RECORDS
+    paths = [path.absolute() for path in part_paths(corpus, check="size")]
     starts = np.cumsum([0, *(row.records for row in read_manifest(Path(corpus)).parts)])
+    work = partial(_run, workers=min(workers, len(paths)), scheduler=scheduler)
     report = _counted(progress, len(paths) * (1 if treatment == "off" else 2))
-    with _client(None if scheduler == "local" and small else scheduler) as client:
-        paths = paths if client is None else [path.absolute() for path in paths]
-        if treatment != "off":
-            recording = recording_numbers(table)
-            tasks = list(zip(paths, np.split(recording, starts[1:-1]), strict=True))
-            sums = _run(partial(part_sums, channel=channel), tasks, client, report)
+    if treatment != "off":
+        recording = recording_numbers(table)
+        tasks = list(zip(paths, np.split(recording, starts[1:-1]), strict=True))
+        with closing(work(partial(part_sums, channel=channel), tasks, report)) as sums:
             found = recording_speeds(recording, table["shaft_rate"].values, sums)
-            table = with_speeds(table, recording, found, treatment)
-        rates = rates_to_use(table) if treatment == "correct" else table["shaft_rate"].values
-        values = np.empty((table.sizes["record"], len(names)))
-        compute = partial(_features_of_part, groups=tuple(groups), channel=channel)
-        tasks = list(zip(paths, np.split(rates, starts[1:-1]), strict=True))
-        for number, block in _run(compute, tasks, client, report):
+        table = with_speeds(table, recording, found, treatment)
+    rates = rates_to_use(table) if treatment == "correct" else table["shaft_rate"].values
+    values, missing = np.empty((table.sizes["record"], len(names))), 0
+    compute = partial(_features_of_part, groups=tuple(groups), channel=channel)
+    tasks = list(zip(paths, np.split(rates, starts[1:-1]), strict=True))
+    with closing(work(compute, tasks, report)) as blocks:
+        for number, block in blocks:
             values[starts[number] : starts[number + 1]] = block
-    return _assemble(table, values, groups)
+            missing += int(np.isnan(block).any(axis=1).sum())
+    return _assemble(table, values, groups).assign_attrs(records_with_missing_features=missing)
 
 
 def part_features(
@@ -145,14 +148,13 @@ def _counted(progress: Progress | None, tasks: int) -> Callable[[], None]:
 
 
 def _run(
-    compute: Callable[[Item], Result], items: Sequence[Item], client: Client | None, report: Callable[[], None]
-) -> Iterator[tuple[int, Result]]:
-    """Yield the number of each item and its result as they are completed."""
-    numbered = partial(_numbered, compute)
-    tasks = enumerate(items)
-    for result in map(numbered, tasks) if client is None else run_tasks(client, numbered, tasks):
-        yield result
-        report()
+    compute: Callable[[Item], Result], items: Sequence[Item], report: Callable[[], None], **workers: Any
+) -> Generator[tuple[int, Result]]:
+    """Yield the number of each item and its result as they are completed; ``workers`` are options of `gen.workers.run`."""
+    with closing(run(partial(_numbered, compute), enumerate(items), **workers)) as results:
+        for result in results:
+            yield result
+            report()
 
 
 def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> tuple[int, Result]:
@@ -160,19 +162,12 @@ def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> tupl
     return number, compute(item)
 
 
-def _client(scheduler: Client | str | None) -> AbstractContextManager[Client | None]:
-    if scheduler is None or isinstance(scheduler, Client):
-        return nullcontext(scheduler)
-    return local_client() if scheduler == "local" else client_of(scheduler)
-
-
 def _assemble(table: xr.Dataset, values: FloatArray, groups: Sequence[str]) -> xr.Dataset:
     names = np.array(feature_names(groups), dtype=object)
     group = np.array(feature_groups(groups), dtype=object)
-    described = table.assign(
+    return table.assign(
         features=(("record", "feature"), values, {"long_name": "features of the signal", "units": "1"})
     ).assign_coords(
         feature=("feature", names, {"long_name": "name of the feature"}),
         group=("feature", group, {"long_name": "group of the feature"}),
     )
-    return described.assign_attrs(records_with_missing_features=int(np.isnan(values).any(axis=1).sum()))

@@ -14,6 +14,7 @@ from gen.errors import CorpusError
 from gen.limits import check_limit
 
 DIGEST = "sha256"
+ROW_GROUP = 8192  # records that are copied to columns together
 
 
 def write_table(table: xr.Dataset, path: Path | str) -> None:
@@ -115,15 +116,19 @@ def _write_parquet(table: xr.Dataset, path: Path) -> None:
     import pyarrow as pa
     from pyarrow import parquet
 
-    columns = {str(name): table[name] for name, known in table.variables.items() if known.dims == ("record",)}
-    columns |= {str(name): table["features"].sel(feature=name) for name in table["feature"].values}
-    arrays = {name: pa.array(column.values) for name, column in columns.items()}
+    names = [str(name) for name, known in table.variables.items() if known.dims == ("record",)]
+    columns = {name: (table[name].values, table[name].attrs) for name in names}
+    features = table["features"]
+    columns |= {str(name): (features.values[:, at], features.attrs) for at, name in enumerate(table["feature"].values)}
     fields = [
-        pa.field(name, arrays[name].type, metadata={key: str(value) for key, value in column.attrs.items()})
-        for name, column in columns.items()
+        pa.field(name, pa.array(values[:1]).type, metadata={key: str(value) for key, value in attributes.items()})
+        for name, (values, attributes) in columns.items()
     ]
-    metadata = {key: str(value) for key, value in table.attrs.items()}
-    parquet.write_table(pa.table(list(arrays.values()), schema=pa.schema(fields, metadata)), path)
+    schema = pa.schema(fields, {key: str(value) for key, value in table.attrs.items()})
+    with parquet.ParquetWriter(path, schema) as file:
+        for start in range(0, table.sizes["record"], ROW_GROUP):
+            rows = slice(start, start + ROW_GROUP)
+            file.write_table(pa.table([pa.array(values[rows]) for values, _ in columns.values()], schema=schema))
 
 
 WRITERS: Mapping[str, Callable[[xr.Dataset, Path], None]] = {".nc": _write_netcdf, ".parquet": _write_parquet}

@@ -15,6 +15,7 @@ predictions       classes predicted for the records of a table and for whole rec
 scores            figures of merit by record and by recording, with confidence intervals
 severities        fault widths that a test contains and its training does not
 tracks            splits by specimen, rig, bearing type, speed, severity and fault shape, and their checks
+fitting           fits of one classifier to several selections of records
 splits            cross-validation on a track, with its two controls
 curves            score against the number of training specimens
 cross_calibration calibration on rigs or specimens outside the training

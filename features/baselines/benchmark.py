@@ -143,6 +143,7 @@ def benchmark(
     folds: int = 5,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
+    workers: int = 1,
     progress: Progress | None = None,
 ) -> Results:
     """Cross-validate classifiers with their controls, and test them on another corpus.
@@ -169,6 +170,8 @@ def benchmark(
         Groups of features.
     seed
         Of splits, estimators, permutation and bootstrap.
+    workers
+        Number of splits that a baseline is trained on at a time, in threads of this process; the scores do not depend on it.
     progress
         Called after each score with the number of scores done and of all.
 
@@ -197,13 +200,13 @@ def benchmark(
         for track, of_track in cases.items():
             known = {"leaky": scored[first][name].leaky} if track != first else {}
             scores = known | {
-                case: score_splits(given, labels, estimator, found, seed)
+                case: score_splits(given, labels, estimator, found, seed, workers)
                 for case, (labels, found) in of_track.items()
                 if case not in known
             }
             tested = None
             if test is not None and track == first and isinstance(given.features, DataFrame):
-                tested = evaluate(test, train(table, estimator, groups=groups, seed=seed), seed=seed)
+                tested = evaluate(test, train(table, estimator, groups=groups, seed=seed, workers=workers), seed=seed)
             scored[track][name] = Baseline(**scores, test=tested)
             steps.done()
     return Results(
@@ -220,7 +223,7 @@ def benchmark(
         uncovered_widths=uncovered_in_splits(records, splits),
         further={track: _further(records, cases[track], scored[track]) for track in list(cases)[1:]},
         left_out=left_out,
-        curve=curve_points(led, chosen[leading], splits, seed, steps.done) if curve else (),
+        curve=curve_points(led, chosen[leading], splits, seed, steps.done, workers) if curve else (),
     )
 
 

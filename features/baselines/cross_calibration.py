@@ -1,11 +1,13 @@
 """Calibration of an estimator on records of rigs, or specimens, outside its training."""
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 
 from features.baselines.calibration import UNCALIBRATED, Calibration, fit_calibration
-from features.baselines.estimators import UNTRAINED, class_probabilities, make_estimator
+from features.baselines.estimators import UNTRAINED, Estimator
+from features.baselines.fitting import fits
 from features.baselines.own import Maker
 from features.baselines.records import Records
 from features.baselines.tracks import Split, grouped_splits
@@ -13,21 +15,32 @@ from features.baselines.tracks import Split, grouped_splits
 FOLDS = 3  # at most; each costs a training on two thirds of the records
 
 
-def cross_calibration(records: Records, estimator: str | Maker, seed: int) -> Calibration:
-    """Calibration from the predictions of a cross-validation by rig, or by specimen if there are too few rigs.
+def fit_and_calibrate(
+    records: Records,
+    estimator: str | Maker,
+    seed: int,
+    *,
+    workers: int = 1,
+    done: Callable[[], None] = lambda: None,
+) -> tuple[Estimator, Calibration]:
+    """Fit a classifier to all records, and calibrate it by a cross-validation by rig, or by specimen if there are too few rigs.
 
-    An untrained baseline, and one whose classes are on too few specimens, stays uncalibrated.
+    An untrained baseline, and one whose classes are on too few specimens, stays uncalibrated. ``workers`` and ``done`` are those of
+    `features.baselines.fitting.fits`.
     """
     found = None if estimator in UNTRAINED else calibration_splits(records, seed)
-    if found is None:
-        return UNCALIBRATED
-    by, splits = found
+    by, splits = ("nothing", []) if found is None else found
+    every = np.arange(len(records.fault))
+    whole, *folds = fits(
+        records.features, records.fault, estimator, [(every, every[:0]), *splits], seed, workers=workers, done=done
+    )
+    if not folds:
+        return whole.estimator, UNCALIBRATED
     classes, truth = np.unique(records.fault, return_inverse=True)
     probabilities = np.zeros((len(truth), len(classes)))
-    for train, test in splits:
-        fitted = make_estimator(estimator, seed).fit(records.features.take(train), records.fault[train])
-        probabilities[test] = class_probabilities(fitted, records.features.take(test))
-    return fit_calibration(probabilities, truth, records.recording, by)
+    for (_, test), fold in zip(splits, folds, strict=True):
+        probabilities[test] = fold.probabilities
+    return whole.estimator, fit_calibration(probabilities, truth, records.recording, by)
 
 
 def calibration_splits(records: Records, seed: int) -> tuple[Literal["rig", "specimen"], list[Split]] | None:

@@ -52,8 +52,9 @@ def curve_points(
     splits: Sequence[Split],
     seed: int,
     progress: Callable[[], None] | None = None,
+    workers: int = 1,
 ) -> tuple[CurvePoint, ...]:
-    """Points of the learning curve on given splits; ``progress`` is called after each."""
+    """Points of the learning curve on given splits; ``progress`` is called after each, ``workers`` as for `score_splits`."""
     orders = [nested_specimens(records.at(train), seed) for train, _ in splits]
     found: list[CurvePoint] = []
     for size in curve_sizes(records, splits):
@@ -61,7 +62,7 @@ def curve_points(
             (train[np.isin(records.specimen[train], order[:size])], test)
             for order, (train, test) in zip(orders, splits, strict=True)
         ]
-        scores = score_splits(records, records.fault, estimator, smaller, seed)
+        scores = score_splits(records, records.fault, estimator, smaller, seed, workers)
         found.append(CurvePoint(size, float(np.mean([len(train) for train, _ in smaller])), scores))
         if progress is not None:
             progress()

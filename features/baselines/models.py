@@ -4,7 +4,7 @@ Model files contain no pickle, and loading one runs no code from it. `load_model
 see `features.baselines.model_file` and `features.baselines.model_check`.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from pathlib import Path
@@ -17,14 +17,13 @@ from pandas import DataFrame, Index
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from features.baselines.calibration import Calibration
-from features.baselines.cross_calibration import cross_calibration
+from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
     ESTIMATORS,
     RELATIVE_ESTIMATORS,
     UNTRAINED,
     Estimator,
-    make_estimator,
     relative_name,
 )
 from features.baselines.model_check import check_estimator
@@ -51,6 +50,7 @@ from gen.errors import CorpusError
 from gen.limits import check_limit
 
 FORMAT = 3
+Progress = Callable[[int, int], None]
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 
 
@@ -107,6 +107,8 @@ def train(
     *,
     groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
+    workers: int = 1,
+    progress: Progress | None = None,
 ) -> Model:
     """Fit a baseline or a classifier of the user to all records of a feature table, and calibrate it on records outside the training.
 
@@ -116,6 +118,21 @@ def train(
     If each class has records on rigs with two healthy recordings, and the table has shaft rates and the group ``bands``, a second baseline
     is fitted to the records relative to another healthy recording of their rig: see `features.baselines.references`.
 
+    Parameters
+    ----------
+    table
+        A feature table.
+    estimator
+        Name of a baseline, or a classifier of the user.
+    groups
+        Groups of features.
+    seed
+        Of the estimator, of the splits and of the references.
+    workers
+        Number of fits at a time, in threads of this process; the model does not depend on it.
+    progress
+        Called after each fit with the number of fits done and of all that may be needed: four, and again as many for a second baseline.
+
     Raises
     ------
     CorpusError
@@ -123,20 +140,45 @@ def train(
     ValueError
         For an unknown estimator.
     """
-    model = _train(table, estimator, groups, seed)
-    if not isinstance(estimator, str) or estimator in UNTRAINED:
-        return model
-    paired = paired_table(table, model.features, seed)
-    return replace(
-        model, relative=None if paired is None else _train(paired, relative_name(estimator), (RELATIVE,), seed)
-    )
+    compares = isinstance(estimator, str) and estimator not in UNTRAINED
+    steps = _Fits(progress, (1 + FOLDS) * (1 + compares))
+    model = _train(table, estimator, groups, seed, workers, steps.done)
+    paired = paired_table(table, model.features, seed) if compares else None
+    if paired is not None:
+        relative = _train(paired, relative_name(str(estimator)), (RELATIVE,), seed, workers, steps.done)
+        model = replace(model, relative=relative)
+    steps.end()
+    return model
 
 
-def _train(table: xr.Dataset, estimator: str | Maker, groups: Sequence[str], seed: int) -> Model:
+class _Fits:
+    """Number of fits done and of all that may be needed, told to a function that shows the progress."""
+
+    def __init__(self, progress: Progress | None, total: int) -> None:
+        self.progress, self.total, self.count = progress, total, 0
+
+    def done(self) -> None:
+        self.count += 1
+        if self.progress is not None and self.count < self.total:
+            self.progress(self.count, self.total)
+
+    def end(self) -> None:
+        if self.progress is not None:
+            self.progress(self.total, self.total)
+
+
+def _train(
+    table: xr.Dataset,
+    estimator: str | Maker,
+    groups: Sequence[str],
+    seed: int,
+    workers: int,
+    done: Callable[[], None],
+) -> Model:
     names = features_of(table, groups)
     records = labelled_records(table, names)
     check_classes(records)
-    fitted = make_estimator(estimator, seed).fit(records.features, records.fault)
+    fitted, calibration = fit_and_calibrate(records, estimator, seed, workers=workers, done=done)
     return Model(
         estimator=fitted,
         name=estimator if isinstance(estimator, str) else maker_name(estimator),
@@ -149,7 +191,7 @@ def _train(table: xr.Dataset, estimator: str | Maker, groups: Sequence[str], see
         widths=covered_widths(records),
         digests=record_digests(records.features.to_numpy()),
         versions={library: version(library) for library in _LIBRARIES},
-        calibration=cross_calibration(records, estimator, seed),
+        calibration=calibration,
     )
 
 

@@ -140,7 +140,10 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
     if table.sizes["record"] == 0:
         message = f"{title}: the feature table holds no record; give a corpus with at least one."
         raise CorpusError(message)
-    return cast("DataFrame", table["features"].sel(feature=list(features)).to_pandas())
+    held = table["features"]
+    if list(table["feature"].values) != list(features):  # a selection is a copy
+        held = held.sel(feature=list(features))
+    return cast("DataFrame", held.to_pandas())
 
 
 def _column(table: xr.Dataset, name: str) -> FloatArray:

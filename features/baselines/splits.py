@@ -11,7 +11,8 @@ import numpy as np
 import xarray as xr
 
 from features.baselines.calibration import UNCALIBRATED, fit_calibration
-from features.baselines.estimators import UNTRAINED, class_probabilities, make_estimator
+from features.baselines.estimators import UNTRAINED
+from features.baselines.fitting import fits
 from features.baselines.own import Maker
 from features.baselines.predictions import Predictions, class_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
@@ -121,16 +122,19 @@ def permuted_labels(records: Records, seed: int) -> IntArray:
 
 
 def score_splits(
-    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int
+    records: Records, labels: IntArray, estimator: str | Maker, splits: Sequence[Split], seed: int, workers: int = 1
 ) -> Scores:
-    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once."""
+    """Scores against ``labels`` of the predictions of all splits, which together test a record at most once.
+
+    ``workers`` is the number of splits that are trained on at a time, as in `features.baselines.fitting.fits`.
+    """
     classes = np.unique(labels)
     probabilities = np.zeros((len(labels), len(FAULTS)))
     folds: list[float] = []
-    for train, test in splits:
-        fitted = make_estimator(estimator, seed).fit(records.features.take(train), labels[train])
-        probabilities[np.ix_(test, fitted.classes_)] = class_probabilities(fitted, records.features.take(test))
-        classes = np.union1d(classes, fitted.classes_)
+    fitted = fits(records.features, labels, estimator, splits, seed, workers=workers)
+    for (_, test), fold in zip(splits, fitted, strict=True):
+        probabilities[np.ix_(test, fold.estimator.classes_)] = fold.probabilities
+        classes = np.union1d(classes, fold.estimator.classes_)
         folds.append(_balanced_accuracy(labels[test], probabilities[test]))
     tested = np.sort(np.concatenate([test for _, test in splits]))
     chosen = records._replace(fault=labels).at(tested)

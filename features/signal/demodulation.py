@@ -145,7 +145,7 @@ def _interpolation(n: int, dtype: DTypeLike) -> tuple[FloatArray, np.ndarray, Fl
     return window.astype(dtype), first, weights.astype(dtype)
 
 
-@njit(cache=True)  # without fastmath: vectorised over records, each sum in the order written
+@njit(cache=True, nogil=True)  # without fastmath: vectorised over records, each sum in the order written
 def _interpolated(transform: ComplexArray, n: int, first: np.ndarray, weights: FloatArray) -> FloatArray:
     """Moduli between the coefficients of real signals of length n, shape (record, bin)."""
     records, reach = len(transform), first[-1] - first[0] + NEIGHBOURS

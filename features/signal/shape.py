@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 
 from features.signal.demodulation import ZERO_PADDING, analytic_band
-from features.signal.rows import ComplexArray, FloatArray, row_kernel, squared_modulus, total
+from features.signal.rows import PARTIAL_SUMS, ComplexArray, FloatArray, row_kernel, squared_modulus, total, total_with
 
 SHAPE_NAMES = ("impulsiveness", "slow_fluctuation", "slow_share")
 SMOOTHING_TURNS = 0.5  # shaft revolutions over which the power is averaged
@@ -80,10 +80,10 @@ def _envelope_shape(
 def _fluctuation(power: FloatArray, span: int) -> float:
     """Standard deviation of the means over ``span`` samples, taken at every quarter of a span."""
     step = max(1, span // 4)
-    means = np.empty(max(1, (len(power) - span) // step + 1))
+    means, parts = np.empty(max(1, (len(power) - span) // step + 1)), np.empty(PARTIAL_SUMS)
     for number in range(len(means)):
         within = power[number * step : number * step + span]
-        means[number] = total(within) / len(within)
+        means[number] = total_with(within, parts) / len(within)
     return float(np.std(means))
 
 

@@ -165,13 +165,9 @@ class _Signal(BackendArray):
             if not is_deflated(stored):
                 self.packing.decode(stored[records.start : records.stop, channels.start : channels.stop], out)
                 return
-            places = [(record, channel, 0) for record in records for channel in channels]
-            chunks = [stored.id.read_direct_chunk(place) for place in places]
-        for place, (filters_left_out, chunk) in zip(np.ndindex(out.shape[:2]), chunks, strict=True):
-            try:
-                counts = inflated(b"" if filters_left_out else chunk, self.shape[2])
-            except (ValueError, zlib.error) as error:
-                raise CorpusError(f"{self.parts[part].path}: damaged ({error}); generate or copy it again.") from None
+            chunks = _chunks(stored, records, channels)
+        inflating = _all_inflated(chunks, self.shape[2], self.parts[part].path)
+        for place, counts in zip(np.ndindex(out.shape[:2]), inflating, strict=True):
             self.packing.decode(counts, out[place])
 
     @contextmanager
@@ -187,6 +183,20 @@ class _Signal(BackendArray):
                     )
                 file.checked[expected] = stored
             yield file.checked[expected]
+
+
+def _chunks(stored: h5py.Dataset, records: range, channels: range) -> list[tuple[int, bytes]]:
+    """Stored chunks of some records and channels, each with the mask of the filters that were left out."""
+    return [stored.id.read_direct_chunk((record, channel, 0)) for record in records for channel in channels]
+
+
+def _all_inflated(chunks: Sequence[tuple[int, bytes]], samples: int, path: str) -> Iterator[NDArray[np.int16]]:
+    """Counts of each chunk; CorpusError if one is damaged."""
+    for filters_left_out, chunk in chunks:
+        try:
+            yield inflated(b"" if filters_left_out else chunk, samples)
+        except (ValueError, zlib.error) as error:
+            raise CorpusError(f"{path}: damaged ({error}); generate or copy it again.") from None
 
 
 def _numbers_of(key: int | slice | NDArray[np.integer[Any]], size: int) -> NDArray[np.integer[Any]]:
@@ -266,17 +276,23 @@ def open_part(path: Path) -> xr.Dataset:
 def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
     """Signal of one channel of a part in single precision, shape (record, elapsed_time) [m s-2], and columns by name.
 
-    It takes half the time of :func:`open_part`, which decodes in double precision; features use it.
+    It takes half the time of :func:`open_part`, which decodes in double precision; features use it. Chunks are inflated without the lock,
+    so that threads run in parallel.
     """
-    with _opened(source_of(path)) as file:
+    source = source_of(path)
+    with _opened(source) as file:
         stored = own_dataset(file.handle, SIGNAL)
-        checked_shape(stored)
-        packing, counts = packing_of(stored), stored[:, channel]
-        columns = [_numbers(own_dataset(file.handle, name), name, stored.shape[0]) for name in names]
+        records, _, samples = checked_shape(stored)
+        packing, deflated = packing_of(stored), is_deflated(stored)
+        read: Any = _chunks(stored, range(records), range(channel, channel + 1)) if deflated else stored[:, channel]
+        columns = [_numbers(own_dataset(file.handle, name), name, records) for name in names]
+    _close([source])  # features read each part once, and an open file holds 1 MB
     if packing.scale is None:
-        return counts, columns
-    signal = np.multiply(counts, np.float32(packing.scale), dtype=np.float32)
-    signal[counts == packing.fill] = np.nan
+        return read, columns
+    signal = np.empty((records, samples), np.float32)
+    for row, counts in zip(signal, _all_inflated(read, samples, source.path) if deflated else read, strict=True):
+        np.multiply(counts, np.float32(packing.scale), out=row, dtype=np.float32)
+        row[counts == packing.fill] = np.nan
     return signal, columns
 
 

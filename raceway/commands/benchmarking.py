@@ -11,12 +11,14 @@ from raceway.commands.models import ESTIMATORS, warn_of_severities
 from raceway.console import show
 from raceway.console.options import (
     A_PATH,
+    Team,
     corpus_argument,
     corpus_folder,
     folder_option,
     json_option,
     recipe_argument,
     speed_option,
+    worker_options,
 )
 from raceway.console.progress import compilation_noticed, progress
 
@@ -81,6 +83,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
     "--seed", type=int, default=0, show_default=True, metavar="S", help="Seed of splits, classifiers and bootstrap."
 )
 @speed_option
+@worker_options
 @json_option
 def benchmark(
     corpus: Path,
@@ -94,6 +97,8 @@ def benchmark(
     folds: int,
     seed: int,
     speed: "Speed",
+    workers: int | None,
+    scheduler: str | None,
     as_json: bool,
 ) -> None:
     """Measure the scores of all baselines on DIR.
@@ -121,12 +126,14 @@ def benchmark(
     from features.report.page import write_report
 
     signals = open_waveforms(corpus, normalise=True, per_turn=per_turn) if waveforms else None
-    table = table_of(corpus)
-    other = None if test is None else table_of(test, speed)
+    team = Team(workers, scheduler)
+    table = table_of(corpus, "off", team)
+    other = None if test is None else table_of(test, speed, team)
     asked = "all" if "all" in tracks else tracks
     options = {"tracks": asked, "estimators": chosen, "waveforms": signals, "curve": learning_curve}
+    trainers = team.options(table.sizes["record"])["workers"]
     with progress("scoring", "scores") as report:
-        results = run(table, other, **options, folds=folds, seed=seed, progress=report)
+        results = run(table, other, **options, folds=folds, seed=seed, workers=trainers, progress=report)
     notice_of_unknown(corpus, results.corpus.unknown)
     if test is not None and results.test is not None:
         notice_of_unknown(test, results.test.unknown)

@@ -1,6 +1,5 @@
 """Commands that make corpora and look at them: recipes, plan, generate, validate, info, replay."""
 
-import os
 import shlex
 import time
 from functools import partial
@@ -12,6 +11,7 @@ import click
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import (
+    cores,
     corpus_argument,
     file_option,
     folder_option,
@@ -20,6 +20,7 @@ from raceway.console.options import (
     record_option,
     records_option,
     seed_option,
+    worker_options,
 )
 from raceway.console.progress import compilation_noticed, notice, progress
 from raceway.console.signals import if_interrupted
@@ -140,13 +141,7 @@ def _show_plan(planned: "Plan", recipe: str) -> None:
 @click.command()
 @recipe_argument
 @folder_option("DIR", "Folder of the corpus: new, empty, or begun by this command.")
-@click.option(
-    "--workers",
-    type=click.IntRange(min=1),
-    metavar="N",
-    help="Number of threads; above four, of processes with some threads each.",
-)
-@click.option("--scheduler", metavar="ADDR", help="Address of a dask scheduler, in place of --workers.")
+@worker_options
 @seed_option
 @records_option
 @json_option
@@ -230,10 +225,9 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
 def _default_workers(recipe: "Recipe") -> int:
     from gen.workers import MOST_THREADS
 
-    cores = len(os.sched_getaffinity(0))
     if recipe.n_parts < 2 or recipe.n_records <= WORTH_WORKERS:
-        return min(cores, MOST_THREADS)
-    return min(cores, max(recipe.n_parts, MOST_THREADS))
+        return min(cores(), MOST_THREADS)
+    return min(cores(), max(recipe.n_parts, MOST_THREADS))
 
 
 @click.command()

@@ -6,7 +6,16 @@ from typing import TYPE_CHECKING
 import click
 
 from raceway.console import show
-from raceway.console.options import corpus_argument, file_option, json_option, record_option, speed_option
+from raceway.console.options import (
+    USUAL,
+    Team,
+    corpus_argument,
+    file_option,
+    json_option,
+    record_option,
+    speed_option,
+    worker_options,
+)
 from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
@@ -36,20 +45,24 @@ def plot(corpus: Path, record: int, output: Path) -> None:
 @corpus_argument
 @file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"))
 @speed_option
+@worker_options
 @json_option
-def features(corpus: Path, output: Path, speed: "Speed", as_json: bool) -> None:
+def features(
+    corpus: Path, output: Path, speed: "Speed", workers: int | None, scheduler: str | None, as_json: bool
+) -> None:
     """Compute the features of every record of DIR.
 
-    The table has one row per record, with the features of its signal and all its labels.
+    The table has one row per record, with the features of its signal and all its labels. It does not depend on the number of workers.
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
       raceway features recordings -o features.nc --speed correct
+      raceway features corpus -o features.nc --workers 8
     """
     from features.table_files import check_destination, write_table
 
     check_destination(output)
-    table = table_of(corpus, speed)
+    table = table_of(corpus, speed, Team(workers, scheduler))
     write_table(table, output)
     records, columns = table.sizes["record"], table.sizes["feature"]
     missing = table.attrs["records_with_missing_features"]
@@ -68,13 +81,15 @@ def notice_of_unknown(corpus: Path, unknown: int) -> None:
         notice(f"{corpus}: {show.counted(unknown, 'record')} of class unknown left out.")
 
 
-def table_of(corpus: Path, speed: "Speed" = "off") -> "xr.Dataset":
+def table_of(corpus: Path, speed: "Speed" = "off", team: Team = USUAL) -> "xr.Dataset":
     """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
     from features.recording_speeds import speed_warnings
+    from gen.corpus import read_manifest
 
+    options = team.options(read_manifest(corpus).records)
     with progress("computing features", "parts") as report:
-        table = feature_table(corpus, speed=speed, scheduler="local", progress=report)
+        table = feature_table(corpus, speed=speed, **options, progress=report)
     for sentence in speed_warnings(table):
         notice(f"warning: {sentence}")
     return table

@@ -9,7 +9,16 @@ import click
 from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_argument, corpus_folder, file_option, json_option, speed_option
+from raceway.console.options import (
+    A_PATH,
+    Team,
+    corpus_argument,
+    corpus_folder,
+    file_option,
+    json_option,
+    speed_option,
+    worker_options,
+)
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
@@ -40,8 +49,11 @@ ESTIMATORS = (
     metavar="NAME",
     help=f"One of {', '.join(ESTIMATORS)}.",
 )
+@worker_options
 @json_option
-def train(source: str, output: Path | None, estimator: str, as_json: bool) -> None:
+def train(
+    source: str, output: Path | None, estimator: str, workers: int | None, scheduler: str | None, as_json: bool
+) -> None:
     """Train a classifier on the corpus in DIR or of RECIPE.
 
     If the corpus has a test split (raceway info DIR), the model is trained on the other records and scored on the test split, which has
@@ -55,6 +67,8 @@ def train(source: str, output: Path | None, estimator: str, as_json: bool) -> No
     A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training. Without -o the model is kept in
     the folder RACEWAY_CACHE, or else in raceway in the cache folder of the user (XDG_CACHE_HOME or ~/.cache), and is not trained twice.
 
+    --workers and --scheduler compute the features. Up to four workers also train, in threads of this process; the model is the same.
+
     Next: raceway evaluate OTHER --model MODEL
     """
     from features.baselines import count_unknown, save_model
@@ -63,18 +77,21 @@ def train(source: str, output: Path | None, estimator: str, as_json: bool) -> No
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
     corpus = corpus_folder(None, None, folder) if from_folder else None
+    team = Team(workers, scheduler)
     if corpus is None:
+        if scheduler is not None:
+            raise click.UsageError("--scheduler is for DIR: generate the corpus of the RECIPE with it first")
         from gen.recipe import find_recipe
 
         find_recipe(source)  # a misspelt name is reported before the simulator is imported
     if corpus is None and output is None:
-        model, output, scores = kept_model(source, estimator)
+        model, output, scores = kept_model(source, estimator, team=team)
     elif output is None:
         raise click.UsageError("Missing option '-o' / '--output': only the model of a RECIPE is kept without it.")
     else:
-        table = recipe_table(source) if corpus is None else table_of(corpus)
+        table = recipe_table(source, team) if corpus is None else table_of(corpus, "off", team)
         notice_of_unknown(corpus or folder, count_unknown(table))
-        model, scores = train_and_score(table, estimator)
+        model, scores = train_and_score(table, estimator, team)
         save_model(model, output)
     warn_of_severities(scores)
     if as_json:
@@ -102,8 +119,18 @@ def train(source: str, output: Path | None, estimator: str, as_json: bool) -> No
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
 @reference_options
 @speed_option
+@worker_options
 @json_option
-def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", as_json: bool, **reading: Any) -> None:
+def evaluate(
+    corpus: Path,
+    model: Path,
+    reference: Path | None,
+    speed: "Speed",
+    workers: int | None,
+    scheduler: str | None,
+    as_json: bool,
+    **reading: Any,
+) -> None:
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
@@ -125,8 +152,9 @@ def evaluate(corpus: Path, model: Path, reference: Path | None, speed: "Speed", 
     if reference is None and given:
         raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
     loaded = load_model(model)
-    table = table_of(corpus, speed)
-    healthy = None if reference is None else reference_table(reference, corpus, table, speed, **reading)
+    team = Team(workers, scheduler)
+    table = table_of(corpus, speed, team)
+    healthy = None if reference is None else reference_table(reference, corpus, table, speed, team, **reading)
     answers = unlabelled_answers(table, loaded, healthy)
     if count_unknown(table) == table.sizes["record"]:
         _show_answers_alone(corpus, model, loaded.name, answers, as_json=as_json)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.feature_tables import table_of
-from raceway.console.options import A_PATH, Decorator
+from raceway.console.options import A_PATH, Decorator, Team
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
@@ -65,6 +65,7 @@ def reference_table(
     corpus: Path,
     table: "xr.Dataset",
     speed: "Speed",
+    team: Team,
     *,
     reference_rpm: float | None,
     reference_rate: float | None,
@@ -86,4 +87,4 @@ def reference_table(
     if path.resolve() == corpus.resolve():
         return table
     check_durations(corpus, path)
-    return table_of(path, speed)
+    return table_of(path, speed, team)

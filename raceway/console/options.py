@@ -1,13 +1,15 @@
 """Arguments and options that several commands share; the place for the result is checked before any work is done."""
 
+import os
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import click
 
 Decorator = Callable[[Any], Any]
 
+FEW_RECORDS = 2000  # their features take about as long as processes take to start; threads start at once
 A_PATH = click.Path(path_type=Path)
 
 
@@ -47,6 +49,44 @@ record_option: Decorator = click.option(
 )
 seed_option: Decorator = click.option("--seed", type=int, metavar="S", help="Replaces the seed of the recipe.")
 records_option: Decorator = click.option("--records", type=int, metavar="N", help="Make only the first N records.")
+
+_workers: Decorator = click.option(
+    "--workers",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Number of parts worked on at a time on this machine; by default one per core.",
+)
+_scheduler: Decorator = click.option(
+    "--scheduler", metavar="ADDR", help="Address of a dask scheduler, in place of --workers."
+)
+
+
+class Team(NamedTuple):
+    """Values of the options ``--workers`` and ``--scheduler``."""
+
+    workers: int | None = None
+    scheduler: str | None = None
+
+    def options(self, records: int = FEW_RECORDS) -> dict[str, Any]:
+        """Arguments ``workers`` and ``scheduler`` of a function that works on parts of so many records in all."""
+        from gen.workers import MOST_THREADS  # not at the top: help needs nothing of gen
+
+        usual = cores() if records > FEW_RECORDS else min(cores(), MOST_THREADS)
+        return {"workers": self.workers or usual, "scheduler": self.scheduler}
+
+
+USUAL = Team()
+
+
+def cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def worker_options(command: Any) -> Any:
+    """Add the options ``--workers`` and ``--scheduler``."""
+    return _workers(_scheduler(command))
+
 
 speed_option: Decorator = click.option(
     "--speed",

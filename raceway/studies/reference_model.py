@@ -18,6 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gen.errors import CorpusError
+from raceway.console.options import USUAL, Team, cores
 from raceway.console.progress import compilation_noticed, notice, progress
 
 if TYPE_CHECKING:
@@ -32,8 +33,8 @@ HASH_LETTERS = 16
 _HOW_LONG = "one to three minutes on two cores"
 
 
-def train_and_score(table: "xr.Dataset", estimator: str) -> tuple["Model", "Scores | None"]:
-    """Model trained on a feature table without its test split, and its scores on that split.
+def train_and_score(table: "xr.Dataset", estimator: str, team: Team = USUAL) -> tuple["Model", "Scores | None"]:
+    """Model trained on a feature table without its test split, and its scores on that split, with progress.
 
     A table without a test split, or with nothing else, is trained on as a whole and not scored.
 
@@ -46,13 +47,14 @@ def train_and_score(table: "xr.Dataset", estimator: str) -> tuple["Model", "Scor
     from gen.corpus import SPLITS
 
     test = table["split"].values == SPLITS.index("test")
-    if not test.any() or test.all():
-        return train(table, estimator), None
-    model = train(table.isel(record=~test), estimator)
-    return model, evaluate(table.isel(record=test), model)
+    whole = not test.any() or test.all()
+    with progress("training", "fits") as report:
+        workers = team.options(len(test))["workers"]
+        model = train(table if whole else table.isel(record=~test), estimator, workers=workers, progress=report)
+    return model, None if whole else evaluate(table.isel(record=test), model)
 
 
-def recipe_table(recipe: Path | str) -> "xr.Dataset":
+def recipe_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
     """Feature table of a corpus that is generated in a temporary folder and removed again, with progress.
 
     Raises
@@ -66,13 +68,13 @@ def recipe_table(recipe: Path | str) -> "xr.Dataset":
     from gen import generate
     from gen.corpus import temporary_folder
 
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    workers = team.workers or cores()
     with temporary_folder() as folder:
         corpus = folder / "corpus"
         with compilation_noticed(), progress("generating", "records") as report:
-            generate(recipe, corpus, workers=cores, progress=report)
+            generate(recipe, corpus, workers=workers, progress=report)
         with progress("computing features", "parts") as report:
-            return feature_table(corpus, scheduler="local", progress=report)
+            return feature_table(corpus, workers=workers, progress=report)
 
 
 def load_reference_model(*, relative: bool = True) -> tuple["Model", Path]:
@@ -91,7 +93,7 @@ def load_reference_model(*, relative: bool = True) -> tuple["Model", Path]:
 
 
 def kept_model(
-    recipe: Path | str, estimator: str = ESTIMATOR, *, relative: bool = True
+    recipe: Path | str, estimator: str = ESTIMATOR, *, relative: bool = True, team: Team = USUAL
 ) -> tuple["Model", Path, "Scores | None"]:
     """Kept model of a recipe, its file, and its scores if it was trained now: if there was none, or the file was damaged.
 
@@ -109,12 +111,12 @@ def kept_model(
         except CorpusError as error:
             notice(f"{error} It is made again.")
             damaged = True
-    _, scores = keep_model(recipe, estimator, damaged=damaged)
+    _, scores = keep_model(recipe, estimator, damaged=damaged, team=team)
     return load_model(path, relative=relative), path, scores
 
 
 def keep_model(
-    recipe: Path | str, estimator: str = ESTIMATOR, *, damaged: bool = False
+    recipe: Path | str, estimator: str = ESTIMATOR, *, damaged: bool = False, team: Team = USUAL
 ) -> tuple[Path, "Scores | None"]:
     """Train a model on a recipe and keep it in the cache of this user, unless it is there.
 
@@ -126,6 +128,8 @@ def keep_model(
         Name of a baseline.
     damaged
         Whether the file that is there is damaged, so that it is made again.
+    team
+        Number of workers on this machine.
 
     Returns
     -------
@@ -148,9 +152,7 @@ def keep_model(
         name = recipe_name(recipe)
         duration = f": {_HOW_LONG}" if name == REFERENCE else ""
         notice(f"training a model on the recipe {name}{duration}; it is kept as {path}.")
-        table = recipe_table(recipe)
-        notice("training the classifier.")
-        model, scores = train_and_score(table, estimator)
+        model, scores = train_and_score(recipe_table(recipe, team), estimator, team)
         save_model(model, path)
     return path, scores
 

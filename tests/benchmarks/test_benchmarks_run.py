@@ -134,9 +134,10 @@ def test_a_corpus_of_many_parts_is_compared_with_one_of_few():
     assert set(found) == {"growth driver", "growth scheduler", "growth ending"}
 
 
-def test_features_are_compared_where_tsfel_is_installed():
-    (line,) = features.rows(1, records=2, theirs=1)
+def test_features_are_compared_where_tsfel_is_installed_and_their_memory_does_not_grow():
+    memory, line = features.rows(1, records=2, theirs=1, scales=(250, 4000))
     assert isinstance(line, Row if importlib.util.find_spec("tsfel") else Skipped)
+    assert 0 < memory.value < memory.alternative_value + 15  # MB; the signals are 20 MB
 
 
 def test_opening_a_corpus_is_compared_with_opening_its_parts():

@@ -2,6 +2,7 @@
 
 import re
 import sys
+import tracemalloc
 
 import netCDF4
 import numpy as np
@@ -156,16 +157,37 @@ def test_another_channel_has_other_features(corpus, table):
 
 def test_two_workers_and_this_process_give_the_same_numbers(corpus, table):
     done = []
-    with Client(n_workers=2, threads_per_worker=1, dashboard_address=":0") as client:
+    with Client(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=":0") as client:
         parallel = feature_table(corpus, scheduler=client, progress=lambda *counts: done.append(counts))
         xr.testing.assert_identical(feature_table(corpus, scheduler=client.scheduler.address), table)
     xr.testing.assert_identical(parallel, table)
     assert done == [(1, 3), (2, 3), (3, 3)]
 
 
-def test_a_large_corpus_starts_a_local_cluster_and_gets_the_same_numbers(corpus, table, monkeypatch):
-    monkeypatch.setattr("features.table.INLINE_RECORDS", 0)
-    xr.testing.assert_identical(feature_table(corpus, scheduler="local"), table)
+@pytest.mark.parametrize("workers", [2, 3, 9])
+def test_threads_give_the_same_numbers(corpus, table, workers):
+    done = []
+    found = feature_table(corpus, workers=workers, progress=lambda *counts: done.append(counts))
+    xr.testing.assert_identical(found, table)
+    assert done == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_memory_beside_the_table_does_not_grow_with_the_parts(tmp_path):
+    """What Python and NumPy allocate at the same time is the table and the signals of one part, not of all."""
+    dataset = part_dataset(0, np.random.default_rng(0))
+    peaks = []
+    for parts in (2, 12):
+        folder = tmp_path / f"{parts}"
+        (folder / "parts").mkdir(parents=True)
+        rows = [write_part(dataset, folder / "parts" / part_name(number)) for number in range(parts)]
+        write_index(folder, rows)
+        write_manifest(folder, rows, complete=True)
+        feature_table(folder)
+        tracemalloc.start()
+        held = feature_table(folder).nbytes
+        peaks.append(tracemalloc.get_traced_memory()[1] - held)
+        tracemalloc.stop()
+    assert peaks[1] - peaks[0] < dataset[SIGNAL].nbytes / 2
 
 
 def test_features_do_not_change_when_labels_latents_and_provenance_are_shuffled(tmp_path, table):

@@ -84,7 +84,7 @@ def test_options_that_cannot_be_used_are_refused_before_any_feature_is_computed(
     run, tiny_corpus, tmp_path, mine, monkeypatch, options, sentence
 ):
     assert mine
-    monkeypatch.setattr(benchmarking, "table_of", lambda _: pytest.fail("features were computed"))
+    monkeypatch.setattr(benchmarking, "table_of", lambda *_: pytest.fail("features were computed"))
     result = run("benchmark", tiny_corpus, "-o", tmp_path / "report", *options)
     assert result.exit_code != 0
     assert sentence in str(result.exception) + result.output

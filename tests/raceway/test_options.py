@@ -6,6 +6,7 @@ import re
 import pytest
 
 from gen.errors import CorpusError
+from raceway.console.options import cores
 
 
 @pytest.fixture
@@ -32,6 +33,27 @@ def test_benchmark_passes_on_grouping_folds_and_seed(run, given, tiny_corpus, tm
     assert (options["tracks"], options["folds"], options["seed"]) == (("rig",), 2, 9)
     run(*line)
     assert (options["tracks"], options["folds"], options["seed"]) == (("specimen",), 5, 0)
+
+
+@pytest.mark.parametrize(
+    ("command", "more"),
+    [
+        ("features", ("-o", "new.nc")),
+        ("train", ("-o", "new")),
+        ("evaluate", ("--model", "model")),
+        ("benchmark", ("-o", "new")),
+    ],
+)
+def test_commands_that_compute_features_pass_on_workers_and_scheduler(
+    run, given, monkeypatch, tiny_corpus, command, more
+):
+    options = given("features.feature_table")
+    monkeypatch.setattr("features.baselines.load_model", lambda _: None)
+    run(command, tiny_corpus, *more, "--workers", 3, "--scheduler", "tcp://a:1")
+    assert (options["workers"], options["scheduler"]) == (3, "tcp://a:1")
+    run(command, tiny_corpus, *more)
+    assert 1 <= options["workers"] <= cores()
+    assert options["scheduler"] is None
 
 
 @pytest.mark.parametrize("name", ["cwru", "mfpt", "generic"])

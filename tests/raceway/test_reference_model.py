@@ -21,7 +21,7 @@ def trainings(tiny_corpus, tmp_path, monkeypatch):
     table, made = feature_table(tiny_corpus), []
     monkeypatch.setenv("RACEWAY_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr("features.baselines.estimators.TREES", 2)
-    monkeypatch.setattr(reference_model, "recipe_table", lambda recipe: made.append(recipe) or table)
+    monkeypatch.setattr(reference_model, "recipe_table", lambda recipe, _: made.append(recipe) or table)
     return made
 
 

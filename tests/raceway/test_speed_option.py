@@ -34,7 +34,7 @@ def test_features_counts_the_recordings_with_another_speed(told, corpus, tmp_pat
 def test_recordings_that_are_tested_are_checked_and_others_are_not(run, monkeypatch, corpus, tmp_path, command):
     treatments = []
 
-    def table_of(_, speed="off"):
+    def table_of(_corpus, speed, _crew):
         treatments.append(speed)
 
     for module in ("models", "benchmarking"):

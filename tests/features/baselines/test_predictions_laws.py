@@ -8,7 +8,7 @@ import xarray as xr
 
 from features.baselines import UNSURE, evaluate, load_model, predict, save_model, train
 from features.baselines.calibration import COVERAGE, UNCALIBRATED
-from features.baselines.cross_calibration import calibration_splits, cross_calibration
+from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
 from features.baselines.records import features_of, labelled_records
 from tests.model_files import make_table
 
@@ -115,7 +115,7 @@ def test_no_record_that_calibrates_was_trained_on():
     table = windowed()
     records = labelled_records(table, features_of(table, ("lines",)))
     records = records._replace(features=records.features.assign(rig=records.rig))
-    assert cross_calibration(records, Witness, 0).by == "rig"
+    assert fit_and_calibrate(records, Witness, 0)[1].by == "rig"
 
 
 def test_without_enough_specimens_and_without_training_nothing_is_calibrated():

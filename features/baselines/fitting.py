@@ -1,0 +1,79 @@
+"""Fits of one classifier to several selections of records, some of them at a time.
+
+Trees and Fourier transforms run without the interpreter lock, so the fits share the features in threads of this process. A fit draws from
+its own seed and predicts in one thread, so its result does not depend on the number of workers.
+"""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from features.baselines.estimators import Estimator, class_probabilities, make_estimator
+from features.baselines.own import Maker
+from features.baselines.records import FloatArray, IntArray
+from features.baselines.tracks import Split
+from gen.workers import MOST_THREADS, run
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+class Fit(NamedTuple):
+    """A fitted estimator, and its probabilities of the tested records, shape (record, class); empty if none is tested."""
+
+    estimator: Estimator
+    probabilities: FloatArray
+
+
+def fits(
+    features: "DataFrame",
+    labels: IntArray,
+    estimator: str | Maker,
+    splits: Sequence[Split],
+    seed: int,
+    *,
+    workers: int = 1,
+    done: Callable[[], None] = lambda: None,
+) -> list[Fit]:
+    """Fit a classifier to the training records of each split, and predict the tested ones.
+
+    Parameters
+    ----------
+    features
+        A row per record: a data frame, or waveforms.
+    labels
+        Indices into ``gen.corpus.FAULTS``, shape (record,).
+    estimator
+        Name of a baseline, or a classifier of the user, which is fitted once at a time.
+    splits
+        Numbers of the training records and of the tested ones, ascending.
+    seed
+        Of the estimator.
+    workers
+        Number of fits at a time; each needs its own copy of the training records. At most ``MOST_THREADS`` are used.
+    done
+        Called after each fit.
+    """
+    workers = min(workers, MOST_THREADS, len(splits)) if isinstance(estimator, str) else 1
+    found: dict[int, Fit] = {}
+    for number, fit in run(
+        partial(_fit, features, labels, estimator, seed), enumerate(splits), workers=max(workers, 1)
+    ):
+        found[number] = fit
+        done()
+    return [found[number] for number in range(len(splits))]
+
+
+def _fit(
+    features: "DataFrame", labels: IntArray, estimator: str | Maker, seed: int, numbered: tuple[int, Split]
+) -> tuple[int, Fit]:
+    number, (train, test) = numbered
+    # a classifier of the user may write into its rows, so it gets a copy
+    rows = features if len(train) == len(labels) and isinstance(estimator, str) else features.take(train)
+    fitted = make_estimator(estimator, seed).fit(rows, labels[train])
+    del rows
+    if not len(test):
+        return number, Fit(fitted, np.zeros((0, len(fitted.classes_))))
+    return number, Fit(fitted, class_probabilities(fitted, features.take(test)))

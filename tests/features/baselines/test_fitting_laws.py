@@ -1,0 +1,79 @@
+"""Fits in threads: the same models and scores for any number of workers, and progress that ends."""
+
+import time
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from features.baselines import benchmark, save_model, train
+from features.indicators import feature_groups, feature_names
+
+
+@pytest.fixture(scope="module")
+def table():
+    """Six rigs with four specimens of three records, two of them healthy; the fault shifts all features."""
+    rng, record, names = np.random.default_rng(3), np.arange(72), feature_names()
+    rig, specimen = record // 12, record // 3
+    fault = np.array([0, 0, 1, 2])[specimen % 4]
+    values = rng.standard_normal((len(record), len(names))) + np.outer(fault, rng.standard_normal(len(names)))
+    columns = {"rig": rig, "specimen": specimen, "recording": record, "fault": fault, "shaft_rate": 20.0 + record % 7}
+    return xr.Dataset(
+        {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in columns.items()},
+        {"feature": ("feature", list(names)), "group": ("feature", list(feature_groups()))},
+        {"title": "Six rigs"},
+    )
+
+
+@pytest.fixture(autouse=True)
+def small_forests(monkeypatch):
+    monkeypatch.setattr("features.baselines.estimators.TREES", 5)
+
+
+@pytest.mark.parametrize("name", ["ensemble", "random_forest", "svm"])
+def test_a_model_file_does_not_depend_on_the_number_of_workers(table, tmp_path, name):
+    written = set()
+    for workers in (1, 2, 4):
+        model = train(table, name, workers=workers)
+        assert model.relative is not None
+        save_model(model, tmp_path / "m.skops")
+        written.add((tmp_path / "m.skops").read_bytes())
+    assert len(written) == 1
+
+
+def test_scores_do_not_depend_on_the_number_of_workers(table):
+    def scores(workers):
+        return benchmark(
+            table, table.assign(features=-table.features), estimators={"e": "ensemble"}, folds=2, curve=True, workers=workers
+        )  # fmt: skip
+
+    assert scores(3) == scores(1)
+
+
+def test_progress_counts_up_to_the_end(table):
+    told = []
+    train(table, "logistic_regression", workers=2, progress=lambda *counts: told.append(counts))
+    done, totals = zip(*told, strict=True)
+    assert done == tuple(sorted(set(done)))
+    assert set(totals) == {done[-1]}
+
+
+def test_a_classifier_of_the_user_is_fitted_once_at_a_time(table):
+    """Libraries of neural networks keep one random generator per process."""
+    under_way, most = [], []
+
+    class Alone:
+        def fit(self, X, y):  # noqa: ARG002
+            under_way.append(self)
+            most.append(len(under_way))
+            time.sleep(0.02)  # long enough for another fit to begin
+            self.constant = np.unique(y)[0]
+            under_way.remove(self)
+            return self
+
+        def predict(self, X):
+            return np.repeat(self.constant, len(X))
+
+    train(table, Alone, workers=4)
+    assert set(most) == {1}
+    assert len(most) > 1
