@@ -18,6 +18,7 @@ from typing import Any
 
 from features.table import part_features
 from gen.corpus import write_part
+from gen.errors import SimulationError
 from gen.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.physics.kernel.layout import Batch
@@ -59,6 +60,8 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     wanted = min(records or checked.corpus.records_per_part, checked.n_records)
     scenarios = draw_scenarios(checked, 0, wanted)
     response = simulate(scenarios, checked)  # compiles the kernels that are not compiled yet
+    if len(response.failures) == wanted:
+        raise SimulationError(response.failures[0])
     seconds = _repeated(checked, scenarios, response)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
     each = zip(scenarios, response.oversampling, strict=True)

@@ -14,7 +14,7 @@ from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.table_files import read_table
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.limits import VARIABLE
-from gen.simulation.simulate import simulate
+from gen.simulation.simulate import response_of
 from raceway.cli import cli
 from raceway.commands import models
 
@@ -166,11 +166,12 @@ def test_a_limit_can_be_raised_for_one_command(run, tmp_path, monkeypatch):
 
 
 def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tmp_path, monkeypatch):
-    def first_diverges(scenarios, recipe, **given):
-        response = simulate(scenarios, recipe, **given)
-        return replace(response, failures={0: f"record {scenarios[0].record.number} diverged."})
+    def first_diverges(runs, recipe):
+        numbers = [run.scenario.record.number for run in runs]
+        failures = {place: f"record {number} diverged." for place, number in enumerate(numbers) if number % 12 == 0}
+        return replace(response_of(runs, recipe), failures=failures)
 
-    monkeypatch.setattr("gen.records.simulate", first_diverges)
+    monkeypatch.setattr("gen.records.response_of", first_diverges)
     result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
     assert result.exit_code == 0
     assert "left out: record 0 diverged.\nleft out: record 12 diverged.\n" in result.stderr

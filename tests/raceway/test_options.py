@@ -81,12 +81,13 @@ def test_generate_passes_on_scheduler_workers_seed_and_size(run, given, tiny_rec
 
 
 @pytest.mark.parametrize(
-    ("records", "per_part", "workers"), [(2000, 500, 2), (1000, 500, 1), (2000, 2000, 1), (4000, 500, 4)]
+    ("records", "per_part", "cores", "workers"),
+    [(2000, 500, 2, 2), (1000, 500, 2, 2), (1000, 500, 8, 4), (2000, 2000, 8, 4), (4000, 500, 6, 6)],
 )
-def test_large_corpora_of_several_parts_get_a_worker_per_core(
-    run, given, tiny_recipe, tmp_path, monkeypatch, records, per_part, workers
+def test_large_corpora_get_a_worker_per_core_and_small_ones_at_most_the_threads_of_a_process(
+    run, given, tiny_recipe, tmp_path, monkeypatch, records, per_part, cores, workers
 ):
-    monkeypatch.setattr("os.sched_getaffinity", lambda _: range(2 if workers < 4 else 4))
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: range(cores))
     text = tiny_recipe.read_text().replace("rigs: 2", f"rigs: {records // 24 + 1}")
     recipe = tmp_path / "large.yaml"
     recipe.write_text(text.replace("records_per_part: 12", f"records_per_part: {per_part}"))
