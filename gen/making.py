@@ -26,7 +26,7 @@ from gen.workers import stream
 
 WINDOW_BYTES = 64e6  # of a process: signals, scenarios and kernel inputs of the records under way
 _RECORD_BYTES = 16_000  # of a record besides its signal
-_DRAWN, _JUDGED = 256, 128  # records in a block; functions that take many records at once need some
+_DRAWN, _JUDGED = 128, 64  # records in a block; functions that take many records at once need some
 
 Report = Callable[[int, int], None]
 
