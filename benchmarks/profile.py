@@ -81,7 +81,7 @@ def march(without: int, shape: Any, batch: Batch, n_steps: int, dt: float, filte
         if len(shape.forced) and without != FORCES:
             move_forces(own, knot, n_steps, dt, work.moves, work.scratch)
         if len(shape.wavy) and (knot == 0 or without != WAVES):
-            move_gaps(shape, own, n_steps, work.moves, work.scratch, work.gaps)
+            move_gaps(shape, own, knot, n_steps, work.moves, work.scratch, work.gaps)
         if len(shape.spalled) and without != SPALLS:
             move_spalls(shape, own, n_steps, dt, work.moves, work.scratch, work.met)
         keep_turning(shape, own, work.moves)

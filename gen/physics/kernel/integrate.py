@@ -39,7 +39,7 @@ from gen.physics.kernel.turning import (
     start_processes,
     turn_rings,
 )
-from gen.physics.kernel.waviness import N_ROTATION_ROWS, ball_gaps, move_gaps
+from gen.physics.kernel.waviness import N_ROTATION_ROWS, move_gaps
 
 FAR_OFF = 1.0  # displacement beyond which a record has diverged [m]; soft supports sag by millimetres
 BLOCK = 8  # knots between two runs of the filters, a multiple of ``OUTPUTS`` of the filters
@@ -95,14 +95,12 @@ def set_out(shape: Shape, batch: Batch, n_steps: int) -> Batch:
 
 @njit(**ALLOCATING)
 def prepare(shape: Shape, batch: Batch, n_steps: int) -> Work:
-    """Work arrays, with processes and gaps as they are at the first knot."""
+    """Work arrays, with processes as they are at the first knot."""
     n_balls = len(shape.balls)
     rows = N_ROTATION_ROWS + 2 * n_balls + Process.JITTER
     scratch = zeros(rows * LANES + 2 * n_steps + 1)
     work = Work(zeros(N_ANGLES * LANES), zeros(n_balls * LANES), none_met(shape, batch), scratch)
     start_processes(shape, batch)
-    if len(shape.wavy):
-        ball_gaps(shape, batch, work.moves, work.scratch, work.gaps)
     return work
 
 
@@ -116,7 +114,7 @@ def to_next_knot(shape: Shape, batch: Batch, knot: int, n_steps: int, dt: float,
     if len(shape.forced):
         move_forces(batch, knot, n_steps, dt, work.moves, work.scratch)
     if len(shape.wavy):
-        move_gaps(shape, batch, n_steps, work.moves, work.scratch, work.gaps)
+        move_gaps(shape, batch, knot, n_steps, work.moves, work.scratch, work.gaps)
     if len(shape.spalled):
         move_spalls(shape, batch, n_steps, dt, work.moves, work.scratch, work.met)
     keep_turning(shape, batch, work.moves)

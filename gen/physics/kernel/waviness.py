@@ -123,12 +123,14 @@ def unfold(shape: Shape, folded: FloatArray, gaps: FloatArray) -> None:
 
 
 @njit(**INLINE)
-def subtract_ball_waviness(shape: Shape, batch: Batch, moves: FloatArray, z: FloatArray, gaps: FloatArray) -> None:
-    """Subtract the waviness of the balls, at both contacts of each, at the next knot from ``gaps``; all balls spin at the same rate."""
+def subtract_ball_waviness(
+    shape: Shape, batch: Batch, ahead: int, moves: FloatArray, z: FloatArray, gaps: FloatArray
+) -> None:
+    """Subtract the waviness of the balls, at both contacts of each, ``ahead`` knots from now; all balls spin at the same rate."""
     wide()
     n_balls = len(shape.balls)
     for lane in range(lane_count()):
-        twice = 2 * (batch.angles[Angle.SPIN * LANES + lane] + moves[Angle.SPIN * LANES + lane])
+        twice = 2 * (batch.angles[Angle.SPIN * LANES + lane] + ahead * moves[Angle.SPIN * LANES + lane])
         z[lane], z[LANES + lane] = math.cos(twice), math.sin(twice)
     for ball in range(n_balls):
         waves, here = batch.waves[(race_rows(shape) + 2 * ball) * LANES :], gaps[ball * LANES :]
@@ -142,8 +144,8 @@ def subtract_ball_waviness(shape: Shape, batch: Batch, moves: FloatArray, z: Flo
 
 
 @njit(**INLINE)
-def ball_gaps(shape: Shape, batch: Batch, moves: FloatArray, work: FloatArray, gaps: FloatArray) -> None:
-    """Gap of every ball at the next knot, with waviness and without spalls, into ``gaps`` (ball * LANES + lane) [m].
+def ball_gaps(shape: Shape, batch: Batch, ahead: int, moves: FloatArray, work: FloatArray, gaps: FloatArray) -> None:
+    """Gap of every ball ``ahead`` knots from now, with waviness and without spalls, into ``gaps`` (ball * LANES + lane) [m].
 
     ``work`` has ``N_ROTATION_ROWS`` rows, and two for each ball.
     """
@@ -155,30 +157,37 @@ def ball_gaps(shape: Shape, batch: Batch, moves: FloatArray, work: FloatArray, g
     z, folded = work, work[N_ROTATION_ROWS * LANES :]
     for lane in range(lane_count()):
         c, s = state[State.CAGE_COS * LANES + lane], state[State.CAGE_SIN * LANES + lane]
-        dc, ds = cosine(moves[Angle.CAGE * LANES + lane]), sine(moves[Angle.CAGE * LANES + lane])
+        cage, shaft = ahead * moves[Angle.CAGE * LANES + lane], ahead * moves[Angle.SHAFT * LANES + lane]
+        dc, ds = cosine(cage), sine(cage)
         c, s = fma(c, dc, -(s * ds)), fma(s, dc, c * ds)
         p, q = state[State.SHAFT_COS * LANES + lane], state[State.SHAFT_SIN * LANES + lane]
-        dc, ds = cosine(moves[Angle.SHAFT * LANES + lane]), sine(moves[Angle.SHAFT * LANES + lane])
+        dc, ds = cosine(shaft), sine(shaft)
         p, q = fma(p, dc, -(q * ds)), fma(q, dc, p * ds)
         z[lane], z[LANES + lane] = fma(c, p, s * q), fma(s, p, -(c * q))
         z[OUTER + lane], z[OUTER + LANES + lane] = c, s
     fold_waviness(shape, batch.waves, z, folded)
     unfold(shape, folded, gaps)
     if batch.waves.size > race_rows(shape) * LANES:
-        subtract_ball_waviness(shape, batch, moves, z, gaps)
+        subtract_ball_waviness(shape, batch, ahead, moves, z, gaps)
 
 
 @njit(**INLINE)
 def move_gaps(
-    shape: Shape, batch: Batch, n_steps: int, moves: FloatArray, work: FloatArray, next_gaps: FloatArray
+    shape: Shape, batch: Batch, knot: int, n_steps: int, moves: FloatArray, work: FloatArray, next_gaps: FloatArray
 ) -> None:
-    """Set the gap of every ball at this knot and its slope to the next; ``next_gaps`` holds those at this knot, and receives the next."""
+    """Set the gap of every ball at this knot and its slope to the next.
+
+    ``next_gaps`` holds the gaps at this knot, unless it is the first, and receives those at the next.
+    """
     wide()
     gaps, per_half_step = batch.params[gap_row(shape) * LANES :], 0.5 / n_steps
-    for lane in range(lane_count()):
-        for ball in range(len(shape.balls)):
-            gaps[2 * ball * LANES + lane] = next_gaps[ball * LANES + lane]
-    ball_gaps(shape, batch, moves, work, next_gaps)
+    # in a loop, so that the code of ball_gaps is compiled once
+    for ahead in range(0 if knot == 0 else 1, 2):
+        if ahead == 1:
+            for lane in range(lane_count()):
+                for ball in range(len(shape.balls)):
+                    gaps[2 * ball * LANES + lane] = next_gaps[ball * LANES + lane]
+        ball_gaps(shape, batch, ahead, moves, work, next_gaps)
     for lane in range(lane_count()):
         for ball in range(len(shape.balls)):
             further = next_gaps[ball * LANES + lane] - gaps[2 * ball * LANES + lane]
