@@ -137,8 +137,11 @@ def _on_dask(
             yield from results
 
 
-def _share_one_heap() -> None:
-    """Let all threads take memory from one heap, where the C library is that of GNU: 75 MB less for two threads, at the same speed."""
+def share_one_heap() -> None:
+    """Let all threads of this process take memory from one heap, where the C library is that of GNU.
+
+    Called before libraries start threads, it saves 70 MB of 560 with two threads, at the same speed.
+    """
     with suppress(OSError, AttributeError):
         ctypes.CDLL(None).mallopt(_ARENA_MAX, 1)
 
@@ -155,7 +158,6 @@ class _Threads:
         self.results: SimpleQueue[tuple[Any, BaseException | None]] = SimpleQueue()
         self.stopped = threading.Event()
         self._task = task if report is None else partial(task, partial(self._passed_on, report))
-        _share_one_heap()
         # daemons: a process that ends does not wait for them
         self._threads = [threading.Thread(target=self._work, daemon=True) for _ in range(count)]
         for thread in self._threads:

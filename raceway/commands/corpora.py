@@ -170,7 +170,9 @@ def generate(
     """
     from gen.corpus import complaint
     from gen.recipe import read_recipe
+    from gen.workers import share_one_heap
 
+    share_one_heap()
     wanted = read_recipe(recipe, seed=seed, records=records)
     start = time.monotonic()
     workers = workers or _default_workers(wanted)
