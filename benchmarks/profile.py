@@ -149,7 +149,7 @@ def main() -> None:
             _print_parts(parts, n_steps, load, timeline(recipe).integrated * 1e6)
     steps = parts["steps"] / n_steps
     print(
-        f"\n{load.lanes * load.busy:.2f} integrations of a record; {load.busy:.0%} of the lanes at work; "
+        f"\n{load.lanes * load.busy:.2f} integrations of a record; {load.busy:.0%} of the lanes at work\n"
         f"{load.steps:.1f} steps per sample of {steps * 1e9:.1f} ns: {1e-6 / steps:.1f} million record-steps/s in the steps alone"
     )
 
