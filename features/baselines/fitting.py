@@ -20,11 +20,32 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 
+Progress = Callable[[int, int], None]
+
+
 class Fit(NamedTuple):
     """A fitted estimator, and its probabilities of the tested records, shape (record, class); empty if none is tested."""
 
     estimator: Estimator
     probabilities: FloatArray
+
+
+class FitProgress:
+    """Number of fits done and of all that may be needed, told to a function that shows the progress."""
+
+    def __init__(self, progress: Progress | None, total: int) -> None:
+        self.progress, self.total, self.count = progress, total, 0
+
+    def done(self) -> None:
+        """Count a fit."""
+        self.count += 1
+        if self.progress is not None and self.count < self.total:
+            self.progress(self.count, self.total)
+
+    def end(self) -> None:
+        """Show that no further fit is needed."""
+        if self.progress is not None:
+            self.progress(self.total, self.total)
 
 
 def fits(

@@ -26,6 +26,7 @@ from features.baselines.estimators import (
     Estimator,
     relative_name,
 )
+from features.baselines.fitting import FitProgress, Progress
 from features.baselines.model_check import check_estimator
 from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
@@ -50,7 +51,6 @@ from gen.errors import CorpusError
 from gen.limits import check_limit
 
 FORMAT = 3
-Progress = Callable[[int, int], None]
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 
 
@@ -141,7 +141,7 @@ def train(
         For an unknown estimator.
     """
     compares = isinstance(estimator, str) and estimator not in UNTRAINED
-    steps = _Fits(progress, (1 + FOLDS) * (1 + compares))
+    steps = FitProgress(progress, (1 + FOLDS) * (1 + compares))
     model = _train(table, estimator, groups, seed, workers, steps.done)
     paired = paired_table(table, model.features, seed) if compares else None
     if paired is not None:
@@ -149,22 +149,6 @@ def train(
         model = replace(model, relative=relative)
     steps.end()
     return model
-
-
-class _Fits:
-    """Number of fits done and of all that may be needed, told to a function that shows the progress."""
-
-    def __init__(self, progress: Progress | None, total: int) -> None:
-        self.progress, self.total, self.count = progress, total, 0
-
-    def done(self) -> None:
-        self.count += 1
-        if self.progress is not None and self.count < self.total:
-            self.progress(self.count, self.total)
-
-    def end(self) -> None:
-        if self.progress is not None:
-            self.progress(self.total, self.total)
 
 
 def _train(
