@@ -15,6 +15,7 @@ plain_files files opened only if they are no pipes or devices
 yaml_files  recipes and mapping files, read within the limits
 physics     pure: bearing, Hertz contact, spalls, machine, kernel
 corpus      the netCDF format: write, index, open, validate
+sharing     corpora cut, joined, packed into one file, exported
 importers   real recordings into the same format
 recipe      YAML to a frozen model
 scenarios   rigs, specimens and records, fully drawn
@@ -22,7 +23,7 @@ simulation  scenarios to accelerations
 measurement accelerations to stored counts, as a data-acquisition card gives
 labels      variables written beside each record
 pace        seconds that some records take on this machine
-records     records drawn, simulated and measured; faults that cannot be seen drawn again
+families    records drawn, simulated and measured; faults that cannot be seen drawn again
 making      records of several parts made together, so that batches are full
 part_task   parts labelled and written
 compilation kernels of a recipe compiled before its first record

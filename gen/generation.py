@@ -22,16 +22,13 @@ from gen.corpus import (
     SignalCounts,
     check_name,
     data_card,
+    finish_corpus,
     new_journal,
-    open_corpus,
     part_name,
     read_manifest,
     remove_left_behind,
-    summed,
     write_durably,
-    write_index,
     write_manifest,
-    write_text_durably,
 )
 from gen.errors import CorpusError, RecipeError
 from gen.making import Crew
@@ -132,12 +129,10 @@ def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: d
     if not rows:
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
-    signals = summed(row.signals for row in rows)
-    write_index(directory, rows)
-    write_manifest(directory, rows, complete=True, failures=failures, **facts)
+    signals = finish_corpus(
+        directory, rows, partial(data_card, origin=_HOW.format(recipe=recipe.name)), failures=failures, **facts
+    )
     (directory / JOURNAL_NAME).unlink()
-    with open_corpus(directory, check="size") as corpus:
-        write_text_durably(data_card(corpus, _HOW.format(recipe=recipe.name), signals), directory / "README.md")
     kept = sum(outcome.kept for outcome in outcomes)
     return Generated(directory, sum(row.records for row in rows), len(rows), kept, failures, signals)
 

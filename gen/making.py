@@ -16,8 +16,8 @@ from typing import Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.families import Families, Family, Records, picked
 from gen.recipe import Recipe
-from gen.records import Families, Family, Records, picked
 from gen.simulation.batches import Integration, Waiting, integrate_together
 from gen.simulation.simulate import step_changes, step_checks
 from gen.simulation.steps import has_checks

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, SIGNAL, open_corpus, read_manifest
 from gen.errors import CorpusError
+from gen.families import made_again
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
-from gen.records import made_again
 from gen.scenarios import Scenario, read_scenario
 from gen.simulation.shaft import shaft_angles as angles_of
 from gen.simulation.timeline import timeline

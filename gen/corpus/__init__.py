@@ -19,6 +19,7 @@ validation  all checks of a corpus
 visible     faults that can be seen in their records
 recoverable labels that can be recovered from the signals
 card        data card of a corpus
+finishing   index, manifest and data card of finished parts
 description page about the format
 =========== =====================================================
 """
@@ -42,6 +43,7 @@ if TYPE_CHECKING:
         write_durably,
         write_text_durably,
     )
+    from gen.corpus.finishing import finish_corpus
     from gen.corpus.hdf5 import LIBRARY_LOCK
     from gen.corpus.index import open_corpus, write_index
     from gen.corpus.journal import JOURNAL_NAME, new_journal
@@ -95,6 +97,7 @@ __all__ = [
     "data_card",
     "described",
     "fault_counts",
+    "finish_corpus",
     "format_page",
     "make_dataset",
     "new_journal",
@@ -130,6 +133,7 @@ __getattr__, __dir__ = lazy_names(
             "check_name", "plain_file", "remove_left_behind", "sha256", "temporary_beside", "temporary_folder", "whole_or_not_at_all",
             "write_durably", "write_text_durably",
         ),
+        "gen.corpus.finishing": ("finish_corpus",),
         "gen.corpus.hdf5": ("LIBRARY_LOCK",),
         "gen.corpus.index": ("open_corpus", "write_index"),
         "gen.corpus.journal": ("JOURNAL_NAME", "new_journal"),

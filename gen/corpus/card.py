@@ -9,7 +9,7 @@ from gen.corpus.signals import SignalCounts, described
 from gen.corpus.visible import fault_counts
 
 
-def data_card(corpus: xr.Dataset, origin: str, signals: SignalCounts) -> str:
+def data_card(corpus: xr.Dataset, signals: SignalCounts, *, origin: str) -> str:
     """Markdown page about a corpus; ``origin`` is a paragraph on its source and licence.
 
     ``signals`` counts the records that cannot be used.

@@ -19,14 +19,11 @@ from gen.corpus import (
     SignalCounts,
     Variable,
     described,
+    finish_corpus,
     make_dataset,
     part_name,
-    summed,
     temporary_beside,
-    write_index,
-    write_manifest,
     write_part,
-    write_text_durably,
 )
 from gen.corpus.card import plain_text
 from gen.errors import CorpusError
@@ -174,13 +171,10 @@ def _write_parts(records: Iterator[Record], collection: Collection, folder: Path
 
 
 def _finish(collection: Collection, rows: list[PartRow], log: _Log, length: int, directory: Path) -> None:
-    write_index(directory, rows)
-    signals = summed(row.signals for row in rows)
-    write_text_durably(_data_card(collection, log, length, signals), directory / "README.md")
-    write_manifest(
+    finish_corpus(
         directory,
         rows,
-        complete=True,
+        lambda _corpus, signals: _data_card(collection, log, length, signals),
         importer=collection.importer,
         recordings=log.recordings.total(),
         skipped=tuple(log.skipped),

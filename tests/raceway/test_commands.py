@@ -171,7 +171,7 @@ def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tm
         failures = {place: f"record {number} diverged." for place, number in enumerate(numbers) if number % 12 == 0}
         return replace(response_of(runs, recipe), failures=failures)
 
-    monkeypatch.setattr("gen.records.response_of", first_diverges)
+    monkeypatch.setattr("gen.families.response_of", first_diverges)
     result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
     assert result.exit_code == 0
     assert "left out: record 0 diverged.\nleft out: record 12 diverged.\n" in result.stderr

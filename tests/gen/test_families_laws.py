@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from gen.corpus import FAULTS
+from gen.families import FAULT_TRIES, made_again
 from gen.labels import part_dataset
 from gen.making import made_records
 from gen.measurement.measure import measure
 from gen.recipe.sensing import FloatConverter
-from gen.records import FAULT_TRIES, made_again
 from gen.scenarios import draw_scenarios
 from gen.simulation import simulate as simulation
 from gen.simulation.hits import felt_places
