@@ -7,6 +7,8 @@ It uses the format of a corpus and not the simulator, so that recordings of real
 ================ =================================================================================
 module           responsibility
 ================ =================================================================================
+band             band of frequencies that features are computed from [pure]
+channels         channel of a corpus by name or number
 faults           the fault classes: colour, lines and telling features of each, in one table
 signal           spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
 indicators       the feature vector of records, in four groups [pure]

@@ -2,10 +2,11 @@
 
 ``records -> six whitened analytic signals -> level of their envelope spectra -> lines; moduli -> shape``
 
-The six signals are the band of 0.3-5 kHz with cepstral pre-whitening, the same band divided by its power spectral
-density, and four narrower bands of the latter. Frequencies above 5 kHz are not used, so that features depend as little
-as possible on the recording equipment. ``lines`` and ``shape`` are independent of gain and spectral colour; ``bands``
-and ``time`` are not, and depend strongly on the machine. The lines are those of [1]_.
+The six signals are a broad band (`features.band`, 0.3-5 kHz by default) with cepstral pre-whitening, the same band
+divided by its power spectral density, and four narrower bands of the latter; another band has its own narrower ones.
+Frequencies above the band are not used, so that features depend as little as possible on the recording equipment.
+``lines`` and ``shape`` are independent of gain and spectral colour; ``bands`` and ``time`` are not, and depend strongly
+on the machine. The lines are those of [1]_.
 
 A new group needs a function in ``GROUP_FEATURES`` and its names in ``NAMES``, both in this module.
 
@@ -19,6 +20,7 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.fft import irfft, next_fast_len
 
+from features.band import DEFAULT_BAND, Band, energy_names
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted, running_median
 from features.signal.lines import (
     FAMILIES,
@@ -36,21 +38,18 @@ from features.signal.spectra import band_energies, cepstrally_whitened, fourier_
 
 __all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
 
-TOP = 5000.0  # Hz, highest frequency used
-BROAD = (300.0, TOP)  # Hz
-NARROW = ((500.0, 1500.0), (1500.0, 2500.0), (2500.0, 3500.0), (3500.0, TOP))  # Hz
 WHITENING_WIDTH = 50.0  # Hz
 FLOOR_WIDTH = (3.0, 30.0)  # window of the floor: orders of the shaft, and its least width [Hz]
 
 SHORTEST = (2.0, 0.05)  # shaft revolutions and seconds below which a record shows no line
-LOWEST_RATE = 2 * NARROW[0][1]  # Hz, lowest sample rate for lines
+LOWEST_RATE = 2.0 * DEFAULT_BAND.narrow[0][1]  # Hz, lowest sample rate for lines in the default band
 
-ENERGY_HZ = (20.0, 100.0, 200.0, 400.0, 800.0, 1500.0, 2500.0, 3500.0, TOP)
 ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 FAINTEST_ENERGY = 1e-12  # of the total energy, 120 dB below it
 
 BATCH = 16  # records computed together, so that their arrays fit into the cache of a core; features do not depend on it
 
+ORDER_ENERGIES = tuple(f"energy_{low:g}-{high:g}_orders" for low, high in pairwise(ENERGY_ORDERS))
 VIEWS = ("cepstral", "whitened", "bands_max", "bands_mean")
 RIVALS = tuple(combinations(range(len(FAMILIES)), 2))
 NAMES = {
@@ -63,16 +62,14 @@ NAMES = {
         *(f"{view}_{shape}" for view in VIEWS for shape in SHAPE_NAMES),
         *("raw_kurtosis", "raw_crest_factor"),
     ),
-    "bands": (
-        *(f"energy_{low:g}-{high:g}_Hz" for low, high in pairwise(ENERGY_HZ)),
-        *(f"energy_{low:g}-{high:g}_orders" for low, high in pairwise(ENERGY_ORDERS)),
-    ),
+    "bands": (*energy_names(), *ORDER_ENERGIES),
     "time": tuple(f"time_{name}" for name in TIME_NAMES),
 }
+"""Names of the features of each group, computed from the default band."""
 GROUPS = tuple(NAMES)
 
 
-def feature_names(groups: Sequence[str] = GROUPS) -> tuple[str, ...]:
+def feature_names(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[str, ...]:
     """Names of the features of some groups, in the order of the columns of `indicators`.
 
     Raises
@@ -80,12 +77,16 @@ def feature_names(groups: Sequence[str] = GROUPS) -> tuple[str, ...]:
     ValueError
         For a group that does not exist.
     """
-    return tuple(name for group in _checked(groups) for name in NAMES[group])
+    return tuple(name for group in _checked(groups) for name in _names(group, band))
 
 
-def feature_groups(groups: Sequence[str] = GROUPS) -> tuple[str, ...]:
+def feature_groups(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[str, ...]:
     """Group of each feature of `feature_names`."""
-    return tuple(group for group in _checked(groups) for _ in NAMES[group])
+    return tuple(group for group in _checked(groups) for _ in _names(group, band))
+
+
+def _names(group: str, band: Band) -> tuple[str, ...]:
+    return NAMES[group] if group != "bands" else (*energy_names(band), *ORDER_ENERGIES)
 
 
 def _checked(groups: Sequence[str]) -> Sequence[str]:
@@ -97,13 +98,18 @@ def _checked(groups: Sequence[str]) -> Sequence[str]:
 
 
 def indicators(
-    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str] = GROUPS
+    x: FloatArray,
+    fs: float,
+    shaft_rate: FloatArray,
+    orders: Orders,
+    groups: Sequence[str] = GROUPS,
+    band: Band = DEFAULT_BAND,
 ) -> tuple[FloatArray, tuple[str, ...]]:
     """Features of records, and their names.
 
     All features of a record are NaN if its signal is constant or not finite, or if its shaft rate or one of its orders is
-    not a positive number. Its lines and shape are NaN if it is shorter than two shaft revolutions or 0.05 s, or if fs is
-    below 3 kHz.
+    not a positive number. Its lines and shape are NaN if it is shorter than two shaft revolutions or 0.05 s, or if the
+    first narrow band does not end below half of fs (1.5 kHz with the default band).
 
     Parameters
     ----------
@@ -117,6 +123,8 @@ def indicators(
         Nominal fault orders, each of shape (record,).
     groups
         Some of `GROUPS`; the columns have their order. ``lines`` and ``shape`` share most of their computation.
+    band
+        Band that lines and shape are computed from; no feature but those of ``time`` uses frequencies above it.
 
     Returns
     -------
@@ -127,14 +135,14 @@ def indicators(
     ValueError
         For a group that does not exist.
     """
-    names = feature_names(groups)
+    names = feature_names(groups, band)
     values = np.full((len(x), len(names)), np.nan)
     usable = np.flatnonzero(usable_records(x, shaft_rate, orders))
     for start in range(0, len(usable), BATCH):
         rows = usable[start : start + BATCH]
         batch = centred(x[rows])
         nominal = Orders(*(order[rows] for order in orders))
-        values[rows] = _features(batch, fs, shaft_rate[rows], nominal, groups)
+        values[rows] = _features(batch, fs, shaft_rate[rows], nominal, groups, band)
     return values, names
 
 
@@ -144,25 +152,29 @@ def usable_records(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.
     return np.isfinite(highest) & np.isfinite(lowest) & (highest > lowest) & np.logical_and.reduce(known)
 
 
-def _features(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str]) -> FloatArray:
+def _features(
+    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str], band: Band
+) -> FloatArray:
     found: dict[str, FloatArray] = {}
     for group in groups:
         if group not in found:  # one function may compute several groups
-            found |= GROUP_FEATURES[group](x, fs, shaft_rate, orders)
+            found |= GROUP_FEATURES[group](x, fs, shaft_rate, orders, band)
     return np.concatenate([found[group] for group in groups], axis=-1)
 
 
-def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders) -> dict[str, FloatArray]:
+def _lines_and_shape(
+    x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, band: Band
+) -> dict[str, FloatArray]:
     duration = x.shape[-1] / fs
     lines = np.full((len(x), len(NAMES["lines"])), np.nan)
     shape = np.full((len(x), len(NAMES["shape"])), np.nan)
     long_enough = np.flatnonzero(duration * shaft_rate >= SHORTEST[0])
     found = {"lines": lines, "shape": shape}
-    if fs < LOWEST_RATE or duration < SHORTEST[1] or not long_enough.size:
+    if fs < 2 * band.narrow[0][1] or duration < SHORTEST[1] or not long_enough.size:
         return found
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
-    coefficients = fourier_coefficients(x[long_enough], fs, TOP)
-    *read, fitted = _read(bands_of(coefficients, duration, fs), duration, shaft_rate, orders)
+    coefficients = fourier_coefficients(x[long_enough], fs, band.high)
+    *read, fitted = _read(bands_of(coefficients, duration, fs, band), duration, shaft_rate, orders)
     line_views, shape_views = map(_views, read)
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
     lines[long_enough] = np.concatenate([_flat(line_views), _flat(over), fitted], axis=-1)
@@ -170,12 +182,12 @@ def _lines_and_shape(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: O
     return found
 
 
-def bands_of(coefficients: ComplexArray, duration: float, fs: float) -> list[ComplexArray]:
+def bands_of(coefficients: ComplexArray, duration: float, fs: float, band: Band = DEFAULT_BAND) -> list[ComplexArray]:
     """Both broad bands of whitened coefficients, and the narrow bands with more than half below the Nyquist frequency."""
     cepstral = cepstrally_whitened(coefficients)
     whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
-    narrow = [(whitened, band) for band in NARROW if sum(band) < fs]
-    cuts = [(cepstral, BROAD), (whitened, BROAD), *narrow]
+    narrow = [(whitened, edges) for edges in band.narrow if sum(edges) < fs]
+    cuts = [(cepstral, band), (whitened, band), *narrow]
     return [source[:, round(low * duration) : round(high * duration)] for source, (low, high) in cuts]
 
 
@@ -225,7 +237,7 @@ def _flat(values: FloatArray) -> FloatArray:
 
 
 def _raw_shape(coefficients: ComplexArray) -> FloatArray:
-    """Kurtosis and crest factor of the signal below 5 kHz, shape (record, 2)."""
+    """Kurtosis and crest factor of the signal below the end of the band, shape (record, 2)."""
     n = next_fast_len(2 * coefficients.shape[-1])
     raw = np.asarray(irfft(coefficients, n=n, axis=-1, norm="forward")) + coefficients[:, :1].real
     _, _, square, _, fourth = moments(raw).T
@@ -236,22 +248,22 @@ def _time(x: FloatArray, *_: object) -> dict[str, FloatArray]:
     return {"time": time_statistics(x)}
 
 
-def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray, _: Orders) -> dict[str, FloatArray]:
+def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray, _: Orders, band: Band) -> dict[str, FloatArray]:
     """Natural logarithm of energies [unit of x squared] in bands of frequency, then in bands of order."""
     frequencies, density = psd(x, fs)
-    density[:, frequencies > TOP] = 0.0
-    in_hz = band_energies(density, frequencies, ENERGY_HZ)
+    density[:, frequencies > band.high] = 0.0
+    in_hz = band_energies(density, frequencies, band.energy_edges)
     in_orders = band_energies(density, frequencies, np.multiply.outer(shaft_rate, ENERGY_ORDERS))
     least = FAINTEST_ENERGY * (frequencies[1] - frequencies[0]) * density.sum(axis=-1, keepdims=True)
     energies = np.concatenate([in_hz, in_orders], axis=-1)
     return {"bands": np.log(np.maximum(energies, least + np.finfo(float).tiny))}
 
 
-GroupFunction = Callable[[FloatArray, float, FloatArray, Orders], dict[str, FloatArray]]
+GroupFunction = Callable[[FloatArray, float, FloatArray, Orders, Band], dict[str, FloatArray]]
 GROUP_FEATURES: Mapping[str, GroupFunction] = {
     "lines": _lines_and_shape,
     "shape": _lines_and_shape,
     "bands": _log_energies,
     "time": _time,
 }
-"""Function that computes a group, and perhaps others, from signals, sample rate, shaft rates and orders."""
+"""Function that computes a group, and perhaps others, from signals, sample rate, shaft rates, orders and band."""

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from features.band import DEFAULT_BAND, Band, band_attributes
 from features.indicators import GROUPS, Orders, feature_groups, indicators
 from features.signal.rows import FloatArray
 
@@ -22,7 +23,13 @@ def windows_of(signal: FloatArray, fs: float) -> FloatArray:
 
 
 def recording_table(
-    windows: FloatArray, fs: float, shaft_rate: float, orders: Orders, fault: int, groups: Sequence[str] = GROUPS
+    windows: FloatArray,
+    fs: float,
+    shaft_rate: float,
+    orders: Orders,
+    fault: int,
+    groups: Sequence[str] = GROUPS,
+    band: Band = DEFAULT_BAND,
 ) -> xr.Dataset:
     """Features of the windows of one recording.
 
@@ -38,6 +45,8 @@ def recording_table(
         Code of the class of all windows.
     groups
         Some of ``features.indicators.GROUPS``.
+    band
+        Band that lines and shape are computed from.
 
     Returns
     -------
@@ -51,7 +60,7 @@ def recording_table(
     count = len(windows)
     every = np.ones(count)
     nominal = Orders(*(float(order) * every for order in orders))
-    values, names = indicators(windows, fs, shaft_rate * every, nominal, groups)
+    values, names = indicators(windows, fs, shaft_rate * every, nominal, groups, band)
     same = np.zeros(count, dtype=np.int32)
     variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, fault, dtype=np.int8)}
     variables |= {"sample_rate": fs * every, "shaft_rate": shaft_rate * every, **nominal._asdict()}
@@ -59,7 +68,7 @@ def recording_table(
         {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in variables.items()},
         {
             "feature": ("feature", np.array(names, dtype=object)),
-            "group": ("feature", np.array(feature_groups(groups), dtype=object)),
+            "group": ("feature", np.array(feature_groups(groups, band), dtype=object)),
         },
-        {"title": "recording"},
+        {"title": "recording", **band_attributes(band)},
     )

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
-from features.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, TOP, bands_of, log_level, usable_records
+from features.band import DEFAULT_BAND
+from features.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, log_level, usable_records
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centred, squared_modulus
@@ -105,7 +106,7 @@ def _levels(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, to
     bins = int(np.max(highest) / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
     mean = np.zeros((len(x), bins), np.float32)
-    bands = bands_of(fourier_coefficients(x, fs, TOP), duration, fs)
+    bands = bands_of(fourier_coefficients(x, fs, DEFAULT_BAND.high), duration, fs)
     for band in bands:
         z = analytic_band(band, 0, band.shape[-1])
         level = _spectrum_level(np.sqrt(squared_modulus(z)), width, bins)

@@ -19,6 +19,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 import xarray as xr
 
+from features.band import DEFAULT_BAND, Band, band_attributes
+from features.channels import channel_number
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.recording_speeds import (
     Speed,
@@ -31,7 +33,6 @@ from features.recording_speeds import (
 )
 from features.signal.rows import FloatArray
 from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
-from gen.errors import CorpusError
 from gen.workers import run
 
 if TYPE_CHECKING:
@@ -47,7 +48,8 @@ def feature_table(
     groups: Sequence[str] = GROUPS,
     *,
     speed: Speed = "off",
-    channel: int = 0,
+    channel: int | str = 0,
+    band: Band = DEFAULT_BAND,
     workers: int = 1,
     scheduler: "Client | str | None" = None,
     progress: Progress | None = None,
@@ -64,7 +66,9 @@ def feature_table(
         ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does so too and
         computes the features at the found speed where it is clear. Simulated corpora are not checked.
     channel
-        Number of the channel, from 0.
+        Name of the channel, or its number from 0.
+    band
+        Band that lines and shape are computed from.
     workers
         Number of parts at work at a time: 1 in this thread, a few in threads of this process, more in processes on this machine.
     scheduler
@@ -76,8 +80,8 @@ def feature_table(
     -------
     Dataset
         ``features (record, feature)``, coordinates ``feature`` (names) and ``group``, all variables of the records
-        except ``draws``, which is larger than the rest of the table, and the attributes of the corpus with
-        ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_found`` and
+        except ``draws``, which is larger than the rest of the table, and the attributes of the corpus with the ``channel``,
+        band and ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_found`` and
         ``shaft_rate_uncertainty`` [Hz], ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of
         ``recordings_with_other_speed``.
 
@@ -88,12 +92,10 @@ def feature_table(
     ValueError
         For a group or a treatment of speeds that does not exist.
     """
-    names = feature_names(groups)
+    names = feature_names(groups, band)
     with open_corpus(corpus) as opened:
-        if not 0 <= channel < opened.sizes["channel"]:
-            last = opened.sizes["channel"] - 1
-            message = f"{corpus}: no channel {channel}; give one of 0 to {last}."
-            raise CorpusError(message)
+        number = channel_number(opened, channel, corpus)
+        read = {"channel": str(opened["channel"].values[number]), **band_attributes(band)}
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
     treatment = checked_speed(speed, table)
@@ -104,22 +106,28 @@ def feature_table(
     if treatment != "off":
         recording = recording_numbers(table)
         tasks = list(zip(paths, np.split(recording, starts[1:-1]), strict=True))
-        with closing(work(partial(part_sums, channel=channel), tasks, report)) as sums:
+        with closing(work(partial(part_sums, channel=number), tasks, report)) as sums:
             found = recording_speeds(recording, table["shaft_rate"].values, sums)
         table = with_speeds(table, recording, found, treatment)
     rates = rates_to_use(table) if treatment == "correct" else table["shaft_rate"].values
     values, missing = np.empty((table.sizes["record"], len(names))), 0
-    compute = partial(_features_of_part, groups=tuple(groups), channel=channel)
+    compute = partial(_features_of_part, groups=tuple(groups), channel=number, band=band)
     tasks = list(zip(paths, np.split(rates, starts[1:-1]), strict=True))
     with closing(work(compute, tasks, report)) as blocks:
-        for number, block in blocks:
-            values[starts[number] : starts[number + 1]] = block
+        for part, block in blocks:
+            values[starts[part] : starts[part + 1]] = block
             missing += int(np.isnan(block).any(axis=1).sum())
-    return _assemble(table, values, groups).assign_attrs(records_with_missing_features=missing)
+    return _assemble(table, values, names, feature_groups(groups, band)).assign_attrs(
+        records_with_missing_features=missing, **read
+    )
 
 
 def part_features(
-    path: Path, groups: Sequence[str] = GROUPS, channel: int = 0, shaft_rate: FloatArray | None = None
+    path: Path,
+    groups: Sequence[str] = GROUPS,
+    channel: int = 0,
+    shaft_rate: FloatArray | None = None,
+    band: Band = DEFAULT_BAND,
 ) -> FloatArray:
     """Features of the records of one part, shape (record, feature); NaN as in `features.indicators`.
 
@@ -128,17 +136,17 @@ def part_features(
     x, (fs, labelled, *nominal) = read_channel(path, channel, ("sample_rate", "shaft_rate", *Orders._fields))
     shaft_rate = labelled if shaft_rate is None else shaft_rate
     orders = Orders(*nominal)
-    values = np.full((len(x), len(feature_names(groups))), np.nan)
+    values = np.full((len(x), len(feature_names(groups, band))), np.nan)
     for rate in np.unique(fs[fs > 0]):
         rows = np.flatnonzero(fs == rate)
         chosen = Orders(*(order[rows] for order in orders))
-        values[rows], _ = indicators(x[rows], float(rate), shaft_rate[rows], chosen, groups)
+        values[rows], _ = indicators(x[rows], float(rate), shaft_rate[rows], chosen, groups, band)
     return values
 
 
-def _features_of_part(task: tuple[Path, FloatArray], groups: Sequence[str], channel: int) -> FloatArray:
+def _features_of_part(task: tuple[Path, FloatArray], groups: Sequence[str], channel: int, band: Band) -> FloatArray:
     path, shaft_rate = task
-    return part_features(path, groups, channel, shaft_rate)
+    return part_features(path, groups, channel, shaft_rate, band)
 
 
 def _counted(progress: Progress | None, tasks: int) -> Callable[[], None]:
@@ -162,12 +170,10 @@ def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> tupl
     return number, compute(item)
 
 
-def _assemble(table: xr.Dataset, values: FloatArray, groups: Sequence[str]) -> xr.Dataset:
-    names = np.array(feature_names(groups), dtype=object)
-    group = np.array(feature_groups(groups), dtype=object)
+def _assemble(table: xr.Dataset, values: FloatArray, names: Sequence[str], groups: Sequence[str]) -> xr.Dataset:
     return table.assign(
         features=(("record", "feature"), values, {"long_name": "features of the signal", "units": "1"})
     ).assign_coords(
-        feature=("feature", names, {"long_name": "name of the feature"}),
-        group=("feature", group, {"long_name": "group of the feature"}),
+        feature=("feature", np.array(names, dtype=object), {"long_name": "name of the feature"}),
+        group=("feature", np.array(groups, dtype=object), {"long_name": "group of the feature"}),
     )

@@ -13,6 +13,7 @@ from sklearn.base import BaseEstimator, TransformerMixin
 from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
+from features.band import DEFAULT_BAND, checked_band
 from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.signal.rows import FloatArray
 from features.speed import shaft_speed
@@ -34,6 +35,8 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         Nominal fault orders, by default those of a 6205; ``bsf`` is the ball spin frequency.
     groups
         Some of ``features.indicators.GROUPS``.
+    band
+        Lowest and highest frequency that lines and shape are computed from [Hz].
     speed
         ``off``, or ``correct``: estimate the shaft speed of each signal by itself (`features.shaft_speed`), and use it
         where it is clear. Signals of one recording are not joined, because a transformer treats each row alone.
@@ -48,6 +51,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         bpfi: float = 5.4152,
         bsf: float = 2.3567,
         groups: Sequence[str] = GROUPS,
+        band: tuple[float, float] = (DEFAULT_BAND.low, DEFAULT_BAND.high),
         speed: Literal["off", "correct"] = "off",
     ) -> None:
         self.fs = fs
@@ -57,6 +61,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         self.bpfi = bpfi
         self.bsf = bsf
         self.groups = groups
+        self.band = band
         self.speed = speed
 
     def fit(self, X: ArrayLike, y: object = None) -> Self:  # noqa: ARG002
@@ -69,7 +74,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         x = self._signals(X, reset=False)
         records = np.ones(len(x))
         orders = Orders(*(order * records for order in (self.ftf, self.bpfo, self.bpfi, self.bsf)))
-        values, _ = indicators(x, self.fs, self._shaft_rates(x), orders, self.groups)
+        values, _ = indicators(x, self.fs, self._shaft_rates(x), orders, self.groups, checked_band(*self.band))
         return values
 
     def _shaft_rates(self, x: FloatArray) -> FloatArray:
@@ -90,7 +95,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
     def get_feature_names_out(self, input_features: object = None) -> np.ndarray:  # noqa: ARG002
         """Names of the features, shape (feature,)."""
         check_is_fitted(self, "n_features_in_")
-        return np.array(feature_names(self.groups), dtype=object)
+        return np.array(feature_names(self.groups, checked_band(*self.band)), dtype=object)
 
     def __sklearn_tags__(self) -> Tags:
         tags = super().__sklearn_tags__()

@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import DTypeLike, NDArray
 
+from features.channels import channel_number
 from features.signal.orders import resample_to_orders
 from gen.corpus import DRAWS, SIGNAL, open_corpus
 from gen.errors import CorpusError
@@ -99,7 +100,7 @@ class Waveforms:
 def open_waveforms(
     corpus: Path | str,
     *,
-    channel: int = 0,
+    channel: int | str = 0,
     normalise: bool = False,
     per_turn: int | None = None,
     turns: int | None = None,
@@ -111,7 +112,7 @@ def open_waveforms(
     corpus
         The folder of the corpus.
     channel
-        Number of the channel, from 0.
+        Name of the channel, or its number from 0.
     normalise
         Subtract the mean of each record and divide the result by its rms, so that the gain of the sensor has no effect.
     per_turn
@@ -126,10 +127,9 @@ def open_waveforms(
         If the corpus is unfinished, altered or has no such channel, or the shaft rate of a record is not known.
     """
     opened = open_corpus(corpus)
-    if not 0 <= channel < opened.sizes["channel"]:
-        raise CorpusError(f"{corpus}: no channel {channel}; give one of 0 to {opened.sizes['channel'] - 1}.")
+    number = channel_number(opened, channel, corpus)
     labels = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore").load()
-    signal = opened[SIGNAL].isel(channel=channel).drop_vars(["elapsed_time"])
+    signal = opened[SIGNAL].isel(channel=number).drop_vars(["elapsed_time"])
     signal = signal.assign_coords({name: labels[name].variable for name in ("sample_rate", "shaft_rate")})
     samples = opened.sizes["elapsed_time"]
     if per_turn is not None:

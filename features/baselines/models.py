@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from pandas import DataFrame, Index
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from features.band import HIGHEST, Band, band_of
 from features.baselines.calibration import Calibration
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import (
@@ -50,7 +51,7 @@ from gen.corpus import FAULTS, UNKNOWN_CODE, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
-FORMAT = 3
+FORMAT = 4
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 
 
@@ -66,8 +67,8 @@ class Model:
         Its name in ``ESTIMATORS``.
     classes
         The classes it can predict.
-    features, groups
-        The features it takes, and their groups.
+    features, groups, band
+        The features it takes, their groups, and the band that they are computed from.
     corpus, records, seed
         Title and number of records of the training corpus, and the seed.
     widths
@@ -88,6 +89,7 @@ class Model:
     classes: tuple[str, ...]
     features: tuple[str, ...]
     groups: tuple[str, ...]
+    band: tuple[float, float]
     corpus: str
     records: int
     seed: int
@@ -160,7 +162,7 @@ def _train(
     done: Callable[[], None],
 ) -> Model:
     names = features_of(table, groups)
-    records = labelled_records(table, names)
+    records, band = labelled_records(table, names), band_of(table.attrs)
     check_classes(records)
     fitted, calibration = fit_and_calibrate(records, estimator, seed, workers=workers, done=done)
     return Model(
@@ -169,6 +171,7 @@ def _train(
         classes=class_names(fitted.classes_),
         features=names,
         groups=tuple(groups),
+        band=(band.low, band.high),
         corpus=records.title,
         records=len(records.fault),
         seed=seed,
@@ -237,7 +240,8 @@ def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dat
         raise CorpusError(message)
     from features.table import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
 
-    return feature_table(corpus, model.groups if reference is None else with_energies(model.groups))
+    groups = model.groups if reference is None else with_energies(model.groups)
+    return feature_table(corpus, groups, band=Band(*model.band))
 
 
 def save_model(model: Model, path: Path | str) -> None:
@@ -335,6 +339,7 @@ def _fault_class(name: str) -> str:
 Text = Annotated[str, AfterValidator(_encodable)]
 FaultName = Annotated[str, AfterValidator(_fault_class)]
 Width = Annotated[float, Field(gt=0, allow_inf_nan=False)]
+Edge = Annotated[float, Field(ge=0, le=HIGHEST)]
 
 
 class _About(BaseModel):
@@ -346,6 +351,7 @@ class _About(BaseModel):
     classes: tuple[FaultName, ...] = Field(min_length=2)
     features: tuple[Text, ...] = Field(min_length=1)
     groups: tuple[Text, ...]
+    band: tuple[Edge, Edge]
     corpus: Text
     records: Annotated[int, Field(ge=1)]
     seed: Annotated[int, Field(ge=0, lt=2**32)]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from features.band import band_of
 from features.baselines.calibration import Calibration, calibrated, combined
 from features.baselines.estimators import class_probabilities
 from features.baselines.records import FloatArray, IntArray, feature_rows, title_of
@@ -81,8 +82,8 @@ def predict(table: xr.Dataset, model: "Model", reference: xr.Dataset | None = No
     Raises
     ------
     CorpusError
-        If the table lacks a feature of the model, features or model contain numbers too large to compute with, or the model or the
-        records cannot be used with the reference.
+        If the table lacks a feature of the model or is computed from another band, features or model contain numbers too large to
+        compute with, or the model or the records cannot be used with the reference.
     """
     if reference is not None:
         if model.relative is None:
@@ -92,6 +93,13 @@ def predict(table: xr.Dataset, model: "Model", reference: xr.Dataset | None = No
             )
             raise CorpusError(message)
         return predict(relative_to(table, reference, model.features), model.relative)
+    band = band_of(table.attrs)
+    if band != model.band:
+        low, high = model.band
+        raise CorpusError(
+            f"{title_of(table)}: its features are computed from {band.low:g}-{band.high:g} Hz, and the model was trained on "
+            f"{low:g}-{high:g} Hz; compute them with --band {low:g} {high:g}."
+        )
     rows = feature_rows(table, model.features)
     found = estimator_probabilities(model, rows, title_of(table))
     return predictions(found, model.classes, recording_numbers(table), model.calibration)

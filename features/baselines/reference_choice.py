@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from features.band import DEFAULT_BAND, Band
 from features.baselines.records import FloatArray, feature_rows, record_digests, title_of
 from features.baselines.references import by_rig, healthy_records
 from features.indicators import Orders
@@ -97,7 +98,12 @@ def _of_file(sources: Iterable[str], file: Path) -> np.ndarray:
 
 
 def recording_reference(
-    signal: FloatArray, fs: float, corpus: Path | str, file: Path, shaft_rate: float | None = None
+    signal: FloatArray,
+    fs: float,
+    corpus: Path | str,
+    file: Path,
+    shaft_rate: float | None = None,
+    band: Band = DEFAULT_BAND,
 ) -> xr.Dataset:
     """Feature table of a healthy recording, cut into records as long as those of a corpus and with their bearing.
 
@@ -113,6 +119,8 @@ def recording_reference(
         Path of the recording, with which an error sentence begins.
     shaft_rate
         Speed of the recording [Hz]; by default that of the corpus.
+    band
+        Band that its features are computed from.
 
     Raises
     ------
@@ -145,7 +153,7 @@ def recording_reference(
         raise CorpusError(message)
     windows = signal[: len(signal) // length * length].reshape(-1, length)
     speed = float(rates.mean()) if shaft_rate is None else shaft_rate
-    table = recording_table(windows, fs, speed, Orders(*(values[0] for values in orders)), UNKNOWN_CODE)
+    table = recording_table(windows, fs, speed, Orders(*(values[0] for values in orders)), UNKNOWN_CODE, band=band)
     return table.assign_attrs({"title": str(file), FILE: str(file.absolute())})
 
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 import xarray as xr
 
+from features.band import band_of
 from features.baselines.records import (
     FloatArray,
     IntArray,
@@ -20,7 +21,7 @@ from features.baselines.records import (
     title_of,
 )
 from features.faults import HEALTHY
-from features.indicators import NAMES, TOP
+from features.indicators import NAMES
 from features.recording_speeds import recording_numbers
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.errors import CorpusError
@@ -29,7 +30,6 @@ HEALTHY_CODE = FAULTS.index(HEALTHY)
 ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))
 RELATIVE = "relative"  # group of the features of a relative table
 NEAREST = 3  # recordings, nearest in speed, that a virtual reference is chosen from
-COMPARABLE_RATE = 2 * TOP  # Hz: from it on, all bands of the features lie below the Nyquist frequency
 
 
 def with_energies(groups: Sequence[str]) -> tuple[str, ...]:
@@ -129,15 +129,16 @@ def check_rates(table: xr.Dataset, reference: xr.Dataset) -> None:
     Raises
     ------
     CorpusError
-        If the sample rates differ, and one of them is below ``COMPARABLE_RATE``.
+        If the sample rates differ, and half of one of them is below the end of the band of the features.
     """
     if "sample_rate" not in table or "sample_rate" not in reference:
         return
     tested, its = np.unique(table["sample_rate"].values), np.unique(reference["sample_rate"].values)
-    if not np.array_equal(tested, its) and min(*tested, *its) < COMPARABLE_RATE:
+    comparable = 2 * band_of(table.attrs).high  # from it on, all bands of the features lie below the Nyquist frequency
+    if not np.array_equal(tested, its) and min(*tested, *its) < comparable:
         message = (
             f"{title_of(reference)}: the sample rate of the reference is {its[0]:g} Hz and that of the records "
-            f"{tested[0]:g} Hz; they may differ only if both are at least {COMPARABLE_RATE:g} Hz."
+            f"{tested[0]:g} Hz; they may differ only if both are at least {comparable:g} Hz."
         )
         raise CorpusError(message)
 

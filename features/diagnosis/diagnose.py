@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from features.band import Band
 from features.baselines.predictions import UNSURE, Predictions, estimator_probabilities, predict, predictions
 from features.baselines.references import with_energies
 from features.diagnosis.evidence import Line, find_evidence, strange_series
@@ -131,7 +132,9 @@ def diagnose(
             raise CorpusError(
                 f"{checked.name}: {wrong:,} of {checked.signal.size:,} samples are not finite numbers; export it again."
             )
-    if not set(model.groups) <= set(GROUPS) or not set(model.features) <= set(feature_names(model.groups)):
+    if not set(model.groups) <= set(GROUPS) or not set(model.features) <= set(
+        feature_names(model.groups, Band(*model.band))
+    ):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
     signal, warnings = _beginning(recording)
     quality = quality_of(signal, recording.fs, recording.shaft_rate, recording.orders)
@@ -203,7 +206,9 @@ def _speed(recording: Recorded) -> tuple[float | None, float]:
 def _table(recording: Recorded, model: "Model", fault: int) -> "xr.Dataset":
     windows = windows_of(recording.signal, recording.fs)
     groups = with_energies(model.groups)
-    table = recording_table(windows, recording.fs, recording.shaft_rate, recording.orders, fault, groups)
+    table = recording_table(
+        windows, recording.fs, recording.shaft_rate, recording.orders, fault, groups, Band(*model.band)
+    )
     return table.assign_attrs(title=recording.name)
 
 
@@ -229,7 +234,7 @@ def _prediction_of_windows(recording: Recorded, model: "Model") -> Predictions:
     windows = windows_of(recording.signal, recording.fs)
     each = Orders(*(np.full(len(windows), order) for order in recording.orders))
     rates = np.full(len(windows), recording.shaft_rate)
-    values, names = indicators(windows, recording.fs, rates, each, model.groups)
+    values, names = indicators(windows, recording.fs, rates, each, model.groups, Band(*model.band))
     columns = [names.index(name) for name in model.features]
     rows = DataFrame(values[:, columns], columns=Index(model.features))
     probabilities = estimator_probabilities(model, rows, recording.name)

@@ -5,7 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.indicators import LOWEST_RATE, SHORTEST, TOP, Orders
+from features.band import DEFAULT_BAND
+from features.indicators import LOWEST_RATE, SHORTEST, Orders
 from features.signal.rows import FloatArray
 
 CLIPPED_SHARE = 1e-3  # of the samples at the highest or lowest value, from which a signal counts as clipped
@@ -53,7 +54,7 @@ def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tup
     if fs < LOWEST_RATE:
         reason = f"the sample rate of {fs:,.0f} Hz is below {LOWEST_RATE:,.0f} Hz, so no band with the impacts of a bearing is left"
         return reason, "record at 10,000 Hz or more"
-    highest, top = shaft_rate * max(orders.bpfo, orders.bpfi, 2 * orders.bsf), min(TOP, fs / 2)
+    highest, top = shaft_rate * max(orders.bpfo, orders.bpfi, 2 * orders.bsf), min(DEFAULT_BAND.high, fs / 2)
     if highest > top:
         reason = f"at {60 * shaft_rate:,.0f} rpm a fault line lies at {highest:,.0f} Hz, and the signal is used up to {top:,.0f} Hz"
         return reason, "check speed and sample rate"
@@ -68,10 +69,10 @@ def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> l
             f"{100 * share:.{1 if share < 0.1 else 0}f} % of the samples are at the highest or lowest value, so the "
             "signal is clipped; levels are not those of the machine: record again with a larger range."
         )
-    if fs < 2 * TOP:
+    if fs < 2 * DEFAULT_BAND.high:
         found.append(
-            f"The sample rate of {fs:,.0f} Hz leaves out part of the band up to {TOP:,.0f} Hz that the classifier was trained on; "
-            f"record at {2 * TOP:,.0f} Hz or more."
+            f"The sample rate of {fs:,.0f} Hz leaves out part of the band up to {DEFAULT_BAND.high:,.0f} Hz that the classifier was "
+            f"trained on; record at {2 * DEFAULT_BAND.high:,.0f} Hz or more."
         )
     if duration < 1.0 or duration * shaft_rate < 20:
         found.append(

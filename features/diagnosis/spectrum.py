@@ -16,7 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import gammainccinv, gammaincinv
 
-from features.indicators import BROAD, NARROW, WHITENING_WIDTH
+from features.band import DEFAULT_BAND
+from features.indicators import WHITENING_WIDTH
 from features.signal.demodulation import analytic_band, envelope_spectrum, running_median
 from features.signal.rows import FloatArray
 from features.signal.shape import most_impulsive_band
@@ -88,7 +89,7 @@ def band_spectra(x: FloatArray, fs: float, shaft_rate: float) -> list[BandSpectr
 def bands_of(x: FloatArray, fs: float) -> list[tuple[float, float]]:
     """Bands [Hz] in which lines are searched: the broad one, those of the features, and the most impulsive one."""
     top = fs / 2
-    bands = [(BROAD[0], min(BROAD[1], top)), *(band for band in NARROW if sum(band) < fs)]
+    bands = [(DEFAULT_BAND.low, min(DEFAULT_BAND.high, top)), *(band for band in DEFAULT_BAND.narrow if sum(band) < fs)]
     piece = x[: round(min(len(x), 4 * fs))]
     coefficients = psd_whitened(fourier_coefficients(piece[None], fs, top), round(WHITENING_WIDTH * len(piece) / fs))
     levels = tuple(level for level in KURTOSIS_LEVELS if top / level >= NARROWEST) or (1,)

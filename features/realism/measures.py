@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.fft import irfft
 
+from features.band import DEFAULT_BAND
 from features.faults import CLASSES, COMBS
-from features.indicators import BROAD, FLOOR_WIDTH, Orders, log_level
+from features.indicators import FLOOR_WIDTH, Orders, log_level
 from features.signal.colour import centroid, roll_off, tonality
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted
 from features.signal.lines import single_lines
@@ -174,7 +175,7 @@ class _Envelopes(NamedTuple):
         """Envelopes of windows of shape (window, time) with known shaft rates [Hz], shape (window,)."""
         seconds = x.shape[-1] / fs
         whitened = psd_whitened(fourier_coefficients(x, fs, top), round(WHITENING_WIDTH * seconds))
-        z = analytic_band(whitened, round(BROAD[0] * seconds), round(top * seconds))
+        z = analytic_band(whitened, round(DEFAULT_BAND.low * seconds), round(top * seconds))
         power = squared_modulus(z)
         spectrum = fine_amplitudes(hann_weighted(np.sqrt(power)), ZERO_PADDING * z.shape[-1] // 2 + 1)
         step = 1 / (ZERO_PADDING * seconds)

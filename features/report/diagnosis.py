@@ -9,12 +9,12 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from features.band import DEFAULT_BAND
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Recorded
 from features.diagnosis.spectrum import BandSpectrum
 from features.faults import CLASSES, HEALTHY, SHAFT
 from features.report.page import template
 from features.report.pictures import (
-    BROAD,
     FAINT,
     INK,
     STYLE,
@@ -88,7 +88,7 @@ def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded) -> Figure:
     shown = Shown("", recording.signal, recording.fs, diagnosis.shaft_rate, recording.orders, HEALTHY)
     figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
-    band = BROAD if diagnosis.spectrum is None else diagnosis.spectrum.band
+    band = DEFAULT_BAND if diagnosis.spectrum is None else diagnosis.spectrum.band
     draw_waveform(waveform, shown)
     draw_density(density, shown, band)
     if diagnosis.spectrum is not None:

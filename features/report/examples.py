@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from features.band import DEFAULT_BAND, LEAST_WIDTH, Band
+from features.channels import channel_number
 from features.faults import COMBS, LOOKS
 from features.indicators import Orders, feature_names, indicators
 from features.report.pictures import PictureFormat, Shown, draw_record, picture
@@ -23,17 +25,23 @@ class Example(NamedTuple):
     image: bytes
 
 
-def plot_record(corpus: Path | str, record: int, path: Path | str, *, channel: int = 0) -> None:
+def plot_record(
+    corpus: Path | str, record: int, path: Path | str, *, channel: int | str = 0, band: Band = DEFAULT_BAND
+) -> None:
     """Draw waveform, power spectral density and envelope spectrum of a record, with the fault lines.
 
     Parameters
     ----------
     corpus
         The folder of the corpus.
-    record, channel
-        Numbers from 0.
+    record
+        Its number, from 0.
     path
         A .png, .svg or .pdf file, written whole or not at all.
+    channel
+        Name or number of the channel.
+    band
+        Band of the envelope spectrum.
 
     Raises
     ------
@@ -48,12 +56,15 @@ def plot_record(corpus: Path | str, record: int, path: Path | str, *, channel: i
         message = f"{path}: {path.suffix or 'no suffix'} is no format of pictures; use .png, .svg or .pdf."
         raise CorpusError(message)
     with open_corpus(corpus) as opened:
-        for dimension, number in (("record", record), ("channel", channel)):
-            if not 0 <= number < opened.sizes[dimension]:
-                last = opened.sizes[dimension] - 1
-                message = f"{corpus}: no {dimension} {number}; give one of 0 to {last}."
-                raise CorpusError(message)
-        shown = _shown(opened.isel(record=record), record, channel)
+        if not 0 <= record < opened.sizes["record"]:
+            raise CorpusError(f"{corpus}: no record {record}; give one of 0 to {opened.sizes['record'] - 1}.")
+        number = channel_number(opened, channel, corpus)
+        several = opened.sizes["channel"] > 1
+        shown = _shown(opened.isel(record=record), record, number, named=several)._replace(band=band)
+    if 2 * band.low + LEAST_WIDTH > shown.fs:
+        raise CorpusError(
+            f"{corpus}: the band {band.low:g}-{band.high:g} Hz lies above half the sample rate of {shown.fs:g} Hz; give a lower one."
+        )
     if not _can_be_drawn(shown):
         message = (
             f"{corpus}: record {record} cannot be drawn, because its signal, shaft rate or a fault order is not a "
@@ -94,10 +105,11 @@ def _conditions(record: xr.Dataset) -> str:
     return ", ".join(known)
 
 
-def _shown(record: xr.Dataset, number: int, channel: int) -> Shown:
+def _shown(record: xr.Dataset, number: int, channel: int, *, named: bool = False) -> Shown:
     fault, shaft_rate = FAULT_NAMES[int(record["fault"])], float(record["shaft_rate"])
+    sensor = f", {record['channel'].values[channel]}" if named else ""
     return Shown(
-        title=f"Record {number}: {fault}, {60 * shaft_rate:.0f} rpm",
+        title=f"Record {number}{sensor}: {fault}, {60 * shaft_rate:.0f} rpm",
         signal=record[SIGNAL].isel(channel=channel).values.astype(float),
         fs=float(record["sample_rate"]),
         shaft_rate=shaft_rate,

@@ -17,10 +17,11 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
+from features.band import DEFAULT_BAND, Band
 from features.baselines import Baseline, Scores
 from features.baselines.records import IntArray
 from features.faults import FUNDAMENTALS, LOOKS, SHAFT
-from features.indicators import BROAD, WHITENING_WIDTH, Orders
+from features.indicators import WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients, psd, psd_whitened
@@ -58,7 +59,7 @@ TOLERANCE = 0.02  # of an order, half the width of the shaded band around a line
 
 
 class Shown(NamedTuple):
-    """A record to draw: title, signal [m s-2], shape (time,), sample and shaft rate [Hz], fault orders and class."""
+    """A record to draw: title, signal [m s-2], shape (time,), sample and shaft rate [Hz], fault orders, class, band of the envelope."""
 
     title: str
     signal: FloatArray
@@ -66,6 +67,7 @@ class Shown(NamedTuple):
     shaft_rate: float
     orders: Orders
     fault: str
+    band: Band = DEFAULT_BAND
 
 
 class Quantity(NamedTuple):
@@ -91,7 +93,7 @@ def draw_record(shown: Shown) -> Figure:
     figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     draw_waveform(waveform, shown)
-    draw_density(density, shown, BROAD)
+    draw_density(density, shown, shown.band)
     _draw_envelope_spectrum(envelope, shown)
     figure.align_ylabels()
     return figure
@@ -159,9 +161,9 @@ def _highest_drawn_order(own: Mapping[str, float], others: Mapping[str, float]) 
 def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
     """Orders of the shaft, and squared envelope spectrum of the whitened band [1], both of shape (order,)."""
     duration = shown.signal.size / shown.fs
-    coefficients = fourier_coefficients(shown.signal[None], shown.fs, BROAD[1])
+    coefficients = fourier_coefficients(shown.signal[None], shown.fs, shown.band.high)
     whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
-    band = analytic_band(whitened, *(round(edge * duration) for edge in BROAD))
+    band = analytic_band(whitened, *(round(edge * duration) for edge in shown.band))
     frequencies, spectrum = squared_envelope_spectrum(band, band.shape[-1] / duration)
     scale = np.mean(np.abs(band) ** 2)
     return frequencies / shown.shaft_rate, spectrum[0] / (scale if scale > 0 else 1.0)

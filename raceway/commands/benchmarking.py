@@ -11,7 +11,9 @@ from raceway.commands.models import ESTIMATORS, warn_of_severities
 from raceway.console import show
 from raceway.console.options import (
     A_PATH,
+    Analysis,
     Team,
+    analysis_options,
     corpus_argument,
     corpus_folder,
     folder_option,
@@ -82,6 +84,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 @click.option(
     "--seed", type=int, default=0, show_default=True, metavar="S", help="Seed of splits, classifiers and bootstrap."
 )
+@analysis_options
 @speed_option
 @worker_options
 @json_option
@@ -96,6 +99,8 @@ def benchmark(
     learning_curve: bool,
     folds: int,
     seed: int,
+    channel: str | None,
+    band: tuple[float, float] | None,
     speed: "Speed",
     workers: int | None,
     scheduler: str | None,
@@ -106,7 +111,7 @@ def benchmark(
     (raceway bench measures speed.) Cross-validation keeps all records of a specimen on one side of each split, and all of a rig, bearing
     type, speed range, fault width or fault shape with --track. Two controls are shown beside each score: a split of random records,
     which leaks, and labels permuted among specimens, which must score at chance. With --test, models trained on all of DIR are also
-    scored on DIR2; --speed concerns DIR2 alone.
+    scored on DIR2; --speed concerns DIR2 alone, --channel DIR alone (of DIR2 the first channel is taken).
 
     MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the
     current folder, without .py, or an installed module. With --estimator or several tracks, the other baselines are left out.
@@ -125,10 +130,10 @@ def benchmark(
     from features.baselines import benchmark as run
     from features.report.page import write_report
 
-    signals = open_waveforms(corpus, normalise=True, per_turn=per_turn) if waveforms else None
+    signals = open_waveforms(corpus, channel=channel or 0, normalise=True, per_turn=per_turn) if waveforms else None
     team = Team(workers, scheduler)
-    table = table_of(corpus, "off", team)
-    other = None if test is None else table_of(test, speed, team)
+    table = table_of(corpus, "off", team, Analysis(channel, band))
+    other = None if test is None else table_of(test, speed, team, Analysis(None, band))
     asked = "all" if "all" in tracks else tracks
     options = {"tracks": asked, "estimators": chosen, "waveforms": signals, "curve": learning_curve}
     trainers = team.options(table.sizes["record"])["workers"]

@@ -8,7 +8,10 @@ import click
 from raceway.console import show
 from raceway.console.options import (
     USUAL,
+    USUAL_ANALYSIS,
+    Analysis,
     Team,
+    analysis_options,
     corpus_argument,
     file_option,
     json_option,
@@ -28,27 +31,37 @@ if TYPE_CHECKING:
 @corpus_argument
 @record_option
 @file_option("FILE", "Picture: .png, .svg or .pdf.", (".png", ".svg", ".pdf"))
-def plot(corpus: Path, record: int, output: Path) -> None:
+@analysis_options
+def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tuple[float, float] | None) -> None:
     """Draw one record with its fault lines.
 
     The picture has the waveform, the power spectrum and the envelope spectrum.
 
       raceway plot corpus --record 17 -o record.png
+      raceway plot corpus --record 17 -o fan_end.png --channel fan_end --band 2000 9000
     """
     from features.report.examples import plot_record
 
-    plot_record(corpus, record, output)
+    plot_record(corpus, record, output, **Analysis(channel, band).options())
     show.text(f"{output}: record {record} of {corpus}.")
 
 
 @click.command()
 @corpus_argument
 @file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"))
+@analysis_options
 @speed_option
 @worker_options
 @json_option
 def features(
-    corpus: Path, output: Path, speed: "Speed", workers: int | None, scheduler: str | None, as_json: bool
+    corpus: Path,
+    output: Path,
+    channel: str | None,
+    band: tuple[float, float] | None,
+    speed: "Speed",
+    workers: int | None,
+    scheduler: str | None,
+    as_json: bool,
 ) -> None:
     """Compute the features of every record of DIR.
 
@@ -56,13 +69,14 @@ def features(
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
+      raceway features corpus -o features.nc --channel fan_end --band 300 9000
       raceway features recordings -o features.nc --speed correct
       raceway features corpus -o features.nc --workers 8
     """
     from features.table_files import check_destination, write_table
 
     check_destination(output)
-    table = table_of(corpus, speed, Team(workers, scheduler))
+    table = table_of(corpus, speed, Team(workers, scheduler), Analysis(channel, band))
     write_table(table, output)
     records, columns = table.sizes["record"], table.sizes["feature"]
     missing = table.attrs["records_with_missing_features"]
@@ -81,13 +95,15 @@ def notice_of_unknown(corpus: Path, unknown: int) -> None:
         notice(f"{corpus}: {show.counted(unknown, 'record')} of class unknown left out.")
 
 
-def table_of(corpus: Path, speed: "Speed" = "off", team: Team = USUAL) -> "xr.Dataset":
+def table_of(
+    corpus: Path, speed: "Speed" = "off", team: Team = USUAL, analysis: Analysis = USUAL_ANALYSIS
+) -> "xr.Dataset":
     """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
     from features.recording_speeds import speed_warnings
     from gen.corpus import read_manifest
 
-    options = team.options(read_manifest(corpus).records)
+    options = team.options(read_manifest(corpus).records) | analysis.options()
     with progress("computing features", "parts") as report:
         table = feature_table(corpus, speed=speed, **options, progress=report)
     for sentence in speed_warnings(table):

@@ -11,7 +11,11 @@ from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
 from raceway.console.options import (
     A_PATH,
+    USUAL_ANALYSIS,
+    Analysis,
     Team,
+    analysis_options,
+    channel_option,
     corpus_argument,
     corpus_folder,
     file_option,
@@ -49,10 +53,18 @@ ESTIMATORS = (
     metavar="NAME",
     help=f"One of {', '.join(ESTIMATORS)}.",
 )
+@analysis_options
 @worker_options
 @json_option
 def train(
-    source: str, output: Path | None, estimator: str, workers: int | None, scheduler: str | None, as_json: bool
+    source: str,
+    output: Path | None,
+    estimator: str,
+    channel: str | None,
+    band: tuple[float, float] | None,
+    workers: int | None,
+    scheduler: str | None,
+    as_json: bool,
 ) -> None:
     """Train a classifier on the corpus in DIR or of RECIPE.
 
@@ -61,11 +73,14 @@ def train(
 
       raceway train corpus -o model.skops
       raceway train corpus -o forest.skops --estimator random_forest
+      raceway train corpus -o high.skops --channel fan_end --band 300 9000
       raceway train domain_randomised                 the reference model of raceway diagnose
       raceway train my_recipe.yaml -o model.skops
 
     A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training. Without -o the model is kept in
     the folder RACEWAY_CACHE, or else in raceway in the cache folder of the user (XDG_CACHE_HOME or ~/.cache), and is not trained twice.
+
+    The model keeps the band, and raceway evaluate computes features from the same one.
 
     --workers and --scheduler compute the features. Up to four workers also train, in threads of this process; the model is the same.
 
@@ -84,12 +99,15 @@ def train(
         from gen.recipe import find_recipe
 
         find_recipe(source)  # a misspelt name is reported before the simulator is imported
+    analysis = Analysis(channel, band)
+    if corpus is None and analysis != USUAL_ANALYSIS:
+        raise click.UsageError("--channel and --band are for DIR: generate the corpus of the RECIPE first")
     if corpus is None and output is None:
         model, output, scores = kept_model(source, estimator, team=team)
     elif output is None:
         raise click.UsageError("Missing option '-o' / '--output': only the model of a RECIPE is kept without it.")
     else:
-        table = recipe_table(source, team) if corpus is None else table_of(corpus, "off", team)
+        table = recipe_table(source, team) if corpus is None else table_of(corpus, "off", team, analysis)
         notice_of_unknown(corpus or folder, count_unknown(table))
         model, scores = train_and_score(table, estimator, team)
         save_model(model, output)
@@ -117,6 +135,7 @@ def train(
 @click.command()
 @corpus_argument
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
+@channel_option
 @reference_options
 @speed_option
 @worker_options
@@ -124,6 +143,7 @@ def train(
 def evaluate(
     corpus: Path,
     model: Path,
+    channel: str | None,
     reference: Path | None,
     speed: "Speed",
     workers: int | None,
@@ -153,8 +173,9 @@ def evaluate(
         raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
     loaded = load_model(model)
     team = Team(workers, scheduler)
-    table = table_of(corpus, speed, team)
-    healthy = None if reference is None else reference_table(reference, corpus, table, speed, team, **reading)
+    analysis = Analysis(channel, loaded.band)
+    table = table_of(corpus, speed, team, analysis)
+    healthy = None if reference is None else reference_table(reference, corpus, table, speed, team, analysis, **reading)
     answers = unlabelled_answers(table, loaded, healthy)
     if count_unknown(table) == table.sizes["record"]:
         _show_answers_alone(corpus, model, loaded.name, answers, as_json=as_json)

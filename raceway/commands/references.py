@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.feature_tables import table_of
-from raceway.console.options import A_PATH, Decorator, Team
+from raceway.console.options import A_PATH, Analysis, Decorator, Team
 from raceway.console.progress import notice
 
 if TYPE_CHECKING:
@@ -66,6 +66,7 @@ def reference_table(
     table: "xr.Dataset",
     speed: "Speed",
     team: Team,
+    analysis: Analysis,
     *,
     reference_rpm: float | None,
     reference_rate: float | None,
@@ -83,8 +84,8 @@ def reference_table(
         if signal.fs is None:
             notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")
         rate = None if reference_rpm is None else rpm_to_hertz(reference_rpm)
-        return recording_reference(signal.values, fs, corpus, path, rate)
+        return recording_reference(signal.values, fs, corpus, path, rate, analysis.options()["band"])
     if path.resolve() == corpus.resolve():
         return table
     check_durations(corpus, path)
-    return table_of(path, speed, team)
+    return table_of(path, speed, team, analysis)

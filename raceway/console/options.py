@@ -88,6 +88,52 @@ def worker_options(command: Any) -> Any:
     return _workers(_scheduler(command))
 
 
+class Analysis(NamedTuple):
+    """Values of the options ``--channel`` and ``--band``; None for the first channel and for the default band."""
+
+    channel: str | None = None
+    band: tuple[float, float] | None = None
+
+    def options(self) -> dict[str, Any]:
+        """Arguments ``channel`` and ``band`` of a function of features."""
+        from features.band import DEFAULT_BAND, Band  # not at the top: help needs nothing of features
+
+        return {"channel": self.channel or 0, "band": Band(*(self.band or DEFAULT_BAND))}
+
+
+USUAL_ANALYSIS = Analysis()
+
+
+def _checked_band(
+    _context: click.Context, _option: click.Parameter, edges: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    if edges is None:
+        return None
+    from features.band import checked_band
+
+    try:
+        return checked_band(*edges)
+    except ValueError as error:
+        raise click.BadParameter(str(error)) from None
+
+
+channel_option: Decorator = click.option(
+    "--channel", metavar="NAME", help="Channel by its name; by default the first (raceway info DIR lists them)."
+)
+band_option: Decorator = click.option(
+    "--band",
+    type=(float, float),
+    metavar="LOW HIGH",
+    callback=_checked_band,
+    help="Band of the envelopes [Hz], by default 300 5000; for sensors with a resonance above it.",
+)
+
+
+def analysis_options(command: Any) -> Any:
+    """Add the options ``--channel`` and ``--band``."""
+    return channel_option(band_option(command))
+
+
 speed_option: Decorator = click.option(
     "--speed",
     type=click.Choice(["off", "check", "correct"]),

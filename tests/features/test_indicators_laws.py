@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from features.band import DEFAULT_BAND
 from features.indicators import GROUP_FEATURES, GROUPS, NAMES, Orders, feature_groups, feature_names, indicators
 from features.signal.lines import FAMILIES
 
@@ -51,7 +52,7 @@ def test_names_are_unique_and_each_has_its_group():
 def test_each_group_has_one_function_that_computes_all_its_features():
     assert tuple(GROUP_FEATURES) == GROUPS
     for group, compute in GROUP_FEATURES.items():
-        found = compute(noise(0).astype(np.float32), 12_000.0, np.full(4, 30.0), orders(4))
+        found = compute(noise(0).astype(np.float32), 12_000.0, np.full(4, 30.0), orders(4), DEFAULT_BAND)
         assert group in found
         assert {name: values.shape for name, values in found.items()} == {name: (4, len(NAMES[name])) for name in found}
 

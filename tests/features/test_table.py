@@ -11,6 +11,7 @@ import xarray as xr
 from distributed import Client
 
 from features import feature_table
+from features.band import Band, band_of
 from features.indicators import GROUPS, feature_names
 from features.table import part_features
 from features.table_files import read_table, write_table
@@ -314,7 +315,7 @@ def test_a_file_without_a_feature_table_is_refused_by_name(tmp_path, corpus):
 
 @pytest.mark.parametrize("channel", [-1, 2])
 def test_a_channel_that_does_not_exist_is_refused(corpus, channel):
-    with pytest.raises(CorpusError, match="give one of 0 to 1"):
+    with pytest.raises(CorpusError, match="give one of housing, sensor"):
         feature_table(corpus, channel=channel)
 
 
@@ -335,3 +336,20 @@ def test_a_part_that_cannot_be_read_is_named_in_a_sentence(tmp_path, damage):
         part.write_bytes(b"not a corpus")
     with pytest.raises(CorpusError, match=re.escape(f"{part}: not a readable netCDF-4 part")):
         part_features(part)
+
+
+def test_a_channel_can_be_given_by_its_name(corpus):
+    by_name, by_number = feature_table(corpus, ("time",), channel="sensor"), feature_table(corpus, ("time",), channel=1)
+    assert by_name.identical(by_number)
+    assert by_name.attrs["channel"] == "sensor"
+    with pytest.raises(
+        CorpusError, match=r"no channel senor; give one of housing, sensor, or its number from 0; did you mean sensor\?"
+    ):
+        feature_table(corpus, ("time",), channel="senor")
+
+
+def test_a_table_names_the_band_of_its_features(corpus, tmp_path):
+    write_table(feature_table(corpus, ("bands",), band=Band(300.0, 6000.0)), tmp_path / "table.nc")
+    table = read_table(tmp_path / "table.nc")
+    assert band_of(table.attrs) == (300.0, 6000.0)
+    assert tuple(table["feature"].values) == feature_names(("bands",), Band(300.0, 6000.0))

@@ -122,7 +122,7 @@ def test_samples_that_are_not_finite_are_zero(corpus):
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        ({"channel": 1}, "no channel 1; give one of 0 to 0"),
+        ({"channel": 1}, "no channel 1; give one of housing"),
         ({"per_turn": 64, "turns": 0}, "0 turns of 64 samples are no signal; give turns and per_turn above 0"),
     ],
 )

@@ -335,7 +335,7 @@ class Foreign(BaseEstimator):
         (skops.io.dumps(Foreign()), "Foreign, which no model of raceway contains"),
         (skops.io.dumps({"raceway_model": 99}), "not a model of this version"),
         (skops.io.dumps([1, 2]), "not a model of this version"),
-        (skops.io.dumps({"raceway_model": 3, "estimator": 3}), "not a complete model"),
+        (skops.io.dumps({"raceway_model": 4, "estimator": 3}), "not a complete model"),
     ],
 )
 def test_a_foreign_model_is_refused(content, sentence, tmp_path):

@@ -142,6 +142,8 @@ WRONG_FIELDS = [
     ("features", "abcdef", "features"),
     ("features", (1, 2, 3, 4, 5, 6), "features"),
     ("groups", 5, "groups"),
+    ("band", (5.0,), "band"),
+    ("band", (300.0, 1e9), "band[1]"),
     ("corpus", None, "corpus"),
     ("corpus", "\ud800", "corpus: "),
     ("groups", ("\ud800",), "groups[0]: "),

@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from features.band import DEFAULT_BAND
 from features.baselines.predictions import UNSURE
 from features.diagnosis import diagnose
 from features.diagnosis.diagnose import CONTRADICTING, LONGEST, Diagnosis, Recorded, _agreed, _beginning, _worded
@@ -16,7 +17,9 @@ from gen.corpus import FAULTS
 
 FS, RATE, FASTER = 12_000.0, 25.0, 26.0
 ORDERS = Orders(*map(np.asarray, (0.3983, 3.5848, 5.4152, 2.3567)))
-MODEL = SimpleNamespace(name="made up", groups=("lines",), features=feature_names(("lines",)), classes=FAULTS[:4])
+MODEL = SimpleNamespace(
+    name="made up", groups=("lines",), features=feature_names(("lines",)), classes=FAULTS[:4], band=DEFAULT_BAND
+)
 MODULE = import_module("features.diagnosis.diagnose")  # the package has a function of this name
 
 

@@ -273,7 +273,7 @@ def test_a_record_is_drawn_reproducibly_in_the_format_of_the_suffix(corpus, tmp_
         (0, 0, "picture", "no suffix is no format of pictures"),
         (24, 0, "picture.png", "no record 24; give one of 0 to 23"),
         (-1, 0, "picture.png", "no record -1; give one of 0 to 23"),
-        (0, 1, "picture.png", "no channel 1; give one of 0 to 0"),
+        (0, 1, "picture.png", "no channel 1; give one of housing"),
         (0, 0, "missing/picture.png", "could not be written"),
     ],
 )

@@ -1,0 +1,26 @@
+"""The channel of a corpus that features are computed from, by name or number."""
+
+import difflib
+from pathlib import Path
+
+import xarray as xr
+
+from gen.errors import CorpusError
+
+
+def channel_number(corpus: xr.Dataset, channel: int | str, where: Path | str) -> int:
+    """Number of a channel that is given by its name or its number; ``where`` is the corpus in the error.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus has no such channel.
+    """
+    names = [str(name) for name in corpus["channel"].values]
+    if channel in names:
+        return names.index(str(channel))
+    if isinstance(channel, int) and 0 <= channel < len(names):
+        return channel
+    near = difflib.get_close_matches(str(channel), names, n=1)
+    meant = f"; did you mean {near[0]}?" if near else "."
+    raise CorpusError(f"{where}: no channel {channel}; give one of {', '.join(names)}, or its number from 0{meant}")
