@@ -66,5 +66,7 @@ def test_a_model_keeps_its_band_and_refuses_features_of_another(tmp_path):
     model = load_model(tmp_path / "model.skops")
     assert model.band == band
     assert evaluate(tmp_path / "corpus", model).records == 48
-    with pytest.raises(CorpusError, match=r"computed from 300-5000 Hz, .* trained on 100-1800 Hz; .* --band 100 1800\.$"):
+    with pytest.raises(
+        CorpusError, match=r"computed from 300-5000 Hz, .* trained on 100-1800 Hz; .* --band 100 1800\.$"
+    ):
         predict(feature_table(tmp_path / "corpus"), model)
