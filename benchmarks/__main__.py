@@ -27,7 +27,8 @@ from benchmarks import (
     truth,
 )
 from benchmarks.pairs import Line, Row, Skipped
-from benchmarks.results import facts, keep, processor, results_file
+from benchmarks.results import facts, keep, results_file
+from raceway.studies.doctor import processor_key
 
 SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "roofline": roofline.rows,
@@ -61,7 +62,7 @@ def _cells(row: Row) -> tuple[str, ...]:
 
 def main(arguments: list[str]) -> None:
     if arguments[:1] == ["against"]:
-        keep([against.main(arguments[1:])], results_file(processor()), facts())
+        keep([against.main(arguments[1:])], results_file(processor_key()), facts())
         return
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(SUBJECTS)}; by default all")
@@ -77,7 +78,7 @@ def main(arguments: list[str]) -> None:
         for line in SUBJECTS[name]():
             print(f"{line.name}: {line.ratio:.3g}" if isinstance(line, Row) else line.why, file=sys.stderr)
             lines.append(line)
-            keep([line], results_file(processor()), facts())
+            keep([line], results_file(processor_key()), facts())
     print(table(lines))
 
 

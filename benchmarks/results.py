@@ -5,7 +5,6 @@ A run replaces the rows that it measured and keeps the others, so each row has t
 
 import json
 import os
-import platform
 from collections.abc import Iterable, Mapping
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
@@ -16,36 +15,9 @@ from raceway.studies.timing import machine
 
 FOLDER = Path(__file__).parent
 PREFIX = "results-"
-VENDORS = {"GenuineIntel": "intel", "AuthenticAMD": "amd"}
 
 Rows = dict[str, dict[str, Any]]
 """Rows by name: the fields of :class:`Row`, and ``facts``."""
-
-
-def processor() -> str:
-    """Vendor, family and model of the processor, by which a file of results is named.
-
-    >>> processor() == processor().lower()
-    True
-    """
-    try:
-        text = Path("/proc/cpuinfo").read_text(encoding="utf-8")
-    except OSError:
-        text = ""
-    return _processor(text) or platform.machine().lower()
-
-
-def _processor(cpuinfo: str) -> str | None:
-    """
-    >>> _processor("vendor_id : AuthenticAMD\\ncpu family : 26\\nmodel : 2\\nmodel name : AMD EPYC")
-    'amd-26-2'
-    """
-    lines = (line.partition(":") for line in cpuinfo.splitlines())
-    found = {key.strip(): value.strip() for key, _, value in lines}
-    if not {"vendor_id", "cpu family", "model"} <= set(found):
-        return None
-    vendor = VENDORS.get(found["vendor_id"], found["vendor_id"].lower())
-    return f"{vendor}-{found['cpu family']}-{found['model']}"
 
 
 def facts() -> dict[str, Any]:

@@ -15,6 +15,7 @@ from raceway.commands import (
     comparing,
     corpora,
     diagnosing,
+    doctor,
     feature_tables,
     gallery,
     importing,
@@ -113,6 +114,7 @@ for command in (
     benchmarking.bench,
     reproduce.reproduce,
     gallery.gallery,
+    doctor.doctor,
 ):
     cli.add_command(command)
 keep_examples(cli)

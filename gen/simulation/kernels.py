@@ -66,6 +66,11 @@ _kernel: Any = integrate_lanes
 _on_disk = None if _kernel.stats.cache_path is None else SharedCache(_kernel)
 
 
+def cache_folder() -> Path | None:
+    """Folder of the compiled kernels; None if none can be written."""
+    return None if _on_disk is None else Path(_on_disk.cache_path)
+
+
 def is_compiled(shape: Shape) -> bool:
     """Whether the kernel of a shape is loaded or on disk."""
     types = signature(shape)

@@ -12,6 +12,7 @@ diagnosing     a diagnosis of one recording
 benchmarking   scores of all baselines, and the speed of this machine
 comparing      synthetic records against real ones
 reproduce      the seed paper run again
+doctor         what this machine and installation can do
 gallery        a page of pictures of simulated signals
 ============== ================================================================
 

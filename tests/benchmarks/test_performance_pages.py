@@ -6,7 +6,8 @@ import pytest
 
 from benchmarks.pairs import Row, Skipped
 from benchmarks.performance_pages import PAGE, TARGETS, short, tables, with_tables
-from benchmarks.results import every_result, keep, processor, results_file
+from benchmarks.results import every_result, keep, results_file
+from raceway.studies.doctor import processor_key
 
 FACTS = {"processor": "one", "cores": 2, "python": "3.11", "numba": "0.68", "numpy": "2.4"}
 
@@ -40,7 +41,7 @@ def test_every_row_stands_in_a_table():
 
 
 def test_a_row_is_replaced_and_the_others_are_kept(tmp_path):
-    path = results_file(processor(), tmp_path)
+    path = results_file(processor_key(), tmp_path)
     keep([row("kernel plain", 1.0), row("kernel full", 0.5)], path, FACTS)
     keep([row("kernel plain", 2.0), Skipped("kernel fused", "no compiler")], path, FACTS | {"numpy": "3"})
     rows = json.loads(path.read_text())
