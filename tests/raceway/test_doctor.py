@@ -17,7 +17,8 @@ def idle(monkeypatch):
     monkeypatch.setattr(doctor, "_speed", lambda: doctor.Finding("speed of the kernel", "not measured"))
 
 
-def test_the_machine_of_the_tests_has_all_that_is_needed(idle):
+@pytest.mark.usefixtures("idle")
+def test_the_machine_of_the_tests_has_all_that_is_needed():
     made = CliRunner().invoke(cli, ["doctor", "--json"], standalone_mode=False)
     facts = json.loads(made.stdout)
     assert facts["problems"] == 0
@@ -27,7 +28,7 @@ def test_the_machine_of_the_tests_has_all_that_is_needed(idle):
     assert all((one["state"] == "fine") == (one["advice"] == "") for one in facts["findings"])
 
 
-def test_a_library_that_is_missing_or_too_old_is_a_problem_with_its_remedy(idle, monkeypatch):
+def test_a_library_that_is_missing_or_too_old_is_a_problem_with_its_remedy(monkeypatch):
     def found(name):
         if name == "skops":
             raise PackageNotFoundError
