@@ -28,7 +28,9 @@ a channel are at the ends of the converter, or in floating point at the largest 
 is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
-and netCDF4 apply when they read, or 32-bit floating point. Text is stored as fixed-length characters. Every other
+and netCDF4 apply when they read, or 32-bit floating point. `scale_factor` and `add_offset` are 32-bit floating point,
+and so is the signal that these readers return; divided by `scale_factor` and rounded, it gives the counts exactly. In
+older corpora both are 64-bit, and so is what readers return. Text is stored as fixed-length characters. Every other
 variable has one value per record, and a `role`:
 
 - `operating`: known to an analyst on site; features may use it,

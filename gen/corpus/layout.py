@@ -9,7 +9,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.schema import SIGNAL
+from gen.corpus.schema import MISSING_COUNT, SIGNAL
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -26,13 +26,13 @@ class Packing(NamedTuple):
     """Storage of a signal: its type, the factor from counts to m s-2, and the count that stands for a missing sample."""
 
     dtype: np.dtype[Any]
-    scale: float | None
+    scale: np.floating[Any] | None
     fill: int | None
 
     @property
     def decoded(self) -> np.dtype[Any]:
-        """Type of the decoded signal."""
-        return self.dtype if self.scale is None else np.dtype(np.float64)
+        """Type of the decoded signal: that of the scale factor, double in older corpora, single in new ones."""
+        return self.dtype if self.scale is None else self.scale.dtype
 
     def decode(self, stored: NDArray[Any], out: NDArray[Any]) -> None:
         """Write the signal in m s-2 into ``out``; a missing sample is NaN."""
@@ -53,15 +53,17 @@ def packing_of(stored: h5py.Dataset) -> Packing:
             raise ValueError(f"{SIGNAL} is floating point and has a scale_factor or an add_offset")
         return Packing(stored.dtype, None, None)
     scale, offset, fill = (attributes[name] for name in PACKING)
-    if not (
-        isinstance(scale, float)
-        and np.isfinite(scale)
-        and scale > 0
-        and offset == 0
-        and getattr(fill, "dtype", None) == np.int16
-    ):
+    if not (_is_scale(scale) and offset == 0 and getattr(fill, "dtype", None) == np.int16):
         raise ValueError(f"{SIGNAL} has scale_factor {scale!r}, add_offset {offset!r}, _FillValue {fill!r}")
-    return Packing(stored.dtype, float(scale), int(fill))
+    return Packing(stored.dtype, scale, int(fill))
+
+
+def _is_scale(scale: Any) -> bool:
+    """Whether a scale factor is a positive number with which every count is a normal number of its type."""
+    if not isinstance(scale, (np.float32, np.float64)):
+        return False
+    limits = np.finfo(scale.dtype)
+    return bool(limits.smallest_normal <= scale <= limits.max / -MISSING_COUNT)
 
 
 def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:

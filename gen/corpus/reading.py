@@ -276,8 +276,8 @@ def open_part(path: Path) -> xr.Dataset:
 def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
     """Signal of one channel of a part in single precision, shape (record, elapsed_time) [m s-2], and columns by name.
 
-    It takes half the time of :func:`open_part`, which decodes in double precision; features use it. Chunks are inflated without the lock,
-    so that threads run in parallel.
+    Features use it: it closes the part, and reads the columns without xarray. Chunks are inflated without the lock, so that threads run in
+    parallel.
     """
     source = source_of(path)
     with _opened(source) as file:
