@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
+    from gen.sharing.items import torch_dataset
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -64,6 +65,7 @@ __all__ = [
     "shaft_angles",
     "simulate",
     "stored_scenario",
+    "torch_dataset",
     "validate_corpus",
 ]
 
@@ -75,6 +77,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing.items": ("torch_dataset",),
         "gen.simulation.simulate": ("simulate",),
     },
 )

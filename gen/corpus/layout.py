@@ -60,7 +60,7 @@ def packing_of(stored: h5py.Dataset) -> Packing:
 
 def _is_scale(scale: Any) -> bool:
     """Whether a scale factor is a positive number with which every count is a normal number of its type."""
-    if not isinstance(scale, (np.float32, np.float64)):
+    if getattr(scale, "dtype", None) not in (np.float32, np.float64):
         return False
     limits = np.finfo(scale.dtype)
     return bool(limits.smallest_normal <= scale <= limits.max / -MISSING_COUNT)

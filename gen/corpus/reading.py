@@ -6,6 +6,7 @@ Datasets hold paths instead of handles, so they can be pickled, sent to dask wor
 """
 
 import math
+import os
 import zlib
 from collections import OrderedDict
 from collections.abc import Iterator, Sequence
@@ -61,6 +62,8 @@ class _OpenFile(NamedTuple):
 
 
 _open_files: OrderedDict[Source, _OpenFile] = OrderedDict()
+_opened_by = os.getpid()
+"""Process that opened the files. A forked process closes them and opens its own."""
 
 
 def source_of(path: Path | str) -> Source:
@@ -90,6 +93,11 @@ def _opened(source: Source) -> Iterator[_OpenFile]:
 
 def _open_file(source: Source) -> _OpenFile:
     """Open file of a source; if too many are open, the least recently used one is closed."""
+    global _opened_by
+    if _opened_by != os.getpid():
+        while _open_files:
+            _open_files.popitem()[1].handle.close()
+        _opened_by = os.getpid()
     if stamp(source.path) != source.stamp:
         raise CorpusError(f"{source.path}: changed since the corpus was opened; open the corpus again.")
     if source not in _open_files:

@@ -5,5 +5,6 @@ module      responsibility
 =========== ======================================================
 where       conditions on records: parsed, never evaluated as Python
 choice      choice of records and channels
+items       records one by one or in batches, for training
 =========== ======================================================
 """
