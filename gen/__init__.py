@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
+    from gen.sharing.portable import pack
+    from gen.sharing.unpacking import unpack
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -59,11 +61,13 @@ __all__ = [
     "draw_scenarios",
     "generate",
     "open_corpus",
+    "pack",
     "read_recipe",
     "replay",
     "shaft_angles",
     "simulate",
     "stored_scenario",
+    "unpack",
     "validate_corpus",
 ]
 
@@ -75,6 +79,8 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing.portable": ("pack",),
+        "gen.sharing.unpacking": ("unpack",),
         "gen.simulation.simulate": ("simulate",),
     },
 )

@@ -22,8 +22,9 @@ from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
 
 _COMMENT = (
-    f"This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. {SIGNAL} is an HDF5 virtual "
-    "dataset over the files in parts/. HDF5 reads a part that it cannot open as missing values, without an error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
+    "This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. "
+    f"{SIGNAL} is an HDF5 virtual dataset over the files in parts/. HDF5 reads a part that it cannot open as missing values, without an "
+    "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
     "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
 )
 _CHUNK_RECORDS = 256  # records whose text forms one chunk

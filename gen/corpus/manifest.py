@@ -148,7 +148,9 @@ def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, 
 
 
 def read_manifest(directory: Path) -> Manifest:
-    """Read and check ``manifest.json`` of a folder or of a packed file, and the journal if the corpus is unfinished; names that lead out of the corpus are refused.
+    """Read and check ``manifest.json`` of a folder or of a packed file, and the journal if the corpus is unfinished.
+
+    Names that lead out of the corpus are refused.
 
     Raises
     ------

@@ -307,7 +307,7 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
 
 
 class StoredBlock(NamedTuple):
-    """Consecutive records of a part as they are stored: counts or accelerations, and the deflated chunks of counts by record and channel."""
+    """Consecutive records of a part as they are stored; ``chunks`` are the deflated counts by record and channel, if they are deflated."""
 
     values: NDArray[Any]
     chunks: list[bytes] | None

@@ -81,7 +81,9 @@ def unpack(file: Path, output: Path, as_json: bool) -> None:
     with progress("unpacking", "records") as report:
         made = unpack_corpus(file, output, progress=report)
     if not made.same_bytes:
-        notice("other versions of the libraries: the parts have other bytes and new hashes, their records are the same.")
+        notice(
+            "other versions of the libraries: the parts have other bytes and new hashes, their records are the same."
+        )
     if as_json:
         show.as_json(made._asdict())
         return
