@@ -175,14 +175,15 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
                 )
             if manifest.versions == facts["versions"]:  # other versions may write other bytes
                 known = {row.name: row for row in manifest.parts}
+            if not facts["publication"].stored:
+                facts["publication"] = manifest.publication  # given after the corpus was made
         elif manifest is None and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
         if not known:
             journal.unlink(missing_ok=True)  # first: no row of other versions may stand beside the new manifest
         write_manifest(directory, known.values(), complete=False, **facts)
         journal.unlink(missing_ok=True)
-        if not known:
-            write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
+        write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
         remove_left_behind(directory / "parts", "part-*.nc")
     except OSError as error:
@@ -196,6 +197,7 @@ def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, A
         "recipe": recipe.name,
         "recipe_sha256": recipe_hash(recipe),
         "overrides": {"seed": seed, "records": records},
+        "publication": recipe.publication,
         "versions": library_versions(),
     }
 
