@@ -32,7 +32,7 @@ from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.corpus.acdd import publication_attributes
-    from gen.corpus.card import data_card
+    from gen.corpus.card.page import data_card, write_card
     from gen.corpus.codecs import CODECS, Codec
     from gen.corpus.description import format_page
     from gen.corpus.files import (
@@ -124,6 +124,7 @@ __all__ = [
     "temporary_folder",
     "validate_corpus",
     "whole_or_not_at_all",
+    "write_card",
     "write_durably",
     "write_index",
     "write_manifest",
@@ -136,7 +137,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "gen.corpus.acdd": ("publication_attributes",),
-        "gen.corpus.card": ("data_card",),
+        "gen.corpus.card.page": ("data_card", "write_card"),
         "gen.corpus.description": ("format_page",),
         "gen.corpus.codecs": ("CODECS", "Codec"),
         "gen.corpus.files": (

@@ -3,16 +3,14 @@
 import fcntl
 import json
 import os
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
 from gen.corpus.acdd import publication_attributes
-from gen.corpus.files import write_text_durably
-from gen.corpus.index import new_index, open_corpus, write_index
+from gen.corpus.card.page import write_card
+from gen.corpus.index import new_index, write_index
 from gen.corpus.manifest import (
     INDEX_NAME,
     Manifest,
@@ -29,29 +27,26 @@ from gen.corpus.publication import Publication
 from gen.corpus.signals import SignalCounts, summed
 from gen.errors import CorpusError
 
-Page = Callable[[xr.Dataset, SignalCounts], str]
-
 
 def finish_corpus(
-    directory: Path, rows: Iterable[PartRow], page: Page, *, publication: Publication | None = None, **facts: Any
+    directory: Path, rows: Iterable[PartRow], *, publication: Publication | None = None, **facts: Any
 ) -> SignalCounts:
     """Write index, manifest and data card over finished parts; returns the counts of records that cannot be used.
 
-    ``page`` makes the data card of the opened corpus; ``facts`` are further fields of the manifest. The date of ``publication`` is that
-    of ``SOURCE_DATE_EPOCH`` if it has none.
+    ``facts`` are further fields of the manifest. The date of ``publication`` is that of ``SOURCE_DATE_EPOCH`` if it has none.
     """
     rows = list(rows)
     signals = summed(row.signals for row in rows)
     facts["publication"] = (publication or Publication()).dated()
     write_index(directory, rows, publication_attributes(_manifest(manifest_content(rows, **facts))))
     write_manifest(directory, rows, complete=True, **facts)
-    with open_corpus(directory, check="size") as corpus:
-        write_text_durably(page(corpus, signals), directory / "README.md")
+    write_card(directory)
     return signals
 
 
 def publish(directory: Path | str, publication: Publication) -> None:
-    """Change licence, creators and references of a finished corpus: in the manifest and in the attributes of ``corpus.nc``.
+    """Change licence, creators and references of a finished corpus: in the manifest, in the attributes of ``corpus.nc`` and in
+    the data card.
 
     The parts stay as they are. The files are those of a corpus that was made with this publication from the start. A killed call leaves
     a corpus that can be read, with the old or the new facts, and the same call completes it.
@@ -74,6 +69,7 @@ def publish(directory: Path | str, publication: Publication) -> None:
             changed["index"] = listed_file(temporary)
             write_content(directory, content | {"next_index": changed["index"]})  # until the new index is in place
         write_content(directory, changed)
+        write_card(directory)
 
 
 def _manifest(content: dict[str, Any]) -> Manifest:

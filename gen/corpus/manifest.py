@@ -66,6 +66,8 @@ class Manifest(Strict):
     versions: Annotated[dict[str, str], Field(default_factory=dict)]
     failures: _Texts = ()
     importer: str | None = None
+    basis: _Texts = ()
+    """Sentences on what labels and units of recordings rest on."""
     recordings: Count | None = None
     skipped: _Texts = ()
     warnings: _Texts = ()
