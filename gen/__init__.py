@@ -43,7 +43,7 @@ from gen.errors import ClusterError, CorpusError, RacewayError, RecipeError, Sim
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gen.corpus import open_corpus, validate_corpus
+    from gen.corpus import Publication, open_corpus, publish, read_publication, validate_corpus
     from gen.generation import generate
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
@@ -53,12 +53,15 @@ if TYPE_CHECKING:
 __all__ = [
     "ClusterError",
     "CorpusError",
+    "Publication",
     "RacewayError",
     "RecipeError",
     "SimulationError",
     "draw_scenarios",
     "generate",
     "open_corpus",
+    "publish",
+    "read_publication",
     "read_recipe",
     "replay",
     "shaft_angles",
@@ -70,7 +73,7 @@ __all__ = [
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "gen.corpus": ("open_corpus", "validate_corpus"),
+        "gen.corpus": ("Publication", "open_corpus", "publish", "read_publication", "validate_corpus"),
         "gen.generation": ("generate",),
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),

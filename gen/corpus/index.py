@@ -4,7 +4,8 @@
 reader sees one file. :func:`open_corpus` reads the variables from it, and the signal from the parts.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ _COMMENT = (
     "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
     "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
 )
+_NO_ATTRIBUTES: Mapping[str, str] = {}
 _CHUNK_RECORDS = 256  # records whose text forms one chunk
 _COPIED_BYTES = 16_000_000  # of the variables of some parts, in memory at a time
 
@@ -56,20 +58,31 @@ def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
     return open_records(directory / INDEX_NAME, paths, [row.records for row in read_manifest(directory).parts])
 
 
-def write_index(directory: Path, rows: list[PartRow]) -> None:
-    """Write ``corpus.nc`` over the finished parts atomically; the same parts give the same bytes.
+def write_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str] = _NO_ATTRIBUTES) -> None:
+    """Write ``corpus.nc`` over the finished parts atomically; the same parts and attributes give the same bytes.
+
+    ``attributes`` are global attributes beside those of the parts.
 
     Raises
     ------
     CorpusError
         If writing fails, with the reason that the system gives.
     """
-    with whole_or_not_at_all(directory / INDEX_NAME) as temporary, LIBRARY_LOCK:
-        _write_variables(directory, rows, temporary)
-        _write_virtual_signal(directory, rows, temporary)
+    with new_index(directory, rows, attributes):
+        pass
 
 
-def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
+@contextmanager
+def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str]) -> Iterator[Path]:
+    """Path of a written index that replaces ``corpus.nc`` at the end of the block."""
+    with whole_or_not_at_all(directory / INDEX_NAME) as temporary:
+        with LIBRARY_LOCK:
+            _write_variables(directory, rows, temporary, attributes)
+            _write_virtual_signal(directory, rows, temporary)
+        yield temporary
+
+
+def _write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> None:
     """Copy all variables except the signal; the width of a text is that of the longest in any part.
 
     The parts are read one after the other with h5py, and copied ``_COPIED_BYTES`` at a time: opening one with netCDF4 takes 4 ms, and
@@ -90,6 +103,7 @@ def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
         lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
         lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
         _declare_like(first, index, lengths)
+        index.setncatts(attributes)
         start = 0
         for block in _blocks(directory, rows, copied):
             for name, values in zip(copied, block, strict=True):
