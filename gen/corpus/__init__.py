@@ -24,7 +24,8 @@ card          data card of a corpus
 acdd          global attributes of a published corpus
 finishing     index, manifest and data card of finished parts
 description   page about the format
-============= =============================================="""
+============= =====================================================
+"""
 
 from typing import TYPE_CHECKING
 

@@ -19,8 +19,8 @@ from gen.corpus import (
     SIGNAL,
     Manifest,
     PartRow,
+    Publication,
     SignalCounts,
-    data_card,
     finish_corpus,
     open_corpus,
     part_name,
@@ -29,7 +29,6 @@ from gen.corpus import (
     write_durably,
     write_part,
 )
-from gen.corpus.card import plain_text
 from gen.corpus.manifest import Numbers, Origin
 from gen.corpus.record_hashes import RENUMBERED
 from gen.errors import CorpusError
@@ -119,8 +118,7 @@ def merge(
         with new_corpus(output) as folder:
             rows = _write_parts(sources, added, finish, folder, progress)
             origins = _with_recipes(sources, added, folder)
-            page = partial(data_card, origin=_page(origins))
-            signals = finish_corpus(folder, rows, page, **_facts(sources, title, origins))
+            signals = finish_corpus(folder, rows, publication=_publication(sources), **_facts(sources, title, origins))
     return Merged(output, total, len(rows), len(origins), columns.filled, signals)
 
 
@@ -159,7 +157,7 @@ def _check_same_form(first: _Source, other: _Source, float32: bool) -> None:
 
 
 def _channels(source: _Source) -> str:
-    return ", ".join(plain_text(name) for name in source.corpus["channel"].values)
+    return ", ".join(str(name) for name in source.corpus["channel"].values)
 
 
 def _sample_rate(source: _Source) -> str:
@@ -285,13 +283,7 @@ def _facts(sources: Sequence[_Source], title: str, origins: Sequence[Origin]) ->
     return facts | {"origins": [origin.model_dump(mode="json") for origin in origins]}
 
 
-def _page(origins: Sequence[Origin]) -> str:
-    """Paragraph of the data card on where the records come from."""
-    names = [f"{plain_text(origin.title or 'not named')} ({_maker(origin)})" for origin in origins]
-    return f"Joined by `raceway merge` from {len(names)} corpora: {'; '.join(names)}. Machines of different corpora have different numbers."
-
-
-def _maker(origin: Origin) -> str:
-    if origin.recipe is not None:
-        return f"recipe {plain_text(origin.recipe)}"
-    return f"imported by {plain_text(origin.importer)}" if origin.importer else "source not stated"
+def _publication(sources: Sequence[_Source]) -> Publication:
+    """Licence, creators and references if they are the same for all corpora; else none, since they cannot be joined."""
+    first, *others = (source.manifest.publication for source in sources)
+    return first if all(other == first for other in others) else Publication()
