@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
+    from gen.sharing import merge, select
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -59,11 +60,13 @@ __all__ = [
     "SimulationError",
     "draw_scenarios",
     "generate",
+    "merge",
     "open_corpus",
     "publish",
     "read_publication",
     "read_recipe",
     "replay",
+    "select",
     "shaft_angles",
     "simulate",
     "stored_scenario",
@@ -78,6 +81,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing": ("merge", "select"),
         "gen.simulation.simulate": ("simulate",),
     },
 )
