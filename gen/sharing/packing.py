@@ -68,7 +68,7 @@ def pack_whole(directory: Path, file: Path, codec: Codec, progress: Progress | N
     _check_alike(paths, [form for _, form in forms])
     with whole_or_not_at_all(file) as temporary:
         with LIBRARY_LOCK:
-            write_variables(directory, manifest.parts, temporary, _COMMENT)
+            write_variables(directory, manifest.parts, temporary, {"comment": _COMMENT})
             _declare(temporary, directory, paths[0], codec)
             _write_files(temporary, small_files(directory), _contents(manifest, forms))
         direct = codec == "zlib" == forms[0][1]["codec"]

@@ -8,7 +8,7 @@ import numpy as np
 
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import temporary_beside
-from gen.corpus.manifest import part_paths
+from gen.corpus.manifest import INDEX_NAME, part_paths
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of, form_of
 from gen.corpus.reading import stored_blocks
@@ -18,7 +18,7 @@ from gen.errors import CorpusError
 from gen.sharing.copying import in_floating_point
 from gen.sharing.packing import PackedFile, pack_whole, small_files
 from gen.sharing.selecting import select
-from gen.sharing.unpacking import finish_again
+from gen.sharing.unpacking import corpus_attributes, finish_again
 
 Progress = Callable[[int, int], None]
 
@@ -84,7 +84,7 @@ def _convert(directory: Path, output: Path) -> None:
     """Write a corpus with accelerations in single precision in place of counts, one part at a time."""
     (output / "parts").mkdir(parents=True)
     rows = [_converted(path, output / "parts" / path.name) for path in part_paths(directory)]
-    finish_again(output, rows, small_files(directory))
+    finish_again(output, rows, small_files(directory), corpus_attributes(directory / INDEX_NAME))
 
 
 def _converted(path: Path, output: Path) -> PartRow:

@@ -4,18 +4,22 @@ Each record is compared with its hash before it is written. Deflated chunks go b
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.files import temporary_beside
-from gen.corpus.finishing import finish_corpus
-from gen.corpus.manifest import read_manifest
-from gen.corpus.packed import packed_contents, packed_part
+from gen.corpus.finishing import publish
+from gen.corpus.hdf5 import LIBRARY_LOCK
+from gen.corpus.index import write_index
+from gen.corpus.journal import listed
+from gen.corpus.manifest import INDEX_NAME, listed_file, read_manifest, write_content
+from gen.corpus.packed import PACKED, packed_contents, packed_part
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
@@ -23,8 +27,6 @@ from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
-
-_MADE_AGAIN = ("raceway_format", "complete", "records", "signals", "index", "parts")  # keys of a manifest
 
 
 class Unpacked(NamedTuple):
@@ -68,7 +70,7 @@ def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None
                 rows.append(_written_again(file / "parts" / row.name, temporary / "parts" / row.name))
                 if progress is not None:
                     progress(sum(done.records for done in rows), manifest.records)
-            finish_again(temporary, rows, files)
+            finish_again(temporary, rows, files, corpus_attributes(file))
             temporary.replace(output)
     except OSError as error:
         raise CorpusError(
@@ -94,12 +96,24 @@ def _written_again(packed: Path, path: Path) -> PartRow:
     return write_part(dataset, path, codec, chunks)
 
 
-def finish_again(directory: Path, rows: list[PartRow], files: dict[str, bytes]) -> None:
-    """Write the index, and the small files as they were; hashes of parts are new if other libraries gave them other bytes."""
+def corpus_attributes(file: Path) -> dict[str, Any]:
+    """Global attributes of ``corpus.nc`` or of a packed file, without those that only one of them has."""
+    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
+        own = ("comment", "_NCProperties", PACKED)
+        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in own}
+
+
+def finish_again(
+    directory: Path, rows: list[PartRow], files: Mapping[str, bytes], attributes: Mapping[str, Any]
+) -> None:
+    """Write index and small files beside parts; if these have other hashes than before, all that lists hashes is made anew."""
     for name, content in files.items():
-        if name != "manifest.json":
-            (directory / name).parent.mkdir(exist_ok=True)
-            (directory / name).write_bytes(content)
-    card = files.get("README.md", b"").decode()
-    facts = {key: value for key, value in json.loads(files["manifest.json"]).items() if key not in _MADE_AGAIN}
-    finish_corpus(directory, rows, lambda *_: card, **facts)
+        (directory / name).parent.mkdir(exist_ok=True)
+        (directory / name).write_bytes(content)
+    written = json.loads(files["manifest.json"]) | {"parts": [listed(row) for row in rows]}
+    written.pop("next_index", None)
+    write_index(directory, rows, attributes)
+    written["index"] = listed_file(directory / INDEX_NAME)
+    write_content(directory, written)
+    if (directory / "manifest.json").read_bytes() != files["manifest.json"]:
+        publish(directory, read_manifest(directory).publication)
