@@ -9,12 +9,13 @@ from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, plain_file, read_manifest
 from gen.corpus.manifest import Numbers, Origin
+from gen.corpus.record_hashes import stored_signal
 from gen.errors import CorpusError
 from gen.families import made_again
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import Scenario, read_scenario
-from gen.sharing.copying import renumbered
+from gen.sharing.copying import in_floating_point, renumbered
 from gen.simulation.shaft import shaft_angles as angles_of
 from gen.simulation.timeline import timeline
 
@@ -79,13 +80,16 @@ def replay(directory: Path | str, record: int) -> Replayed:
         recipe, origin = corpus_recipe(directory, record), _origin_of(read_manifest(directory), record)
         added = Numbers() if origin is None else origin.added
         number = int(corpus["recording"][record]) - added.recording
-        stored, channels = corpus[SIGNAL][record].values, [str(name) for name in corpus["channel"].values]
+        stored, scale = stored_signal(corpus[SIGNAL].variable[record : record + 1])
+        channels = [str(name) for name in corpus["channel"].values]
         tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
     made = made_again(recipe, number, *tries)
     whole = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
     names = [str(name) for name in whole["channel"].values]
     dataset = renumbered(whole.isel(channel=[names.index(name) for name in channels]), added)
-    again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values.astype(stored.dtype)
+    # counts are compared as counts: an older corpus decodes them to double precision
+    new = dataset if scale is not None else in_floating_point(dataset)
+    again = new[SIGNAL].values
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
 
 
