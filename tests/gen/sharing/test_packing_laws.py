@@ -231,6 +231,8 @@ def test_a_killed_pack_leaves_a_whole_file_or_none(folder, packed, tmp_path):
         if (tmp_path / "x.nc").exists():
             assert (tmp_path / "x.nc").read_bytes() == packed.read_bytes()
             (tmp_path / "x.nc").unlink()
+    pack(folder, tmp_path / "x.nc")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
 
 
 def test_a_killed_unpack_leaves_a_whole_corpus_or_none(folder, packed, tmp_path):
@@ -238,3 +240,5 @@ def test_a_killed_unpack_leaves_a_whole_corpus_or_none(folder, packed, tmp_path)
         if (tmp_path / "d").exists():
             assert files_of(tmp_path / "d") == files_of(folder)
             shutil.rmtree(tmp_path / "d")
+    unpack(packed, tmp_path / "d")
+    assert [path.name for path in tmp_path.iterdir()] == ["d"]
