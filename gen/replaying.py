@@ -7,8 +7,9 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, plain_file, read_manifest
+from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, read_manifest, temporary_folder
 from gen.corpus.manifest import Numbers, Origin
+from gen.corpus.packed import small_file
 from gen.corpus.record_hashes import stored_signal
 from gen.errors import CorpusError
 from gen.families import made_again
@@ -34,12 +35,15 @@ def corpus_recipe(directory: Path, record: int = 0) -> Recipe:
     _check_record(directory, manifest.records, record)
     origin = _origin_of(manifest, record)
     facts, name = (manifest, "recipe.yaml") if origin is None else (origin, origin.recipe_file)
-    if facts.overrides is None or facts.recipe_sha256 is None or name is None or not (directory / name).is_file():
+    content = None if name is None else small_file(directory, name)
+    if facts.overrides is None or facts.recipe_sha256 is None or content is None:
         if origin is not None:
             title = origin.title or "without a title"
             raise CorpusError(f"{directory}: record {record} comes from a corpus ({title}) that was not generated.")
         raise CorpusError(f"{directory}: holds no recipe.yaml, so it was not generated and cannot be replayed.")
-    recipe = read_recipe(plain_file(directory, name), seed=facts.overrides.seed, records=facts.overrides.records)
+    with temporary_folder() as room:  # a packed corpus has no file of it
+        (room / "recipe.yaml").write_bytes(content)
+        recipe = read_recipe(room / "recipe.yaml", seed=facts.overrides.seed, records=facts.overrides.records)
     if recipe_hash(recipe) != facts.recipe_sha256:
         raise CorpusError(f"{directory / name}: is not the recipe of the corpus; restore it to replay.")
     return recipe
