@@ -109,6 +109,16 @@ def test_an_older_corpus_in_double_precision_gives_single_precision(tmp_path):
     assert items[0][0].dtype == items.__getitems__([1, 2])[0][0].dtype == np.float32
 
 
+def test_a_packed_corpus_gives_the_same_items(corpus, tmp_path):
+    gen.pack(corpus[0], tmp_path / "c.nc")
+    choice = {"split": "train", "channels": ["a"]}
+    plain, packed = gen.torch_dataset(corpus[0], **choice), gen.torch_dataset(tmp_path / "c.nc", **choice)
+    assert len(plain) == len(packed) > 2
+    for (signal, fault), (again, same) in zip(plain, packed, strict=True):
+        np.testing.assert_array_equal(signal, again)
+        assert fault == same
+
+
 @pytest.mark.parametrize(
     ("asked", "sentence"),
     [
