@@ -21,6 +21,7 @@ visible     faults that can be seen in their records
 recoverable labels that can be recovered from the signals
 card        data card of a corpus
 acdd        global attributes of a published corpus
+croissant   files, fields and licence for catalogues of data sets
 finishing   index, manifest and data card of finished parts
 description page about the format
 =========== =====================================================
