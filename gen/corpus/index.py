@@ -86,9 +86,7 @@ def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str
         yield temporary
 
 
-def _write_variables(
-    directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]
-) -> dict[str, str]:
+def _write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> dict[str, str]:
     """Copy all variables except the signal; the width of a text is that of the longest in any part.
 
     Returns the global attributes that are still to be written, because they have letters beyond ASCII.

@@ -3,14 +3,24 @@
 import json
 import shutil
 
+import netCDF4
 import pytest
 
-from gen.corpus import Publication, open_corpus, publish, read_manifest, read_publication, validate_corpus
+from gen.corpus import (
+    Publication,
+    open_corpus,
+    part_name,
+    publish,
+    read_manifest,
+    read_publication,
+    validate_corpus,
+    write_part,
+)
 from gen.corpus.finishing import finish_corpus
 from gen.corpus.publication import checked_doi, checked_orcid
 from gen.errors import CorpusError, RecipeError
 from gen.recipe import read_recipe, recipe_hash
-from tests import kills, tone_corpora
+from tests import corpora, kills, tone_corpora
 
 FACTS = {
     "license": "CC-BY-4.0",
@@ -112,7 +122,7 @@ def test_an_altered_or_unfinished_corpus_is_not_published(folder):
     with pytest.raises(CorpusError, match="is altered"):
         publish(folder, WHOLE)
     assert contents(folder) == before
-    with pytest.raises(CorpusError, match="no such folder|cannot be opened"):
+    with pytest.raises(CorpusError, match=r"no such folder|cannot be opened"):
         publish(folder / "nowhere", WHOLE)
 
 
@@ -123,7 +133,7 @@ def test_the_date_is_that_of_the_build_if_none_is_given(folder, monkeypatch):
     publish(folder, read_publication({"date": "2020-02-29"}))
     assert read_manifest(folder).publication.date == "2020-02-29"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
-    with pytest.raises(CorpusError, match="^SOURCE_DATE_EPOCH: 'yesterday' is not a time"):
+    with pytest.raises(CorpusError, match=r"^SOURCE_DATE_EPOCH: 'yesterday' is not a time"):
         publish(folder, read_publication({}))
 
 
@@ -177,3 +187,15 @@ def test_a_wrong_fact_is_refused_with_one_sentence(write_recipe, tmp_path, key):
 @pytest.mark.parametrize("text", ["CC-BY-4.0", "CC0-1.0", "MIT OR Apache-2.0", "GPL-2.0+", "LicenseRef-ours"])
 def test_forms_of_spdx_are_taken(text):
     assert read_publication({"license": text}).license == text
+
+
+def test_a_title_beyond_ascii_is_read_back_from_index_and_parts(tmp_path):
+    """netCDF4 writes it with variable length, which no file of the format has."""
+    folder, title = tmp_path / "corpus", "Wälzlager № 1"
+    (folder / "parts").mkdir(parents=True)
+    row = write_part(corpora.dataset(0, 3).assign_attrs(title=title), folder / "parts" / part_name(0))
+    finish_corpus(folder, [row])
+    assert validate_corpus(folder) == []
+    with open_corpus(folder) as corpus, netCDF4.Dataset(folder / "corpus.nc") as index:
+        assert corpus.attrs["title"] == index.title == title
+    assert title in (folder / "README.md").read_text()
