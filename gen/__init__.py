@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
+    from gen.sharing.portable import pack
+    from gen.sharing.unpacking import unpack
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -60,6 +62,7 @@ __all__ = [
     "draw_scenarios",
     "generate",
     "open_corpus",
+    "pack",
     "publish",
     "read_publication",
     "read_recipe",
@@ -67,6 +70,7 @@ __all__ = [
     "shaft_angles",
     "simulate",
     "stored_scenario",
+    "unpack",
     "validate_corpus",
 ]
 
@@ -78,6 +82,8 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing.portable": ("pack",),
+        "gen.sharing.unpacking": ("unpack",),
         "gen.simulation.simulate": ("simulate",),
     },
 )

@@ -123,6 +123,7 @@ def _finished(directory: Path, outcomes: list[Outcome], facts: dict[str, Any]) -
     if not rows:
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
+    facts = facts | {"publication": facts["publication"].dated()}
     signals = finish_corpus(directory, rows, failures=failures, **facts)
     (directory / JOURNAL_NAME).unlink()
     kept = sum(outcome.kept for outcome in outcomes)

@@ -19,6 +19,7 @@ from raceway.commands import (
     gallery,
     importing,
     models,
+    packing,
     reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
@@ -103,6 +104,8 @@ for command in (
     corpora.validate,
     corpora.info,
     corpora.replay,
+    packing.pack,
+    packing.unpack,
     feature_tables.plot,
     feature_tables.features,
     models.train,
