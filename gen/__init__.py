@@ -50,6 +50,7 @@ if TYPE_CHECKING:
     from gen.scenarios import draw_scenarios
     from gen.sharing.portable import pack
     from gen.sharing.unpacking import unpack
+    from gen.sharing import merge, select
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -61,12 +62,14 @@ __all__ = [
     "SimulationError",
     "draw_scenarios",
     "generate",
+    "merge",
     "open_corpus",
     "pack",
     "publish",
     "read_publication",
     "read_recipe",
     "replay",
+    "select",
     "shaft_angles",
     "simulate",
     "stored_scenario",
@@ -84,6 +87,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.scenarios": ("draw_scenarios",),
         "gen.sharing.portable": ("pack",),
         "gen.sharing.unpacking": ("unpack",),
+        "gen.sharing": ("merge", "select"),
         "gen.simulation.simulate": ("simulate",),
     },
 )

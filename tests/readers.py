@@ -96,7 +96,11 @@ def by_h5py(path):
 def by_xarray(engine):
     def read(path):
         with xr.open_dataset(path, engine=engine, decode_times=False) as file:
-            return file["acceleration"][:, -1, -1].values, file["shaft_rate"].values, [str(v) for v in file["bearing"].values]
+            return (
+                file["acceleration"][:, -1, -1].values,
+                file["shaft_rate"].values,
+                [str(v) for v in file["bearing"].values],
+            )
 
     return read
 
@@ -136,7 +140,10 @@ READERS = {
     "ncks (NCO)": (copied("ncks", "-O"), ("ncks", "--version")),
     "CDO": (by_cdo, ("cdo", "--version")),
     "R, ncdf4": (by_r, ("Rscript", "-e", 'cat(as.character(packageVersion("ncdf4")))')),
-    "Octave, netcdf": (by_octave, ("octave", "-qfW", "--eval", "pkg load netcdf; x = pkg('list', 'netcdf'); disp(x{1}.version)")),
+    "Octave, netcdf": (
+        by_octave,
+        ("octave", "-qfW", "--eval", "pkg load netcdf; x = pkg('list', 'netcdf'); disp(x{1}.version)"),
+    ),
     "Python, netCDF4": (by_netcdf4, "netCDF4"),
     "Python, h5py": (by_h5py, "h5py"),
     'Python, xarray, engine="netcdf4"': (by_xarray("netcdf4"), "xarray"),

@@ -129,6 +129,11 @@ class Manifest(Strict):
         return [part.row for part in self.parts_]
 
     @property
+    def importers(self) -> set[str | None]:
+        """Importers of all records; None stands for those that were simulated."""
+        return {origin.importer for origin in self.origins} or {self.importer}
+
+    @property
     def signals(self) -> SignalCounts:
         """Counts of the records that cannot be used."""
         return summed(row.signals for row in self.parts)

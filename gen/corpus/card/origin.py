@@ -7,7 +7,7 @@ from pathlib import Path
 import xarray as xr
 
 from gen.corpus.card.markdown import plain_text
-from gen.corpus.manifest import Manifest
+from gen.corpus.manifest import Choice, Manifest
 
 RECIPE_NAME = "recipe.yaml"
 MOST_SENTENCES = 100  # of a list; the manifest has all
@@ -19,7 +19,18 @@ _SIMULATED = (
 
 
 def origin(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
-    """Paragraph on the origin of the records."""
+    """Paragraph on the origin of the records, and on the choices by which they were taken from a larger corpus."""
+    return [*_maker(corpus, manifest), *(line for choice in manifest.selections for line in ("", _chosen(choice)))]
+
+
+def _chosen(choice: Choice) -> str:
+    return f"Selected from {choice.records:,} records by `raceway select` ({plain_text(choice)}); all numbers are those of that corpus."
+
+
+def _maker(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
+    if manifest.origins:
+        whole = "Joined by `raceway merge`; machines of different corpora have different numbers. The records of"
+        return [f"{whole} {_of_origins(manifest)}."]
     if manifest.importer is not None:
         return [f"Origin: {plain_text(corpus.attrs.get('source', 'unknown'))}"]
     if manifest.recipe is not None:
@@ -28,22 +39,55 @@ def origin(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
     return [f"Origin: {'; '.join(facts) or 'unknown'}"]
 
 
+def _of_origins(manifest: Manifest) -> str:
+    """Corpora that were merged, with the range of their records."""
+    rows, first, found = iter(manifest.parts), 0, []
+    for origin in manifest.origins:
+        stop = first + sum(next(rows).records for _ in range(origin.parts))
+        how = "not stated how it was made"
+        if origin.importer is not None:
+            how = f"imported by {plain_text(origin.importer)}"
+        elif origin.recipe is not None:
+            how = f"simulated from recipe {plain_text(origin.recipe)} in `{origin.recipe_file}`"
+        chosen = "".join(f", selected ({plain_text(choice)})" for choice in origin.selections)
+        found.append(f"{plain_text(origin.title or 'a corpus')} are {first} to {stop - 1} ({how}{chosen})")
+        first = stop
+    return "; ".join(found)
+
+
 def rebuilding(manifest: Manifest) -> list[str]:
     """Section with the commands that make the corpus again."""
     lines = ["", "## How to make it again", ""]
-    if manifest.importer is not None:
-        lines += [
-            "From the recordings, which are not in this folder:",
-            *_shell([["raceway", "import", manifest.importer, "FOLDER", "-o", "corpus"]]),
-        ]
+    if manifest.origins:
+        folders = [f"FOLDER-{number}" for number in range(1, len(manifest.origins) + 1)]
+        commands = [["raceway", "merge", *folders, "-o", "../corpus-again"]]
+        lines += ["Make the corpora that it was joined from, then join them:"]
+    elif manifest.importer is not None:
+        commands = [["raceway", "import", manifest.importer, "FOLDER", "-o", "corpus"]]
+        lines += ["From the recordings, which are not in this folder:"]
     elif manifest.recipe is not None:
-        lines += ["In this folder:", *_shell([_generate(manifest)])]
+        commands = [_generate(manifest)]
+        lines += ["In this folder:"]
     else:
         return [*lines, "The folder does not say how it was made; keep a copy."]
+    for number, choice in enumerate(manifest.selections, start=1):
+        source = commands[-1][-1]
+        commands.append(["raceway", "select", source, *_options(choice), "-o", f"../selection-{number}"])
+    lines += _shell(commands)
     if manifest.versions:
         versions = ", ".join(f"{plain_text(name)} {plain_text(number)}" for name, number in manifest.versions.items())
         lines += ["", f"Made with {versions}. The same versions give the same bytes of every part."]
     return lines
+
+
+def _options(choice: Choice) -> list[str]:
+    """Options of ``raceway select`` for a choice."""
+    given = {
+        "--where": choice.where,
+        "--split": choice.split,
+        "--channels": choice.channels and ",".join(choice.channels),
+    }
+    return [word for option, value in given.items() if value is not None for word in (option, value)]
 
 
 def _generate(manifest: Manifest) -> list[str]:
