@@ -19,6 +19,7 @@ from raceway.commands import (
     gallery,
     importing,
     models,
+    publishing,
     reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
@@ -110,6 +111,7 @@ for command in (
     diagnosing.diagnose,
     benchmarking.benchmark,
     comparing.compare,
+    publishing.card,
     benchmarking.bench,
     reproduce.reproduce,
     gallery.gallery,
