@@ -7,6 +7,7 @@ speed, load and severity by class. The same corpus and libraries give the same b
 import io
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -144,7 +145,7 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
     return scores
 
 
-def _score(name: str, found: dict[str, dict[str, object]]) -> CardScore:
+def _score(name: str, found: dict[str, Any]) -> CardScore:
     grouped, interval = found["grouped"], found["grouped"]["interval"]
     return CardScore(
         name=name,
