@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, StringConstraints, ValidationError
 
 from gen.corpus.files import plain_file, sha256, stamp, write_text_durably
 from gen.corpus.journal import (
@@ -47,6 +47,51 @@ class Overrides(Strict):
     records: int | None = None
 
 
+class Choice(Strict):
+    """Choice of records and channels of another corpus, as ``raceway select`` was called."""
+
+    records: Count
+    """Number of records that were chosen from."""
+    parts_sha256: str
+    """SHA-256 over those of the parts of the corpus that was chosen from."""
+    where: str | None = None
+    split: str | None = None
+    channels: _Texts | None = None
+
+    def __str__(self) -> str:
+        """Options of the call."""
+        given = {"where": self.where, "split": self.split, "channels": self.channels and ", ".join(self.channels)}
+        return "; ".join(f"{name}: {value}" for name, value in given.items() if value is not None)
+
+
+class Numbers(Strict):
+    """A number for each variable that is numbered anew when corpora are merged."""
+
+    rig: Count = 0
+    specimen: Count = 0
+    recording: Count = 0
+    pair: Count = 0
+
+
+class Origin(Strict):
+    """One of the corpora that a merged corpus was made from; fields that it shares with :class:`Manifest` were copied from there."""
+
+    parts: Count
+    """Number of consecutive parts of the merged corpus with the records of this one."""
+    added: Numbers
+    """What was added to the numbers of this corpus."""
+    same_machines: str
+    """Text that is the same for two corpora if the same numbers are the same machines: of one recipe and seed, or of one import."""
+    recipe_file: Annotated[str, StringConstraints(pattern=r"^recipes/[0-9]{5}\.yaml$")] | None = None
+    title: str | None = None
+    recipe: str | None = None
+    recipe_sha256: str | None = None
+    overrides: Overrides | None = None
+    versions: Annotated[dict[str, str], Field(default_factory=dict)]
+    importer: str | None = None
+    selections: tuple[Choice, ...] = ()
+
+
 class Manifest(Strict):
     """Contents of ``manifest.json`` after its check; fields of simulated corpora are None in imported ones, and the other way round."""
 
@@ -71,6 +116,10 @@ class Manifest(Strict):
     recordings: Count | None = None
     skipped: _Texts = ()
     warnings: _Texts = ()
+    selections: tuple[Choice, ...] = ()
+    """Choices by which the records were taken from a larger corpus, the first one first."""
+    origins: tuple[Origin, ...] = ()
+    """Corpora that were merged into this one, in the order of their records."""
 
     @property
     def parts(self) -> list[PartRow]:
@@ -183,6 +232,8 @@ def _inconsistency(manifest: Manifest) -> str | None:
         return f"it counts {manifest.records} records, its parts {records}"
     if manifest.complete and (manifest.index is None or not names):
         return "it is marked complete but has no hash of corpus.nc or no parts"
+    if manifest.origins and sum(origin.parts for origin in manifest.origins) != len(names):
+        return "its origins have another number of parts than it lists"
     check_limit("records", records, str(names and "the corpus holds"), CorpusError)
     return None
 
