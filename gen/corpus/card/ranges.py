@@ -25,7 +25,7 @@ IntArray = NDArray[np.intp]
 MOST_DRAWS = (
     1024  # records whose draws are read; they are drawn in runs, because text is stored in blocks of 256 records
 )
-_RUN = 16
+_RUN = 4
 MOST_QUANTITIES = 200  # rows of a table
 LARGEST_RECIPE = 1_000_000  # bytes that are searched for keys
 FEWEST = 12  # specimens of a class whose values are compared with those of the others
