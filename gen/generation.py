@@ -165,7 +165,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     journal = directory / JOURNAL_NAME
     begun = (directory / "manifest.json").exists()
     try:
-        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
+        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml", "croissant.json"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
         if manifest is not None and any((directory / "parts").glob("*.nc")):

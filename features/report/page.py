@@ -253,7 +253,10 @@ def _verdict(null: Scores, chance: float) -> str:
 
 def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Origin of the numbers: the manifest without its parts, and the settings of the benchmark."""
-    facts = manifest.model_dump(exclude={"parts_", "index", "complete", "records", "title"}, exclude_unset=True)
+    left_out = {"parts_", "index", "next_index", "complete", "records", "title", "publication"}
+    facts = manifest.model_dump(exclude=left_out, exclude_unset=True)
+    if manifest.publication.license:
+        facts["licence"] = manifest.publication.license
     benchmark = {
         "cross-validation": f"{results.folds} folds by {results.track}",
         "features": f"{results.features} ({', '.join(results.groups)})",

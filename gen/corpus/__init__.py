@@ -7,6 +7,7 @@ codecs        codecs of stored signals
 schema        dimensions, variables, units and roles
 simulated     further variables of simulated corpora
 hdf5          lock of the HDF5 library, refusal of links to other files
+unicode_text  global attributes with letters beyond ASCII
 layout        allowed shapes, types and attributes in a file
 files         atomic writing, hashes
 signals       records that cannot be used
@@ -22,6 +23,7 @@ visible       faults that can be seen in their records
 recoverable   labels that can be recovered from the signals
 card          data card of a corpus
 acdd          global attributes of a published corpus
+croissant     files, fields and licence for catalogues of data sets
 finishing     index, manifest and data card of finished parts
 description   page about the format
 ============= =====================================================

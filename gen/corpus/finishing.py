@@ -10,6 +10,7 @@ from typing import Any
 
 from gen.corpus.acdd import publication_attributes
 from gen.corpus.card.page import write_card
+from gen.corpus.croissant import write_croissant
 from gen.corpus.index import new_index, write_index
 from gen.corpus.manifest import (
     INDEX_NAME,
@@ -41,6 +42,7 @@ def finish_corpus(
     write_index(directory, rows, publication_attributes(_manifest(manifest_content(rows, **facts))))
     write_manifest(directory, rows, complete=True, **facts)
     write_card(directory)
+    write_croissant(directory)
     return signals
 
 
@@ -69,6 +71,7 @@ def publish(directory: Path | str, publication: Publication) -> None:
             write_content(directory, content | {"next_index": changed["index"]})  # until the new index is in place
         write_content(directory, changed)
         write_card(directory)
+        write_croissant(directory)
 
 
 def _manifest(content: dict[str, Any]) -> Manifest:
