@@ -21,6 +21,7 @@ from raceway.commands import (
     importing,
     models,
     packing,
+    publishing,
     reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
@@ -116,6 +117,7 @@ for command in (
     diagnosing.diagnose,
     benchmarking.benchmark,
     comparing.compare,
+    publishing.card,
     benchmarking.bench,
     reproduce.reproduce,
     gallery.gallery,

@@ -47,8 +47,7 @@ def finish_corpus(
 
 
 def publish(directory: Path | str, publication: Publication) -> None:
-    """Change licence, creators and references of a finished corpus: in the manifest, in the attributes of ``corpus.nc`` and in
-    the data card.
+    """Change licence, creators and references of a finished corpus: in its manifest, ``corpus.nc`` and data card.
 
     The parts stay as they are. The files are those of a corpus that was made with this publication from the start. A killed call leaves
     a corpus that can be read, with the old or the new facts, and the same call completes it.
