@@ -20,6 +20,8 @@ from gen.corpus.finishing import finish_corpus
 from gen.corpus.publication import checked_doi, checked_orcid
 from gen.errors import CorpusError, RecipeError
 from gen.recipe import read_recipe, recipe_hash
+from gen.sharing.portable import pack
+from gen.sharing.unpacking import unpack
 from tests import corpora, kills, tone_corpora
 
 FACTS = {
@@ -112,6 +114,20 @@ def test_both_indices_are_read_while_one_replaces_the_other_and_no_third(folder,
     index.write_bytes(old)
     publish(folder, WHOLE)
     assert json.loads(path.read_text()) == after
+
+
+def test_a_packed_file_has_the_facts_and_gives_them_back(folder, tmp_path, monkeypatch):
+    publish(folder, WHOLE)
+    before = contents(folder)
+    pack(folder, tmp_path / "packed.nc")
+    assert read_manifest(tmp_path / "packed.nc").publication == WHOLE
+    with open_corpus(folder) as corpus, open_corpus(tmp_path / "packed.nc") as packed:
+        assert packed.attrs.items() >= {**corpus.attrs, "comment": packed.attrs["comment"]}.items()
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
+    unpack(tmp_path / "packed.nc", tmp_path / "again")
+    assert contents(tmp_path / "again") == before
+    with pytest.raises(CorpusError, match="is one file; unpack it"):
+        publish(tmp_path / "packed.nc", WHOLE)
 
 
 def test_an_altered_or_unfinished_corpus_is_not_published(folder):
