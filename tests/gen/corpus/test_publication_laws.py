@@ -47,12 +47,18 @@ def _no_clock(monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
 
 
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("plain") / "corpus"
+    tone_corpora.write_corpus(folder, specimens=4, records=1)
+    finish_corpus(folder, read_manifest(folder).parts)
+    return folder
+
+
 @pytest.fixture
-def folder(tmp_path):
+def folder(plain, tmp_path):
     """A finished corpus without a publication."""
-    tone_corpora.write_corpus(tmp_path / "corpus", specimens=4, records=1)
-    finish_corpus(tmp_path / "corpus", read_manifest(tmp_path / "corpus").parts)
-    return tmp_path / "corpus"
+    return shutil.copytree(plain, tmp_path / "corpus")
 
 
 def contents(folder):
