@@ -61,7 +61,9 @@ def describe(directory: Path) -> dict[str, Any]:
         If the folder holds no corpus, or a part is missing or altered.
     """
     manifest = read_manifest(directory)
-    known = manifest.model_dump(exclude={"parts_", "complete", "records", "index", "next_index", "signals"}, exclude_unset=True)
+    known = manifest.model_dump(
+        exclude={"parts_", "complete", "records", "index", "next_index", "signals"}, exclude_unset=True
+    )
     about = {
         "corpus": directory,
         "complete": manifest.complete,

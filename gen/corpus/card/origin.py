@@ -67,10 +67,10 @@ def _given_by_hand(made: Manifest | Origin) -> bool:
     return getattr(made, "scenarios", None) is not None
 
 
-def rebuilding(manifest: Manifest) -> list[str]:
-    """Section with the commands that make the corpus again."""
+def rebuilding(manifest: Manifest, window: float) -> list[str]:
+    """Section with the commands that make the corpus again; ``window`` is the length of a record [s]."""
     lines = ["", "## How to make it again", ""]
-    commands = _merging(manifest.origins) if manifest.origins else _steps(manifest, RECIPE_NAME, _NEW)
+    commands = _merging(manifest.origins, window) if manifest.origins else _steps(manifest, RECIPE_NAME, _NEW, window)
     if not commands:
         if _given_by_hand(manifest):
             return [
@@ -79,7 +79,10 @@ def rebuilding(manifest: Manifest) -> list[str]:
             ]
         return [*lines, "The folder does not say how it was made; keep a copy."]
     if any(command[1] == "import" for command in commands):
-        lines += ["With the folder of the recordings in place of FOLDER:", ""]
+        lines += [
+            "With your copy of the recordings in place of SRC, and with the other options of the import, which the folder does not tell:",
+            "",
+        ]
     elif manifest.origins or manifest.recipe is not None:
         lines += ["In this folder:", ""]
     lines += ["```sh", *(" ".join(map(_quoted, words)) for words in commands), "```"]
@@ -105,20 +108,21 @@ def _quoted(word: str) -> str:
     return f'"{text}"' if "'" in text and not set(text) & set('"$\\!') else shlex.quote(text)
 
 
-def _merging(origins: Sequence[Origin]) -> list[list[str]]:
+def _merging(origins: Sequence[Origin], window: float) -> list[list[str]]:
     """Commands that make each corpus and merge them; none if one of them cannot be made again."""
     folders = [f"{_NEW}-{number}" for number in range(1, len(origins) + 1)]
-    each = [_steps(origin, origin.recipe_file or "", folder) for origin, folder in zip(origins, folders, strict=True)]
+    pairs = zip(origins, folders, strict=True)
+    each = [_steps(origin, origin.recipe_file or "", folder, window) for origin, folder in pairs]
     if not all(each):
         return []
     last = [words[words.index("-o") + 1] for words in (steps[-1] for steps in each)]
     return [words for steps in each for words in steps] + [["raceway", "merge", *last, "-o", _NEW]]
 
 
-def _steps(made: Manifest | Origin, recipe_file: str, folder: str) -> list[list[str]]:
+def _steps(made: Manifest | Origin, recipe_file: str, folder: str, window: float) -> list[list[str]]:
     """Commands that make one corpus that was not merged; none if that is not known."""
     if made.importer is not None:
-        commands = [["raceway", "import", made.importer, "FOLDER", "-o", folder]]
+        commands = [["raceway", "import", made.importer, "SRC", "--window", f"{window:g}", "-o", folder]]
     elif made.recipe is not None and not _given_by_hand(made):
         commands = _simulating(made, recipe_file, folder)
     else:
