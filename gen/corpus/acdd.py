@@ -15,6 +15,11 @@ _KEYWORDS = (
 )
 _SIMULATED = "simulated rotating machine", "simulated accelerometer", "simulated"
 _RECORDED = "rotating machine", "accelerometer", "cut from recordings"
+_BOTH = (
+    "rotating machine, simulated rotating machine",
+    "accelerometer, simulated accelerometer",
+    "recorded and simulated",
+)
 
 
 def publication_attributes(manifest: Manifest) -> dict[str, str]:
@@ -23,7 +28,8 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
     They follow from the manifest alone: its ``publication``, its counts and the hashes of its parts.
     """
     publication = manifest.publication
-    platform, instrument, made = _RECORDED if manifest.importer is not None else _SIMULATED
+    importers = manifest.importers
+    platform, instrument, made = _SIMULATED if importers == {None} else _BOTH if None in importers else _RECORDED
     fixed = {
         "summary": f"{manifest.records} labelled records of bearing vibration, {made}, with fault class, speed, load and nominal fault "
         f"frequencies of each.",

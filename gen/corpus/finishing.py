@@ -34,11 +34,11 @@ def finish_corpus(
 ) -> SignalCounts:
     """Write index, manifest and data card over finished parts; returns the counts of records that cannot be used.
 
-    ``facts`` are further fields of the manifest. The date of ``publication`` is that of ``SOURCE_DATE_EPOCH`` if it has none.
+    ``facts`` are further fields of the manifest.
     """
     rows = list(rows)
     signals = summed(row.signals for row in rows)
-    facts["publication"] = (publication or Publication()).dated()
+    facts["publication"] = publication or Publication()
     write_index(directory, rows, publication_attributes(_manifest(manifest_content(rows, **facts))))
     write_manifest(directory, rows, complete=True, **facts)
     write_card(directory)

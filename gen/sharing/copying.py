@@ -23,7 +23,8 @@ from gen.corpus import (
     remove_left_behind,
     temporary_beside,
 )
-from gen.corpus.record_hashes import stored_signal
+from gen.corpus.manifest import Numbers
+from gen.corpus.record_hashes import RENUMBERED, stored_signal
 from gen.corpus.schema import SIGNAL_DIMS
 from gen.errors import CorpusError
 
@@ -134,3 +135,12 @@ def in_floating_point(records: xr.Dataset) -> xr.Dataset:
     packing = ("scale_factor", "add_offset", "_FillValue")
     attributes = {name: value for name, value in signal.attrs.items() if name not in packing}
     return records.assign({SIGNAL: (SIGNAL_DIMS, values, attributes)})
+
+
+def renumbered(records: xr.Dataset, new: Numbers, old: Numbers | None = None) -> xr.Dataset:
+    """Records to whose numbers ``new`` is added, in place of ``old``; negative numbers stand for none and stay."""
+    changed = {}
+    for name in set(RENUMBERED) & set(records.variables):
+        values, move = records[name].values, getattr(new, name) - getattr(old or Numbers(), name)
+        changed[name] = records[name].copy(data=np.where(values < 0, values, values + move).astype(values.dtype))
+    return records.assign(changed)
