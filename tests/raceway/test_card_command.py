@@ -2,6 +2,7 @@
 
 import io
 import json
+import shlex
 import shutil
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from PIL import Image
 
 from gen.corpus import open_corpus, read_manifest, validate_corpus
 from raceway.commands.publishing import card
+from raceway.studies import card_pictures
 from raceway.studies.card_pictures import complete_card
 from tests.kills import killed
 from tests.tone_corpora import write_corpus
@@ -127,8 +129,11 @@ def test_scores_of_another_corpus_are_refused(run, copied, tmp_path):
     assert "is not a file of scores" in run("card", copied, "--scores", tmp_path / "results.json").stderr
 
 
-def test_a_killed_call_leaves_a_readable_corpus_and_whole_files(copied):
-    complete_card(copied)  # matplotlib is loaded, and the expected files are known
+def test_a_killed_call_leaves_a_readable_corpus_and_whole_files(copied, monkeypatch):
+    monkeypatch.setattr(
+        card_pictures, "small_png", lambda _figure: b"picture" * 10_000
+    )  # so that most kills meet a file being written
+    complete_card(copied)
     expected = contents(copied)
     for _ in killed(lambda: complete_card(copied), moments=5):
         assert validate_corpus(copied) == []
@@ -146,3 +151,23 @@ def test_the_help_has_examples_and_names_the_next_step():
     assert card.help is not None
     assert card.help.count("\n  raceway ") >= 3
     assert "Next:" in card.help
+
+
+def test_the_commands_on_the_card_of_a_selection_make_the_same_parts_again(run, tiny_corpus, tmp_path, monkeypatch):
+    assert (
+        run("select", tiny_corpus, "--where", "fault == 'inner' or load > 500", "-o", tmp_path / "chosen").exit_code
+        == 0
+    )
+    monkeypatch.chdir(tmp_path / "chosen")
+    block = (
+        Path("README.md")
+        .read_text()
+        .partition("## How to make it again")[2]
+        .partition("```sh\n")[2]
+        .partition("```")[0]
+    )
+    lines = [shlex.split(line) for line in block.splitlines()]
+    for words in lines:
+        assert run(*words[1:]).exit_code == 0
+    again = Path(lines[-1][-1])
+    assert read_manifest(again).parts == read_manifest(Path()).parts

@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 
 import xarray as xr
@@ -23,15 +24,15 @@ def origin(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
     """Paragraph on the origin of the records."""
     lines = [_made(corpus, manifest)]
     if manifest.origins:
-        lines += ["", *(f"{number}. {_part(origin)}" for number, origin in enumerate(manifest.origins, start=1))]
-    if manifest.selections:
-        lines += ["", *(_selected(choice) for choice in manifest.selections)]
+        lines += ["", *_merged(manifest)]
+    for choice in manifest.selections:
+        lines += ["", f"{_selected(choice)}. Rigs, specimens and recordings keep their numbers."]
     return lines
 
 
 def _made(corpus: xr.Dataset, manifest: Manifest) -> str:
     if manifest.origins:
-        return f"Merged from {len(manifest.origins)} corpora, in the order of the records:"
+        return f"Merged from {len(manifest.origins)} corpora by `raceway merge`; their machines have different numbers:"
     if manifest.importer is not None:
         return f"Origin: {plain_text(corpus.attrs.get('source', 'unknown'))}"
     if manifest.recipe is not None and _given_by_hand(manifest):
@@ -42,24 +43,27 @@ def _made(corpus: xr.Dataset, manifest: Manifest) -> str:
     return f"Origin: {'; '.join(facts) or 'unknown'}"
 
 
-def _part(origin: Origin) -> str:
-    """One of the corpora that were merged."""
-    title = plain_text(origin.title or "corpus without a title")
-    if origin.importer is not None:
-        made = f"recordings, by `raceway import {plain_text(origin.importer)}`"
-    elif origin.recipe_file is not None:
-        made = f"simulated from `{origin.recipe_file}`"
-    else:
-        made = "of unknown origin"
-    chosen = "; ".join(_selected(choice) for choice in origin.selections)
-    return (
-        f"{title}: {made}, {origin.parts} {'part' if origin.parts == 1 else 'parts'}{f'. {chosen}' if chosen else '.'}"
-    )
+def _merged(manifest: Manifest) -> list[str]:
+    """Entry of a list for each of the corpora that were merged, with the numbers of its records."""
+    rows, first, lines = iter(manifest.parts), 0, list[str]()
+    for number, origin in enumerate(manifest.origins, start=1):
+        stop = first + sum(row.records for row in islice(rows, origin.parts))
+        how = "of unknown origin"
+        if origin.importer is not None:
+            how = f"imported by {plain_text(origin.importer)}"
+        elif origin.recipe is not None:
+            how = f"simulated from recipe {plain_text(origin.recipe)} in `{origin.recipe_file}`"
+        facts = "; ".join([how, *map(_selected, origin.selections)])
+        lines.append(
+            f"{number}. The records of {plain_text(origin.title or 'a corpus')} are {first} to {stop - 1} ({facts})."
+        )
+        first = stop
+    return lines
 
 
 def _selected(choice: Choice) -> str:
     asked = code_text(choice)
-    return f"Selected from a corpus of {choice.records} records{f' (`{asked}`)' if asked else ''}."
+    return f"Selected from {choice.records:,} records" + (f" by `raceway select` (`{asked}`)" if asked else "")
 
 
 def _given_by_hand(made: Manifest | Origin) -> bool:
