@@ -59,6 +59,10 @@ def publish(directory: Path | str, publication: Publication) -> None:
     """
     directory = Path(directory)
     publication = publication.dated()
+    if directory.is_file():
+        raise CorpusError(
+            f"{directory}: is one file; unpack it with raceway unpack, publish the folder, and pack that."
+        )
     with _alone(directory):
         part_paths(directory, "sha256")
         rows = read_manifest(directory).parts
