@@ -171,3 +171,11 @@ def test_the_commands_on_the_card_of_a_selection_make_the_same_parts_again(run, 
         assert run(*words[1:]).exit_code == 0
     again = Path(lines[-1][-1])
     assert read_manifest(again).parts == read_manifest(Path()).parts
+
+
+def test_pictures_and_card_travel_in_a_packed_file(run, told, copied, tmp_path):
+    told("card", copied, "--license", "CC-BY-4.0")
+    assert run("pack", copied, "-o", tmp_path / "one.nc").exit_code == 0
+    assert run("unpack", tmp_path / "one.nc", "-o", tmp_path / "again").exit_code == 0
+    assert (tmp_path / "again" / "README.md").read_text() == (copied / "README.md").read_text()
+    assert "is one file, and a data card belongs to a folder" in run("card", tmp_path / "one.nc").stderr
