@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
     from gen.sharing import merge, select
+    from gen.sharing.portable import pack
+    from gen.sharing.unpacking import unpack
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -62,6 +64,7 @@ __all__ = [
     "generate",
     "merge",
     "open_corpus",
+    "pack",
     "publish",
     "read_publication",
     "read_recipe",
@@ -70,6 +73,7 @@ __all__ = [
     "shaft_angles",
     "simulate",
     "stored_scenario",
+    "unpack",
     "validate_corpus",
 ]
 
@@ -81,6 +85,8 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing.portable": ("pack",),
+        "gen.sharing.unpacking": ("unpack",),
         "gen.sharing": ("merge", "select"),
         "gen.simulation.simulate": ("simulate",),
     },

@@ -20,6 +20,8 @@ from raceway.commands import (
     gallery,
     importing,
     models,
+    packing,
+    publishing,
     reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
@@ -104,6 +106,8 @@ for command in (
     corpora.validate,
     corpora.info,
     corpora.replay,
+    packing.pack,
+    packing.unpack,
     cutting.select,
     cutting.merge,
     feature_tables.plot,
@@ -113,6 +117,7 @@ for command in (
     diagnosing.diagnose,
     benchmarking.benchmark,
     comparing.compare,
+    publishing.card,
     benchmarking.bench,
     reproduce.reproduce,
     gallery.gallery,

@@ -27,8 +27,10 @@ from gen.corpus.journal import (
     part_number,
     read_journal,
 )
+from gen.corpus.packed import is_packed, packed_contents
 from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
+from gen.corpus.record_checks import record_problems
 from gen.corpus.schema import FORMAT
 from gen.corpus.signals import SignalCounts, summed
 from gen.errors import CorpusError
@@ -180,7 +182,9 @@ def write_content(directory: Path, content: dict[str, Any]) -> None:
 
 
 def read_manifest(directory: Path) -> Manifest:
-    """Read and check ``manifest.json``, and the journal if the corpus is unfinished; names that lead out of the corpus are refused.
+    """Read and check ``manifest.json`` of a folder or of a packed file, and the journal if the corpus is unfinished.
+
+    Names that lead out of the corpus are refused.
 
     Raises
     ------
@@ -189,7 +193,7 @@ def read_manifest(directory: Path) -> Manifest:
     """
     path = directory / "manifest.json"
     if directory.is_file():
-        raise CorpusError(f"{directory}: is a file; give the folder of a corpus, the one that holds manifest.json.")
+        return _checked(_packed_manifest(directory), path)
     if not directory.is_dir():
         raise CorpusError(
             f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."
@@ -199,9 +203,17 @@ def read_manifest(directory: Path) -> Manifest:
     plain_file(directory, path.name)
     try:
         check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
-        manifest = Manifest.model_validate_json(path.read_bytes())
+        content = path.read_bytes()
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
+    manifest = _checked(content, path)
+    return manifest if manifest.complete else _with_journal(manifest, directory)
+
+
+def _checked(content: bytes, path: Path) -> Manifest:
+    """Manifest from its JSON; CorpusError if it is of another format version or its counts disagree."""
+    try:
+        manifest = Manifest.model_validate_json(content)
     except ValidationError as error:
         raise CorpusError(
             f"{path}: not a corpus manifest ({first_problem(error)}); generate or copy the corpus again."
@@ -214,7 +226,31 @@ def read_manifest(directory: Path) -> Manifest:
     problem = _inconsistency(manifest)
     if problem is not None:
         raise CorpusError(f"{path}: {problem}; do not trust this corpus.")
-    return manifest if manifest.complete else _with_journal(manifest, directory)
+    return manifest
+
+
+def _packed_manifest(file: Path) -> bytes:
+    """Manifest in a packed file; CorpusError if the file is no packed file."""
+    if not is_packed(file):
+        raise CorpusError(not_a_corpus(file))
+    packed = packed_contents(file)
+    manifest = packed.files.get("manifest.json", b"")
+    listed = {part.name: part.records for part in _checked(manifest, file / "manifest.json").parts}
+    if listed != {name: part.records for name, part in packed.parts.items()}:
+        raise CorpusError(f"{file}: its manifest lists other parts than it holds; do not trust this corpus.")
+    return manifest
+
+
+def not_a_corpus(file: Path) -> str:
+    """Sentence about a file that is no packed corpus."""
+    if file.name != INDEX_NAME:
+        return f"{file}: is a file and no packed corpus; give the folder of a corpus, the one that holds manifest.json."
+    if (file.parent / "manifest.json").is_file():
+        return f"{file}: is one file of a corpus; give the folder of the corpus, {file.parent}."
+    return (
+        f"{file}: is the index of a corpus without its parts, so it holds no signals; copy the whole folder, "
+        "or make one file of it with raceway pack."
+    )
 
 
 def _with_journal(manifest: Manifest, directory: Path) -> Manifest:
@@ -244,7 +280,9 @@ def _inconsistency(manifest: Manifest) -> str | None:
 
 
 def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str]:
-    """Missing and altered files, one sentence each; the index is included if the corpus is complete."""
+    """Missing and altered files, one sentence each; the index is included if the corpus is complete. Of a packed file: damaged records."""
+    if directory.is_file():
+        return record_problems(directory) if check == "sha256" else []
     wanted = {f"parts/{row.name}": [FileRow(bytes=row.bytes, sha256=row.sha256)] for row in manifest.parts}
     if manifest.complete:
         wanted[INDEX_NAME] = [row for row in (manifest.index, manifest.next_index) if row is not None]
@@ -273,9 +311,9 @@ def _file_problem(directory: Path, check: Check, item: tuple[str, list[FileRow]]
 
 
 def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
-    """Paths of all parts of a finished corpus, after a check of every file.
+    """Paths of all parts of a finished corpus, after a check of every file; through a packed file they lead to ranges of its records.
 
-    ``check="size"`` compares sizes only, for corpora that take too long to hash.
+    ``check="size"`` compares sizes only, for corpora that take too long to hash. It checks no record of a packed file.
 
     Raises
     ------

@@ -1,6 +1,7 @@
 """One part of a corpus: a complete netCDF-4 file of some hundred records, written atomically."""
 
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -15,6 +16,7 @@ from gen.corpus.files import sha256, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
 from gen.corpus.signals import SignalCounts, counted, judge
+from gen.corpus.unicode_text import beyond_ascii, write_unicode
 
 _INCOMPRESSIBLE = 7.8  # bits per byte
 
@@ -39,10 +41,14 @@ def part_name(number: int) -> str:
     return f"part-{number:05d}.nc"
 
 
-def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRow:
+Chunks = Mapping[tuple[int, ...], bytes]
+
+
+def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: Chunks | None = None) -> PartRow:
     """Write records as a part, atomically, with one chunk per record and channel.
 
-    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``.
+    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``. ``chunks`` are the deflated counts by
+    record and channel, if they are known already.
 
     Raises
     ------
@@ -50,10 +56,12 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
         If writing fails, with the reason that the system gives.
     """
     signal = dataset[SIGNAL].values
-    chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
+    if chunks is None:
+        chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
+    texts = beyond_ascii(dataset.attrs)
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            file.setncatts(dataset.attrs)
+            file.setncatts({name: value for name, value in dataset.attrs.items() if name not in texts})
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)
             # all variables are declared before any is written: alternating takes 50 % longer
@@ -62,8 +70,10 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
             for stored, values in declared:
                 if stored.name != SIGNAL or not chunks:
                     stored[:] = values
-        if chunks:
-            _write_chunks(chunks, temporary)
+        if chunks or texts:
+            with h5py.File(temporary, "r+") as file:
+                write_unicode(file, texts)
+                _write_chunks(chunks, file)
     return PartRow(path.name, len(signal), path.stat().st_size, sha256(path), counted(judge(signal)))
 
 
@@ -99,12 +109,11 @@ def _declare(
     return stored, values
 
 
-def _write_chunks(chunks: dict[tuple[int, ...], bytes], path: Path) -> None:
+def _write_chunks(chunks: Chunks, file: h5py.File) -> None:
     """Write compressed chunks of the signal directly: the zlib filter of HDF5 takes more than twice as long."""
-    with h5py.File(path, "r+") as file:
-        stored: Any = file[SIGNAL]
-        for (record, channel), chunk in chunks.items():
-            stored.id.write_direct_chunk((record, channel, 0), chunk)
+    stored: Any = file[SIGNAL]
+    for (record, channel), chunk in chunks.items():
+        stored.id.write_direct_chunk((record, channel, 0), chunk)
 
 
 def deflated(samples: NDArray[Any]) -> bytes:

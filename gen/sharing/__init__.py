@@ -5,6 +5,9 @@ module      responsibility
 =========== ======================================================
 where       conditions on records: parsed, never evaluated as Python
 choice      choice of records and channels
+packing     a whole corpus written into one netCDF-4 file
+unpacking   the folder of a packed corpus made again
+portable    a corpus, or a choice of it, as one file
 copying     stored records read, and written into a new folder
 columns     variables of all corpora that are merged
 repeats     records with the same samples in different corpora

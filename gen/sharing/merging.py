@@ -274,7 +274,7 @@ def _with_recipes(sources: Sequence[_Source], added: Mapping[str, Numbers], fold
 def _facts(sources: Sequence[_Source], title: str, origins: Sequence[Origin]) -> dict[str, Any]:
     """Facts about the merged corpus for its manifest."""
     facts: dict[str, Any] = {"title": title}
-    for name in ("failures", "basis", "skipped", "warnings"):
+    for name in ("basis", "failures", "skipped", "warnings"):
         sentences = [sentence for source in sources for sentence in getattr(source.manifest, name)]
         facts |= {name: sentences} if sentences else {}
     return facts | {"origins": [origin.model_dump(mode="json") for origin in origins]}

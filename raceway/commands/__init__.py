@@ -12,6 +12,7 @@ references     healthy records that the tested ones are compared with
 diagnosing     a diagnosis of one recording
 benchmarking   scores of all baselines, and the speed of this machine
 comparing      synthetic records against real ones
+publishing     the data card with terms of use, pictures and scores
 reproduce      the seed paper run again
 gallery        a page of pictures of simulated signals
 ============== ================================================================
