@@ -103,15 +103,16 @@ def select(
         told = f"selected by raceway select ({choice})"
         attributes = part_attributes(directory) | {"history": f"{corpus.attrs.get('history', '')}\n{told}"}
         with new_corpus(output) as folder:
-            rows, counts = list[PartRow](), []
+            rows, counts, done = list[PartRow](), [], 0
             for of in records_of_origins(manifest):
                 places = records[(records >= of.start) & (records < of.stop)]
                 before = len(rows)
                 for part in _parts(corpus, places, kept, max(row.records for row in manifest.parts)):
                     path = folder / "parts" / part_name(len(rows))
                     rows.append(write_part(part.assign_attrs(attributes), path))
+                    done += rows[-1].records
                     if progress is not None:
-                        progress(sum(row.records for row in rows), len(records))
+                        progress(done, len(records))
                 counts.append(len(rows) - before)
             facts = _facts(manifest, choice, counts)
             copy_recipes(directory, folder, [origin["recipe_file"] for origin in facts.get("origins", ())])
