@@ -94,7 +94,7 @@ def draw_record(shown: Shown) -> Figure:
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     draw_waveform(waveform, shown)
     draw_density(density, shown, shown.band)
-    _draw_envelope_spectrum(envelope, shown)
+    draw_envelope_spectrum(envelope, shown)
     figure.align_ylabels()
     return figure
 
@@ -131,7 +131,8 @@ def draw_density(axes: Axes, shown: Shown, band: tuple[float, float]) -> None:
     axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
 
 
-def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
+def draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
+    """Squared envelope spectrum over orders, with the lines of the fault shaded and the others dashed."""
     order, spectrum = squared_envelope(shown)
     own, others = fault_lines(shown.orders, shown.fault)
     top = _highest_drawn_order(own, others)
@@ -252,7 +253,8 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
     axes.locator_params(axis="x", nbins=5)
     if wide:
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        subs = (1.0, 3.0) if values.max() > 100 * values.min() else (1.0, 2.0, 5.0)  # labels of more would overlap
+        axes.xaxis.set_major_locator(LogLocator(subs=subs))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_locator(NullLocator())
 

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from gen.corpus.files import Stamp, plain_file, stamp
+from gen.corpus.files import Stamp, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.journal import name_problem
 from gen.errors import CorpusError
@@ -29,7 +29,7 @@ RECORD_HASH = "record_sha256"
 """Variable with the SHA-256 of each record."""
 
 FILE_NAME = re.compile(
-    r"README\.md|manifest\.json|croissant\.json|recipe\.yaml|recipes/\d{5}\.yaml|pictures/[\w-]+\.png"
+    r"README\.md|(?:card|croissant|manifest)\.json|recipe\.yaml|recipes/\d{5}\.yaml|pictures/[\w-]+\.png"
 )
 """Names of the small files of a corpus."""
 
@@ -68,19 +68,6 @@ def is_packed(path: Path) -> bool:
             return PACKED in file.attrs
     except (OSError, RuntimeError):
         return False
-
-
-def small_file(corpus: Path, name: str) -> bytes | None:
-    """Content of a small file of a corpus, a folder or a packed file; None if it has none of this name.
-
-    Raises
-    ------
-    CorpusError
-        If the file is not a plain file inside the folder, or the packed file is damaged.
-    """
-    if corpus.is_file():
-        return packed_contents(corpus).files.get(name)
-    return plain_file(corpus, name).read_bytes() if (corpus / name).exists() else None
 
 
 def packed_contents(path: Path) -> Packed:

@@ -91,9 +91,15 @@ def write_additions(directory: Path, additions: CardAdditions) -> None:
     write_text_durably(json.dumps(additions.model_dump(mode="json"), indent=1) + "\n", directory / CARD_NAME)
 
 
+_LINES = (
+    "Under each waveform is its squared envelope spectrum over orders of the shaft, after whitening. The lines of the fault at their "
+    "nominal orders are shaded, those of other faults and of the shaft are dashed."
+)
+
+
 def pictures(found: Sequence[CardPicture]) -> list[str]:
     """Section with the pictures."""
-    lines = ["", "## Pictures"] if found else []
+    lines = ["", "## Pictures", "", _LINES] if found else []
     for picture in found:
         title, caption = plain_text(picture.title), plain_text(picture.caption)
         lines += ["", f"**{title}**: {caption}", "", f"![{title}]({PICTURES}/{_safe(picture.name)})"]
@@ -110,9 +116,9 @@ def scores(found: CardScores | None) -> list[str]:
     if found is None or not found.rows:
         return []
     meaning = (
-        f"Balanced accuracy of classifiers on each {plain_text(found.track)} outside their training, {found.folds} folds, "
-        f"{found.records} records of {', '.join(map(plain_text, found.classes))}; chance is {1 / max(len(found.classes), 1):.3f}. "
-        f"A split of random records leaks, and permuted labels must score at chance."
+        f"Balanced accuracy of classifiers on {found.records} records of {', '.join(map(plain_text, found.classes))}, cross-validated by "
+        f"{plain_text(found.track)} in {found.folds} folds; chance is {1 / max(len(found.classes), 1):.3f}. A split of random records "
+        f"leaks, so its score is too good; permuted labels must score at chance."
     )
     rows = (
         (

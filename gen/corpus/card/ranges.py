@@ -22,10 +22,8 @@ from gen.units import unit_suffix
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
-MOST_DRAWS = (
-    1024  # records whose draws are read; they are drawn in runs, because text is stored in blocks of 256 records
-)
-_RUN = 16
+MOST_DRAWS = 256  # records whose draws are read, in runs: text is stored in blocks of 256 records, 1 ms each
+_RUN = 4
 MOST_QUANTITIES = 200  # rows of a table
 LARGEST_RECIPE = 1_000_000  # bytes that are searched for keys
 FEWEST = 12  # specimens of a class whose values are compared with those of the others
@@ -37,6 +35,12 @@ SI_SYMBOLS: Mapping[str, str] = {
     "kg_m3": "kg m-3", "per_gpa": "Pa-1",
 }  # fmt: skip
 """Unit of a drawn value by the suffix of its key; levels in decibels are drawn as ratios of amplitudes."""
+
+_UNITS = {
+    "machine.unbalance": "kg m", "harmonics.frequency": "1", "knocks.frequency": "1", "modulation.once": "1", "modulation.twice": "1",
+    "axis.jumps": "1",
+}  # fmt: skip
+"""Units by the end of the place, of values without a key of their own or with another unit than that of the key: orders of the shaft."""
 
 _NOT_DRAWN = {"seed", "number", "entry", "bearing", "fault_try", "level_try", "ball"}
 """Numbers and copies of the catalogue among the draws."""
@@ -62,8 +66,8 @@ class Range(NamedTuple):
 class Groups(NamedTuple):
     """Class and specimen of each value."""
 
-    fault: NDArray[np.int8]
-    specimen: NDArray[np.int32]
+    fault: NDArray[np.integer[Any]]
+    specimen: NDArray[np.integer[Any]]
 
 
 def ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> list[str]:
@@ -105,7 +109,8 @@ def variable_ranges(corpus: xr.Dataset) -> tuple[list[Range], list[str]]:
             continue
         if "flag_values" in variable.attrs:
             continue
-        values, unit = variable.values.astype(float), str(variable.attrs.get("units", ""))
+        # of a copy, because the corpus would keep the values in memory
+        values, unit = variable[:].values.astype(float), str(variable.attrs.get("units", ""))
         finite = values[np.isfinite(values)]
         if finite.size and finite.min() < finite.max():
             rows += quantity_ranges(str(name), unit, values, groups, describes_fault=role == "label")
@@ -163,11 +168,16 @@ def drawn_ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> tuple[list[Rang
     chosen = some_records(corpus.sizes["record"])
     found: defaultdict[str, list[float]] = defaultdict(list)
     places: defaultdict[str, list[int]] = defaultdict(list)
+    last: dict[str, Any] = {}
+    leaves: dict[str, list[tuple[str, float]]] = {}
     for start, stop in _runs(chosen):
         for record, text in enumerate(corpus[DRAWS][start:stop].values, start):
-            for path, value in _leaves(_parsed(str(text)), ""):
-                found[path].append(value)
-                places[path].append(record)
+            for section, drawn in _sections(str(text)).items():
+                if section not in last or last[section] != drawn:  # neighbours share their rig and specimen
+                    last[section], leaves[section] = drawn, [*_leaves(drawn, section)]
+                for path, value in leaves[section]:
+                    found[path].append(value)
+                    places[path].append(record)
     units = _units(recipes)
     groups = Groups(corpus["fault"].values, corpus["specimen"].values)
     rows: list[Range] = []
@@ -175,7 +185,10 @@ def drawn_ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> tuple[list[Rang
         values, name = np.array(numbers), path.rpartition(".")[2]
         if values.min() < values.max() and name not in corpus:
             of_path = Groups(*(group[places[path]] for group in groups))
-            rows += quantity_ranges(path, units.get(name, ""), values, of_path)
+            unit = next((unit for end, unit in _UNITS.items() if path.endswith(end)), units.get(name, ""))
+            rows += quantity_ranges(path, unit, values, of_path)
+    order = ("rig", "specimen", "record")
+    rows.sort(key=lambda row: [row.name.startswith(f"{section}.") for section in order], reverse=True)
     return rows, len(chosen)
 
 
@@ -193,11 +206,13 @@ def _runs(numbers: IntArray) -> Iterator[tuple[int, int]]:
         yield int(run[0]), int(run[-1]) + 1
 
 
-def _parsed(text: str) -> Any:
+def _sections(text: str) -> dict[str, Any]:
+    """Sections of the draws of a record: rig, specimen and record; none in a text that is no JSON."""
     try:
-        return json.loads(text)
+        found = json.loads(text)
     except (ValueError, RecursionError):  # a corpus from elsewhere
         return {}
+    return {name: drawn for name, drawn in found.items() if name not in _NOT_DRAWN} if isinstance(found, dict) else {}
 
 
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
@@ -205,7 +220,7 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
     if isinstance(value, dict):
         for key, inner in value.items():
             if key not in _NOT_DRAWN:
-                yield from _leaves(inner, f"{path}.{key}" if path else str(key))
+                yield from _leaves(inner, f"{path}.{key}")
     elif isinstance(value, list):
         for inner in value:
             if isinstance(inner, dict):
@@ -216,7 +231,7 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
 
 def _units(recipes: Iterable[Path]) -> dict[str, str]:
     """Units of drawn values by name, from the keys of recipes: ``shaft_mass_kg`` tells that ``shaft_mass`` is in kg."""
-    units = {"unbalance": "kg m"}  # worked out from the balance quality
+    units: dict[str, str] = {}
     for recipe in recipes:
         with recipe.open("rb") as stream:
             text = stream.read(LARGEST_RECIPE).decode(errors="replace")
