@@ -48,6 +48,7 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
+    from gen.sharing.exporting import export
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -57,6 +58,7 @@ __all__ = [
     "RecipeError",
     "SimulationError",
     "draw_scenarios",
+    "export",
     "generate",
     "open_corpus",
     "read_recipe",
@@ -75,6 +77,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing.exporting": ("export",),
         "gen.simulation.simulate": ("simulate",),
     },
 )

@@ -5,5 +5,6 @@ module      responsibility
 =========== ======================================================
 where       conditions on records: parsed, never evaluated as Python
 choice      choice of records and channels
+exporting   corpora in the forms of other programs
 =========== ======================================================
 """
