@@ -112,11 +112,11 @@ def whole_folder_or_none(path: Path) -> Iterator[Path]:
     CorpusError
         If ``path`` exists and is not an empty folder, or if writing fails, with the reason that the system gives.
     """
-    path = path.absolute()
     check_name(path)
     if path.is_symlink() or (path.exists() and not (path.is_dir() and not any(path.iterdir()))):
         raise CorpusError(f"{path}: exists and is not an empty folder; choose another name, or remove it first.")
     try:
+        path = path.absolute()  # "." has no name
         _remove_left_behind_of(path)
         with temporary_beside(path) as temporary:
             temporary.mkdir(parents=True)

@@ -29,13 +29,12 @@ def export(
 ) -> None:
     """Write the corpus in DIR in a form for another program.
 
-    \b
-    parquet      one row per record, for pandas, polars, DuckDB, Spark
-    mat          struct arrays for MATLAB and Octave
-    csv          a table of labels, and one file per record
-    wav          a table of labels, and one sound file per record
-    zarr         a store that xarray opens
-    huggingface  Parquet by split with a card, for datasets.load_dataset
+      parquet      one row per record, for pandas, polars, DuckDB, Spark
+      mat          struct arrays for MATLAB and Octave
+      csv          a table of labels, and one file per record
+      wav          a table of labels, and one sound file per record
+      zarr         a store that xarray opens
+      huggingface  Parquet by split with a card, for datasets.load_dataset
 
     Labels and units go along, and OUT/README.md says how to read the files. The same corpus gives the same bytes. If the command is
     interrupted or killed, there is no OUT.

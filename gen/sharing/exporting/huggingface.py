@@ -1,7 +1,7 @@
 """Layout of a data set of the Hugging Face hub: Parquet files by split, and a card that names their features.
 
-``datasets.load_dataset(folder)`` reads it, also without a network. Texts in the header of the card are written as JSON, which is YAML too, so
-that a title from a stranger stays a text.
+``datasets.load_dataset(folder)`` reads it, also without a network. Texts in the header of the card are written as JSON, which is YAML too,
+so that a title from a stranger stays a text.
 """
 
 import json
@@ -30,12 +30,12 @@ def write_huggingface(chosen: Chosen, folder: Path, report: Report) -> str:
     for code, name in enumerate(SPLITS):
         records = chosen.records[split == code]
         if len(records):
-            paths = write_shards(chosen, folder / "data", name, records, report, names=False)
-            sizes[name] = (len(records), sum(path.stat().st_size for path in paths))
+            write_shards(chosen, folder / "data", name, records, report, names=False)
+            sizes[name] = len(records)
     return _card(chosen, sizes)
 
 
-def _card(chosen: Chosen, sizes: dict[str, tuple[int, int]]) -> str:
+def _card(chosen: Chosen, sizes: dict[str, int]) -> str:
     """Card of the data set: a YAML header, and a page with the meaning of each column."""
     columns = ["| column | unit | role | meaning |", "|---|---|---|---|"]
     for column in chosen.columns:
@@ -45,20 +45,19 @@ def _card(chosen: Chosen, sizes: dict[str, tuple[int, int]]) -> str:
     return "\n".join([_header(chosen, sizes), page(chosen, reading), *columns, ""])
 
 
-def _header(chosen: Chosen, sizes: dict[str, tuple[int, int]]) -> str:
+def _header(chosen: Chosen, sizes: dict[str, int]) -> str:
     """YAML header; every value below the upper keys is JSON on a line of its own."""
     facts: dict[str, str] = {
         "pretty_name": title(chosen.corpus.attrs),
         **_licence(str(chosen.corpus.attrs.get("license", ""))),
     }
     tags = ["vibration", "bearing", "fault-diagnosis", "condition-monitoring"]
-    splits = [{"name": name, "num_examples": count, "num_bytes": size} for name, (count, size) in sizes.items()]
     return "\n".join(
         [
             "---",
             *(f"{key}: {_json(value)}" for key, value in facts.items()),
             f"tags: {_json(tags)}",
-            f"size_categories: {_json([_size_category(sum(count for count, _ in sizes.values()))])}",
+            f"size_categories: {_json([_size_category(sum(sizes.values()))])}",
             "configs:",
             "- config_name: default",
             "  data_files:",
@@ -68,7 +67,7 @@ def _header(chosen: Chosen, sizes: dict[str, tuple[int, int]]) -> str:
             "  features:",
             *(f"  - {_json(feature)}" for feature in _features(chosen)),
             "  splits:",
-            *(f"  - {_json(one)}" for one in splits),
+            *(f"  - {_json({'name': name, 'num_examples': count})}" for name, count in sizes.items()),
             "---",
             "",
         ]

@@ -14,7 +14,7 @@ from gen.sharing.exporting.choosing import Block, Chosen
 from gen.sharing.exporting.report import Report, page
 from gen.sharing.exporting.tables import label_table
 
-FILE_BYTES = 64_000_000
+FILE_BYTES = 32_000_000
 """Largest size of the signals of a file in single precision."""
 _HEADER = b"MATLAB 5.0 MAT-file, records of rolling bearings exported by Raceway"
 _HEADER_BYTES = 116
@@ -36,7 +36,13 @@ def write_mat(chosen: Chosen, folder: Path, report: Report) -> str:
     with label_table(chosen, folder, ["place"]) as write:
         for number, block in enumerate(chosen.blocks(FILE_BYTES)):
             path = folder / f"records-{number:05d}.mat"
-            savemat(path, {"records": _struct_array(chosen, block), **about}, long_field_names=True, oned_as="row")
+            savemat(
+                path,
+                {"records": _struct_array(chosen, block), **about},
+                long_field_names=True,
+                oned_as="row",
+                do_compression=True,
+            )
             with path.open(
                 "rb+"
             ) as stream:  # SciPy writes the date here, and the same records must give the same bytes

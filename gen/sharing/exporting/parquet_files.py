@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 FILE_BYTES = 500_000_000
 """Largest size of the signals of a file in single precision."""
-_ROW_GROUP_BYTES = 32_000_000
+_ROW_GROUP_BYTES = 16_000_000
 _SIGNAL = "acceleration_"
 
 
@@ -30,8 +30,8 @@ def write_parquet(chosen: Chosen, folder: Path, report: Report) -> str:
 
 def write_shards(
     chosen: Chosen, folder: Path, prefix: str, records: NDArray[np.intp], report: Report, *, names: bool
-) -> list[Path]:
-    """Write some of the chosen records as Parquet files of up to ``FILE_BYTES``; returns their paths.
+) -> None:
+    """Write some of the chosen records as Parquet files of up to ``FILE_BYTES``.
 
     ``names`` stores classes by their names, and otherwise by their codes, with null for a class that is not known.
     """
@@ -42,18 +42,12 @@ def write_shards(
     size = max(1, FILE_BYTES // (4 * len(chosen.channels) * chosen.samples))
     shards = -(-len(records) // size)
     paths = [folder / f"{prefix}-{number:05d}-of-{shards:05d}.parquet" for number in range(shards)]
-    signals = [f"{_SIGNAL}{name}" for name in chosen.channel_names]
-    storage: dict[str, Any] = {
-        "compression": "zstd",
-        "use_dictionary": [column.name for column in chosen.columns],
-        "use_byte_stream_split": [f"{name}.list.element" for name in signals],
-    }
+    storage = _storage(chosen)
     for number, path in enumerate(paths):
         with parquet.ParquetWriter(path, schema, **storage) as file:
             for block in chosen.blocks(_ROW_GROUP_BYTES, records[number * size : (number + 1) * size]):
                 file.write_table(_table(chosen, block, schema, names=names))
                 report(block)
-    return paths
 
 
 def class_names(column: Column) -> list[str]:
@@ -74,6 +68,18 @@ def _schema(chosen: Chosen, *, names: bool) -> "pa.Schema":
         about = {"units": "m s-2", "role": "signal", "channel": text, "sample_rate_hz": repr(chosen.sample_rate)}
         fields.append(pa.field(f"{_SIGNAL}{name}", pa.list_(pa.float32(), chosen.samples), metadata=about))
     return pa.schema(fields, {str(key): str(value) for key, value in chosen.corpus.attrs.items()})
+
+
+def _storage(chosen: Chosen) -> dict[str, Any]:
+    """Compression and encodings of the columns.
+
+    Counts have at most 65,536 different values, which fit the dictionary of a row group: half the size of any other encoding.
+    """
+    signals = [f"{_SIGNAL}{name}.list.element" for name in chosen.channel_names]
+    labels = [column.name for column in chosen.columns]
+    if chosen.scale is None:
+        return {"compression": "zstd", "use_dictionary": labels, "use_byte_stream_split": signals}
+    return {"compression": "zstd", "use_dictionary": [*labels, *signals]}
 
 
 def _type(column: Column, *, names: bool) -> "pa.DataType":

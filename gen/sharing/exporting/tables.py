@@ -1,7 +1,7 @@
 """Tables of labels and of their units, as CSV files that go with one file per record.
 
-Programs for tables run a cell that begins with ``=``, ``+``, ``-`` or ``@`` as a formula. Texts of a corpus can come from strangers, so such
-a text gets an apostrophe in front of it.
+Programs for tables run a cell that begins with ``=``, ``+``, ``-`` or ``@`` as a formula. Texts of a corpus can come from strangers, so
+such a text gets an apostrophe in front of it.
 """
 
 import csv

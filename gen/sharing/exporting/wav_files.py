@@ -12,7 +12,7 @@ from gen.sharing.exporting.choosing import Chosen
 from gen.sharing.exporting.report import Report, page
 from gen.sharing.exporting.tables import label_table, record_file
 
-_BLOCK_BYTES = 32_000_000
+_BLOCK_BYTES = 8_000_000  # of single precision
 _MOST_CHANNELS = 65_535
 
 

@@ -14,8 +14,8 @@ from gen.sharing.exporting.choosing import Chosen
 from gen.sharing.exporting.report import Report, page
 
 STORE = "corpus.zarr"
-_BLOCK_BYTES = 64_000_000  # of single precision
-_CHUNK_BYTES = 4_000_000
+_BLOCK_BYTES = 16_000_000  # of single precision
+_CHUNK_BYTES = 4_000_000  # of single precision, half of that as counts
 _COLUMN_CHUNK = 4096  # records
 
 

@@ -1,0 +1,103 @@
+"""Size, CPU time and memory of a corpus in every form of ``raceway export``: ``python -m benchmarks.exports [RECORDS]``.
+
+The corpus is made without a simulation: noise of 11 bits and one tone, in 4096 samples of 16 bits a record, with all labels of a simulated
+corpus. Every export runs in a process of its own. The first line is the corpus itself.
+"""
+
+import json
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from gen.corpus import DRAWS, FAULTS, SCHEMA, SIMULATED, finish_corpus, make_dataset, part_name, write_part
+from gen.sharing.exporting import FORMS
+
+FS = 12_800.0
+SAMPLES = 4096
+IN_PART = 500
+COUNTS_PER_UNIT = 65.534
+
+
+class Cost(NamedTuple):
+    """Cost of one form."""
+
+    form: str
+    files: int
+    megabytes: float
+    seconds: float
+    """CPU time of the process, its start included [s]."""
+    memory: float
+    """Peak memory of the process [MB]."""
+
+
+def make_corpus(folder: Path, records: int) -> Path:
+    """Write a corpus of noise."""
+    (folder / "parts").mkdir(parents=True)
+    starts = range(0, records, IN_PART)
+    rows = []
+    for number, first in enumerate(starts):
+        dataset = _records(first, min(IN_PART, records - first))
+        rows.append(write_part(dataset, folder / "parts" / part_name(number)))
+    finish_corpus(folder, rows, lambda _corpus, _signals: "Noise of a benchmark.\n")
+    return folder
+
+
+def costs(records: int) -> Iterator[Cost]:
+    """Cost of each form for a corpus of so many records."""
+    with tempfile.TemporaryDirectory() as temporary:
+        corpus = make_corpus(Path(temporary) / "corpus", records)
+        files = [path for path in corpus.rglob("*") if path.is_file()]
+        yield Cost("corpus", len(files), sum(path.stat().st_size for path in files) / 1e6, np.nan, np.nan)
+        for form in FORMS:
+            yield _cost(corpus, Path(temporary) / form, form)
+
+
+def table(found: Iterator[Cost]) -> Iterator[str]:
+    """Lines of a table in Markdown."""
+    yield from ("| form | files | size [MB] | CPU time [s] | peak memory [MB] |", "|---|---:|---:|---:|---:|")
+    for cost in found:
+        numbers = ("" if np.isnan(number) else f"{number:.0f}" for number in cost[2:])
+        yield f"| {cost.form} | {cost.files} | " + " | ".join(numbers) + " |"
+
+
+def _records(first: int, n: int) -> "object":
+    rng = np.random.default_rng(first)
+    number = np.arange(first, first + n)
+    specimen, variables = number // 10, SCHEMA + SIMULATED
+    columns = {v.name: np.full(n, "made up") if v.dtype == "str" else np.zeros(n) for v in variables}
+    columns |= {"specimen": specimen, "rig": specimen // 8, "recording": number, "fault": specimen % len(FAULTS)}
+    columns |= {"split": specimen % 3, "sample_rate": np.full(n, FS), "shaft_rate": rng.uniform(20, 40, n)}
+    columns[DRAWS] = [
+        json.dumps({f"value_{place}": value for place, value in enumerate(row)}) for row in rng.random((n, 60))
+    ]
+    tone = np.sin(2 * np.pi * columns["shaft_rate"][:, None] * 4 * np.arange(SAMPLES) / FS)
+    counts = np.rint(1000 * (tone + rng.standard_normal(tone.shape))).astype(np.int16)[:, None]
+    facts = {"title": "Noise of a benchmark", "source": "made up", "history": ""}
+    return make_dataset(
+        counts, FS, ("housing",), columns, extra=SIMULATED, counts_per_unit=COUNTS_PER_UNIT, attributes=facts
+    )
+
+
+def _cost(corpus: Path, output: Path, form: str) -> Cost:
+    """Export in a process of its own."""
+    command = [sys.executable, "-m", "raceway", "export", str(corpus), "-o", str(output), "--to", form, "--json"]
+    with (output.parent / "told.json").open("w+") as told:
+        child = os.posix_spawn(
+            sys.executable, command, os.environ, file_actions=[(os.POSIX_SPAWN_DUP2, told.fileno(), 1)]
+        )
+        _, status, usage = os.wait4(child, 0)
+        if status:
+            raise RuntimeError(f"raceway export --to {form} failed")
+        told.seek(0)
+        made = json.load(told)
+    return Cost(form, made["files"], made["bytes"] / 1e6, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3)
+
+
+if __name__ == "__main__":
+    for line in table(costs(int(sys.argv[1]) if sys.argv[1:] else 10_000)):
+        print(line, flush=True)
