@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
     from gen.sharing.exporting import export
+    from gen.sharing.portable import pack
+    from gen.sharing.unpacking import unpack
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -61,11 +63,13 @@ __all__ = [
     "export",
     "generate",
     "open_corpus",
+    "pack",
     "read_recipe",
     "replay",
     "shaft_angles",
     "simulate",
     "stored_scenario",
+    "unpack",
     "validate_corpus",
 ]
 
@@ -78,6 +82,8 @@ __getattr__, __dir__ = lazy_names(
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
         "gen.sharing.exporting": ("export",),
+        "gen.sharing.portable": ("pack",),
+        "gen.sharing.unpacking": ("unpack",),
         "gen.simulation.simulate": ("simulate",),
     },
 )

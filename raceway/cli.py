@@ -20,6 +20,7 @@ from raceway.commands import (
     gallery,
     importing,
     models,
+    packing,
     reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
@@ -105,6 +106,8 @@ for command in (
     corpora.info,
     corpora.replay,
     exporting.export,
+    packing.pack,
+    packing.unpack,
     feature_tables.plot,
     feature_tables.features,
     models.train,

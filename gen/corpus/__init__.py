@@ -11,10 +11,13 @@ layout        allowed shapes, types and attributes in a file
 files         atomic writing, hashes
 signals       records that cannot be used
 part          one netCDF-4 file of records
-record_hashes SHA-256 of single records
 journal       finished parts of an unfinished corpus
-manifest      files of a corpus with size and hash
+part_forms    descriptions from which parts are written again
+packed        a corpus as one file: its parts and small files
+record_hashes SHA-256 of single records
 reading       lazy reading, with a few files open at a time
+record_checks records of a packed file compared with their hashes
+manifest      files of a corpus with size and hash
 index         ``corpus.nc`` over the parts; opening a corpus
 validation    all checks of a corpus
 visible       faults that can be seen in their records

@@ -67,7 +67,7 @@ def describe(directory: Path) -> dict[str, Any]:
         "complete": manifest.complete,
         "records": manifest.records,
         "parts": len(manifest.parts),
-        "bytes": sum(path.stat().st_size for path in directory.rglob("*") if path.is_file()),
+        "bytes": sum(path.stat().st_size for path in (directory, *directory.rglob("*")) if path.is_file()),
         "failures": [],
         "warnings": [],
         "skipped": [],
