@@ -5,7 +5,7 @@ Names and texts of a corpus can come from strangers. So names of columns and fil
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -19,6 +19,8 @@ from gen.sharing.choice import chosen_channels, chosen_records
 
 _LONGEST_NAME = 60  # letters; MATLAB allows 63
 _MOST_IN_BLOCK = 2048  # records; drawn values are text of some kilobytes a record
+_OF_THE_FILE = ("comment", "raceway_packed")  # global attributes about corpus.nc or a packed file
+_OF_THE_WHOLE = ("summary", "id", "naming_authority")  # global attributes that a choice of records does not have
 _RESERVED = ("record", "file", "place", "units", "channels")
 
 
@@ -136,9 +138,11 @@ def choose(
     corpus: xr.Dataset, where: str | None = None, split: str | None = None, channels: Sequence[str] | None = None
 ) -> Chosen:
     """Records and channels of an opened corpus; CorpusError if there are none such."""
-    own = {name: value for name, value in corpus.attrs.items() if name != "comment"}  # it is about corpus.nc
-    corpus = corpus.drop_attrs(deep=False).assign_attrs(own)
-    return Chosen(corpus, chosen_records(corpus, where, split), chosen_channels(corpus, channels))
+    found = Chosen(corpus, chosen_records(corpus, where, split), chosen_channels(corpus, channels))
+    whole = len(found.records) == corpus.sizes["record"] and len(found.channels) == corpus.sizes["channel"]
+    left_out = _OF_THE_FILE if whole else (*_OF_THE_FILE, *_OF_THE_WHOLE)
+    own = {name: value for name, value in corpus.attrs.items() if name not in left_out}
+    return replace(found, corpus=corpus.drop_attrs(deep=False).assign_attrs(own))
 
 
 def plain_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:

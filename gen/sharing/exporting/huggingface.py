@@ -79,11 +79,15 @@ def _json(value: Any) -> str:
 
 
 def _licence(text: str) -> dict[str, str]:
-    if not text:
-        return {}
-    if text.lower() in _LICENCES:
-        return {"license": text.lower()}
-    return {"license": "other", "license_name": plain_text(text)}
+    """Keys for a licence, given by its SPDX identifier with an address behind it.
+
+    >>> _licence("CC-BY-4.0 (https://spdx.org/licenses/CC-BY-4.0.html)"), _licence("Proprietary")
+    ({'license': 'cc-by-4.0'}, {'license': 'other', 'license_name': 'Proprietary'})
+    """
+    name = text.partition(" (")[0]
+    if name.lower() in _LICENCES:
+        return {"license": name.lower()}
+    return {"license": "other", "license_name": plain_text(text)} if text else {}
 
 
 def _size_category(records: int) -> str:

@@ -10,6 +10,9 @@ Progress = Callable[[int, int], None]
 Report = Callable[[Block], None]
 """Called after each block that is written."""
 
+_TERMS = {"license": "Licence", "creator_name": "Creators", "references": "References", "metadata_link": "Published at"}
+"""Global attributes that the page repeats, with their headings."""
+
 
 def reporter(chosen: Chosen, progress: Progress | None) -> Report:
     """Function that counts the records of finished blocks and passes on their number and that of all."""
@@ -32,8 +35,10 @@ def page(chosen: Chosen, reading: str) -> str:
     count = f"{len(chosen.records)} of {chosen.corpus.sizes['record']} records of a corpus"
     about = f"{count}, {signal}, channels {channels}, in m s-2, exported by Raceway. `record` is their number in the corpus."
     lines = [f"# {title(facts)}", "", about]
-    licence = plain_text(facts.get("license", ""))
-    return "\n".join([*lines, *(["", f"Licence: {licence}"] if licence else []), "", reading])
+    for name, heading in _TERMS.items():
+        text = plain_text(facts.get(name, ""))
+        lines += ["", f"{heading}: {text}"] if text else []
+    return "\n".join([*lines, "", reading])
 
 
 def title(facts: Mapping[str, Any]) -> str:

@@ -221,6 +221,27 @@ def test_an_export_that_is_killed_leaves_nothing_under_its_name(counts, tmp_path
     assert [path.name for path in tmp_path.iterdir()] == ["out"], left
 
 
+def test_a_packed_file_is_exported_as_its_folder(counts, tmp_path):
+    gen.pack(counts, tmp_path / "packed.nc")
+    for to in ("parquet", "zarr"):
+        gen.export(counts, tmp_path / f"folder_{to}", to)
+        gen.export(tmp_path / "packed.nc", tmp_path / f"packed_{to}", to)
+        assert tree(tmp_path / f"folder_{to}") == tree(tmp_path / f"packed_{to}")
+
+
+def test_licence_and_creators_go_along(tmp_path):
+    part = dataset(0, 3)
+    part.attrs |= {"license": "CC-BY-4.0 (https://spdx.org/licenses/CC-BY-4.0.html)", "creator_name": "Jane Doe"}
+    (tmp_path / "c/parts").mkdir(parents=True)
+    finish_corpus(tmp_path / "c", [write_part(part, tmp_path / "c/parts" / part_name(0))], lambda *_: "")
+    for to in ("csv", "huggingface"):
+        gen.export(tmp_path / "c", tmp_path / to, to)
+        page = (tmp_path / to / "README.md").read_text()
+        assert "Licence: CC-BY-4.0" in page
+        assert "Creators: Jane Doe" in page
+    assert 'license: "cc-by-4.0"' in page
+
+
 def test_texts_of_strangers_stay_texts(tmp_path):
     folder, wicked = tmp_path / "corpus", '=HYPERLINK("http://x")\n- a: [b'
     part = dataset(0, 3, channels=("../../x", "=1"))
