@@ -1,6 +1,6 @@
-"""Size, CPU time and memory of a corpus in every form of ``raceway export``: ``python -m benchmarks.exports [RECORDS]``.
+"""Size, CPU time and memory of a corpus in every form of ``raceway export``: ``python -m benchmarks.exports [RECORDS [SAMPLES]]``.
 
-The corpus is made without a simulation: noise of 11 bits and one tone, in 4096 samples of 16 bits a record, with all labels of a simulated
+The corpus is made without a simulation: noise of 11 bits and one tone, in 10,000 records of 4096 samples of 16 bits if not told otherwise, with all labels of a simulated
 corpus. Every export runs in a process of its own. The first line is the corpus itself.
 """
 
@@ -10,15 +10,15 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+import xarray as xr
 
 from gen.corpus import DRAWS, FAULTS, SCHEMA, SIMULATED, finish_corpus, make_dataset, part_name, write_part
 from gen.sharing.exporting import FORMS
 
 FS = 12_800.0
-SAMPLES = 4096
 IN_PART = 500
 COUNTS_PER_UNIT = 65.534
 
@@ -35,22 +35,22 @@ class Cost(NamedTuple):
     """Peak memory of the process [MB]."""
 
 
-def make_corpus(folder: Path, records: int) -> Path:
-    """Write a corpus of noise."""
+def make_corpus(folder: Path, records: int, samples: int) -> Path:
+    """Write a corpus of noise, so many samples a record."""
     (folder / "parts").mkdir(parents=True)
     starts = range(0, records, IN_PART)
     rows = []
     for number, first in enumerate(starts):
-        dataset = _records(first, min(IN_PART, records - first))
+        dataset = _records(first, min(IN_PART, records - first), samples)
         rows.append(write_part(dataset, folder / "parts" / part_name(number)))
     finish_corpus(folder, rows, lambda _corpus, _signals: "Noise of a benchmark.\n")
     return folder
 
 
-def costs(records: int) -> Iterator[Cost]:
-    """Cost of each form for a corpus of so many records."""
+def costs(records: int = 10_000, samples: int = 4096) -> Iterator[Cost]:
+    """Cost of each form for a corpus of so many records and samples a record."""
     with tempfile.TemporaryDirectory() as temporary:
-        corpus = make_corpus(Path(temporary) / "corpus", records)
+        corpus = make_corpus(Path(temporary) / "corpus", records, samples)
         files = [path for path in corpus.rglob("*") if path.is_file()]
         yield Cost("corpus", len(files), sum(path.stat().st_size for path in files) / 1e6, np.nan, np.nan)
         for form in FORMS:
@@ -65,17 +65,17 @@ def table(found: Iterator[Cost]) -> Iterator[str]:
         yield f"| {cost.form} | {cost.files} | " + " | ".join(numbers) + " |"
 
 
-def _records(first: int, n: int) -> "object":
+def _records(first: int, n: int, samples: int) -> xr.Dataset:
     rng = np.random.default_rng(first)
     number = np.arange(first, first + n)
     specimen, variables = number // 10, SCHEMA + SIMULATED
-    columns = {v.name: np.full(n, "made up") if v.dtype == "str" else np.zeros(n) for v in variables}
+    columns: dict[str, Any] = {v.name: np.full(n, "made up") if v.dtype == "str" else np.zeros(n) for v in variables}
     columns |= {"specimen": specimen, "rig": specimen // 8, "recording": number, "fault": specimen % len(FAULTS)}
     columns |= {"split": specimen % 3, "sample_rate": np.full(n, FS), "shaft_rate": rng.uniform(20, 40, n)}
     columns[DRAWS] = [
         json.dumps({f"value_{place}": value for place, value in enumerate(row)}) for row in rng.random((n, 60))
     ]
-    tone = np.sin(2 * np.pi * columns["shaft_rate"][:, None] * 4 * np.arange(SAMPLES) / FS)
+    tone = np.sin(2 * np.pi * columns["shaft_rate"][:, None] * 4 * np.arange(samples) / FS)
     counts = np.rint(1000 * (tone + rng.standard_normal(tone.shape))).astype(np.int16)[:, None]
     facts = {"title": "Noise of a benchmark", "source": "made up", "history": ""}
     return make_dataset(
@@ -99,5 +99,5 @@ def _cost(corpus: Path, output: Path, form: str) -> Cost:
 
 
 if __name__ == "__main__":
-    for line in table(costs(int(sys.argv[1]) if sys.argv[1:] else 10_000)):
+    for line in table(costs(*map(int, sys.argv[1:]))):
         print(line, flush=True)
