@@ -1,11 +1,10 @@
 """Size, CPU time and memory of a corpus in every form of ``raceway export``: ``python -m benchmarks.exports [RECORDS [SAMPLES]]``.
 
-The corpus is made without a simulation: noise of 11 bits and one tone, in 10,000 records of 4096 samples of 16 bits if not told otherwise, with all labels of a simulated
-corpus. Every export runs in a process of its own. The first line is the corpus itself.
+The corpus is made without a simulation: noise of 11 bits and one tone, 10,000 records of 4096 samples if not told otherwise, with all
+labels of a simulated corpus. Every export runs in a process of its own. The first line is the corpus itself.
 """
 
 import json
-import os
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -15,10 +14,18 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
+from benchmarks.pairs import run_python
 from gen.corpus import DRAWS, FAULTS, SCHEMA, SIMULATED, finish_corpus, make_dataset, part_name, write_part
 from gen.sharing.exporting import FORMS
 
 FS = 12_800.0
+_EXPORT = """
+import json, re, sys, time
+import gen
+made = gen.export(*sys.argv[1:])
+peak = re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1]  # ru_maxrss counts the parent process too
+print(json.dumps({"files": made.files, "bytes": made.bytes, "seconds": time.process_time(), "memory": int(peak) / 1e3}))
+"""
 IN_PART = 500
 COUNTS_PER_UNIT = 65.534
 
@@ -85,17 +92,8 @@ def _records(first: int, n: int, samples: int) -> xr.Dataset:
 
 def _cost(corpus: Path, output: Path, form: str) -> Cost:
     """Export in a process of its own."""
-    command = [sys.executable, "-m", "raceway", "export", str(corpus), "-o", str(output), "--to", form, "--json"]
-    with (output.parent / "told.json").open("w+") as told:
-        child = os.posix_spawn(
-            sys.executable, command, os.environ, file_actions=[(os.POSIX_SPAWN_DUP2, told.fileno(), 1)]
-        )
-        _, status, usage = os.wait4(child, 0)
-        if status:
-            raise RuntimeError(f"raceway export --to {form} failed")
-        told.seek(0)
-        made = json.load(told)
-    return Cost(form, made["files"], made["bytes"] / 1e6, usage.ru_utime + usage.ru_stime, usage.ru_maxrss / 1e3)
+    told = json.loads(run_python("-c", _EXPORT, corpus, output, form))
+    return Cost(form, told["files"], told["bytes"] / 1e6, told["seconds"], told["memory"])
 
 
 if __name__ == "__main__":

@@ -18,7 +18,7 @@ from gen.corpus.record_hashes import stored_signal
 from gen.sharing.choice import chosen_channels, chosen_records
 
 _LONGEST_NAME = 60  # letters; MATLAB allows 63
-_MOST_IN_BLOCK = 2048  # records; drawn values are text of some kilobytes a record
+_MOST_IN_BLOCK = 1024  # records; drawn values are text of some kilobytes a record
 _OF_THE_FILE = ("comment", "raceway_packed")  # global attributes about corpus.nc or a packed file
 _OF_THE_WHOLE = ("summary", "id", "naming_authority")  # global attributes that a choice of records does not have
 _RESERVED = ("record", "file", "place", "units", "channels")

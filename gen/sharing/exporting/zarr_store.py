@@ -55,7 +55,7 @@ def _storage(variable: xr.Variable, chosen: Chosen, rows: int) -> dict[str, Any]
 
 _READING = """\
 The store `corpus.zarr` has the variables and attributes of the corpus; the signal is stored as in the corpus, and xarray
-decodes it to m s-2. It is a store of version 2, which more programs read than version 3.
+decodes it to m s-2, in double precision. It is a store of version 2, which more programs read than version 3.
 
     import xarray
     corpus = xarray.open_zarr("corpus.zarr")
