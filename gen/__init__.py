@@ -43,12 +43,13 @@ from gen.errors import ClusterError, CorpusError, RacewayError, RecipeError, Sim
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gen.corpus import open_corpus, validate_corpus
+    from gen.corpus import Publication, open_corpus, publish, read_publication, validate_corpus
     from gen.generation import generate
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
     from gen.sharing.exporting import export
+    from gen.sharing import merge, select
     from gen.sharing.portable import pack
     from gen.sharing.unpacking import unpack
     from gen.simulation.simulate import simulate
@@ -56,16 +57,21 @@ if TYPE_CHECKING:
 __all__ = [
     "ClusterError",
     "CorpusError",
+    "Publication",
     "RacewayError",
     "RecipeError",
     "SimulationError",
     "draw_scenarios",
     "export",
     "generate",
+    "merge",
     "open_corpus",
     "pack",
+    "publish",
+    "read_publication",
     "read_recipe",
     "replay",
+    "select",
     "shaft_angles",
     "simulate",
     "stored_scenario",
@@ -76,7 +82,7 @@ __all__ = [
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "gen.corpus": ("open_corpus", "validate_corpus"),
+        "gen.corpus": ("Publication", "open_corpus", "publish", "read_publication", "validate_corpus"),
         "gen.generation": ("generate",),
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
@@ -84,6 +90,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.sharing.exporting": ("export",),
         "gen.sharing.portable": ("pack",),
         "gen.sharing.unpacking": ("unpack",),
+        "gen.sharing": ("merge", "select"),
         "gen.simulation.simulate": ("simulate",),
     },
 )

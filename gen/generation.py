@@ -21,7 +21,6 @@ from gen.corpus import (
     PartRow,
     SignalCounts,
     check_name,
-    data_card,
     finish_corpus,
     new_journal,
     part_name,
@@ -40,11 +39,6 @@ if TYPE_CHECKING:
     from distributed import Client
 
 Progress = Callable[[int, int], None]
-
-_HOW = (
-    "Simulated by Raceway from `recipe.yaml` (recipe {recipe}): Hertz contact between balls and raceways, shaft, housing and sensor "
-    "resonance, classical Runge-Kutta. `raceway replay` makes any record again, bit for bit."
-)
 
 
 @dataclass(frozen=True)
@@ -120,18 +114,17 @@ def generate(
                     append(outcome.row)
                 tally.note(part, len(record_numbers(checked, part)))
                 tally.show()
-        return _finished(directory, [outcomes[number] for number in sorted(outcomes)], checked, facts)
+        return _finished(directory, [outcomes[number] for number in sorted(outcomes)], facts)
 
 
-def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: dict[str, Any]) -> Generated:
+def _finished(directory: Path, outcomes: list[Outcome], facts: dict[str, Any]) -> Generated:
     """Write index, manifest and data card of the finished parts."""
     rows = [outcome.row for outcome in outcomes if outcome.row.records]
     if not rows:
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
     failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
-    signals = finish_corpus(
-        directory, rows, partial(data_card, origin=_HOW.format(recipe=recipe.name)), failures=failures, **facts
-    )
+    facts = facts | {"publication": facts["publication"].dated()}
+    signals = finish_corpus(directory, rows, failures=failures, **facts)
     (directory / JOURNAL_NAME).unlink()
     kept = sum(outcome.kept for outcome in outcomes)
     return Generated(directory, sum(row.records for row in rows), len(rows), kept, failures, signals)
@@ -173,9 +166,12 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     journal = directory / JOURNAL_NAME
     begun = (directory / "manifest.json").exists()
     try:
-        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
+        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml", "croissant.json"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
+        if manifest is not None and (manifest.selections or manifest.origins):
+            how = "selected from a larger corpus" if manifest.selections else "merged from several corpora"
+            raise CorpusError(f"{directory}: was {how}, so it cannot be generated; choose another folder.")
         if manifest is not None and any((directory / "parts").glob("*.nc")):
             if manifest.recipe_sha256 != facts["recipe_sha256"]:
                 raise CorpusError(
@@ -183,14 +179,15 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
                 )
             if manifest.versions == facts["versions"]:  # other versions may write other bytes
                 known = {row.name: row for row in manifest.parts}
+            if not facts["publication"].stored:
+                facts["publication"] = manifest.publication  # given after the corpus was made
         elif manifest is None and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
         if not known:
             journal.unlink(missing_ok=True)  # first: no row of other versions may stand beside the new manifest
         write_manifest(directory, known.values(), complete=False, **facts)
         journal.unlink(missing_ok=True)
-        if not known:
-            write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
+        write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
         remove_left_behind(directory / "parts", "part-*.nc")
     except OSError as error:
@@ -204,6 +201,7 @@ def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, A
         "recipe": recipe.name,
         "recipe_sha256": recipe_hash(recipe),
         "overrides": {"seed": seed, "records": records},
+        "publication": recipe.publication,
         "versions": library_versions(),
     }
 

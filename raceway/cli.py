@@ -14,6 +14,7 @@ from raceway.commands import (
     benchmarking,
     comparing,
     corpora,
+    cutting,
     diagnosing,
     exporting,
     feature_tables,
@@ -21,6 +22,7 @@ from raceway.commands import (
     importing,
     models,
     packing,
+    publishing,
     reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
@@ -108,6 +110,8 @@ for command in (
     exporting.export,
     packing.pack,
     packing.unpack,
+    cutting.select,
+    cutting.merge,
     feature_tables.plot,
     feature_tables.features,
     models.train,
@@ -115,6 +119,7 @@ for command in (
     diagnosing.diagnose,
     benchmarking.benchmark,
     comparing.compare,
+    publishing.card,
     benchmarking.bench,
     reproduce.reproduce,
     gallery.gallery,

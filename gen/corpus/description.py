@@ -16,6 +16,7 @@ A corpus is a folder:
 | `parts.jsonl` | while the corpus is unfinished: one line for each finished part, as in `parts` of the manifest |
 | `recipe.yaml` | the recipe, if the corpus was simulated |
 | `README.md` | the data card |
+| `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
 
 HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds
 the number of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it

@@ -16,6 +16,7 @@ from gen.recipe.distributions import Number
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault
 from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing, MachineSection, SpecimenSection
 from gen.recipe.operation import OperationSection, Table
+from gen.recipe.publication import PublicationSection
 from gen.recipe.section import Count, Name, Section
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
 from gen.recipe.sensor_faults import SensorFaultsSection
@@ -98,6 +99,8 @@ class Recipe(Section):
     """One line about the corpus, for its data card."""
     seed: Annotated[StrictInt, Field(ge=0, lt=2**63)] = 0
     """Start of all random streams; the same recipe and seed give the same corpus."""
+    publication: PublicationSection = PublicationSection()
+    """Licence, creators and references; no record depends on them, and `raceway card` can change them later."""
     corpus: CorpusSection
     """Size, split and storage of the corpus."""
     recording: RecordingSection

@@ -9,5 +9,42 @@ exporting   corpora in the forms of other programs
 packing     a whole corpus written into one netCDF-4 file
 unpacking   the folder of a packed corpus made again
 portable    a corpus, or a choice of it, as one file
+copying     stored records read, and written into a new folder
+columns     variables of all corpora that are merged
+repeats     records with the same samples in different corpora
+selecting   some records or channels as a corpus of their own
+merging     several corpora as one
 =========== ======================================================
 """
+
+from typing import TYPE_CHECKING
+
+from gen.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from gen.sharing.choice import chosen_channels, chosen_records
+    from gen.sharing.merging import Merged, merge
+    from gen.sharing.selecting import Selected, select
+    from gen.sharing.where import Condition, parse_where
+
+__all__ = [
+    "Condition",
+    "Merged",
+    "Selected",
+    "chosen_channels",
+    "chosen_records",
+    "merge",
+    "parse_where",
+    "select",
+]
+
+# xarray and netCDF4 take 0.3 s to load, and a condition needs none of them
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "gen.sharing.choice": ("chosen_channels", "chosen_records"),
+        "gen.sharing.merging": ("Merged", "merge"),
+        "gen.sharing.selecting": ("Selected", "select"),
+        "gen.sharing.where": ("Condition", "parse_where"),
+    },
+)

@@ -34,6 +34,7 @@ from gen.corpus.part_forms import form_of
 from gen.corpus.reading import StoredBlock
 from gen.corpus.record_checks import hashed_blocks
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
+from gen.corpus.unicode_text import beyond_ascii, write_unicode
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
@@ -68,7 +69,7 @@ def pack_whole(directory: Path, file: Path, codec: Codec, progress: Progress | N
     _check_alike(paths, [form for _, form in forms])
     with whole_or_not_at_all(file) as temporary:
         with LIBRARY_LOCK:
-            write_variables(directory, manifest.parts, temporary, _COMMENT)
+            write_variables(directory, manifest.parts, temporary, {"comment": _COMMENT})
             _declare(temporary, directory, paths[0], codec)
             _write_files(temporary, small_files(directory), _contents(manifest, forms))
         direct = codec == "zlib" == forms[0][1]["codec"]
@@ -117,7 +118,9 @@ def _declare(path: Path, directory: Path, part: Path, codec: Codec) -> None:
         attributes = {
             name: index.getncattr(name) for name in index.ncattrs() if name not in ("comment", "_NCProperties")
         }
-        file.setncatts(attributes | {PACKED: np.int32(PACKED_VERSION)})
+        texts = beyond_ascii(attributes)
+        plain = {name: value for name, value in attributes.items() if name not in texts}
+        file.setncatts(plain | {PACKED: np.int32(PACKED_VERSION)})
         model = like[SIGNAL]
         signal = {name: model.getncattr(name) for name in model.ncattrs()}
         storage = {
@@ -131,6 +134,8 @@ def _declare(path: Path, directory: Path, part: Path, codec: Codec) -> None:
         file.createDimension(f"{RECORD_HASH}_length", 64)
         hashes = file.createVariable(RECORD_HASH, "S1", ("record", f"{RECORD_HASH}_length"), fill_value=False)
         hashes.setncatts({"units": "1", "long_name": "SHA-256 of the record, in hexadecimal", "role": "provenance"})
+    with h5py.File(path, "r+") as file:
+        write_unicode(file, texts)
 
 
 def small_files(directory: Path) -> dict[str, bytes]:

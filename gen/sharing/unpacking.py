@@ -18,13 +18,14 @@ from gen.corpus.manifest import read_manifest
 from gen.corpus.packed import packed_contents, packed_part
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of
+from gen.corpus.publication import read_publication
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 
 Progress = Callable[[int, int], None]
 
-_MADE_AGAIN = ("raceway_format", "complete", "records", "signals", "index", "parts")  # keys of a manifest
+_MADE_AGAIN = ("raceway_format", "complete", "records", "signals", "index", "next_index", "parts")  # keys of a manifest
 
 
 class Unpacked(NamedTuple):
@@ -100,6 +101,5 @@ def finish_again(directory: Path, rows: list[PartRow], files: dict[str, bytes]) 
         if name != "manifest.json":
             (directory / name).parent.mkdir(exist_ok=True)
             (directory / name).write_bytes(content)
-    card = files.get("README.md", b"").decode()
     facts = {key: value for key, value in json.loads(files["manifest.json"]).items() if key not in _MADE_AGAIN}
-    finish_corpus(directory, rows, lambda *_: card, **facts)
+    finish_corpus(directory, rows, publication=read_publication(facts.pop("publication", {})), **facts)

@@ -24,6 +24,7 @@ from gen.corpus import (
     plain_file,
     read_manifest,
 )
+from gen.corpus.manifest import Choice
 from gen.corpus.visible import VARIABLES
 from raceway.console import show
 
@@ -61,7 +62,9 @@ def describe(directory: Path) -> dict[str, Any]:
         If the folder holds no corpus, or a part is missing or altered.
     """
     manifest = read_manifest(directory)
-    known = manifest.model_dump(exclude={"parts_", "complete", "records", "index", "signals"}, exclude_unset=True)
+    known = manifest.model_dump(
+        exclude={"parts_", "complete", "records", "index", "next_index", "signals"}, exclude_unset=True
+    )
     about = {
         "corpus": directory,
         "complete": manifest.complete,
@@ -152,8 +155,15 @@ def show_facts(facts: dict[str, Any]) -> None:
     overrides = {key: value for key, value in facts.get("overrides", {}).items() if value is not None}
     with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
     origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
+    if facts.get("origins"):
+        origin = "merge of " + ", ".join(of["title"] or "a corpus" for of in facts["origins"])
+    chosen = "; then ".join(
+        f"{Choice(**choice)}, of {choice['records']:,} records" for choice in facts.get("selections", ())
+    )
     show.text(facts.get("title", str(facts["corpus"])), "")
-    known = {"corpus": facts["corpus"], "made by": origin}
+    known = {"corpus": facts["corpus"], "made by": origin, "selected": chosen}
+    if license_name := facts.get("publication", {}).get("license"):
+        known["licence"] = license_name
     known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
     if "classes" in facts:
         known |= _shown_content(facts)
