@@ -48,8 +48,8 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
-    from gen.sharing.exporting import export
     from gen.sharing import merge, select
+    from gen.sharing.exporting import export
     from gen.sharing.portable import pack
     from gen.sharing.unpacking import unpack
     from gen.simulation.simulate import simulate
