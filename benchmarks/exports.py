@@ -15,7 +15,17 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.pairs import run_python
-from gen.corpus import DRAWS, FAULTS, SCHEMA, SIMULATED, finish_corpus, make_dataset, part_name, write_part
+from gen.corpus import (
+    DRAWS,
+    FAULTS,
+    SCHEMA,
+    SIMULATED,
+    make_dataset,
+    part_name,
+    write_index,
+    write_manifest,
+    write_part,
+)
 from gen.sharing.exporting import FORMS
 
 FS = 12_800.0
@@ -50,7 +60,8 @@ def make_corpus(folder: Path, records: int, samples: int) -> Path:
     for number, first in enumerate(starts):
         dataset = _records(first, min(IN_PART, records - first), samples)
         rows.append(write_part(dataset, folder / "parts" / part_name(number)))
-    finish_corpus(folder, rows, lambda _corpus, _signals: "Noise of a benchmark.\n")
+    write_index(folder, rows)
+    write_manifest(folder, rows, complete=True)
     return folder
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from gen.corpus import SPLITS
-from gen.corpus.card import plain_text
+from gen.corpus.card.markdown import plain_text
 from gen.sharing.exporting.choosing import Chosen, Column
 from gen.sharing.exporting.parquet_files import class_names, write_shards
 from gen.sharing.exporting.report import Report, page, title

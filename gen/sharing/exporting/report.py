@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from gen.corpus.card import plain_text
+from gen.corpus.card.markdown import plain_text
 from gen.sharing.exporting.choosing import Block, Chosen
 
 Progress = Callable[[int, int], None]

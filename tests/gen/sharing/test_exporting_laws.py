@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from scipy.io import wavfile
 
 import gen
-from gen.corpus import SIGNAL, finish_corpus, open_corpus, part_name, write_part
+from gen.corpus import SIGNAL, open_corpus, part_name, write_index, write_manifest, write_part
 from gen.corpus.record_hashes import stored_signal
 from gen.errors import CorpusError
 from gen.sharing.exporting import FORMS, choosing, matlab_files, parquet_files
@@ -65,6 +65,13 @@ def tree(folder):
 def rows(path):
     with path.open(encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
+
+
+def write_part_as_corpus(folder, part):
+    (folder / "parts").mkdir(parents=True)
+    rows = [write_part(part, folder / "parts" / part_name(0))]
+    write_index(folder, rows)
+    write_manifest(folder, rows, complete=True)
 
 
 def test_parquet_gives_back_every_record_with_units(corpus, tmp_path):
@@ -236,8 +243,7 @@ def test_a_packed_file_is_exported_as_its_folder(counts, tmp_path):
 def test_licence_and_creators_go_along(tmp_path):
     part = dataset(0, 3)
     part.attrs |= {"license": "CC-BY-4.0 (https://spdx.org/licenses/CC-BY-4.0.html)", "creator_name": "Jane Doe"}
-    (tmp_path / "c/parts").mkdir(parents=True)
-    finish_corpus(tmp_path / "c", [write_part(part, tmp_path / "c/parts" / part_name(0))], lambda *_: "")
+    write_part_as_corpus(tmp_path / "c", part)
     for to in ("csv", "huggingface"):
         gen.export(tmp_path / "c", tmp_path / to, to)
         page = (tmp_path / to / "README.md").read_text()
@@ -252,8 +258,7 @@ def test_texts_of_strangers_stay_texts(tmp_path):
     part["bearing"] = ("record", [wicked, "+1", "-2"], part["bearing"].attrs)
     part.attrs["title"] = 'a"\n---\nlicense: mit # \x1b[2J'
     part["a=1 or b"] = ("record", np.arange(3.0), {"units": "@x", "role": "latent", "long_name": "=1+1"})
-    (folder / "parts").mkdir(parents=True)
-    finish_corpus(folder, [write_part(part, folder / "parts" / part_name(0))], lambda *_: "")
+    write_part_as_corpus(folder, part)
     for to in FORMS:
         gen.export(folder, tmp_path / to, to)
         assert all(re.fullmatch(r"[\w./-]+", name) and ".." not in name for name in tree(tmp_path / to) if to != "zarr")
@@ -273,8 +278,7 @@ def test_a_fault_that_is_not_known_is_null_for_hugging_face(tmp_path):
     part = dataset(0, 3)
     part["fault"] = ("record", np.array([1, 127, 5], np.int8), part["fault"].attrs)
     part["split"] = ("record", np.zeros(3, np.int8), part["split"].attrs)
-    (tmp_path / "c/parts").mkdir(parents=True)
-    finish_corpus(tmp_path / "c", [write_part(part, tmp_path / "c/parts" / part_name(0))], lambda *_: "")
+    write_part_as_corpus(tmp_path / "c", part)
     gen.export(tmp_path / "c", tmp_path / "out", "huggingface")
     assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == [1, None, 5]
     gen.export(tmp_path / "c", tmp_path / "tables", "parquet")
