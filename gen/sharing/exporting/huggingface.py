@@ -66,8 +66,6 @@ def _header(chosen: Chosen, sizes: dict[str, int]) -> str:
             "  config_name: default",
             "  features:",
             *(f"  - {_json(feature)}" for feature in _features(chosen)),
-            "  splits:",
-            *(f"  - {_json({'name': name, 'num_examples': count})}" for name, count in sizes.items()),
             "---",
             "",
         ]
@@ -119,8 +117,8 @@ def _dtype(column: Column) -> Any:
 
 
 _READING = """\
-    from datasets import load_dataset
-    records = load_dataset(".")  # this folder
+    import os, datasets
+    records = datasets.load_dataset(os.getcwd())  # the full path of this folder, or its name on the hub
     signal = records["{split}"].with_format("numpy")[0]["acceleration_{channel}"]  # m s-2
     name = records["{split}"].features["fault"].int2str(records["{split}"][0]["fault"])
 

@@ -6,6 +6,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -65,6 +66,12 @@ def tree(folder):
 def rows(path):
     with path.open(encoding="utf-8", newline="") as stream:
         return list(csv.DictReader(stream))
+
+
+def lines_on_reading(folder):
+    """The indented lines of README.md: how to read the files, from within their folder."""
+    page = (folder / "README.md").read_text(encoding="utf-8").rpartition("---\n")[2]
+    return "\n".join(line[4:] for line in page.splitlines() if line.startswith("    "))
 
 
 def write_part_as_corpus(folder, part):
@@ -169,6 +176,26 @@ def test_xarray_opens_the_zarr_store_as_the_corpus(corpus, tmp_path):
         np.testing.assert_array_equal(found[SIGNAL].values, stored_signal(expected[SIGNAL].variable)[0])
 
 
+@pytest.mark.parametrize(
+    ("to", "name"), [("parquet", "signal"), ("csv", "signal"), ("wav", "acceleration"), ("zarr", "signal")]
+)
+def test_the_lines_on_the_page_of_an_export_read_it(counts, tmp_path, monkeypatch, to, name):
+    if to in ("parquet", "csv", "wav"):
+        pytest.importorskip("pandas")
+    gen.export(counts, tmp_path / "out", to)
+    monkeypatch.chdir(tmp_path / "out")
+    found = {}
+    exec(lines_on_reading(tmp_path / "out"), found)  # noqa: S102 - our own page
+    read, expected = np.asarray(found[name]), stored(opened(counts))
+    wanted = {
+        "parquet": expected[:, 0],
+        "csv": np.column_stack([np.arange(50) / FS, *expected[0]]),
+        "wav": expected[0].T,
+        "zarr": expected[0, 0],
+    }
+    np.testing.assert_allclose(read, wanted[to], rtol=1e-6)
+
+
 def test_the_zarr_store_of_many_blocks_is_that_of_one(counts, tmp_path, monkeypatch):
     gen.export(counts, tmp_path / "one", "zarr")
     monkeypatch.setattr(choosing, "_MOST_IN_BLOCK", 2)
@@ -183,23 +210,25 @@ def test_hugging_face_loads_the_folder_without_a_network(counts, tmp_path, monke
     gen.export(counts, tmp_path / "out", "huggingface")
     assert (tmp_path / "out/data/train-00001-of-00002.parquet").is_file()
     code = (
-        "import datasets, json; datasets.disable_progress_bars(); found = datasets.load_dataset('out'); "
-        "one = found['test'].with_format('numpy')[:]; fault = found['test'].features['fault']; "
-        "print(json.dumps([{name: len(part) for name, part in found.items()}, [fault.int2str(int(x)) for x in one['fault']], "
-        "one['acceleration_b'].tolist()]))"
+        f"{lines_on_reading(tmp_path / 'out')}\nimport json; part = records['test']; one = part.with_format('numpy')[:]\n"
+        "print(json.dumps([{name: len(part) for name, part in records.items()}, name, "
+        "part.features['fault'].int2str(one['fault'].tolist()), signal.tolist(), one['acceleration_b'].tolist()]))"
     )
     environment = os.environ | {"HF_HOME": str(tmp_path / "cache"), "HF_DATASETS_DISABLE_PROGRESS_BARS": "1"}
     pytest.importorskip("datasets")
     run = subprocess.run(
-        [os.sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=False
+        [sys.executable, "-c", code], cwd=tmp_path / "out", env=environment, capture_output=True, text=True, check=False
     )
     assert run.returncode == 0, run.stderr
-    sizes, names, signal = json.loads(run.stdout)
+    assert "dataset card" not in run.stderr  # it warns of a header that it cannot use
+    sizes, first_name, names, first_signal, signal = json.loads(run.stdout)
     expected = opened(counts)
     test = expected["split"].values == 2
     assert sizes == {"train": 3, "validation": 3, "test": 3}
     assert names == np.array(fault_names(expected))[test].tolist()
     np.testing.assert_array_equal(np.array(signal, np.float32), stored(expected)[test, 1])
+    np.testing.assert_array_equal(np.array(first_signal, np.float32), stored(expected)[0, 0])
+    assert first_name == fault_names(expected)[0]
 
 
 @pytest.mark.parametrize("to", FORMS)
