@@ -48,10 +48,7 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
-    from gen.sharing import merge, select
-    from gen.sharing.exporting import export
-    from gen.sharing.portable import pack
-    from gen.sharing.unpacking import unpack
+    from gen.sharing import export, merge, pack, select, unpack
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -87,10 +84,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
-        "gen.sharing.exporting": ("export",),
-        "gen.sharing.portable": ("pack",),
-        "gen.sharing.unpacking": ("unpack",),
-        "gen.sharing": ("merge", "select"),
+        "gen.sharing": ("export", "merge", "pack", "select", "unpack"),
         "gen.simulation.simulate": ("simulate",),
     },
 )

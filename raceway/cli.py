@@ -71,8 +71,8 @@ def cli(limits: tuple[str, ...]) -> None:
       raceway info corpus                           show its contents
       raceway benchmark corpus -o report            score classifiers without leakage
 
-    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus. With --json
-    a command prints one JSON object on standard output; progress and errors go to standard error.
+    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus, or a file of
+    raceway pack. With --json a command prints one JSON object on standard output; progress and errors go to standard error.
 
     Exit codes:
 
@@ -107,11 +107,11 @@ for command in (
     corpora.validate,
     corpora.info,
     corpora.replay,
-    exporting.export,
-    packing.pack,
-    packing.unpack,
     cutting.select,
     cutting.merge,
+    packing.pack,
+    packing.unpack,
+    exporting.export,
     feature_tables.plot,
     feature_tables.features,
     models.train,

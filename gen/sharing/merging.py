@@ -24,7 +24,6 @@ from gen.corpus import (
     finish_corpus,
     open_corpus,
     part_name,
-    plain_file,
     read_manifest,
     write_durably,
     write_part,
@@ -41,13 +40,14 @@ from gen.sharing.copying import (
     parts_sha256,
     records_of_origins,
     renumbered,
+    small_file,
     stored_records,
 )
 from gen.sharing.repeats import Seen, sample_digests
 
 Progress = Callable[[int, int], None]
 
-_ORIGIN_FACTS = ("recipe", "recipe_sha256", "overrides", "versions", "importer", "selections")
+_ORIGIN_FACTS = ("recipe", "recipe_sha256", "overrides", "versions", "importer", "selections", "scenarios")
 _LARGEST = 2**31 - 1
 
 
@@ -126,19 +126,19 @@ def merge(
 def _opened(directory: Path, stack: ExitStack) -> _Source:
     manifest = read_manifest(directory)
     corpus = stack.enter_context(open_corpus(directory))
-    origins = list(manifest.origins) or [_own_origin(directory, manifest, corpus.attrs.get("title"))]
+    origins = list(manifest.origins) or [_own_origin(manifest, corpus.attrs.get("title"))]
     return _Source(directory, manifest, corpus, origins)
 
 
-def _own_origin(directory: Path, manifest: Manifest, title: str | None) -> Origin:
+def _own_origin(manifest: Manifest, title: str | None) -> Origin:
     """Origin of the records of a corpus that was not merged."""
-    chosen_from = manifest.selections[0].parts_sha256 if manifest.selections else parts_sha256(manifest)
+    chosen_from = manifest.selections[0].parts_sha256 if manifest.selections else None
+    recipe = None if manifest.scenarios == "given" else manifest.recipe_sha256
     return Origin(
         parts=len(manifest.parts),
         added=Numbers(),
         title=title,
-        same_machines=manifest.recipe_sha256 or chosen_from,
-        recipe_file="recipes/00000.yaml" if (directory / "recipe.yaml").is_file() else None,
+        same_machines=recipe or chosen_from or parts_sha256(manifest),
         **{name: getattr(manifest, name) for name in _ORIGIN_FACTS},
     )
 
@@ -256,11 +256,8 @@ def _with_recipes(sources: Sequence[_Source], added: Mapping[str, Numbers], fold
     found = []
     for source in sources:
         for origin in source.origins:
-            recipe_file = origin.recipe_file
-            if recipe_file is not None:
-                text = plain_file(
-                    source.directory, recipe_file if source.manifest.origins else "recipe.yaml"
-                ).read_bytes()
+            text, recipe_file = _recipe(source, origin), None
+            if text is not None:
                 recipe_file = names.setdefault(text, f"recipes/{len(names):05d}.yaml")
                 (folder / "recipes").mkdir(exist_ok=True)
                 write_durably(text, folder / recipe_file)
@@ -269,6 +266,13 @@ def _with_recipes(sources: Sequence[_Source], added: Mapping[str, Numbers], fold
                 changed["selections"] = origin.selections + source.manifest.selections
             found.append(origin.model_copy(update=changed))
     return found
+
+
+def _recipe(source: _Source, origin: Origin) -> bytes | None:
+    """Recipe of the records of one origin; None if there is none."""
+    if not source.manifest.origins:
+        return small_file(source.directory, "recipe.yaml")
+    return None if origin.recipe_file is None else small_file(source.directory, origin.recipe_file)
 
 
 def _facts(sources: Sequence[_Source], title: str, origins: Sequence[Origin]) -> dict[str, Any]:

@@ -1,5 +1,6 @@
 """A corpus, or a choice of it, as one netCDF-4 file: ``folder -> (select, convert) -> pack -> FILE.nc``."""
 
+import glob
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -7,8 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.files import temporary_beside
-from gen.corpus.manifest import part_paths
+from gen.corpus.files import remove_left_behind, temporary_beside
+from gen.corpus.manifest import INDEX_NAME, part_paths
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of, form_of
 from gen.corpus.reading import stored_blocks
@@ -18,7 +19,7 @@ from gen.errors import CorpusError
 from gen.sharing.copying import in_floating_point
 from gen.sharing.packing import PackedFile, pack_whole, small_files
 from gen.sharing.selecting import select
-from gen.sharing.unpacking import finish_again
+from gen.sharing.unpacking import corpus_attributes, finish_again
 
 Progress = Callable[[int, int], None]
 
@@ -64,6 +65,8 @@ def pack(
         raise CorpusError(f"{file}: exists; give another name, or remove it first.")
     if codec not in CODECS:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
+    for name in (file.name, f"{file.name}-choice", f"{file.name}-float32"):
+        remove_left_behind(file.parent, glob.escape(name))
     with ExitStack() as rooms:
         if where is not None or split is not None or channels is not None:
             chosen = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-choice")))
@@ -84,7 +87,7 @@ def _convert(directory: Path, output: Path) -> None:
     """Write a corpus with accelerations in single precision in place of counts, one part at a time."""
     (output / "parts").mkdir(parents=True)
     rows = [_converted(path, output / "parts" / path.name) for path in part_paths(directory)]
-    finish_again(output, rows, small_files(directory))
+    finish_again(output, rows, small_files(directory), corpus_attributes(directory / INDEX_NAME))
 
 
 def _converted(path: Path, output: Path) -> PartRow:

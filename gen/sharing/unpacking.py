@@ -4,28 +4,29 @@ Each record is compared with its hash before it is written. Deflated chunks go b
 """
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.files import temporary_beside
-from gen.corpus.finishing import finish_corpus
-from gen.corpus.manifest import read_manifest
-from gen.corpus.packed import packed_contents, packed_part
+from gen.corpus.finishing import publish
+from gen.corpus.hdf5 import LIBRARY_LOCK
+from gen.corpus.index import write_index
+from gen.corpus.journal import listed
+from gen.corpus.manifest import INDEX_NAME, listed_file, read_manifest, write_content
+from gen.corpus.packed import PACKED, packed_contents, packed_part
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of
-from gen.corpus.publication import read_publication
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
+from gen.sharing.copying import new_corpus
 
 Progress = Callable[[int, int], None]
-
-_MADE_AGAIN = ("raceway_format", "complete", "records", "signals", "index", "next_index", "parts")  # keys of a manifest
 
 
 class Unpacked(NamedTuple):
@@ -58,23 +59,14 @@ def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None
     file, output = Path(file), Path(directory)
     if not file.is_file():
         raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
-    if output.exists() and (not output.is_dir() or any(output.iterdir())):
-        raise CorpusError(f"{output}: exists and is not an empty folder; give a new folder, or remove this one first.")
     manifest, files = read_manifest(file), packed_contents(file).files
     rows: list[PartRow] = []
-    try:
-        with temporary_beside(output.absolute()) as temporary:
-            (temporary / "parts").mkdir(parents=True)
-            for row in manifest.parts:
-                rows.append(_written_again(file / "parts" / row.name, temporary / "parts" / row.name))
-                if progress is not None:
-                    progress(sum(done.records for done in rows), manifest.records)
-            finish_again(temporary, rows, files)
-            temporary.replace(output)
-    except OSError as error:
-        raise CorpusError(
-            f"{output}: could not be written ({error.strerror or error}); choose another folder."
-        ) from error
+    with new_corpus(output) as folder:
+        for row in manifest.parts:
+            rows.append(_written_again(file / "parts" / row.name, folder / "parts" / row.name))
+            if progress is not None:
+                progress(sum(done.records for done in rows), manifest.records)
+        finish_again(folder, rows, files, corpus_attributes(file))
     return Unpacked(output, manifest.records, len(rows), rows == manifest.parts)
 
 
@@ -95,11 +87,24 @@ def _written_again(packed: Path, path: Path) -> PartRow:
     return write_part(dataset, path, codec, chunks)
 
 
-def finish_again(directory: Path, rows: list[PartRow], files: dict[str, bytes]) -> None:
-    """Write the index, and the small files as they were; hashes of parts are new if other libraries gave them other bytes."""
+def corpus_attributes(file: Path) -> dict[str, Any]:
+    """Global attributes of ``corpus.nc`` or of a packed file, without those that only one of them has."""
+    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
+        own = ("comment", "_NCProperties", PACKED)
+        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in own}
+
+
+def finish_again(
+    directory: Path, rows: list[PartRow], files: Mapping[str, bytes], attributes: Mapping[str, Any]
+) -> None:
+    """Write index and small files beside parts; if these have other hashes than before, all that lists hashes is made anew."""
     for name, content in files.items():
-        if name != "manifest.json":
-            (directory / name).parent.mkdir(exist_ok=True)
-            (directory / name).write_bytes(content)
-    facts = {key: value for key, value in json.loads(files["manifest.json"]).items() if key not in _MADE_AGAIN}
-    finish_corpus(directory, rows, publication=read_publication(facts.pop("publication", {})), **facts)
+        (directory / name).parent.mkdir(exist_ok=True)
+        (directory / name).write_bytes(content)
+    written = json.loads(files["manifest.json"]) | {"parts": [listed(row) for row in rows]}
+    written.pop("next_index", None)
+    write_index(directory, rows, attributes)
+    written["index"] = listed_file(directory / INDEX_NAME)
+    write_content(directory, written)
+    if (directory / "manifest.json").read_bytes() != files["manifest.json"]:
+        publish(directory, read_manifest(directory).publication)

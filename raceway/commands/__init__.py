@@ -5,6 +5,7 @@ module         responsibility
 ============== ================================================================
 corpora        commands that make corpora and look at them
 cutting        commands that choose records, and that join corpora
+packing        commands that make one file of a corpus, and back
 importing      commands that convert real recordings into the format
 exporting      a corpus in the form of another program
 feature_tables a picture of one record, and features of all
