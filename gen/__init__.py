@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
-    from gen.sharing import merge, pack, select, torch_dataset, unpack
+    from gen.sharing import export, merge, pack, select, torch_dataset, unpack
     from gen.simulation.simulate import simulate
 
 __all__ = [
@@ -59,6 +59,7 @@ __all__ = [
     "RecipeError",
     "SimulationError",
     "draw_scenarios",
+    "export",
     "generate",
     "merge",
     "open_corpus",
@@ -84,7 +85,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
-        "gen.sharing": ("merge", "pack", "select", "torch_dataset", "unpack"),
+        "gen.sharing": ("export", "merge", "pack", "select", "torch_dataset", "unpack"),
         "gen.simulation.simulate": ("simulate",),
     },
 )

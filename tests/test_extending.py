@@ -12,6 +12,7 @@ TASKS = (
     "channel",
     "importer",
     "codec",
+    "form of export",
     "baseline",
     "bearing",
     "label",

@@ -96,15 +96,56 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
             with temporary.open("rb+") as stream:
                 os.fsync(stream.fileno())
             temporary.replace(path)
-            folder = os.open(path.parent, os.O_RDONLY)
-            try:
-                os.fsync(folder)
-            finally:
-                os.close(folder)
+            _flush(path.parent)
     except (OSError, RuntimeError) as error:
         raise CorpusError(
             f"{path}: could not be written ({_reason(error)}); free some space or choose another folder."
         ) from error
+
+
+@contextmanager
+def whole_folder_or_none(path: Path) -> Iterator[Path]:
+    """New folder under a temporary name to write to: it is flushed to disk and then gets the name ``path`` in one step, or is removed.
+
+    Raises
+    ------
+    CorpusError
+        If ``path`` exists and is not an empty folder, or if writing fails, with the reason that the system gives.
+    """
+    check_name(path)
+    if path.is_symlink() or (path.exists() and not (path.is_dir() and not any(path.iterdir()))):
+        raise CorpusError(f"{path}: exists and is not an empty folder; choose another name, or remove it first.")
+    try:
+        path = path.absolute()  # "." has no name
+        _remove_left_behind_of(path)
+        with temporary_beside(path) as temporary:
+            temporary.mkdir(parents=True)
+            yield temporary
+            for written in (*temporary.rglob("*"), temporary):
+                _flush(written)
+            temporary.replace(path)
+            _flush(path.parent)
+    except (OSError, RuntimeError) as error:
+        raise CorpusError(
+            f"{path}: could not be written ({_reason(error)}); free some space or choose another folder."
+        ) from error
+
+
+def _remove_left_behind_of(path: Path) -> None:
+    """Remove what killed processes have left of a folder; files whose names only begin with that of the folder are kept."""
+    own = re.compile(rf"\.{re.escape(path.name)}\.\d+\.\d+\.tmp")
+    for found in path.parent.glob(".*.tmp"):
+        if own.fullmatch(found.name):
+            _remove(found)
+
+
+def _flush(path: Path) -> None:
+    """Flush a file or a folder to disk."""
+    opened = os.open(path, os.O_RDONLY)
+    try:
+        os.fsync(opened)
+    finally:
+        os.close(opened)
 
 
 @contextmanager

@@ -14,6 +14,7 @@ merging     several corpora as one
 packing     a whole corpus written into one netCDF-4 file
 unpacking   the folder of a packed corpus made again
 portable    a corpus, or a choice of it, as one file
+exporting   corpora in the forms of other programs
 =========== ======================================================
 """
 
@@ -23,6 +24,7 @@ from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.sharing.choice import chosen_channels, chosen_records
+    from gen.sharing.exporting import Exported, export
     from gen.sharing.items import LabelledRecords, torch_dataset
     from gen.sharing.merging import Merged, merge
     from gen.sharing.packing import PackedFile
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Condition",
+    "Exported",
     "LabelledRecords",
     "Merged",
     "PackedFile",
@@ -40,6 +43,7 @@ __all__ = [
     "Unpacked",
     "chosen_channels",
     "chosen_records",
+    "export",
     "merge",
     "pack",
     "parse_where",
@@ -54,6 +58,7 @@ __getattr__, __dir__ = lazy_names(
     {
         "gen.sharing.choice": ("chosen_channels", "chosen_records"),
         "gen.sharing.items": ("LabelledRecords", "torch_dataset"),
+        "gen.sharing.exporting": ("Exported", "export"),
         "gen.sharing.merging": ("Merged", "merge"),
         "gen.sharing.packing": ("PackedFile",),
         "gen.sharing.portable": ("pack",),

@@ -7,6 +7,7 @@ corpora        commands that make corpora and look at them
 cutting        commands that choose records, and that join corpora
 packing        commands that make one file of a corpus, and back
 importing      commands that convert real recordings into the format
+exporting      a corpus in the form of another program
 feature_tables a picture of one record, and features of all
 models         a model trained, and scored on another corpus
 references     healthy records that the tested ones are compared with
