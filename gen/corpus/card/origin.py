@@ -15,8 +15,17 @@ MOST_SENTENCES = 100  # of a list; the manifest has all
 _NEW = "../again"
 
 _SIMULATED = (
-    "Simulated by Raceway from {source}: Hertz contact between balls and raceways, shaft, housing and sensor resonance, classical "
-    "Runge-Kutta. `raceway replay` makes any record again, bit for bit."
+    "Simulated by Raceway from `recipe.yaml` (recipe {recipe}): Hertz contact between balls and raceways, shaft, housing and sensor "
+    "resonance, classical Runge-Kutta. `raceway replay` makes any record again, bit for bit."
+)
+_SCENARIOS = {
+    "chosen": " The records are some of those of the recipe.",
+    "given": " The scenarios were not drawn from the recipe; each is stored with its record, in `draws`.",
+}
+
+
+_WRITTEN = (
+    "`gen.write_corpus` made it from records in Python; `raceway replay` makes each of them again from this folder."
 )
 
 
@@ -35,10 +44,8 @@ def _made(corpus: xr.Dataset, manifest: Manifest) -> str:
         return f"Merged from {len(manifest.origins)} corpora by `raceway merge`; their machines have different numbers:"
     if manifest.importer is not None:
         return f"Origin: {plain_text(corpus.attrs.get('source', 'unknown'))}"
-    if manifest.recipe is not None and _given_by_hand(manifest):
-        return _SIMULATED.format(source=f"scenarios that were made by hand (variable `draws`) and `{RECIPE_NAME}`")
     if manifest.recipe is not None:
-        return _SIMULATED.format(source=f"`{RECIPE_NAME}` (recipe {plain_text(manifest.recipe)})")
+        return _SIMULATED.format(recipe=plain_text(manifest.recipe)) + _SCENARIOS.get(_scenarios(manifest), "")
     facts = [plain_text(corpus.attrs[name]) for name in ("source", "history") if corpus.attrs.get(name)]
     return f"Origin: {'; '.join(facts) or 'unknown'}"
 
@@ -66,21 +73,18 @@ def _selected(choice: Choice) -> str:
     return f"Selected from {choice.records:,} records" + (f" by `raceway select` (`{asked}`)" if asked else "")
 
 
-def _given_by_hand(made: Manifest | Origin) -> bool:
-    """Whether the scenarios were not drawn from the recipe."""
-    return getattr(made, "scenarios", None) is not None
+def _scenarios(made: Manifest | Origin) -> str:
+    """``given`` or ``chosen`` if the records are not those that the recipe draws; else empty."""
+    return getattr(made, "scenarios", None) or ""
 
 
 def rebuilding(manifest: Manifest, window: float) -> list[str]:
     """Section with the commands that make the corpus again; ``window`` is the length of a record [s]."""
     lines = ["", "## How to make it again", ""]
-    commands = _merging(manifest.origins, window) if manifest.origins else _steps(manifest, RECIPE_NAME, _NEW, window)
+    commands = _commands(manifest, window)
     if not commands:
-        if _given_by_hand(manifest):
-            return [
-                *lines,
-                "Single records only: `raceway replay . --record I` makes record I from its stored scenario.",
-            ]
+        if _scenarios(manifest):
+            return [*lines, _WRITTEN]
         return [*lines, "The folder does not say how it was made; keep a copy."]
     if any(command[1] == "import" for command in commands):
         lines += [
@@ -112,41 +116,51 @@ def _quoted(word: str) -> str:
     return f'"{text}"' if "'" in text and not set(text) & set('"$\\!') else shlex.quote(text)
 
 
-def _merging(origins: Sequence[Origin], window: float) -> list[list[str]]:
-    """Commands that make each corpus and merge them; none if one of them cannot be made again."""
-    folders = [f"{_NEW}-{number}" for number in range(1, len(origins) + 1)]
-    pairs = zip(origins, folders, strict=True)
-    each = [_steps(origin, origin.recipe_file or "", folder, window) for origin, folder in pairs]
-    if not all(each):
-        return []
-    last = [words[words.index("-o") + 1] for words in (steps[-1] for steps in each)]
-    return [words for steps in each for words in steps] + [["raceway", "merge", *last, "-o", _NEW]]
-
-
-def _steps(made: Manifest | Origin, recipe_file: str, folder: str, window: float) -> list[list[str]]:
-    """Commands that make one corpus that was not merged; none if that is not known."""
-    if made.importer is not None:
-        commands = [["raceway", "import", made.importer, "SRC", "--window", f"{window:g}", "-o", folder]]
-    elif made.recipe is not None and not _given_by_hand(made):
-        commands = _simulating(made, recipe_file, folder)
-    else:
-        return []
-    for number, choice in enumerate(made.selections, start=1):
-        if choice.where is choice.split is choice.channels is None:  # only the folder tells which records were kept
+def _commands(manifest: Manifest, window: float) -> list[list[str]]:
+    """Commands that make the corpus; none if one of its steps is not known."""
+    if not manifest.origins:
+        return _chosen(_made_from(manifest, RECIPE_NAME, _NEW, window), manifest.selections)
+    commands: list[list[str]] = []
+    folders: list[str] = []
+    for number, origin in enumerate(manifest.origins, start=1):
+        made = _made_from(origin, origin.recipe_file or "", f"{_NEW}-{number}", window)
+        steps = _chosen(made, origin.selections)
+        if not steps:
             return []
-        chosen = f"{folder}-selected-{number}" if number > 1 else f"{folder}-selected"
-        commands.append(["raceway", "select", folder, *_options(choice), "-o", chosen])
-        folder = chosen
+        commands += steps
+        folders.append(steps[-1][-1])
+    return _chosen([*commands, ["raceway", "merge", *folders, "-o", _NEW]], manifest.selections)
+
+
+def _made_from(made: Manifest | Origin, recipe_file: str, folder: str, window: float) -> list[list[str]]:
+    """Commands that make a corpus from recordings or a recipe, before any choice; the last word of each is the folder."""
+    if made.importer is not None:
+        return [["raceway", "import", made.importer, "SRC", "--window", f"{window:g}", "-o", folder]]
+    if made.recipe is not None and not _scenarios(made):
+        return _simulating(made, recipe_file, folder)
+    return []
+
+
+def _chosen(commands: list[list[str]], choices: Sequence[Choice]) -> list[list[str]]:
+    """The commands, and those that choose records of the folder that the last of them names at its end."""
+    for choice in choices:
+        if (
+            not commands or choice.where is choice.split is choice.channels is None
+        ):  # only the folder tells which records were kept
+            return []
+        source = commands[-1][-1]
+        commands = [*commands, ["raceway", "select", source, *_options(choice), "-o", f"{source}-selected"]]
     return commands
 
 
 def _simulating(made: Manifest | Origin, recipe_file: str, folder: str) -> list[list[str]]:
     overrides = made.overrides.model_dump() if made.overrides is not None else {}
-    words = ["raceway", "generate", recipe_file, "-o", folder]
+    words = ["raceway", "generate", recipe_file]
     for name in ("seed", "records"):
         words += [f"--{name}", str(overrides[name])] if overrides.get(name) is not None else []
     extensions = [next(iter(extension.items())) for extension in overrides.get("extensions") or ()]
-    return [words, *(["raceway", "extend", folder, f"--{what}", str(count)] for what, count in extensions)]
+    words += ["-o", folder]
+    return [words, *(["raceway", "extend", f"--{what}", str(count), folder] for what, count in extensions)]
 
 
 def _options(choice: Choice) -> list[str]:

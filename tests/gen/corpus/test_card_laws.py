@@ -181,11 +181,11 @@ def test_the_commands_repeat_seed_records_extensions_and_choices():
         Choice(records=9, parts_sha256="1", channels=("a", "b c")),
     )
     assert commands(made(recipe="small", overrides=overrides, selections=choices)) == [
-        ["raceway", "generate", "recipe.yaml", "-o", "../again", "--seed", "7", "--records", "40"],
-        ["raceway", "extend", "../again", "--specimens", "2"],
-        ["raceway", "extend", "../again", "--rigs", "3"],
+        ["raceway", "generate", "recipe.yaml", "--seed", "7", "--records", "40", "-o", "../again"],
+        ["raceway", "extend", "--specimens", "2", "../again"],
+        ["raceway", "extend", "--rigs", "3", "../again"],
         ["raceway", "select", "../again", "--where", where, "-o", "../again-selected"],
-        ["raceway", "select", "../again-selected", "--channels", "a,b c", "-o", "../again-selected-selected-2"],
+        ["raceway", "select", "../again-selected", "--channels", "a,b c", "-o", "../again-selected-selected"],
     ]
 
 
@@ -197,11 +197,13 @@ def test_the_commands_of_a_merged_corpus_make_each_of_its_corpora_and_merge_them
         | {"recipe": "small", "recipe_file": "recipes/00000.yaml", "overrides": {"seed": 3}, "selections": (chosen,)},
         origin | {"importer": "cwru"},
     )
-    assert commands(made(origins=origins)) == [
-        ["raceway", "generate", "recipes/00000.yaml", "-o", "../again-1", "--seed", "3"],
+    chosen_again = {"records": 20, "parts_sha256": "2", "where": "load > 5"}
+    assert commands(made(origins=origins, selections=(chosen_again,))) == [
+        ["raceway", "generate", "recipes/00000.yaml", "--seed", "3", "-o", "../again-1"],
         ["raceway", "select", "../again-1", "--split", "train", "-o", "../again-1-selected"],
         ["raceway", "import", "cwru", "SRC", "--window", "0.5", "-o", "../again-2"],
         ["raceway", "merge", "../again-1-selected", "../again-2", "-o", "../again"],
+        ["raceway", "select", "../again", "--where", "load > 5", "-o", "../again-selected"],
     ]
     unknown = made(origins=(*origins, origin))
     assert "The folder does not say how it was made" in rebuilding(unknown, 0.5)[-1]
@@ -209,7 +211,8 @@ def test_the_commands_of_a_merged_corpus_make_each_of_its_corpora_and_merge_them
 
 def test_a_corpus_without_a_recipe_or_with_scenarios_made_by_hand_has_no_command():
     assert "The folder does not say how it was made" in rebuilding(made(), 0.5)[-1]
-    assert "raceway replay . --record I" in rebuilding(made(recipe="small", scenarios="given"), 0.5)[-1]
+    for scenarios in ("given", "chosen"):
+        assert "`gen.write_corpus` made it" in rebuilding(made(recipe="small", scenarios=scenarios), 0.5)[-1]
 
 
 def test_pictures_and_scores_of_other_parts_are_left_out(corpus, tmp_path):
