@@ -251,7 +251,8 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
     axes.locator_params(axis="x", nbins=5)
     if wide:
         axes.set_xscale("log")
-        axes.xaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+        subs = (1.0, 3.0) if values.max() > 100 * values.min() else (1.0, 2.0, 5.0)  # labels of more would overlap
+        axes.xaxis.set_major_locator(LogLocator(subs=subs))
         axes.xaxis.set_major_formatter("{x:g}")
         axes.xaxis.set_minor_locator(NullLocator())
 

@@ -15,7 +15,7 @@ A corpus is a folder:
 | `manifest.json` | whether the corpus is complete; `signals`; bytes and SHA-256 of `corpus.nc` and of each part; recipe hash, versions |
 | `parts.jsonl` | while the corpus is unfinished: one line for each finished part, as in `parts` of the manifest |
 | `recipe.yaml` | the recipe, if the corpus was simulated |
-| `README.md` | the data card |
+| `README.md` | the [data card](data-card.md); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
 | `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
 
 HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds

@@ -68,7 +68,6 @@ def publish(directory: Path | str, publication: Publication) -> None:
         rows = read_manifest(directory).parts
         content: dict[str, Any] = json.loads((directory / "manifest.json").read_bytes())
         content["index"] = listed_file(directory / INDEX_NAME)
-        content.pop("next_index", None)
         changed = with_publication(content, publication)
         with new_index(directory, rows, publication_attributes(_manifest(changed))) as temporary:
             changed["index"] = listed_file(temporary)

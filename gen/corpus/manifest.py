@@ -160,8 +160,8 @@ def manifest_content(
 
 
 def with_publication(content: dict[str, Any], publication: Publication) -> dict[str, Any]:
-    """Content of ``manifest.json`` with another publication, which stands before the parts."""
-    kept = {key: value for key, value in content.items() if key not in ("publication", "parts")}
+    """Content of ``manifest.json`` with another publication, which stands before the parts, and with one index."""
+    kept = {key: value for key, value in content.items() if key not in ("next_index", "publication", "parts")}
     return kept | ({"publication": publication.stored} if publication.stored else {}) | {"parts": content["parts"]}
 
 

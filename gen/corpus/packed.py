@@ -29,7 +29,7 @@ RECORD_HASH = "record_sha256"
 """Variable with the SHA-256 of each record."""
 
 FILE_NAME = re.compile(
-    r"README\.md|manifest\.json|croissant\.json|recipe\.yaml|recipes/\d{5}\.yaml|pictures/[\w-]+\.png"
+    r"README\.md|(?:card|croissant|manifest)\.json|recipe\.yaml|recipes/\d{5}\.yaml|pictures/[\w-]+\.png"
 )
 """Names of the small files of a corpus."""
 

@@ -211,7 +211,7 @@ def _write_parts(
 ) -> list[PartRow]:
     """Write every part of every corpus with new numbers; ``finish`` gives it the variables and attributes of the merged corpus."""
     total, seen = sum(source.manifest.records for source in sources), Seen()
-    rows = list[PartRow]()
+    rows, done = list[PartRow](), 0
     for source in sources:
         channels, digests, first = range(source.corpus.sizes["channel"]), [], 0
         for origin, row in _parts_of(source):
@@ -220,9 +220,9 @@ def _write_parts(
             digests.append(sample_digests(part))
             seen.check(str(source.directory), first, digests[-1])
             rows.append(write_part(part, folder / "parts" / part_name(len(rows))))
-            first += row.records
+            first, done = first + row.records, done + row.records
             if progress is not None:
-                progress(sum(row.records for row in rows), total)
+                progress(done, total)
         seen.add(str(source.directory), digests)
     return rows
 

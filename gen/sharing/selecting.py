@@ -3,7 +3,8 @@
 Records keep all their numbers, and the corpus keeps its recipe, so that each record can be replayed. The manifest tells the choice.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -103,34 +104,35 @@ def select(
         told = f"selected by raceway select ({choice})"
         attributes = part_attributes(directory) | {"history": f"{corpus.attrs.get('history', '')}\n{told}"}
         with new_corpus(output) as folder:
-            rows, counts = list[PartRow](), []
-            for of in records_of_origins(manifest):
-                places = records[(records >= of.start) & (records < of.stop)]
-                before = len(rows)
-                for part in _parts(corpus, places, kept, max(row.records for row in manifest.parts)):
-                    path = folder / "parts" / part_name(len(rows))
-                    rows.append(write_part(part.assign_attrs(attributes), path))
-                    if progress is not None:
-                        progress(sum(row.records for row in rows), len(records))
-                counts.append(len(rows) - before)
-            facts = _facts(manifest, choice, counts)
+            done, rows, origins = 0, list[PartRow](), Counter[int]()
+            for number, part in _parts(corpus, manifest, records, kept):
+                rows.append(write_part(part.assign_attrs(attributes), folder / "parts" / part_name(len(rows))))
+                origins[number] += 1
+                done += rows[-1].records
+                if progress is not None:
+                    progress(done, len(records))
+            facts = _facts(manifest, choice, origins)
             copy_recipes(directory, folder, [origin["recipe_file"] for origin in facts.get("origins", ())])
             signals = finish_corpus(folder, rows, publication=manifest.publication, **facts)
     return Selected(output, len(records), manifest.records, len(rows), names, signals)
 
 
-def _parts(corpus: xr.Dataset, records: NDArray[np.intp], channels: Sequence[int], size: int) -> Iterator[xr.Dataset]:
-    """Chosen records in parts of ``size`` records, the last of them smaller."""
-    for first in range(0, len(records), size):
-        chosen = records[first : first + size]
-        far = np.flatnonzero(np.diff(chosen // (_SPAN * size))) + 1
-        yield joined([stored_records(corpus, block, channels) for block in np.split(chosen, far)])
+def _parts(
+    corpus: xr.Dataset, manifest: Manifest, records: NDArray[np.intp], channels: Sequence[int]
+) -> Iterator[tuple[int, xr.Dataset]]:
+    """Chosen records in parts as large as the largest of the corpus, each with the number of the origin of its records."""
+    size = max(row.records for row in manifest.parts)
+    for number, of in enumerate(records_of_origins(manifest)):
+        places = records[(records >= of.start) & (records < of.stop)]
+        for first in range(0, len(places), size):
+            chosen = places[first : first + size]
+            far = np.flatnonzero(np.diff(chosen // (_SPAN * size))) + 1
+            yield number, joined([stored_records(corpus, block, channels) for block in np.split(chosen, far)])
 
 
-def _facts(manifest: Manifest, choice: Choice, counts: list[int]) -> dict[str, Any]:
-    """Facts about the selection for its manifest; ``counts`` are the parts of each origin."""
+def _facts(manifest: Manifest, choice: Choice, counts: Mapping[int, int]) -> dict[str, Any]:
+    """Facts about the selection for its manifest; ``counts`` are the parts of each origin that has any."""
     facts = facts_of(manifest)
     if "origins" in facts:
-        pairs = zip(facts["origins"], counts, strict=True)
-        facts["origins"] = [origin | {"parts": count} for origin, count in pairs if count]
+        facts["origins"] = [facts["origins"][number] | {"parts": count} for number, count in counts.items()]
     return facts | {"selections": [*facts.get("selections", ()), choice.model_dump(mode="json")]}

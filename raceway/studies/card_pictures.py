@@ -21,6 +21,7 @@ from features.report.page import quantities
 from features.report.pictures import STYLE, WIDTH, Shown, draw_content, draw_envelope_spectrum, draw_waveform, picture
 from gen.corpus import FAULT_NAMES, open_corpus, read_manifest, remove_left_behind, write_card, write_durably
 from gen.corpus.card.additions import (
+    CARD_NAME,
     PICTURES,
     CardAdditions,
     CardPicture,
@@ -48,6 +49,8 @@ def complete_card(directory: Path, scores: Path | None = None) -> CardAdditions:
         If the corpus is unfinished or altered, the scores are of another corpus, or a file cannot be written.
     """
     manifest = read_manifest(directory)
+    for name in (CARD_NAME, "README.md"):
+        remove_left_behind(directory, name)
     with open_corpus(directory) as corpus:
         known = read_additions(directory, manifest)
         taken = known.scores if scores is None else read_scores(scores, corpus)

@@ -1,7 +1,7 @@
 """The command ``raceway card``: facts of a publication, pictures and scores on the data card of a corpus."""
 
-import io
 import json
+import shlex
 import shutil
 from pathlib import Path
 
@@ -11,6 +11,7 @@ from PIL import Image
 
 from gen.corpus import open_corpus, read_manifest, validate_corpus
 from raceway.commands.publishing import card
+from raceway.studies import card_pictures
 from raceway.studies.card_pictures import complete_card
 from tests.kills import killed
 from tests.tone_corpora import write_corpus
@@ -23,6 +24,12 @@ def corpus(tmp_path_factory):
     folder = tmp_path_factory.mktemp("card") / "corpus"
     write_corpus(folder, specimens=2, records=2, **{name: np.full(4, order) for name, order in ORDERS.items()})
     return folder
+
+
+@pytest.fixture
+def undrawn(monkeypatch):
+    """Pictures that take no time: other files are tested, and most kills meet a file that is being written."""
+    monkeypatch.setattr(card_pictures, "small_png", lambda _figure: b"picture" * 10_000)
 
 
 @pytest.fixture
@@ -72,30 +79,28 @@ def test_facts_pictures_and_scores_reach_the_card_and_no_part_changes(told, copi
     assert len(found["pictures"]) == 3
     assert found["scores"] == {"linear": 0.8125}
     assert read_manifest(copied).publication.stored == found["publication"]
-    for name in found["pictures"]:
-        assert f"](pictures/{name.rpartition('/')[2]})" in text
+    for path in map(Path, found["pictures"]):
+        assert f"](pictures/{path.name})" in text
+        assert path.stat().st_size < 100_000
+        with Image.open(path) as drawn:
+            assert drawn.width > 600
+            assert len(drawn.convert("RGB").getcolors() or ()) > 10  # more than a background
 
 
-def test_the_second_call_keeps_the_other_facts_and_the_scores_and_changes_no_byte(told, copied, tmp_path):
-    (tmp_path / "results.json").write_text(json.dumps(results_of(copied)))
-    told("card", copied, "--license", "CC-BY-4.0", "--scores", tmp_path / "results.json")
+def test_a_second_call_changes_no_byte(told, copied):
+    told("card", copied, "--license", "CC-BY-4.0")
     before = contents(copied)
     told("card", copied)
     assert contents(copied) == before
-    assert told("card", copied, "--institution", "Works")["publication"] == {
-        "license": "CC-BY-4.0",
-        "institution": "Works",
-    }
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_later_facts_join_the_others_and_the_scores_stay(told, copied, tmp_path):
+    (tmp_path / "results.json").write_text(json.dumps(results_of(copied)))
+    told("card", copied, "--license", "CC-BY-4.0", "--scores", tmp_path / "results.json")
+    found = told("card", copied, "--institution", "Works")
+    assert found["publication"] == {"license": "CC-BY-4.0", "institution": "Works"}
     assert "| linear |" in (copied / "README.md").read_text()
-
-
-def test_pictures_are_small_and_show_more_than_a_background(told, copied):
-    for name in told("card", copied)["pictures"]:
-        content = Path(name).read_bytes()
-        assert len(content) < 100_000
-        with Image.open(io.BytesIO(content)) as drawn:
-            assert drawn.width > 600
-            assert len(drawn.convert("RGB").getcolors()) > 10
 
 
 @pytest.mark.parametrize(
@@ -127,8 +132,9 @@ def test_scores_of_another_corpus_are_refused(run, copied, tmp_path):
     assert "is not a file of scores" in run("card", copied, "--scores", tmp_path / "results.json").stderr
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_killed_call_leaves_a_readable_corpus_and_whole_files(copied):
-    complete_card(copied)  # matplotlib is loaded, and the expected files are known
+    complete_card(copied)
     expected = contents(copied)
     for _ in killed(lambda: complete_card(copied), moments=5):
         assert validate_corpus(copied) == []
@@ -146,3 +152,32 @@ def test_the_help_has_examples_and_names_the_next_step():
     assert card.help is not None
     assert card.help.count("\n  raceway ") >= 3
     assert "Next:" in card.help
+
+
+def test_the_commands_on_the_card_of_a_selection_make_the_same_parts_again(run, tiny_corpus, tmp_path, monkeypatch):
+    assert (
+        run("select", tiny_corpus, "--where", "fault == 'inner' or load > 500", "-o", tmp_path / "chosen").exit_code
+        == 0
+    )
+    monkeypatch.chdir(tmp_path / "chosen")
+    block = (
+        Path("README.md")
+        .read_text()
+        .partition("## How to make it again")[2]
+        .partition("```sh\n")[2]
+        .partition("```")[0]
+    )
+    lines = [shlex.split(line) for line in block.splitlines()]
+    for words in lines:
+        assert run(*words[1:]).exit_code == 0
+    again = Path(lines[-1][-1])
+    assert read_manifest(again).parts == read_manifest(Path()).parts
+
+
+@pytest.mark.usefixtures("undrawn")
+def test_pictures_and_card_travel_in_a_packed_file(run, told, copied, tmp_path):
+    told("card", copied, "--license", "CC-BY-4.0")
+    assert run("pack", copied, "-o", tmp_path / "one.nc").exit_code == 0
+    assert run("unpack", tmp_path / "one.nc", "-o", tmp_path / "again").exit_code == 0
+    assert (tmp_path / "again" / "README.md").read_text() == (copied / "README.md").read_text()
+    assert "is one file, and a data card belongs to a folder" in run("card", tmp_path / "one.nc").stderr

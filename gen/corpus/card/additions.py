@@ -116,9 +116,9 @@ def scores(found: CardScores | None) -> list[str]:
     if found is None or not found.rows:
         return []
     meaning = (
-        f"Balanced accuracy of classifiers on each {plain_text(found.track)} outside their training, {found.folds} folds, "
-        f"{found.records} records of {', '.join(map(plain_text, found.classes))}; chance is {1 / max(len(found.classes), 1):.3f}. "
-        f"A split of random records leaks, and permuted labels must score at chance."
+        f"Balanced accuracy of classifiers on {found.records} records of {', '.join(map(plain_text, found.classes))}, cross-validated by "
+        f"{plain_text(found.track)} in {found.folds} folds; chance is {1 / max(len(found.classes), 1):.3f}. A split of random records "
+        f"leaks, so its score is too good; permuted labels must score at chance."
     )
     rows = (
         (

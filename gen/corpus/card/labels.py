@@ -4,7 +4,7 @@ import xarray as xr
 
 from gen.corpus.card.markdown import plain_text, table
 from gen.corpus.recoverable import NUMBERS, recoveries
-from gen.corpus.schema import SIGNAL
+from gen.corpus.schema import ROLES, SIGNAL
 from gen.corpus.visible import fault_counts
 
 
@@ -45,10 +45,13 @@ def _recoverable_labels(corpus: xr.Dataset) -> list[str]:
 
 
 def meanings(corpus: xr.Dataset) -> list[str]:
-    """Section with unit, role and meaning of every per-record variable."""
-    rows = [
-        (f"`{plain_text(name)}`", *(plain_text(variable.attrs.get(key, "")) for key in ("units", "role", "long_name")))
+    """Section with unit, role and meaning of every per-record variable, by role and name."""
+    facts = {
+        str(name): [plain_text(variable.attrs.get(key, "")) for key in ("units", "role", "long_name")]
         for name, variable in corpus.variables.items()
         if name != SIGNAL and variable.dims == ("record",)
-    ]
+    }
+    places = {role: place for place, role in enumerate(ROLES)}
+    names = sorted(facts, key=lambda name: (places.get(facts[name][1], len(ROLES)), name))
+    rows = ((f"`{plain_text(name)}`", *facts[name]) for name in names)
     return ["", "## Variables", *table(("variable", "unit", "role", "meaning"), rows)]

@@ -2,6 +2,7 @@
 
 import shlex
 from collections.abc import Sequence
+from itertools import islice
 from pathlib import Path
 
 import xarray as xr
@@ -23,15 +24,15 @@ def origin(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
     """Paragraph on the origin of the records."""
     lines = [_made(corpus, manifest)]
     if manifest.origins:
-        lines += ["", *(f"{number}. {_part(origin)}" for number, origin in enumerate(manifest.origins, start=1))]
-    if manifest.selections:
-        lines += ["", *(_selected(choice) for choice in manifest.selections)]
+        lines += ["", *_merged(manifest)]
+    for choice in manifest.selections:
+        lines += ["", f"{_selected(choice)}. Rigs, specimens and recordings keep their numbers."]
     return lines
 
 
 def _made(corpus: xr.Dataset, manifest: Manifest) -> str:
     if manifest.origins:
-        return f"Merged from {len(manifest.origins)} corpora, in the order of the records:"
+        return f"Merged from {len(manifest.origins)} corpora by `raceway merge`; their machines have different numbers:"
     if manifest.importer is not None:
         return f"Origin: {plain_text(corpus.attrs.get('source', 'unknown'))}"
     if manifest.recipe is not None and _given_by_hand(manifest):
@@ -42,24 +43,27 @@ def _made(corpus: xr.Dataset, manifest: Manifest) -> str:
     return f"Origin: {'; '.join(facts) or 'unknown'}"
 
 
-def _part(origin: Origin) -> str:
-    """One of the corpora that were merged."""
-    title = plain_text(origin.title or "corpus without a title")
-    if origin.importer is not None:
-        made = f"recordings, by `raceway import {plain_text(origin.importer)}`"
-    elif origin.recipe_file is not None:
-        made = f"simulated from `{origin.recipe_file}`"
-    else:
-        made = "of unknown origin"
-    chosen = "; ".join(_selected(choice) for choice in origin.selections)
-    return (
-        f"{title}: {made}, {origin.parts} {'part' if origin.parts == 1 else 'parts'}{f'. {chosen}' if chosen else '.'}"
-    )
+def _merged(manifest: Manifest) -> list[str]:
+    """Entry of a list for each of the corpora that were merged, with the numbers of its records."""
+    rows, first, lines = iter(manifest.parts), 0, list[str]()
+    for number, origin in enumerate(manifest.origins, start=1):
+        stop = first + sum(row.records for row in islice(rows, origin.parts))
+        how = "of unknown origin"
+        if origin.importer is not None:
+            how = f"imported by {plain_text(origin.importer)}"
+        elif origin.recipe is not None:
+            how = f"simulated from recipe {plain_text(origin.recipe)} in `{origin.recipe_file}`"
+        facts = "; ".join([how, *map(_selected, origin.selections)])
+        lines.append(
+            f"{number}. The records of {plain_text(origin.title or 'a corpus')} are {first} to {stop - 1} ({facts})."
+        )
+        first = stop
+    return lines
 
 
 def _selected(choice: Choice) -> str:
     asked = code_text(choice)
-    return f"Selected from a corpus of {choice.records} records{f' (`{asked}`)' if asked else ''}."
+    return f"Selected from {choice.records:,} records" + (f" by `raceway select` (`{asked}`)" if asked else "")
 
 
 def _given_by_hand(made: Manifest | Origin) -> bool:
@@ -67,10 +71,10 @@ def _given_by_hand(made: Manifest | Origin) -> bool:
     return getattr(made, "scenarios", None) is not None
 
 
-def rebuilding(manifest: Manifest) -> list[str]:
-    """Section with the commands that make the corpus again."""
+def rebuilding(manifest: Manifest, window: float) -> list[str]:
+    """Section with the commands that make the corpus again; ``window`` is the length of a record [s]."""
     lines = ["", "## How to make it again", ""]
-    commands = _merging(manifest.origins) if manifest.origins else _steps(manifest, RECIPE_NAME, _NEW)
+    commands = _merging(manifest.origins, window) if manifest.origins else _steps(manifest, RECIPE_NAME, _NEW, window)
     if not commands:
         if _given_by_hand(manifest):
             return [
@@ -79,7 +83,10 @@ def rebuilding(manifest: Manifest) -> list[str]:
             ]
         return [*lines, "The folder does not say how it was made; keep a copy."]
     if any(command[1] == "import" for command in commands):
-        lines += ["With the folder of the recordings in place of FOLDER:", ""]
+        lines += [
+            "With your copy of the recordings in place of SRC, and with the other options of the import, which the folder does not tell:",
+            "",
+        ]
     elif manifest.origins or manifest.recipe is not None:
         lines += ["In this folder:", ""]
     lines += ["```sh", *(" ".join(map(_quoted, words)) for words in commands), "```"]
@@ -105,20 +112,21 @@ def _quoted(word: str) -> str:
     return f'"{text}"' if "'" in text and not set(text) & set('"$\\!') else shlex.quote(text)
 
 
-def _merging(origins: Sequence[Origin]) -> list[list[str]]:
+def _merging(origins: Sequence[Origin], window: float) -> list[list[str]]:
     """Commands that make each corpus and merge them; none if one of them cannot be made again."""
     folders = [f"{_NEW}-{number}" for number in range(1, len(origins) + 1)]
-    each = [_steps(origin, origin.recipe_file or "", folder) for origin, folder in zip(origins, folders, strict=True)]
+    pairs = zip(origins, folders, strict=True)
+    each = [_steps(origin, origin.recipe_file or "", folder, window) for origin, folder in pairs]
     if not all(each):
         return []
     last = [words[words.index("-o") + 1] for words in (steps[-1] for steps in each)]
     return [words for steps in each for words in steps] + [["raceway", "merge", *last, "-o", _NEW]]
 
 
-def _steps(made: Manifest | Origin, recipe_file: str, folder: str) -> list[list[str]]:
+def _steps(made: Manifest | Origin, recipe_file: str, folder: str, window: float) -> list[list[str]]:
     """Commands that make one corpus that was not merged; none if that is not known."""
     if made.importer is not None:
-        commands = [["raceway", "import", made.importer, "FOLDER", "-o", folder]]
+        commands = [["raceway", "import", made.importer, "SRC", "--window", f"{window:g}", "-o", folder]]
     elif made.recipe is not None and not _given_by_hand(made):
         commands = _simulating(made, recipe_file, folder)
     else:

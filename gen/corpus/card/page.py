@@ -39,7 +39,7 @@ def data_card(directory: Path | str) -> str:
             *labels.findings(corpus),
             *additions.scores(added.scores),
             *citation(title, manifest, manifest.publication),
-            *origin.rebuilding(manifest),
+            *origin.rebuilding(manifest, corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])),
             *origin.left_out(manifest),
             *labels.meanings(corpus),
             "",

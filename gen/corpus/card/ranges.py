@@ -22,9 +22,7 @@ from gen.units import unit_suffix
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]
 
-MOST_DRAWS = (
-    1024  # records whose draws are read; they are drawn in runs, because text is stored in blocks of 256 records
-)
+MOST_DRAWS = 256  # records whose draws are read, in runs: text is stored in blocks of 256 records, 1 ms each
 _RUN = 4
 MOST_QUANTITIES = 200  # rows of a table
 LARGEST_RECIPE = 1_000_000  # bytes that are searched for keys
@@ -111,7 +109,8 @@ def variable_ranges(corpus: xr.Dataset) -> tuple[list[Range], list[str]]:
             continue
         if "flag_values" in variable.attrs:
             continue
-        values, unit = variable.values.astype(float), str(variable.attrs.get("units", ""))
+        # of a copy, because the corpus would keep the values in memory
+        values, unit = variable[:].values.astype(float), str(variable.attrs.get("units", ""))
         finite = values[np.isfinite(values)]
         if finite.size and finite.min() < finite.max():
             rows += quantity_ranges(str(name), unit, values, groups, describes_fault=role == "label")
@@ -169,11 +168,16 @@ def drawn_ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> tuple[list[Rang
     chosen = some_records(corpus.sizes["record"])
     found: defaultdict[str, list[float]] = defaultdict(list)
     places: defaultdict[str, list[int]] = defaultdict(list)
+    last: dict[str, Any] = {}
+    leaves: dict[str, list[tuple[str, float]]] = {}
     for start, stop in _runs(chosen):
         for record, text in enumerate(corpus[DRAWS][start:stop].values, start):
-            for path, value in _leaves(_parsed(str(text)), ""):
-                found[path].append(value)
-                places[path].append(record)
+            for section, drawn in _sections(str(text)).items():
+                if section not in last or last[section] != drawn:  # neighbours share their rig and specimen
+                    last[section], leaves[section] = drawn, [*_leaves(drawn, section)]
+                for path, value in leaves[section]:
+                    found[path].append(value)
+                    places[path].append(record)
     units = _units(recipes)
     groups = Groups(corpus["fault"].values, corpus["specimen"].values)
     rows: list[Range] = []
@@ -202,11 +206,13 @@ def _runs(numbers: IntArray) -> Iterator[tuple[int, int]]:
         yield int(run[0]), int(run[-1]) + 1
 
 
-def _parsed(text: str) -> Any:
+def _sections(text: str) -> dict[str, Any]:
+    """Sections of the draws of a record: rig, specimen and record; none in a text that is no JSON."""
     try:
-        return json.loads(text)
+        found = json.loads(text)
     except (ValueError, RecursionError):  # a corpus from elsewhere
         return {}
+    return {name: drawn for name, drawn in found.items() if name not in _NOT_DRAWN} if isinstance(found, dict) else {}
 
 
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
@@ -214,7 +220,7 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
     if isinstance(value, dict):
         for key, inner in value.items():
             if key not in _NOT_DRAWN:
-                yield from _leaves(inner, f"{path}.{key}" if path else str(key))
+                yield from _leaves(inner, f"{path}.{key}")
     elif isinstance(value, list):
         for inner in value:
             if isinstance(inner, dict):

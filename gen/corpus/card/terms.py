@@ -21,7 +21,7 @@ def terms(publication: Publication) -> list[str]:
     rows = [(name, plain_text(value)) for name, value in facts if value]
     lines = ["", "## Licence and creators"]
     if publication.license is None:
-        lines += ["", "No licence is stated, so nobody may publish copies: ask the owner."]
+        lines += ["", "No licence is stated: ask the owner before you publish a copy."]
     return lines + (table(("fact", "value"), rows) if rows else [])
 
 

@@ -169,7 +169,7 @@ def made(**facts):
 
 
 def commands(manifest):
-    (block,) = blocks("\n".join(rebuilding(manifest)), "sh")
+    (block,) = blocks("\n".join(rebuilding(manifest, 0.5)), "sh")
     return [shlex.split(line) for line in block.splitlines()]
 
 
@@ -189,9 +189,27 @@ def test_the_commands_repeat_seed_records_extensions_and_choices():
     ]
 
 
+def test_the_commands_of_a_merged_corpus_make_each_of_its_corpora_and_merge_them():
+    origin = {"parts": 1, "added": {}, "same_machines": "x"}
+    chosen = {"records": 9, "parts_sha256": "1", "split": "train"}
+    origins = (
+        origin
+        | {"recipe": "small", "recipe_file": "recipes/00000.yaml", "overrides": {"seed": 3}, "selections": (chosen,)},
+        origin | {"importer": "cwru"},
+    )
+    assert commands(made(origins=origins)) == [
+        ["raceway", "generate", "recipes/00000.yaml", "-o", "../again-1", "--seed", "3"],
+        ["raceway", "select", "../again-1", "--split", "train", "-o", "../again-1-selected"],
+        ["raceway", "import", "cwru", "SRC", "--window", "0.5", "-o", "../again-2"],
+        ["raceway", "merge", "../again-1-selected", "../again-2", "-o", "../again"],
+    ]
+    unknown = made(origins=(*origins, origin))
+    assert "The folder does not say how it was made" in rebuilding(unknown, 0.5)[-1]
+
+
 def test_a_corpus_without_a_recipe_or_with_scenarios_made_by_hand_has_no_command():
-    assert "The folder does not say how it was made" in rebuilding(made())[-1]
-    assert "raceway replay . --record I" in rebuilding(made(recipe="small", scenarios="given"))[-1]
+    assert "The folder does not say how it was made" in rebuilding(made(), 0.5)[-1]
+    assert "raceway replay . --record I" in rebuilding(made(recipe="small", scenarios="given"), 0.5)[-1]
 
 
 def test_pictures_and_scores_of_other_parts_are_left_out(corpus, tmp_path):

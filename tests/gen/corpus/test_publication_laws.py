@@ -1,15 +1,19 @@
 """Laws of publication: who made a corpus and how it may be used changes no part, and a killed change leaves a corpus that can be read."""
 
 import json
+import re
 import shutil
 
 import netCDF4
 import pytest
+from ruamel.yaml import YAML
 
 from gen.corpus import (
+    Manifest,
     Publication,
     open_corpus,
     part_name,
+    publication_attributes,
     publish,
     read_manifest,
     read_publication,
@@ -17,12 +21,14 @@ from gen.corpus import (
     write_part,
 )
 from gen.corpus.finishing import finish_corpus
+from gen.corpus.manifest import manifest_content
 from gen.corpus.publication import checked_doi, checked_orcid
 from gen.errors import CorpusError, RecipeError
 from gen.recipe import read_recipe, recipe_hash
 from gen.sharing.portable import pack
 from gen.sharing.unpacking import unpack
 from tests import corpora, kills, tone_corpora
+from tests.paths import ROOT
 
 FACTS = {
     "license": "CC-BY-4.0",
@@ -41,12 +47,18 @@ def _no_clock(monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
 
 
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("plain") / "corpus"
+    tone_corpora.write_corpus(folder, specimens=4, records=1)
+    finish_corpus(folder, read_manifest(folder).parts)
+    return folder
+
+
 @pytest.fixture
-def folder(tmp_path):
+def folder(plain, tmp_path):
     """A finished corpus without a publication."""
-    tone_corpora.write_corpus(tmp_path / "corpus", specimens=4, records=1)
-    finish_corpus(tmp_path / "corpus", read_manifest(tmp_path / "corpus").parts)
-    return tmp_path / "corpus"
+    return shutil.copytree(plain, tmp_path / "corpus")
 
 
 def contents(folder):
@@ -215,3 +227,18 @@ def test_a_title_beyond_ascii_is_read_back_from_index_and_parts(tmp_path):
     with open_corpus(folder) as corpus, netCDF4.Dataset(folder / "corpus.nc") as index:
         assert corpus.attrs["title"] == index.title == title
     assert title in (folder / "README.md").read_text()
+
+
+def test_the_page_names_every_attribute_and_its_example_is_a_publication():
+    page = (ROOT / "docs" / "publishing.md").read_text()
+    example = YAML(typ="safe", pure=True).load(page.partition("```yaml\n")[2].partition("```")[0])["publication"]
+    assert set(example) == set(Publication.model_fields)
+    example["date"] = str(example["date"])  # Raceway reads dates as text
+    given = read_publication(example)
+    table = page.partition("| attribute | from |")[2].partition("\n\n")[0]
+    named = {
+        name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1] if "|" in row else "")
+    }
+    content = manifest_content([], publication=given, importer="test")
+    written = publication_attributes(Manifest.model_validate_json(json.dumps(content)))
+    assert named - {"title", "history", "source", "Conventions", "comment"} == set(written)
