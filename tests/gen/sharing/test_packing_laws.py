@@ -19,7 +19,12 @@ from tests import tone_corpora
 from tests.corpora import SIZES, dataset, write_corpus
 from tests.kills import killed
 
-KINDS = [("counts", "zlib", "zlib"), ("counts", "zlib", "none"), ("counts", "zstd", "zlib"), ("float32", "zlib", "zstd")]
+KINDS = [
+    ("counts", "zlib", "zlib"),
+    ("counts", "zlib", "none"),
+    ("counts", "zstd", "zlib"),
+    ("float32", "zlib", "zstd"),
+]
 
 
 def files_of(folder):
