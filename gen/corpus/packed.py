@@ -86,8 +86,8 @@ def _contents(path: str, _stamp: Stamp) -> Packed:
     try:
         with LIBRARY_LOCK, h5py.File(path, "r", locking=False) as file:
             _check_version(file)
-            listing = own_dataset(file, f"{FILES}/{CONTENTS}")
-            content = json.loads(_file(file, CONTENTS, bytes(listing.attrs["sha256"]).decode()))
+            digest: Any = own_dataset(file, f"{FILES}/{CONTENTS}").attrs["sha256"]
+            content = json.loads(_file(file, CONTENTS, digest.decode()))
             files = {name: _file(file, name, digest) for name, digest in content["files"].items()}
             return Packed(files, _parts(content))
     except CorpusError:
@@ -112,7 +112,7 @@ def _file(file: h5py.File, name: str, digest: str) -> bytes:
     if name != CONTENTS and not FILE_NAME.fullmatch(name):
         raise ValueError(f"{name!r} is not the name of a file of a corpus")
     stored = own_dataset(file, f"{FILES}/{name}")
-    check_limit("manifest_bytes", stored.size, f"{file.filename}: {name} has", CorpusError)
+    check_limit("manifest_bytes", stored.size or 0, f"{file.filename}: {name} has", CorpusError)
     content = np.asarray(stored[:]).tobytes()
     if hashlib.sha256(content).hexdigest() != digest:
         raise ValueError(f"{name} is altered: its hash differs")
