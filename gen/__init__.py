@@ -29,6 +29,7 @@ part_task   parts labelled and written
 compilation kernels of a recipe compiled before its first record
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
+extending   rigs or specimens added to a corpus
 plan        counts, size and steps of a corpus before it is made
 pages       documentation pages written from the code
 =========== ==================================================================
@@ -44,6 +45,7 @@ from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.corpus import open_corpus, validate_corpus
+    from gen.extending import extend
     from gen.generation import generate
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
@@ -57,6 +59,7 @@ __all__ = [
     "RecipeError",
     "SimulationError",
     "draw_scenarios",
+    "extend",
     "generate",
     "open_corpus",
     "read_recipe",
@@ -71,6 +74,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "gen.corpus": ("open_corpus", "validate_corpus"),
+        "gen.extending": ("extend",),
         "gen.generation": ("generate",),
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),

@@ -18,7 +18,7 @@ from gen.simulation.timeline import timeline
 
 
 def corpus_recipe(directory: Path) -> Recipe:
-    """Recipe of a generated corpus, with the seed and the number of records of the call that generated it.
+    """Recipe of a generated corpus, with the seed and the number of records of the call that generated it, and with its extensions.
 
     Raises
     ------
@@ -32,7 +32,7 @@ def corpus_recipe(directory: Path) -> Recipe:
     recipe = read_recipe(path, seed=manifest.overrides.seed, records=manifest.overrides.records)
     if recipe_hash(recipe) != manifest.recipe_sha256:
         raise CorpusError(f"{path}: is not the recipe of the corpus; restore it to replay.")
-    return recipe
+    return recipe.extended(manifest.overrides.extensions)
 
 
 @dataclass(frozen=True)

@@ -36,14 +36,23 @@ from gen.limits import check_limit
 Check = Literal["sha256", "size"]
 
 INDEX_NAME = "corpus.nc"
+MANIFEST_NAME = "manifest.json"
+EXTENSION_NAME = "extension.json"
+"""Manifest of a corpus that is being extended: as it will be, with the finished parts; the other manifest is as it was."""
+MOST_EXTENSIONS = 100
+
 _Texts = tuple[str, ...]
+_Added = Annotated[int, Field(ge=1, lt=2**31)]
+_Extension = Annotated[dict[Literal["rigs", "specimens"], _Added], Field(min_length=1, max_length=1)]
 
 
 class Overrides(Strict):
-    """Seed and number of records that replaced those of the recipe."""
+    """Seed and number of records that replaced those of the recipe, and what was added later."""
 
     seed: int | None = None
     records: int | None = None
+    extensions: Annotated[tuple[_Extension, ...], Field(max_length=MOST_EXTENSIONS)] = ()
+    """Extensions in the order in which they were made: number of added rigs, or of specimens added to every rig."""
 
 
 class Manifest(Strict):
@@ -77,10 +86,12 @@ class Manifest(Strict):
         return summed(row.signals for row in self.parts)
 
 
-def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, **facts: Any) -> None:
+def write_manifest(
+    directory: Path, rows: Iterable[PartRow], *, complete: bool, name: str = MANIFEST_NAME, **facts: Any
+) -> None:
     """Write ``manifest.json``: the finished parts, whether they are all, and ``facts`` such as recipe hash and versions.
 
-    For a complete corpus the index must exist.
+    For a complete corpus the index must exist. ``name`` is that of the file.
     """
     rows = list(rows)
     index = directory / INDEX_NAME
@@ -93,18 +104,20 @@ def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, 
         **facts,
         "parts": [listed(row) for row in rows],
     }
-    write_text_durably(json.dumps(content, indent=1) + "\n", directory / "manifest.json")
+    write_text_durably(json.dumps(content, indent=1) + "\n", directory / name)
 
 
-def read_manifest(directory: Path) -> Manifest:
+def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
     """Read and check ``manifest.json``, and the journal if the corpus is unfinished; names that lead out of the corpus are refused.
+
+    ``name`` is that of the file.
 
     Raises
     ------
     CorpusError
         If it is missing, unreadable or of another format version, has a wrong or repeated name of a part, or its counts disagree.
     """
-    path = directory / "manifest.json"
+    path = directory / name
     if directory.is_file():
         raise CorpusError(f"{directory}: is a file; give the folder of a corpus, the one that holds manifest.json.")
     if not directory.is_dir():
@@ -200,6 +213,10 @@ def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
     if not manifest.complete:
         raise CorpusError(f"{directory}: is unfinished; run the raceway generate command that began it again.")
     problems = file_problems(directory, manifest, check)
+    if problems and (directory / EXTENSION_NAME).exists():
+        raise CorpusError(
+            f"{problems[0].split('; ')[0]}; run the raceway extend command that began an extension of it again."
+        )
     if problems:
         raise CorpusError(problems[0])
     return [directory / "parts" / row.name for row in manifest.parts]

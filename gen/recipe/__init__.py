@@ -14,6 +14,7 @@ sensor_faults faults of mount, cable, amplifier and data transfer
 changes       keys of operation and level that one fault replaces
 shares        quantities that are a share of another
 loads         loads that no bearing of the recipe can carry
+extensions    blocks of a corpus that was extended
 checks        keys that contradict each other, weights that cannot be met
 model         the recipe as a whole
 keys          every key with unit, range, default and meaning
@@ -28,6 +29,7 @@ from typing import TYPE_CHECKING
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from gen.recipe.extensions import Block
     from gen.recipe.faults import (
         BallFault,
         CageFault,
@@ -54,6 +56,7 @@ __all__ = [
     "MAX_OVERSAMPLING",
     "STATIC_RATING",
     "BallFault",
+    "Block",
     "CageFault",
     "CatalogueBearing",
     "CompoundFault",
@@ -81,6 +84,7 @@ __all__ = [
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "gen.recipe.extensions": ("Block",),
         "gen.recipe.faults": (
             "BallFault",
             "CageFault",
