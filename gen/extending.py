@@ -114,16 +114,29 @@ def finished_extensions(directory: Path) -> tuple[Extension, ...]:
         If the corpus cannot be extended, because it was not generated from one recipe or is unfinished.
     """
     manifest = read_manifest(directory)
-    if manifest.overrides is None:
-        raise CorpusError(
-            f"{directory}: was not generated from a recipe that further records could be drawn from; make another corpus, and join the "
-            f"two with raceway merge."
-        )
+    if directory.is_file():
+        raise CorpusError(f"{directory}: is a packed file; unpack it with raceway unpack, then extend the folder.")
+    if (reason := _not_of_one_recipe(manifest)) is not None:
+        raise CorpusError(f"{directory}: {reason}.")
     if not manifest.complete:
         raise CorpusError(
             f"{directory}: is unfinished; run the raceway generate command that began it again, then extend it."
         )
-    return manifest.overrides.extensions
+    return _extensions(manifest)
+
+
+def _not_of_one_recipe(manifest: Manifest) -> str | None:
+    """Why no further records can be drawn for a corpus, and what to do; None if they can."""
+    if manifest.origins:
+        return "was merged from other corpora; extend one of these before they are merged"
+    if manifest.selections:
+        return "is a selection of another corpus; extend that one, and select from it again"
+    if manifest.overrides is None:
+        return (
+            "was not generated from a recipe, which further records could be drawn from; make another corpus, and join the two with "
+            "raceway merge"
+        )
+    return None
 
 
 def _asked(rigs: int | None, specimens: int | None) -> Extension:

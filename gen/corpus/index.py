@@ -22,8 +22,8 @@ from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
 
 _COMMENT = (
-    f"{SIGNAL} is an HDF5 virtual dataset over the files in parts/. HDF5 reads a part that it cannot open as missing values, without an "
-    "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
+    f"This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. {SIGNAL} is an HDF5 virtual "
+    "dataset over the files in parts/. HDF5 reads a part that it cannot open as missing values, without an error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
     "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
 )
 _CHUNK_RECORDS = 256  # records whose text forms one chunk
@@ -36,9 +36,10 @@ def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
     Parameters
     ----------
     directory : path
-        The folder that holds ``corpus.nc``.
+        The folder that holds ``corpus.nc``, or a packed file (:func:`gen.pack`).
     check : {"sha256", "size"}
-        Comparison of each file with the manifest before anything is read.
+        Comparison of each file with the manifest before anything is read; of a packed file, of each record with its hash ("sha256") or of
+        none.
 
     Returns
     -------
@@ -53,6 +54,8 @@ def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
     """
     directory = Path(directory)
     paths = part_paths(directory, check)
+    if directory.is_file():
+        return open_records(directory, [directory])
     return open_records(directory / INDEX_NAME, paths, [row.records for row in read_manifest(directory).parts])
 
 
@@ -65,15 +68,15 @@ def write_index(directory: Path, rows: list[PartRow]) -> None:
         If writing fails, with the reason that the system gives.
     """
     with whole_or_not_at_all(directory / INDEX_NAME) as temporary, LIBRARY_LOCK:
-        _write_variables(directory, rows, temporary)
+        write_variables(directory, rows, temporary, _COMMENT)
         _write_virtual_signal(directory, rows, temporary)
 
 
-def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
-    """Copy all variables except the signal; the width of a text is that of the longest in any part.
+def write_variables(directory: Path, rows: list[PartRow], path: Path, comment: str) -> None:
+    """Copy all variables of the parts except the signal into a new file; ``comment`` is its global attribute.
 
-    The parts are read one after the other with h5py, and copied ``_COPIED_BYTES`` at a time: opening one with netCDF4 takes 4 ms, and
-    writing the variables of each part on their own takes as long again.
+    The width of a text is that of the longest in any part. The parts are read one after the other with h5py, and copied
+    ``_COPIED_BYTES`` at a time: opening one with netCDF4 takes 4 ms, and writing the variables of each part on their own as long again.
     """
     with (
         netCDF4.Dataset(directory / "parts" / rows[0].name) as first,
@@ -89,7 +92,7 @@ def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
         texts = [name for name, dtype in copied.items() if dtype == "S1"]
         lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
         lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
-        _declare_like(first, index, lengths)
+        _declare_like(first, index, lengths, comment)
         start = 0
         for block in _blocks(directory, rows, copied):
             for name, values in zip(copied, block, strict=True):
@@ -144,9 +147,9 @@ def _joined(values: tuple[NDArray[Any], ...]) -> NDArray[Any]:
     return joined
 
 
-def _declare_like(part: netCDF4.Dataset, index: netCDF4.Dataset, lengths: dict[str, int]) -> None:
+def _declare_like(part: netCDF4.Dataset, index: netCDF4.Dataset, lengths: dict[str, int], comment: str) -> None:
     index.setncatts(
-        {name: part.getncattr(name) for name in part.ncattrs() if name != "failures"} | {"comment": _COMMENT}
+        {name: part.getncattr(name) for name in part.ncattrs() if name != "failures"} | {"comment": comment}
     )
     for name, length in lengths.items():
         index.createDimension(name, length)

@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, StringConstraints, ValidationError
 
 from gen.corpus.files import plain_file, sha256, stamp, write_text_durably
 from gen.corpus.journal import (
@@ -27,7 +27,9 @@ from gen.corpus.journal import (
     part_number,
     read_journal,
 )
+from gen.corpus.packed import is_packed, packed_contents
 from gen.corpus.part import PartRow
+from gen.corpus.record_checks import record_problems
 from gen.corpus.schema import FORMAT
 from gen.corpus.signals import SignalCounts, summed
 from gen.errors import CorpusError
@@ -55,6 +57,51 @@ class Overrides(Strict):
     """Extensions in the order in which they were made: number of added rigs, or of specimens added to every rig."""
 
 
+class Choice(Strict):
+    """Choice of records and channels of another corpus, as ``raceway select`` was called."""
+
+    records: Count
+    """Number of records that were chosen from."""
+    parts_sha256: str
+    """SHA-256 over those of the parts of the corpus that was chosen from."""
+    where: str | None = None
+    split: str | None = None
+    channels: _Texts | None = None
+
+    def __str__(self) -> str:
+        """Options of the call."""
+        given = {"where": self.where, "split": self.split, "channels": self.channels and ", ".join(self.channels)}
+        return "; ".join(f"{name}: {value}" for name, value in given.items() if value is not None)
+
+
+class Numbers(Strict):
+    """A number for each variable that is numbered anew when corpora are merged."""
+
+    rig: Count = 0
+    specimen: Count = 0
+    recording: Count = 0
+    pair: Count = 0
+
+
+class Origin(Strict):
+    """One of the corpora that a merged corpus was made from; fields that it shares with :class:`Manifest` were copied from there."""
+
+    parts: Count
+    """Number of consecutive parts of the merged corpus with the records of this one."""
+    added: Numbers
+    """What was added to the numbers of this corpus."""
+    same_machines: str
+    """Text that is the same for two corpora if the same numbers are the same machines: of one recipe and seed, or of one import."""
+    recipe_file: Annotated[str, StringConstraints(pattern=r"^recipes/[0-9]{5}\.yaml$")] | None = None
+    title: str | None = None
+    recipe: str | None = None
+    recipe_sha256: str | None = None
+    overrides: Overrides | None = None
+    versions: Annotated[dict[str, str], Field(default_factory=dict)]
+    importer: str | None = None
+    selections: tuple[Choice, ...] = ()
+
+
 class Manifest(Strict):
     """Contents of ``manifest.json`` after its check; fields of simulated corpora are None in imported ones, and the other way round."""
 
@@ -74,6 +121,10 @@ class Manifest(Strict):
     recordings: Count | None = None
     skipped: _Texts = ()
     warnings: _Texts = ()
+    selections: tuple[Choice, ...] = ()
+    """Choices by which the records were taken from a larger corpus, the first one first."""
+    origins: tuple[Origin, ...] = ()
+    """Corpora that were merged into this one, in the order of their records."""
 
     @property
     def parts(self) -> list[PartRow]:
@@ -108,9 +159,9 @@ def write_manifest(
 
 
 def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
-    """Read and check ``manifest.json``, and the journal if the corpus is unfinished; names that lead out of the corpus are refused.
+    """Read and check ``manifest.json`` of a folder or of a packed file, and the journal if the corpus is unfinished.
 
-    ``name`` is that of the file.
+    Names that lead out of the corpus are refused. ``name`` is that of the file in a folder.
 
     Raises
     ------
@@ -119,7 +170,7 @@ def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
     """
     path = directory / name
     if directory.is_file():
-        raise CorpusError(f"{directory}: is a file; give the folder of a corpus, the one that holds manifest.json.")
+        return _checked(_packed_manifest(directory), path)
     if not directory.is_dir():
         raise CorpusError(
             f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."
@@ -129,9 +180,17 @@ def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
     plain_file(directory, path.name)
     try:
         check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
-        manifest = Manifest.model_validate_json(path.read_bytes())
+        content = path.read_bytes()
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
+    manifest = _checked(content, path)
+    return manifest if manifest.complete else _with_journal(manifest, directory)
+
+
+def _checked(content: bytes, path: Path) -> Manifest:
+    """Manifest from its JSON; CorpusError if it is of another format version or its counts disagree."""
+    try:
+        manifest = Manifest.model_validate_json(content)
     except ValidationError as error:
         raise CorpusError(
             f"{path}: not a corpus manifest ({first_problem(error)}); generate or copy the corpus again."
@@ -144,7 +203,31 @@ def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
     problem = _inconsistency(manifest)
     if problem is not None:
         raise CorpusError(f"{path}: {problem}; do not trust this corpus.")
-    return manifest if manifest.complete else _with_journal(manifest, directory)
+    return manifest
+
+
+def _packed_manifest(file: Path) -> bytes:
+    """Manifest in a packed file; CorpusError if the file is no packed file."""
+    if not is_packed(file):
+        raise CorpusError(not_a_corpus(file))
+    packed = packed_contents(file)
+    manifest = packed.files.get("manifest.json", b"")
+    listed = {part.name: part.records for part in _checked(manifest, file / "manifest.json").parts}
+    if listed != {name: part.records for name, part in packed.parts.items()}:
+        raise CorpusError(f"{file}: its manifest lists other parts than it holds; do not trust this corpus.")
+    return manifest
+
+
+def not_a_corpus(file: Path) -> str:
+    """Sentence about a file that is no packed corpus."""
+    if file.name != INDEX_NAME:
+        return f"{file}: is a file and no packed corpus; give the folder of a corpus, the one that holds manifest.json."
+    if (file.parent / "manifest.json").is_file():
+        return f"{file}: is one file of a corpus; give the folder of the corpus, {file.parent}."
+    return (
+        f"{file}: is the index of a corpus without its parts, so it holds no signals; copy the whole folder, "
+        "or make one file of it with raceway pack."
+    )
 
 
 def _with_journal(manifest: Manifest, directory: Path) -> Manifest:
@@ -167,12 +250,16 @@ def _inconsistency(manifest: Manifest) -> str | None:
         return f"it counts {manifest.records} records, its parts {records}"
     if manifest.complete and (manifest.index is None or not names):
         return "it is marked complete but has no hash of corpus.nc or no parts"
+    if manifest.origins and sum(origin.parts for origin in manifest.origins) != len(names):
+        return "its origins have another number of parts than it lists"
     check_limit("records", records, str(names and "the corpus holds"), CorpusError)
     return None
 
 
 def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str]:
-    """Missing and altered files, one sentence each; the index is included if the corpus is complete."""
+    """Missing and altered files, one sentence each; the index is included if the corpus is complete. Of a packed file: damaged records."""
+    if directory.is_file():
+        return record_problems(directory) if check == "sha256" else []
     wanted = {f"parts/{row.name}": FileRow(bytes=row.bytes, sha256=row.sha256) for row in manifest.parts}
     if manifest.complete and manifest.index is not None:
         wanted[INDEX_NAME] = manifest.index
@@ -199,9 +286,9 @@ def _file_problem(directory: Path, check: Check, item: tuple[str, FileRow]) -> s
 
 
 def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
-    """Paths of all parts of a finished corpus, after a check of every file.
+    """Paths of all parts of a finished corpus, after a check of every file; through a packed file they lead to ranges of its records.
 
-    ``check="size"`` compares sizes only, for corpora that take too long to hash.
+    ``check="size"`` compares sizes only, for corpora that take too long to hash. It checks no record of a packed file.
 
     Raises
     ------

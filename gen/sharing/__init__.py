@@ -3,5 +3,7 @@
 =========== ======================================================
 module      responsibility
 =========== ======================================================
+where       conditions on records: parsed, never evaluated as Python
+choice      choice of records and channels
 =========== ======================================================
 """

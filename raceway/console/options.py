@@ -88,6 +88,29 @@ def worker_options(command: Any) -> Any:
     return _workers(_scheduler(command))
 
 
+def _names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...] | None:
+    """Names separated by commas."""
+    return None if text is None else tuple(name.strip() for name in text.split(","))
+
+
+_where: Decorator = click.option(
+    "--where",
+    metavar="TEXT",
+    help="Only records that meet this condition, such as \"fault == 'inner' and shaft_rate > 20\".",
+)
+_split: Decorator = click.option(
+    "--split", metavar="NAME", help="Only records of this split: train, validation or test."
+)
+_channels: Decorator = click.option(
+    "--channels", metavar="NAME[,NAME]", callback=_names, help="Only these channels, in the order of the corpus."
+)
+
+
+def choice_options(command: Any) -> Any:
+    """Add the options ``--where``, ``--split`` and ``--channels``, which choose records and channels of a corpus."""
+    return _where(_split(_channels(command)))
+
+
 speed_option: Decorator = click.option(
     "--speed",
     type=click.Choice(["off", "check", "correct"]),
