@@ -11,13 +11,15 @@ from pathlib import Path
 from typing import Any
 
 from gen.corpus import (
+    DRAWS,
     EXTENSION_NAME,
     JOURNAL_NAME,
     MOST_EXTENSIONS,
     Manifest,
     PartRow,
-    open_corpus,
+    open_part,
     part_name,
+    part_paths,
     read_manifest,
     remove_left_behind,
     write_manifest,
@@ -25,9 +27,9 @@ from gen.corpus import (
 from gen.errors import CorpusError, RecipeError
 from gen.generation import Generated, Progress, Tally, claimed, client_of, finished, finished_parts
 from gen.part_task import library_versions
-from gen.recipe import Recipe
-from gen.replaying import corpus_recipe, stored_scenario
-from gen.scenarios import draw_scenarios
+from gen.recipe import Block, Recipe
+from gen.replaying import corpus_recipe
+from gen.scenarios import draw_scenarios, read_scenario
 
 Extension = dict[Any, int]
 """As in the manifest: ``{"rigs": 2}`` or ``{"specimens": 2}``."""
@@ -97,12 +99,28 @@ def extend(
     with client_of(scheduler, workers) as client, claimed(directory):
         work = _work(directory, asked)
         _prepare(directory, work)
+        if work.facts["versions"] != library_versions():
+            notice(f"the new parts are made with other versions than the old ones: {_newer(work.facts['versions'])}.")
         tally = Tally(work.recipe, progress, work.recipe.blocks[-1].parts)
         outcomes = finished_parts(tally, directory, work.known, workers, client, notice)
         made = finished(directory, outcomes, work.recipe, work.facts, work.before, work.failures)
         (directory / EXTENSION_NAME).unlink()
     added = made.records - sum(row.records for row in work.before)
     return Extended(directory, made.records, made.parts, made.kept, made.failures, made.signals, added)
+
+
+def _newer(versions: dict[str, str]) -> str:
+    """Libraries that have other versions than those that made the corpus."""
+    return ", ".join(
+        f"{name} {found} instead of {versions.get(name, 'none')}"
+        for name, found in library_versions().items()
+        if found != versions.get(name)
+    )
+
+
+def new_block(directory: Path | str, *, rigs: int | None = None, specimens: int | None = None) -> Block:
+    """Numbers of the rigs, specimens, records and parts that :func:`extend` would add; it raises the same errors."""
+    return _work(Path(directory), _asked(rigs, specimens)).recipe.blocks[-1]
 
 
 def finished_extensions(directory: Path) -> tuple[Extension, ...]:
@@ -143,7 +161,9 @@ def _asked(rigs: int | None, specimens: int | None) -> Extension:
     """The one extension that is asked for."""
     given = {name: count for name, count in (("rigs", rigs), ("specimens", specimens)) if count is not None}
     if len(given) != 1:
-        raise RecipeError("an extension adds rigs, or specimens in every rig; give one of the two numbers.")
+        raise RecipeError(
+            "an extension adds rigs, or specimens in every rig; give one of the two numbers, rigs or specimens."
+        )
     for name, count in given.items():
         if not 1 <= count < 2**31:
             raise RecipeError(f"{name}: {count} is not allowed; use 1 or more.")
@@ -163,9 +183,11 @@ def _work(directory: Path, asked: Extension) -> _Work:
             f"{directory}: was extended {MOST_EXTENSIONS} times, which is the limit; generate another corpus, and join the two with "
             f"raceway merge."
         )
+    if begun is None:
+        part_paths(directory, check="size")  # a corpus with a missing part would be refused when the new parts are made
     recipe, found = corpus_recipe(directory), manifest.parts
     if done != wanted:  # else the last call was killed after it had written the manifest
-        _check_rigs(directory, recipe)
+        _check_rigs(directory, found, recipe)
         recipe = recipe.extended([asked])
         found = begun.parts if begun is not None and begun.versions == library_versions() else []
     names = {part_name(part) for part in recipe.blocks[-1].parts}
@@ -206,16 +228,18 @@ def _begun(directory: Path, asked: Extension) -> Manifest | None:
     return begun
 
 
-def _check_rigs(directory: Path, recipe: Recipe) -> None:
-    """Refuse a corpus whose machines this version of the libraries does not draw from its recipe: new specimens would be in others."""
-    with open_corpus(directory, check="size") as corpus:
-        last = corpus.sizes["record"] - 1
-    for record in {0, last}:
-        stored = stored_scenario(directory, record)
+def _check_rigs(directory: Path, rows: list[PartRow], recipe: Recipe) -> None:
+    """Refuse a corpus whose machines these libraries do not draw from its recipe: new specimens would be in other machines.
+
+    The last record of the first and of the last part are compared. They are read from the parts, because ``corpus.nc`` may be new already.
+    """
+    for name in {rows[0].name, rows[-1].name}:
+        with open_part(directory / "parts" / name) as part:
+            stored = read_scenario(str(part[DRAWS].values[-1]))
         number = stored.record.number
         if draw_scenarios(recipe, number, number + 1)[0].rig != stored.rig:
             raise CorpusError(
-                f"{directory}: the installed libraries draw another machine for record {record}; extend the corpus with the versions that "
+                f"{directory}: the installed libraries draw another machine for record {number}; extend the corpus with the versions that "
                 f"raceway info shows, or make another corpus, and join the two with raceway merge."
             )
 
