@@ -44,41 +44,50 @@ from gen.errors import ClusterError, CorpusError, RacewayError, RecipeError, Sim
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gen.corpus import open_corpus, validate_corpus
+    from gen.corpus import Publication, open_corpus, publish, read_publication, validate_corpus
     from gen.extending import extend
     from gen.generation import generate
     from gen.recipe import read_recipe
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
+    from gen.sharing import merge, pack, select, unpack
     from gen.simulation.simulate import simulate
 
 __all__ = [
     "ClusterError",
     "CorpusError",
+    "Publication",
     "RacewayError",
     "RecipeError",
     "SimulationError",
     "draw_scenarios",
     "extend",
     "generate",
+    "merge",
     "open_corpus",
+    "pack",
+    "publish",
+    "read_publication",
     "read_recipe",
     "replay",
+    "select",
     "shaft_angles",
     "simulate",
     "stored_scenario",
+    "unpack",
     "validate_corpus",
 ]
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "gen.corpus": ("open_corpus", "validate_corpus"),
+        "gen.corpus": ("Publication", "open_corpus", "publish", "read_publication", "validate_corpus"),
         "gen.extending": ("extend",),
         "gen.generation": ("generate",),
         "gen.recipe": ("read_recipe",),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing": ("merge", "pack", "select", "unpack"),
         "gen.simulation.simulate": ("simulate",),
     },
 )

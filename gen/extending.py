@@ -34,7 +34,8 @@ from gen.scenarios import draw_scenarios, read_scenario
 Extension = dict[Any, int]
 """As in the manifest: ``{"rigs": 2}`` or ``{"specimens": 2}``."""
 
-_NOT_COPIED = {"raceway_format", "complete", "records", "signals", "index", "parts_", "failures"}  # written anew
+_NOT_COPIED = {"raceway_format", "complete", "records", "signals", "index", "parts_", "failures", "publication"}
+"""Fields of the manifest that are given anew."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +104,7 @@ def extend(
             notice(f"the new parts are made with other versions than the old ones: {_newer(work.facts['versions'])}.")
         tally = Tally(work.recipe, progress, work.recipe.blocks[-1].parts)
         outcomes = finished_parts(tally, directory, work.known, workers, client, notice)
-        made = finished(directory, outcomes, work.recipe, work.facts, work.before, work.failures)
+        made = finished(directory, outcomes, work.facts, work.before, work.failures)
         (directory / EXTENSION_NAME).unlink()
     added = made.records - sum(row.records for row in work.before)
     return Extended(directory, made.records, made.parts, made.kept, made.failures, made.signals, added)
@@ -194,7 +195,7 @@ def _work(directory: Path, asked: Extension) -> _Work:
     facts = manifest.model_dump(mode="json", by_alias=True, exclude_unset=True, exclude=_NOT_COPIED)
     return _Work(
         recipe,
-        facts | {"overrides": {**facts["overrides"], "extensions": wanted}},
+        facts | {"overrides": {**facts["overrides"], "extensions": wanted}, "publication": manifest.publication},
         [row for row in manifest.parts if row.name not in names],
         (manifest if begun is None else begun).failures,
         {row.name: row for row in found if row.name in names},

@@ -22,7 +22,6 @@ from gen.corpus import (
     PartRow,
     SignalCounts,
     check_name,
-    data_card,
     finish_corpus,
     new_journal,
     part_name,
@@ -41,11 +40,6 @@ if TYPE_CHECKING:
     from distributed import Client
 
 Progress = Callable[[int, int], None]
-
-_HOW = (
-    "Simulated by Raceway from `recipe.yaml` (recipe {recipe}): Hertz contact between balls and raceways, shaft, housing and sensor "
-    "resonance, classical Runge-Kutta. `raceway replay` makes any record again, bit for bit."
-)
 
 
 @dataclass(frozen=True)
@@ -114,7 +108,7 @@ def generate(
         known = _prepare(directory, Path(find_recipe(recipe)), facts)
         tally = Tally(checked, progress)
         outcomes = finished_parts(tally, directory, known, workers, client, notice)
-        return finished(directory, outcomes, checked, facts)
+        return finished(directory, outcomes, facts)
 
 
 def finished_parts(
@@ -143,7 +137,6 @@ def finished_parts(
 def finished(
     directory: Path,
     outcomes: list[Outcome],
-    recipe: Recipe,
     facts: dict[str, Any],
     before: Sequence[PartRow] = (),
     failures: Sequence[str] = (),
@@ -154,9 +147,7 @@ def finished(
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
     rows = [*before, *rows]
     failed = (*failures, *(sentence for outcome in outcomes for sentence in outcome.failures))
-    signals = finish_corpus(
-        directory, rows, partial(data_card, origin=_HOW.format(recipe=recipe.name)), failures=failed, **facts
-    )
+    signals = finish_corpus(directory, rows, failures=failed, **facts)
     (directory / JOURNAL_NAME).unlink()
     kept = sum(outcome.kept for outcome in outcomes)
     return Generated(directory, sum(row.records for row in rows), len(rows), kept, failed, signals)
@@ -217,6 +208,9 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
+        if manifest is not None and (manifest.selections or manifest.origins):
+            how = "selected from a larger corpus" if manifest.selections else "merged from several corpora"
+            raise CorpusError(f"{directory}: was {how}, so it cannot be generated; choose another folder.")
         if manifest is not None and any((directory / "parts").glob("*.nc")):
             if manifest.recipe_sha256 != facts["recipe_sha256"]:
                 raise CorpusError(
@@ -224,14 +218,15 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
                 )
             if manifest.versions == facts["versions"]:  # other versions may write other bytes
                 known = {row.name: row for row in manifest.parts}
+            if not facts["publication"].stored:
+                facts["publication"] = manifest.publication  # given after the corpus was made
         elif manifest is None and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
         if not known:
             journal.unlink(missing_ok=True)  # first: no row of other versions may stand beside the new manifest
         write_manifest(directory, known.values(), complete=False, **facts)
         journal.unlink(missing_ok=True)
-        if not known:
-            write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
+        write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
         remove_left_behind(directory / "parts", "part-*.nc")
     except OSError as error:
@@ -246,6 +241,7 @@ def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
         "recipe": recipe.name,
         "recipe_sha256": recipe_hash(recipe),
         "overrides": overrides,
+        "publication": recipe.publication,
         "versions": library_versions(),
     }
 

@@ -29,6 +29,7 @@ from gen.corpus.journal import (
 )
 from gen.corpus.packed import is_packed, packed_contents
 from gen.corpus.part import PartRow
+from gen.corpus.publication import Publication
 from gen.corpus.record_checks import record_problems
 from gen.corpus.schema import FORMAT
 from gen.corpus.signals import SignalCounts, summed
@@ -110,14 +111,19 @@ class Manifest(Strict):
     records: Count
     index: FileRow | None = None
     """``corpus.nc``; None until the corpus is complete."""
+    next_index: FileRow | None = None
+    """Another ``corpus.nc`` that may stand in place of ``index``, while :func:`gen.corpus.publish` replaces it."""
     parts_: Annotated[tuple[ListedPart, ...], Field(alias="parts")]
     title: str | None = None
     recipe: str | None = None
     recipe_sha256: str | None = None
     overrides: Overrides | None = None
+    publication: Publication = Publication()
     versions: Annotated[dict[str, str], Field(default_factory=dict)]
     failures: _Texts = ()
     importer: str | None = None
+    basis: _Texts = ()
+    """Sentences on what labels and units of recordings rest on."""
     recordings: Count | None = None
     skipped: _Texts = ()
     warnings: _Texts = ()
@@ -132,9 +138,42 @@ class Manifest(Strict):
         return [part.row for part in self.parts_]
 
     @property
+    def importers(self) -> set[str | None]:
+        """Importers of all records; None stands for those that were simulated."""
+        return {origin.importer for origin in self.origins} or {self.importer}
+
+    @property
     def signals(self) -> SignalCounts:
         """Counts of the records that cannot be used."""
         return summed(row.signals for row in self.parts)
+
+
+def manifest_content(
+    rows: Iterable[PartRow], *, index: Path | None = None, publication: Publication | None = None, **facts: Any
+) -> dict[str, Any]:
+    """Content of ``manifest.json``; ``index`` is ``corpus.nc`` of a complete corpus."""
+    rows = list(rows)
+    content = {
+        "raceway_format": FORMAT,
+        "complete": index is not None,
+        "records": sum(row.records for row in rows),
+        "signals": summed(row.signals for row in rows)._asdict(),
+        "index": None if index is None else listed_file(index),
+        **facts,
+        "parts": [listed(row) for row in rows],
+    }
+    return with_publication(content, publication or Publication())
+
+
+def with_publication(content: dict[str, Any], publication: Publication) -> dict[str, Any]:
+    """Content of ``manifest.json`` with another publication, which stands before the parts."""
+    kept = {key: value for key, value in content.items() if key not in ("publication", "parts")}
+    return kept | ({"publication": publication.stored} if publication.stored else {}) | {"parts": content["parts"]}
+
+
+def listed_file(path: Path) -> dict[str, Any]:
+    """Size and hash of a file as they are stored in JSON."""
+    return {"bytes": stamp(path)[0], "sha256": sha256(path)}
 
 
 def write_manifest(
@@ -142,19 +181,15 @@ def write_manifest(
 ) -> None:
     """Write ``manifest.json``: the finished parts, whether they are all, and ``facts`` such as recipe hash and versions.
 
-    For a complete corpus the index must exist. ``name`` is that of the file.
+    For a complete corpus the index must exist. ``publication`` is a :class:`gen.corpus.Publication`; other facts are values of JSON.
+    ``name`` is that of the file.
     """
-    rows = list(rows)
-    index = directory / INDEX_NAME
-    content = {
-        "raceway_format": FORMAT,
-        "complete": complete,
-        "records": sum(row.records for row in rows),
-        "signals": summed(row.signals for row in rows)._asdict(),
-        "index": {"bytes": stamp(index)[0], "sha256": sha256(index)} if complete else None,
-        **facts,
-        "parts": [listed(row) for row in rows],
-    }
+    content = manifest_content(rows, index=directory / INDEX_NAME if complete else None, **facts)
+    write_content(directory, content, name)
+
+
+def write_content(directory: Path, content: dict[str, Any], name: str = MANIFEST_NAME) -> None:
+    """Write ``manifest.json`` with the given content."""
     write_text_durably(json.dumps(content, indent=1) + "\n", directory / name)
 
 
@@ -260,9 +295,9 @@ def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str
     """Missing and altered files, one sentence each; the index is included if the corpus is complete. Of a packed file: damaged records."""
     if directory.is_file():
         return record_problems(directory) if check == "sha256" else []
-    wanted = {f"parts/{row.name}": FileRow(bytes=row.bytes, sha256=row.sha256) for row in manifest.parts}
-    if manifest.complete and manifest.index is not None:
-        wanted[INDEX_NAME] = manifest.index
+    wanted = {f"parts/{row.name}": [FileRow(bytes=row.bytes, sha256=row.sha256)] for row in manifest.parts}
+    if manifest.complete:
+        wanted[INDEX_NAME] = [row for row in (manifest.index, manifest.next_index) if row is not None]
     judge, items = partial(_file_problem, directory, check), list(wanted.items())
     if check == "size":
         found = [judge(item) for item in items]
@@ -274,13 +309,15 @@ def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str
     return sorted(problem for problem in found if problem is not None)
 
 
-def _file_problem(directory: Path, check: Check, item: tuple[str, FileRow]) -> str | None:
-    name, row = item
+def _file_problem(directory: Path, check: Check, item: tuple[str, list[FileRow]]) -> str | None:
+    """Sentence about a file that is missing, or is none of those that the manifest allows under its name."""
+    name, rows = item
     try:
         path = plain_file(directory, name)
     except CorpusError as error:
         return str(error)
-    if path.stat().st_size == row.bytes and (check == "size" or sha256(path) == row.sha256):
+    size = path.stat().st_size
+    if any(size == row.bytes and (check == "size" or sha256(path) == row.sha256) for row in rows):
         return None
     return f"{path}: is altered: its size or hash differs from the manifest; copy it again, or delete it and make the corpus again."
 

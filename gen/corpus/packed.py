@@ -85,22 +85,26 @@ def packed_contents(path: Path) -> Packed:
 def _contents(path: str, _stamp: Stamp) -> Packed:
     try:
         with LIBRARY_LOCK, h5py.File(path, "r", locking=False) as file:
-            version = file.attrs.get(PACKED)
-            if version != PACKED_VERSION:
-                raise CorpusError(
-                    f"{path}: packed in layout {version}, this version of raceway reads {PACKED_VERSION}; pack the corpus again."
-                )
-            sizes = own_dataset(file, f"{FILES}/{CONTENTS}")
-            content = json.loads(_file(file, CONTENTS, str(sizes.attrs["sha256"])))
+            _check_version(file)
+            listing = own_dataset(file, f"{FILES}/{CONTENTS}")
+            content = json.loads(_file(file, CONTENTS, bytes(listing.attrs["sha256"]).decode()))
             files = {name: _file(file, name, digest) for name, digest in content["files"].items()}
             return Packed(files, _parts(content))
     except CorpusError:
         raise
-    except Exception as error:  # h5py raises a dozen unrelated types on damaged bytes
+    except Exception as error:  # noqa: BLE001 - h5py raises a dozen unrelated types on damaged bytes
         reason = (str(error) or type(error).__name__).splitlines()[0]
         raise CorpusError(
             f"{path}: not a whole packed corpus ({reason}); copy the file again, or pack again."
         ) from None
+
+
+def _check_version(file: h5py.File) -> None:
+    version = file.attrs.get(PACKED)
+    if version != PACKED_VERSION:
+        raise CorpusError(
+            f"{file.filename}: packed in layout {version}, this version of raceway reads {PACKED_VERSION}; pack the corpus again."
+        )
 
 
 def _file(file: h5py.File, name: str, digest: str) -> bytes:

@@ -46,8 +46,8 @@ Chunks = Mapping[tuple[int, ...], bytes]
 def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: Chunks | None = None) -> PartRow:
     """Write records as a part, atomically, with one chunk per record and channel.
 
-    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``. ``chunks`` are the deflated counts by record
-    and channel, if they are known already.
+    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``. ``chunks`` are the deflated counts by
+    record and channel, if they are known already.
 
     Raises
     ------

@@ -286,17 +286,18 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
     It takes half the time of :func:`open_part`, which decodes in double precision; features use it. Chunks are inflated without the lock,
     so that threads run in parallel.
     """
-    source, rows = _rows_of(path)
+    source, place = _rows_of(path)
     with _opened(source) as file:
         stored = own_dataset(file.handle, SIGNAL)
         records, _, samples = checked_shape(stored)
-        rows = rows or range(records)
+        rows = place or range(records)
         packing, deflated = packing_of(stored), is_deflated(stored)
         read: Any = (
             _chunks(stored, rows, range(channel, channel + 1)) if deflated else stored[rows.start : rows.stop, channel]
         )
         columns = [_numbers(own_dataset(file.handle, name), name, records, rows) for name in names]
-    _close([source])  # features read each part once, and an open file holds 1 MB
+    if place is None:
+        _close([source])  # features read each part once, and an open file holds 1 MB
     if packing.scale is None:
         return read, columns
     signal = np.empty((len(rows), samples), np.float32)
@@ -307,7 +308,7 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
 
 
 class StoredBlock(NamedTuple):
-    """Consecutive records of a part as they are stored: counts or accelerations, and the deflated chunks of counts by record and channel."""
+    """Consecutive records of a part as they are stored; ``chunks`` are the deflated counts by record and channel, if they are deflated."""
 
     values: NDArray[Any]
     chunks: list[bytes] | None
@@ -338,6 +339,8 @@ def blocks_with_chunks(path: Path, most_samples: int = _BLOCK_SAMPLES) -> Iterat
         else:
             yield StoredBlock(read, None)
         first = block.stop
+    if rows is None:
+        _close([source])  # an open file holds 1 MB
 
 
 def _rows_of(part: Path) -> tuple[Source, range | None]:

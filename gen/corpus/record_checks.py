@@ -1,21 +1,24 @@
 """Check of every record of a packed file against its SHA-256."""
 
 import os
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 from pathlib import Path
 
 import h5py
 import numpy as np
+import xarray as xr
 
 from gen.corpus.files import Stamp, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.packed import RECORD_HASH, packed_contents, packed_part
-from gen.corpus.reading import open_part, stored_blocks
+from gen.corpus.reading import StoredBlock, blocks_with_chunks, open_part
 from gen.corpus.record_hashes import hashes_of, packing_scale
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 
+_BLOCK_SAMPLES = 2_000_000  # samples of the records that are read at a time: larger blocks are no faster
 _MOST_THREADS = 4  # the check of one part holds 20 to 60 MB
 
 
@@ -33,7 +36,7 @@ def _problems(file: Path, _stamp: Stamp) -> tuple[str, ...]:
 
 def _part_problem(path: Path) -> str | None:
     try:
-        listed, found = listed_hashes(path), part_hashes(path)
+        listed, found = listed_hashes(path), [digest for _, hashes in hashed_blocks(path) for digest in hashes]
     except CorpusError as error:
         return str(error)
     return damage_of(path, listed, found)
@@ -49,16 +52,21 @@ def damage_of(path: Path, listed: list[str], found: list[str]) -> str | None:
     return f"{file}: record {place.first + wrong[0]} is damaged{more}: its hash differs; copy the file again, or pack again."
 
 
-def part_hashes(path: Path) -> list[str]:
-    """SHA-256 of each record of a part (:func:`gen.corpus.record_hashes.record_hashes`), some records in memory at a time."""
+def hashed_blocks(path: Path) -> Iterator[tuple[StoredBlock, list[str]]]:
+    """Stored records of a part, some at a time, with their hashes."""
+    scale, own = per_record(path)
+    first = 0
+    for block in blocks_with_chunks(path, _BLOCK_SAMPLES):
+        rows = slice(first, first + len(block.values))
+        yield block, hashes_of(block.values, scale, {name: variable[rows] for name, variable in own.items()})
+        first = rows.stop
+
+
+def per_record(path: Path) -> tuple[float | None, dict[str, xr.Variable]]:
+    """Scale of the signal of a part, and its other variables, in memory."""
     with open_part(path) as part:
-        scale = packing_scale(part[SIGNAL].variable)
-        own = {str(name): found.load() for name, found in part.variables.items() if found.dims == ("record",)}
-    hashes: list[str] = []
-    for block in stored_blocks(path):
-        rows = slice(len(hashes), len(hashes) + len(block))
-        hashes += hashes_of(block, scale, {name: variable[rows] for name, variable in own.items()})
-    return hashes
+        found = {str(name): variable.load() for name, variable in part.variables.items() if name != SIGNAL}
+        return packing_scale(part[SIGNAL].variable), found
 
 
 def listed_hashes(path: Path) -> list[str]:

@@ -8,6 +8,7 @@ section       base of all sections: bounds, unknown keys, meanings
 machine       bearing, machine, lubricant, specimen
 faults        spalls, worn races, broken cages, several at once
 operation     speed and load with their profiles, slip, temperature
+publication   licence, creators and references of the corpus
 gear          gear mesh in the background
 sensing       sensors, path, background, level, converter
 sensor_faults faults of mount, cable, amplifier and data transfer

@@ -6,7 +6,7 @@ Whether a recipe as a whole can be made is checked in :mod:`gen.recipe.checks`.
 
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, StrictInt, StringConstraints, model_validator
 
@@ -19,6 +19,7 @@ from gen.recipe.extensions import Block, Extension, first_block, with_blocks
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault
 from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing, MachineSection, SpecimenSection
 from gen.recipe.operation import OperationSection, Table
+from gen.recipe.publication import PublicationSection
 from gen.recipe.section import Count, Name, Section
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
 from gen.recipe.sensor_faults import SensorFaultsSection
@@ -101,6 +102,8 @@ class Recipe(Section):
     """One line about the corpus, for its data card."""
     seed: Annotated[StrictInt, Field(ge=0, lt=2**63)] = 0
     """Start of all random streams; the same recipe and seed give the same corpus."""
+    publication: PublicationSection = PublicationSection()
+    """Licence, creators and references; no record depends on them, and `raceway card` can change them later."""
     corpus: CorpusSection
     """Size, split and storage of the corpus."""
     recording: RecordingSection
@@ -235,7 +238,7 @@ class Recipe(Section):
             raise ValueError(problem)
         return self
 
-    def extended(self, extensions: Iterable[Mapping[str, int]]) -> Self:
+    def extended(self, extensions: Iterable[Mapping[Any, int]]) -> Self:
         """The same recipe for a corpus with further rigs or specimens; an extension is ``{"rigs": 2}`` or ``{"specimens": 2}``.
 
         Raises

@@ -40,8 +40,8 @@ def read_recipe(recipe: Path | str, *, seed: int | None = None, records: int | N
 
 
 def recipe_hash(recipe: Recipe) -> str:
-    """SHA-256 of the values of a recipe; layout and comments do not count."""
-    text = json.dumps(recipe.model_dump(mode="json"), sort_keys=True)
+    """SHA-256 of the values of a recipe that records depend on; ``publication``, layout and comments do not count."""
+    text = json.dumps(recipe.model_dump(mode="json", exclude={"publication"}), sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 

@@ -42,7 +42,7 @@ def columns_of_all(corpora: Sequence[tuple[str, xr.Dataset]]) -> Columns:
             name = str(key)
             if name == SIGNAL or variable.dims != ("record",):
                 continue
-            here = Described(variable.dtype, variable.attrs, corpus)
+            here = Described(variable.dtype.newbyteorder("="), variable.attrs, corpus)
             _check_same(name, found.setdefault(name, here), here)
             counts[name] = counts.get(name, 0) + 1
     return Columns(found, tuple(name for name in found if counts[name] < len(corpora)))

@@ -23,12 +23,13 @@ from gen.corpus import (
     remove_left_behind,
     temporary_beside,
 )
-from gen.corpus.record_hashes import stored_signal
+from gen.corpus.manifest import Numbers
+from gen.corpus.record_hashes import RENUMBERED, stored_signal
 from gen.corpus.schema import SIGNAL_DIMS
 from gen.errors import CorpusError
 
 _BLOCK_SAMPLES = 10_000_000  # decoded at a time
-_OWN_FACTS = {"raceway_format", "complete", "records", "signals", "index", "parts"}
+_OWN_FACTS = {"raceway_format", "complete", "records", "signals", "index", "next_index", "parts", "publication"}
 _OF_ONE_PART = ("failures",)
 
 
@@ -77,13 +78,14 @@ def stored_records(
     packing = {
         name: signal.encoding[name] for name in ("scale_factor", "add_offset", "_FillValue") if name in signal.encoding
     }
-    counts = np.empty(signal.shape, signal.encoding["dtype"])
+    counts = np.empty(signal.shape, np.dtype(signal.encoding["dtype"]).newbyteorder("="))
     size = max(1, _BLOCK_SAMPLES // max(1, counts[0].size))
     for first in range(0, len(counts), size):
         counts[first : first + size] = stored_signal(signal[first : first + size])[0]
     attributes = dict(signal.attrs) if counts.dtype.kind == "f" else signal.attrs | packing
     # h5py gives an axis with its byte order stated, of which netCDF4 warns
-    some = some.assign_coords(elapsed_time=some["elapsed_time"].astype(np.float64))
+    time = some["elapsed_time"]
+    some = some.assign_coords(elapsed_time=("elapsed_time", time.values.astype(np.float64), time.attrs))
     others = some.drop_vars(SIGNAL).isel(channel=[*channels]).load()
     return xr.Dataset({SIGNAL: (SIGNAL_DIMS, counts, attributes), **others.data_vars}, others.coords, corpus.attrs)
 
@@ -133,3 +135,12 @@ def in_floating_point(records: xr.Dataset) -> xr.Dataset:
     packing = ("scale_factor", "add_offset", "_FillValue")
     attributes = {name: value for name, value in signal.attrs.items() if name not in packing}
     return records.assign({SIGNAL: (SIGNAL_DIMS, values, attributes)})
+
+
+def renumbered(records: xr.Dataset, new: Numbers, old: Numbers | None = None) -> xr.Dataset:
+    """Records to whose numbers ``new`` is added, in place of ``old``; negative numbers stand for none and stay."""
+    changed = {}
+    for name in set(RENUMBERED) & set(records.variables):
+        values, move = records[name].values, getattr(new, name) - getattr(old or Numbers(), name)
+        changed[name] = records[name].copy(data=np.where(values < 0, values, values + move).astype(values.dtype))
+    return records.assign(changed)

@@ -19,8 +19,8 @@ from gen.corpus import (
     SIGNAL,
     Manifest,
     PartRow,
+    Publication,
     SignalCounts,
-    data_card,
     finish_corpus,
     open_corpus,
     part_name,
@@ -29,7 +29,6 @@ from gen.corpus import (
     write_durably,
     write_part,
 )
-from gen.corpus.card import plain_text
 from gen.corpus.manifest import Numbers, Origin
 from gen.corpus.record_hashes import RENUMBERED
 from gen.errors import CorpusError
@@ -41,13 +40,14 @@ from gen.sharing.copying import (
     part_attributes,
     parts_sha256,
     records_of_origins,
+    renumbered,
     stored_records,
 )
 from gen.sharing.repeats import Seen, sample_digests
 
 Progress = Callable[[int, int], None]
 
-_ORIGIN_FACTS = ("title", "recipe", "recipe_sha256", "overrides", "versions", "importer", "selections")
+_ORIGIN_FACTS = ("recipe", "recipe_sha256", "overrides", "versions", "importer", "selections")
 _LARGEST = 2**31 - 1
 
 
@@ -119,23 +119,24 @@ def merge(
         with new_corpus(output) as folder:
             rows = _write_parts(sources, added, finish, folder, progress)
             origins = _with_recipes(sources, added, folder)
-            page = partial(data_card, origin=_page(origins))
-            signals = finish_corpus(folder, rows, page, **_facts(sources, title, origins))
+            signals = finish_corpus(folder, rows, publication=_publication(sources), **_facts(sources, title, origins))
     return Merged(output, total, len(rows), len(origins), columns.filled, signals)
 
 
 def _opened(directory: Path, stack: ExitStack) -> _Source:
     manifest = read_manifest(directory)
     corpus = stack.enter_context(open_corpus(directory))
-    return _Source(directory, manifest, corpus, list(manifest.origins) or [_own_origin(directory, manifest)])
+    origins = list(manifest.origins) or [_own_origin(directory, manifest, corpus.attrs.get("title"))]
+    return _Source(directory, manifest, corpus, origins)
 
 
-def _own_origin(directory: Path, manifest: Manifest) -> Origin:
+def _own_origin(directory: Path, manifest: Manifest, title: str | None) -> Origin:
     """Origin of the records of a corpus that was not merged."""
     chosen_from = manifest.selections[0].parts_sha256 if manifest.selections else parts_sha256(manifest)
     return Origin(
         parts=len(manifest.parts),
         added=Numbers(),
+        title=title,
         same_machines=manifest.recipe_sha256 or chosen_from,
         recipe_file="recipes/00000.yaml" if (directory / "recipe.yaml").is_file() else None,
         **{name: getattr(manifest, name) for name in _ORIGIN_FACTS},
@@ -159,7 +160,7 @@ def _check_same_form(first: _Source, other: _Source, float32: bool) -> None:
 
 
 def _channels(source: _Source) -> str:
-    return ", ".join(plain_text(name) for name in source.corpus["channel"].values)
+    return ", ".join(str(name) for name in source.corpus["channel"].values)
 
 
 def _sample_rate(source: _Source) -> str:
@@ -215,7 +216,7 @@ def _write_parts(
         channels, digests, first = range(source.corpus.sizes["channel"]), [], 0
         for origin, row in _parts_of(source):
             part = stored_records(source.corpus, np.arange(first, first + row.records), channels)
-            part = finish(_renumbered(part, origin.added, added[origin.same_machines]))
+            part = finish(renumbered(part, added[origin.same_machines], origin.added))
             digests.append(sample_digests(part))
             seen.check(str(source.directory), first, digests[-1])
             rows.append(write_part(part, folder / "parts" / part_name(len(rows))))
@@ -232,15 +233,6 @@ def _parts_of(source: _Source) -> Iterator[tuple[Origin, PartRow]]:
     for origin in source.origins:
         for _ in range(origin.parts):
             yield origin, next(rows)
-
-
-def _renumbered(part: xr.Dataset, old: Numbers, new: Numbers) -> xr.Dataset:
-    """Part to whose numbers ``new`` is added in place of ``old``; negative numbers stand for none and stay."""
-    changed = {}
-    for name in set(RENUMBERED) & set(part.variables):
-        values, move = part[name].values, getattr(new, name) - getattr(old, name)
-        changed[name] = part[name].copy(data=np.where(values < 0, values, values + move).astype(values.dtype))
-    return part.assign(changed)
 
 
 def _finished(part: xr.Dataset, columns: Columns, attributes: Mapping[str, Any], float32: bool) -> xr.Dataset:
@@ -272,26 +264,23 @@ def _with_recipes(sources: Sequence[_Source], added: Mapping[str, Numbers], fold
                 recipe_file = names.setdefault(text, f"recipes/{len(names):05d}.yaml")
                 (folder / "recipes").mkdir(exist_ok=True)
                 write_durably(text, folder / recipe_file)
-            found.append(origin.model_copy(update={"recipe_file": recipe_file, "added": added[origin.same_machines]}))
+            changed = {"recipe_file": recipe_file, "added": added[origin.same_machines]}
+            if source.manifest.origins:
+                changed["selections"] = origin.selections + source.manifest.selections
+            found.append(origin.model_copy(update=changed))
     return found
 
 
 def _facts(sources: Sequence[_Source], title: str, origins: Sequence[Origin]) -> dict[str, Any]:
     """Facts about the merged corpus for its manifest."""
     facts: dict[str, Any] = {"title": title}
-    for name in ("failures", "skipped", "warnings"):
+    for name in ("failures", "basis", "skipped", "warnings"):
         sentences = [sentence for source in sources for sentence in getattr(source.manifest, name)]
         facts |= {name: sentences} if sentences else {}
     return facts | {"origins": [origin.model_dump(mode="json") for origin in origins]}
 
 
-def _page(origins: Sequence[Origin]) -> str:
-    """Paragraph of the data card on where the records come from."""
-    names = [f"{plain_text(origin.title or 'not named')} ({_maker(origin)})" for origin in origins]
-    return f"Joined by `raceway merge` from {len(names)} corpora: {'; '.join(names)}. Machines of different corpora have different numbers."
-
-
-def _maker(origin: Origin) -> str:
-    if origin.recipe is not None:
-        return f"recipe {plain_text(origin.recipe)}"
-    return f"imported by {plain_text(origin.importer)}" if origin.importer else "source not stated"
+def _publication(sources: Sequence[_Source]) -> Publication:
+    """Licence, creators and references if they are the same for all corpora; else none, since they cannot be joined."""
+    first, *others = (source.manifest.publication for source in sources)
+    return first if all(other == first for other in others) else Publication()

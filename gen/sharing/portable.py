@@ -1,298 +1,94 @@
-"""A corpus as one netCDF-4 file, and back: ``folder -> pack -> FILE.nc -> unpack -> folder``.
+"""A corpus, or a choice of it, as one netCDF-4 file: ``folder -> (select, convert) -> pack -> FILE.nc``."""
 
-A packed file has the layout of one part with all records: the same variables, one chunk per record and channel. Deflated chunks are copied
-as they are. It also holds the small files of the corpus, the forms of the parts and a SHA-256 per record, so that :func:`unpack` writes the
-same parts again, byte for byte. :mod:`gen.corpus.packed` reads it.
-"""
-
-import hashlib
-import json
-from collections.abc import Callable, Iterator
-from itertools import chain
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
 from pathlib import Path
-from typing import Any, NamedTuple
 
-import h5py
-import netCDF4
 import numpy as np
-import xarray as xr
-from numpy.typing import NDArray
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.files import temporary_beside, whole_or_not_at_all
-from gen.corpus.finishing import finish_corpus
-from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.index import write_variables
-from gen.corpus.manifest import INDEX_NAME, Manifest, part_paths, read_manifest
-from gen.corpus.packed import (
-    CONTENTS,
-    FILE_NAME,
-    FILES,
-    PACKED,
-    PACKED_VERSION,
-    RECORD_HASH,
-    packed_contents,
-    packed_part,
-)
-from gen.corpus.part import PartRow, deflated, write_part
+from gen.corpus.files import temporary_beside
+from gen.corpus.manifest import INDEX_NAME, part_paths
+from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of, form_of
-from gen.corpus.reading import StoredBlock, blocks_with_chunks, open_part
-from gen.corpus.record_checks import damage_of, listed_hashes
-from gen.corpus.record_hashes import hashes_of, packing_scale
-from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
+from gen.corpus.reading import stored_blocks
+from gen.corpus.record_checks import per_record
+from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
+from gen.sharing.copying import in_floating_point
+from gen.sharing.packing import PackedFile, pack_whole, small_files
+from gen.sharing.selecting import select
+from gen.sharing.unpacking import corpus_attributes, finish_again
 
 Progress = Callable[[int, int], None]
 
-_COMMENT = (
-    "A whole corpus in one file. Variables and units are those of every record; the group files holds manifest, recipe and data card. "
-    "Python: gen.open_corpus(FILE), or any netCDF-4 reader. raceway validate FILE checks it, raceway unpack FILE -o DIR makes the folder."
-)
-_BLOCK_SAMPLES = 2_000_000  # samples of the records that are copied at a time: larger blocks are no faster
-_MOST_BYTES = 5_000_000  # of one of the small files; a longer one is left out
-_MADE_AGAIN = ("raceway_format", "complete", "records", "signals", "index", "parts")  # keys of a manifest
 
+def pack(
+    directory: Path | str,
+    file: Path | str,
+    *,
+    where: str | None = None,
+    split: str | None = None,
+    channels: Sequence[str] | None = None,
+    float32: bool = False,
+    codec: Codec = "zlib",
+    progress: Progress | None = None,
+) -> PackedFile:
+    """Write a corpus into one netCDF-4 file that any reader opens and :func:`gen.open_corpus` takes in place of the folder.
 
-class PackedFile(NamedTuple):
-    """A packed file that was written."""
-
-    file: Path
-    records: int
-    parts: int
-    bytes: int
-
-
-class Unpacked(NamedTuple):
-    """A corpus that was unpacked."""
-
-    directory: Path
-    records: int
-    parts: int
-    same_bytes: bool
-    """Whether every part has the bytes of the part that was packed; with other versions of the libraries only the records are the same."""
-
-
-def pack_whole(directory: Path, file: Path, codec: Codec, progress: Progress | None) -> PackedFile:
-    """Write all records of a corpus folder into one file, after a check of every file of the corpus.
-
-    Raises
-    ------
-    CorpusError
-        If the corpus is unfinished or damaged, its parts differ in their variables, or writing fails.
-    """
-    paths, manifest = part_paths(directory), read_manifest(directory)
-    forms = [form_of(path) for path in paths]
-    _check_alike(paths, [form for _, form in forms])
-    with whole_or_not_at_all(file) as temporary:
-        with LIBRARY_LOCK:
-            write_variables(directory, manifest.parts, temporary, _COMMENT)
-            _declare(temporary, directory, paths[0], manifest, codec)
-            _write_files(temporary, _small_files(directory), _contents(manifest, forms))
-        direct = codec == "zlib" == forms[0][1]["codec"]
-        _copy_records(paths, temporary, direct, codec, _counted(progress, manifest.records))
-    return PackedFile(file, manifest.records, len(paths), file.stat().st_size)
-
-
-def _check_alike(paths: list[Path], forms: list[dict[str, Any]]) -> None:
-    """Refuse parts with other variables or another packing than the first: the file would give them wrong values."""
-    first = {
-        item["name"]: (item["type"], item["attributes"] if item["name"] == SIGNAL else None)
-        for item in forms[0]["variables"]
-    }
-    for path, form in zip(paths, forms, strict=True):
-        if form is not forms[0] and first != {
-            item["name"]: (item["type"], item["attributes"] if item["name"] == SIGNAL else None)
-            for item in form["variables"]
-        }:
-            raise CorpusError(
-                f"{path}: has other variables or another scale than {paths[0].name}; raceway validate tells more."
-            )
-
-
-def _counted(progress: Progress | None, records: int) -> Callable[[int], None]:
-    """Function that takes the number of records that were done just now."""
-    done = 0
-
-    def more(count: int) -> None:
-        nonlocal done
-        done += count
-        if progress is not None:
-            progress(done, records)
-
-    return more
-
-
-def _declare(path: Path, directory: Path, part: Path, manifest: Manifest, codec: Codec) -> None:
-    """Declare signal and hashes in the new file, and copy the attributes of the signal and of the corpus."""
-    with (
-        netCDF4.Dataset(directory / INDEX_NAME) as index,
-        netCDF4.Dataset(part) as like,
-        netCDF4.Dataset(path, "a") as file,
-    ):
-        attributes = {
-            name: index.getncattr(name) for name in index.ncattrs() if name not in ("comment", "_NCProperties")
-        }
-        file.setncatts(attributes | {PACKED: np.int32(PACKED_VERSION)})
-        model = like[SIGNAL]
-        signal = {name: model.getncattr(name) for name in model.ncattrs()}
-        storage = {
-            "fill_value": signal.pop("_FillValue"),
-            "chunksizes": (1, 1, model.shape[2]),
-            **CODECS[codec].options,
-        }
-        stored = file.createVariable(SIGNAL, model.dtype, SIGNAL_DIMS, **storage)
-        stored.set_auto_maskandscale(False)
-        stored.setncatts(signal)
-        file.createDimension(f"{RECORD_HASH}_length", 64)
-        hashes = file.createVariable(RECORD_HASH, "S1", ("record", f"{RECORD_HASH}_length"), fill_value=False)
-        hashes.setncatts({"units": "1", "long_name": "SHA-256 of the record, in hexadecimal", "role": "provenance"})
-
-
-def _small_files(directory: Path) -> dict[str, bytes]:
-    """Manifest, recipes, data card and pictures of a corpus, by name."""
-    places = chain(directory.iterdir(), directory.glob("recipes/*"), directory.glob("pictures/*"))
-    names = sorted(
-        path.relative_to(directory).as_posix() for path in places if path.is_file() and not path.is_symlink()
-    )
-    kept = [name for name in names if FILE_NAME.fullmatch(name) and (directory / name).stat().st_size <= _MOST_BYTES]
-    return {name: (directory / name).read_bytes() for name in kept}
-
-
-def _contents(manifest: Manifest, forms: list[tuple[dict[str, Any], dict[str, Any]]]) -> dict[str, Any]:
-    """Parts with their records and forms; equal attributes and forms are listed once."""
-    attributes, shapes = ([json.dumps(form[place]) for form in forms] for place in (0, 1))
-    numbers = [{text: number for number, text in enumerate(dict.fromkeys(texts))} for texts in (attributes, shapes)]
-    parts = [
-        [row.name, row.records, numbers[0][attribute], numbers[1][shape]]
-        for row, attribute, shape in zip(manifest.parts, attributes, shapes, strict=True)
-    ]
-    listed = {
-        name: [json.loads(text) for text in found] for name, found in zip(("attributes", "forms"), numbers, strict=True)
-    }
-    return {**listed, "parts": parts}
-
-
-def _write_files(path: Path, files: dict[str, bytes], contents: dict[str, Any]) -> None:
-    """Write the small files as characters, pictures as bytes, each with its hash in ``contents``."""
-    hashes = {name: hashlib.sha256(content).hexdigest() for name, content in files.items()}
-    listing = json.dumps({"files": hashes, **contents}, separators=(",", ":")).encode()
-    with netCDF4.Dataset(path, "a") as file:
-        for name, content in {CONTENTS: listing, **files}.items():
-            folder, _, last = f"{FILES}/{name}".rpartition("/")
-            group = file.createGroup(folder)
-            group.createDimension(f"{last}_length", len(content))
-            kind = "u1" if name.endswith(".png") else "S1"
-            stored = group.createVariable(last, kind, (f"{last}_length",), zlib=True, complevel=4, fill_value=False)
-            stored.set_auto_chartostring(False)
-            stored[:] = np.frombuffer(content, kind)
-            stored.setncatts({"long_name": f"file {name} of the corpus", "sha256": hashlib.sha256(content).hexdigest()})
-
-
-def _copy_records(paths: list[Path], target: Path, direct: bool, codec: Codec, report: Callable[[int], None]) -> None:
-    """Copy the signals of all parts, with the hash of each record."""
-    first = 0
-    with LIBRARY_LOCK, h5py.File(target, "r+") as file:
-        signal: Any = file[SIGNAL]
-        listed: Any = file[RECORD_HASH]
-        for path in paths:
-            for block, hashes in hashed_blocks(path):
-                n = len(hashes)
-                listed[first : first + n] = np.array(hashes, "S64").view("S1").reshape(n, 64)
-                if codec != "zlib":
-                    signal[first : first + n] = block.values
-                else:
-                    for place, chunk in zip(np.ndindex(block.values.shape[:2]), _deflated(block, direct), strict=True):
-                        signal.id.write_direct_chunk((first + place[0], place[1], 0), chunk)
-                first += n
-                report(n)
-
-
-def _deflated(block: StoredBlock, direct: bool) -> Iterator[bytes]:
-    """Chunks of a block, by record and channel."""
-    if direct and block.chunks is not None:
-        return iter(block.chunks)
-    return (deflated(samples) for samples in block.values.reshape(-1, block.values.shape[2]))
-
-
-def hashed_blocks(path: Path) -> Iterator[tuple[StoredBlock, list[str]]]:
-    """Stored records of a part, some at a time, with their hashes."""
-    scale, own = _per_record(path)
-    first = 0
-    for block in blocks_with_chunks(path, _BLOCK_SAMPLES):
-        rows = slice(first, first + len(block.values))
-        yield block, hashes_of(block.values, scale, {name: variable[rows] for name, variable in own.items()})
-        first = rows.stop
-
-
-def _per_record(path: Path) -> tuple[float | None, dict[str, xr.Variable]]:
-    """Scale of the signal of a part, and its other variables, in memory."""
-    with open_part(path) as part:
-        found = {str(name): variable.load() for name, variable in part.variables.items() if name != SIGNAL}
-        return packing_scale(part[SIGNAL].variable), found
-
-
-def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None = None) -> Unpacked:
-    """Write the corpus of a packed file as a folder again, after a check of every record.
+    The same corpus gives the same bytes. A choice of records or channels is first written as a corpus of its own beside the file
+    (:func:`gen.select`), and so is a corpus in floating point; it is removed at the end.
 
     Parameters
     ----------
-    file : path
-        A file that :func:`pack` made.
     directory : path
-        Folder of the corpus: new or empty.
+        Folder of a finished corpus.
+    file : path
+        The new file.
+    where, split, channels : optional
+        Condition on the records, name of a split, names of channels, as for :func:`gen.select`.
+    float32 : bool
+        Whether to store accelerations [m s-2] in single precision in place of counts.
+    codec : {"zlib", "zstd", "none"}
+        Compression of the signals. Every netCDF-4 reader knows ``zlib``.
     progress : callable, optional
         Called with the number of records done and of all records.
 
     Raises
     ------
     CorpusError
-        If the file is not a packed corpus or a record is damaged, the folder is not empty, or writing fails.
+        If the file exists, the corpus is unfinished or damaged, nothing is chosen, or writing fails.
     """
-    file, output = Path(file), Path(directory)
-    if not file.is_file():
-        raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
-    if output.exists() and (not output.is_dir() or any(output.iterdir())):
-        raise CorpusError(f"{output}: exists and is not an empty folder; give a new folder, or remove this one first.")
-    manifest, files = read_manifest(file), packed_contents(file).files
-    report, rows = _counted(progress, manifest.records), []
-    try:
-        with temporary_beside(output.absolute()) as temporary:
-            (temporary / "parts").mkdir(parents=True)
-            for row in manifest.parts:
-                rows.append(_written_again(file / "parts" / row.name, temporary / "parts" / row.name))
-                report(row.records)
-            _finish(temporary, rows, files)
-            temporary.replace(output)
-    except OSError as error:
-        raise CorpusError(
-            f"{output}: could not be written ({error.strerror or error}); choose another folder."
-        ) from error
-    return Unpacked(output, manifest.records, len(rows), rows == manifest.parts)
+    directory, file = Path(directory), Path(file)
+    if file.exists():
+        raise CorpusError(f"{file}: exists; give another name, or remove it first.")
+    if codec not in CODECS:
+        raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
+    with ExitStack() as rooms:
+        if where is not None or split is not None or channels is not None:
+            chosen = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-choice")))
+            select(directory, chosen, where=where, split=split, channels=channels)
+            directory = chosen
+        elif directory.is_file():
+            raise CorpusError(
+                f"{directory}: is one file already; copy it, or say which records with --where or --split."
+            )
+        if float32:
+            converted = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-float32")))
+            _convert(directory, converted)
+            directory = converted
+        return pack_whole(directory, file, codec, progress)
 
 
-def _written_again(packed: Path, path: Path) -> PartRow:
-    """Write one part of a packed file; CorpusError if a record is damaged."""
-    place = packed_part(packed)[1]
-    own = _per_record(packed)[1]
-    blocks, hashes = zip(*hashed_blocks(packed), strict=True)
-    problem = damage_of(packed, listed_hashes(packed), list(chain.from_iterable(hashes)))
-    if problem is not None:
-        raise CorpusError(problem)
-    values: dict[str, NDArray[Any]] = {name: variable.values for name, variable in own.items()}
-    values[SIGNAL] = np.concatenate([block.values for block in blocks])
-    dataset, codec, chunks = dataset_of(place.form, place.attributes, values), place.form["codec"], None
-    if codec == "zlib" and blocks[0].chunks is not None:
-        stored = chain.from_iterable(block.chunks for block in blocks)
-        chunks = dict(zip(np.ndindex(values[SIGNAL].shape[:2]), stored, strict=True))
-    return write_part(dataset, path, codec, chunks)
+def _convert(directory: Path, output: Path) -> None:
+    """Write a corpus with accelerations in single precision in place of counts, one part at a time."""
+    (output / "parts").mkdir(parents=True)
+    rows = [_converted(path, output / "parts" / path.name) for path in part_paths(directory)]
+    finish_again(output, rows, small_files(directory), corpus_attributes(directory / INDEX_NAME))
 
 
-def _finish(directory: Path, rows: list[PartRow], files: dict[str, bytes]) -> None:
-    """Write the index, and the small files as they were; hashes of parts are new if other libraries gave them other bytes."""
-    for name, content in files.items():
-        if name != "manifest.json":
-            (directory / name).parent.mkdir(exist_ok=True)
-            (directory / name).write_bytes(content)
-    card = files.get("README.md", b"").decode()
-    facts = {key: value for key, value in json.loads(files["manifest.json"]).items() if key not in _MADE_AGAIN}
-    finish_corpus(directory, rows, lambda *_: card, **facts)
+def _converted(path: Path, output: Path) -> PartRow:
+    attributes, form = form_of(path)
+    values = {name: variable.values for name, variable in per_record(path)[1].items()}
+    values[SIGNAL] = np.concatenate([*stored_blocks(path)])
+    return write_part(in_floating_point(dataset_of(form, attributes, values)), output, form["codec"])

@@ -5,7 +5,6 @@ Records keep all their numbers, and the corpus keeps its recipe, so that each re
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,14 +16,12 @@ from gen.corpus import (
     Manifest,
     PartRow,
     SignalCounts,
-    data_card,
     finish_corpus,
     open_corpus,
     part_name,
     read_manifest,
     write_part,
 )
-from gen.corpus.card import plain_text
 from gen.corpus.manifest import Choice
 from gen.errors import CorpusError
 from gen.sharing.choice import chosen_channels, chosen_records
@@ -34,6 +31,7 @@ from gen.sharing.copying import (
     joined,
     new_corpus,
     part_attributes,
+    parts_sha256,
     records_of_origins,
     stored_records,
 )
@@ -117,7 +115,7 @@ def select(
                 counts.append(len(rows) - before)
             facts = _facts(manifest, choice, counts)
             copy_recipes(directory, folder, [origin["recipe_file"] for origin in facts.get("origins", ())])
-            signals = finish_corpus(folder, rows, partial(data_card, origin=_origin(corpus, choice)), **facts)
+            signals = finish_corpus(folder, rows, publication=manifest.publication, **facts)
     return Selected(output, len(records), manifest.records, len(rows), names, signals)
 
 
@@ -136,9 +134,3 @@ def _facts(manifest: Manifest, choice: Choice, counts: list[int]) -> dict[str, A
         pairs = zip(facts["origins"], counts, strict=True)
         facts["origins"] = [origin | {"parts": count} for origin, count in pairs if count]
     return facts | {"selections": [*facts.get("selections", ()), choice.model_dump(mode="json")]}
-
-
-def _origin(corpus: xr.Dataset, choice: Choice) -> str:
-    """Paragraph of the data card on where the records come from."""
-    source = plain_text(corpus.attrs.get("source", "not known"))
-    return f"Selected from {choice.records:,} records by `raceway select` ({plain_text(choice)}). Source: {source}."

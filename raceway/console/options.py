@@ -14,16 +14,22 @@ A_PATH = click.Path(path_type=Path)
 
 
 def corpus_folder(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
-    """Folder of a corpus; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
+    """Folder of a corpus, or a packed file; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
     if path is None or not path.is_file():
         return path
     if path.name == "corpus.nc" and (path.parent / "manifest.json").is_file():
         return path.parent
-    from gen.errors import CorpusError  # not at the top: help needs nothing of gen
+    from gen.corpus.manifest import not_a_corpus  # not at the top: help needs nothing of gen
+    from gen.corpus.packed import is_packed
+    from gen.errors import CorpusError
 
+    if is_packed(path):
+        return path
     for folder in path.absolute().parents[:2]:
         if (folder / "manifest.json").is_file():
             raise CorpusError(f"{path}: is one file of a corpus; give the folder of the corpus, {folder}.")
+    if path.name == "corpus.nc":
+        raise CorpusError(not_a_corpus(path))
     what = "a feature table" if _is_table(path) else "a file"
     raise CorpusError(f"{path}: is {what}; give the folder of a corpus, the one that holds manifest.json.")
 

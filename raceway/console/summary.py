@@ -25,6 +25,7 @@ from gen.corpus import (
     plain_file,
     read_manifest,
 )
+from gen.corpus.manifest import Choice
 from gen.corpus.visible import VARIABLES
 from raceway.console import show
 
@@ -68,7 +69,7 @@ def describe(directory: Path) -> dict[str, Any]:
         "complete": manifest.complete,
         "records": manifest.records,
         "parts": len(manifest.parts),
-        "bytes": sum(path.stat().st_size for path in directory.rglob("*") if path.is_file()),
+        "bytes": sum(path.stat().st_size for path in (directory, *directory.rglob("*")) if path.is_file()),
         "failures": [],
         "warnings": [],
         "skipped": [],
@@ -154,8 +155,13 @@ def show_facts(facts: dict[str, Any]) -> None:
     extensions = [_shown_extension(**extension) for extension in overrides.pop("extensions", ())]
     with_overrides = "".join([*(f", {key} {value}" for key, value in overrides.items()), *extensions])
     origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
+    if facts.get("origins"):
+        origin = "merge of " + ", ".join(of["title"] or "a corpus" for of in facts["origins"])
+    chosen = "; then ".join(
+        f"{Choice(**choice)}, of {choice['records']:,} records" for choice in facts.get("selections", ())
+    )
     show.text(facts.get("title", str(facts["corpus"])), "")
-    known = {"corpus": facts["corpus"], "made by": origin}
+    known = {"corpus": facts["corpus"], "made by": origin, "selected": chosen}
     known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
     if (facts["corpus"] / EXTENSION_NAME).exists():
         known["state"] += "; an extension is unfinished, and the raceway extend command that began it completes it"
