@@ -29,8 +29,10 @@ part_task   parts labelled and written
 compilation kernels of a recipe compiled before its first record
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
+in_memory   records as one Dataset, from keys or from scenarios made by hand
 plan        counts, size and steps of a corpus before it is made
 pages       documentation pages written from the code
+writing     a Dataset of records as a corpus
 =========== ==================================================================
 
 Data flows down this list; a module imports only modules above it. Public names are imported when they are first used, so that
@@ -45,26 +47,64 @@ from gen.lazy import lazy_names
 if TYPE_CHECKING:
     from gen.corpus import open_corpus, validate_corpus
     from gen.generation import generate
-    from gen.recipe import read_recipe
+    from gen.in_memory import recipe_of, record, records, scenarios_of, simulate_scenarios
+    from gen.recipe import (
+        Recipe,
+        ball,
+        cage,
+        choice,
+        compound,
+        distributed,
+        grid,
+        healthy,
+        inner,
+        loguniform,
+        normal,
+        outer,
+        read_recipe,
+        uniform,
+        write_recipe,
+    )
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
     from gen.simulation.simulate import simulate
+    from gen.writing import write_corpus
 
 __all__ = [
     "ClusterError",
     "CorpusError",
     "RacewayError",
+    "Recipe",
     "RecipeError",
     "SimulationError",
+    "ball",
+    "cage",
+    "choice",
+    "compound",
+    "distributed",
     "draw_scenarios",
     "generate",
+    "grid",
+    "healthy",
+    "inner",
+    "loguniform",
+    "normal",
     "open_corpus",
+    "outer",
     "read_recipe",
+    "recipe_of",
+    "record",
+    "records",
     "replay",
+    "scenarios_of",
     "shaft_angles",
     "simulate",
+    "simulate_scenarios",
     "stored_scenario",
+    "uniform",
     "validate_corpus",
+    "write_corpus",
+    "write_recipe",
 ]
 
 __getattr__, __dir__ = lazy_names(
@@ -72,9 +112,14 @@ __getattr__, __dir__ = lazy_names(
     {
         "gen.corpus": ("open_corpus", "validate_corpus"),
         "gen.generation": ("generate",),
-        "gen.recipe": ("read_recipe",),
+        "gen.in_memory": ("recipe_of", "record", "records", "scenarios_of", "simulate_scenarios"),
+        "gen.recipe": (
+            "Recipe", "ball", "cage", "choice", "compound", "distributed", "grid", "healthy", "inner", "loguniform", "normal", "outer",
+            "read_recipe", "uniform", "write_recipe",
+        ),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
         "gen.simulation.simulate": ("simulate",),
+        "gen.writing": ("write_corpus",),
     },
-)
+)  # fmt: skip

@@ -28,7 +28,7 @@ def class_shares(recipe: Recipe) -> dict[str, float]:
     for entry in recipe.faults:
         weights[fault_class(entry)] += entry.weight
     total, corpus = sum(weights.values()), recipe.corpus
-    if corpus.rungs is not None and corpus.rungs[0] == 0:
+    if corpus.rungs is not None and corpus.rungs[0] == 0 and corpus.fault_choice == "by_weight":
         # the specimens of a fault also have one healthy record for every n_rungs - 1 with their fault
         for kind in set(weights) - {"healthy"}:
             before_damage = weights[kind] / (corpus.n_rungs - 1)
@@ -43,6 +43,9 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     A rig has healthy and faulty specimens if their expected numbers are both at least 1.
     """
     shares, count = class_shares(recipe), recipe.corpus.specimens_per_rig
+    if recipe.corpus.fault_choice == "in_turn":
+        entries = recipe.faults
+        return [fault_class(entries[number % len(entries)]) for number in range(rig * count, (rig + 1) * count)]
     offsets = _offsets(recipe.seed, rig)
     healthy = count * shares.pop("healthy", 0.0)
     n_healthy = math.floor(healthy + _ROUNDING)
@@ -50,6 +53,13 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     faulty = _shared_out(shares, count - n_healthy, offsets[1])
     chosen = [*["healthy"] * n_healthy, *faulty]
     return [chosen[i] for i in stream(recipe.seed, rig, 0, 0, Purpose.CLASSES).permutation(count)]
+
+
+def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
+    """Places in ``faults`` of the entries that a specimen with a fault class can have."""
+    if recipe.corpus.fault_choice == "in_turn":
+        return [specimen % len(recipe.faults)]
+    return [place for place, one in enumerate(recipe.faults) if fault_class(one) == fault]
 
 
 def _offsets(seed: int, rig: int) -> tuple[float, float]:
