@@ -62,6 +62,7 @@ if TYPE_CHECKING:
         normal,
         outer,
         read_recipe,
+        recipe_for,
         uniform,
         write_recipe,
     )
@@ -92,6 +93,7 @@ __all__ = [
     "open_corpus",
     "outer",
     "read_recipe",
+    "recipe_for",
     "recipe_of",
     "record",
     "records",
@@ -115,7 +117,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.in_memory": ("recipe_of", "record", "records", "scenarios_of", "simulate_scenarios"),
         "gen.recipe": (
             "Recipe", "ball", "cage", "choice", "compound", "distributed", "grid", "healthy", "inner", "loguniform", "normal", "outer",
-            "read_recipe", "uniform", "write_recipe",
+            "read_recipe", "recipe_for", "uniform", "write_recipe",
         ),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),

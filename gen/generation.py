@@ -176,6 +176,10 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
+        if manifest is not None and (manifest.selections or manifest.scenarios == "given"):
+            raise CorpusError(
+                f"{directory}: holds records that were chosen or made one by one, not a whole recipe; choose another folder."
+            )
         if manifest is not None and any((directory / "parts").glob("*.nc")):
             if manifest.recipe_sha256 != facts["recipe_sha256"]:
                 raise CorpusError(

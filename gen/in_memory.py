@@ -16,18 +16,16 @@ from gen.corpus import DRAWS
 from gen.errors import CorpusError, RecipeError, SimulationError
 from gen.families import made_from
 from gen.making import Crew, MadePart, made_parts
-from gen.part_task import dataset_of, part_attributes, record_numbers
-from gen.recipe import Recipe, plain, recipe_from
-from gen.recipe.section import Section
+from gen.part_task import dataset_of, part_attributes
+from gen.recipe import Recipe, plain, recipe_for
+from gen.recipe.keywords import FaultLike
 from gen.scenarios import Scenario, read_scenario, scenario_texts
 
 RECIPE, SCENARIOS = "recipe", "scenarios"  # attributes of a Dataset of records
 GIVEN = "given"  # value of the attribute SCENARIOS for scenarios that were not drawn from the recipe
 
-Fault = Section | dict[str, Any] | str
 
-
-def record(fault: Fault = "healthy", **keys: Any) -> xr.Dataset:
+def record(fault: FaultLike | None = None, **keys: Any) -> xr.Dataset:
     """One record of a bearing, simulated in memory.
 
     Parameters
@@ -58,16 +56,16 @@ def record(fault: Fault = "healthy", **keys: Any) -> xr.Dataset:
     >>> found = record(outer(width_mm=0.8), bearing="6205", shaft_rpm=1480)  # doctest: +SKIP
     >>> found.acceleration.plot()  # doctest: +SKIP
     """
-    if not isinstance(fault, Section | dict | str):
-        raise RecipeError(f"fault: {type(fault).__name__} is not one fault; gen.records takes several.")
-    recipe = recipe_from([fault], None, {"name": "record", **keys})
+    recipe = recipe_for(fault, **{"name": "record", **keys})
     if recipe.n_records != 1:
-        raise RecipeError(f"the keys ask for {recipe.n_records} records; gen.records makes more than one.")
+        raise RecipeError(
+            f"the keys ask for {recipe.n_records} records; gen.record makes one, gen.records makes several."
+        )
     return _made(recipe, 1).isel(record=0)
 
 
 def records(
-    fault: Fault | Sequence[Fault] = "healthy", n: int | None = None, *, workers: int = 1, **keys: Any
+    fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, *, workers: int = 1, **keys: Any
 ) -> xr.Dataset:
     """Records of one or several faults, simulated in memory.
 
@@ -98,8 +96,7 @@ def records(
     """
     if type(workers) is not int or workers < 1:
         raise RecipeError(f"workers: {workers!r} is not allowed; use 1 or more.")
-    faults = [fault] if isinstance(fault, Section | dict | str) else list(fault)
-    return _made(recipe_from(faults, n, keys), workers)
+    return _made(recipe_for(fault, n, **keys), workers)
 
 
 def simulate_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> xr.Dataset:
@@ -186,7 +183,9 @@ def _problem(scenario: Scenario, recipe: Recipe) -> str | None:
     if len(scenario.rig.channels) != channels or len(scenario.rig.own_paths) != channels:
         return f"rig.channels and rig.own_paths need one entry for each of {channels} recording.channels of the recipe"
     if (scenario.record.snr is not None) != levelled or (scenario.record.rms is not None) != levelled:
-        return f"record.snr and record.rms must be {'given' if levelled else 'None'} with level.kind: {recipe.level.kind}"
+        return (
+            f"record.snr and record.rms must be {'given' if levelled else 'None'} with level.kind: {recipe.level.kind}"
+        )
     if scenario.record.pair >= 0 and not 0 <= scenario.record.rung < recipe.corpus.n_rungs > 1:
         return "record.pair needs corpus.rungs in the recipe, and record.rung a place in it; or set both to -1"
     if not 0 <= scenario.specimen.entry < len(recipe.faults):
@@ -200,7 +199,8 @@ def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     def finished(made: MadePart) -> tuple[int, xr.Dataset, tuple[str, ...]]:
         return made.place, *dataset_of(made.records, recipe, made.step_error)
 
-    numbers = [record_numbers(recipe, part) for part in range(recipe.n_parts)]
+    size, stop = recipe.corpus.records_per_part, recipe.n_records
+    numbers = [range(first, min(first + size, stop)) for first in range(0, stop, size)]
     parts = sorted(made_parts(recipe, numbers, finished, crew=Crew(workers)), key=lambda part: part[0])
     return _decoded([part for _, part, _ in parts], recipe, [text for *_, texts in parts for text in texts], {})
 

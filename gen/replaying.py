@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, SIGNAL, open_corpus, read_manifest
 from gen.errors import CorpusError
-from gen.families import made_again
+from gen.families import Records, made_again, made_from, picked
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import Scenario, read_scenario
@@ -62,10 +62,25 @@ def replay(directory: Path | str, record: int) -> Replayed:
         number = int(corpus["recording"][record])
         stored = corpus[SIGNAL][record].values
         tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
-    made = made_again(recipe, number, *tries)
+        if read_manifest(directory).scenarios == "given":
+            made = _made_as_given(directory, recipe, corpus, record)
+        else:
+            made = made_again(recipe, number, *tries)
     dataset = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
     again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
+
+
+def _made_as_given(directory: Path, recipe: Recipe, corpus: xr.Dataset, record: int) -> Records:
+    """Make a record again from its stored scenario; the largest severity of a group of records sets the level of the group."""
+    pairs = corpus["pair"].values
+    group = [record] if pairs[record] < 0 else np.flatnonzero(pairs == pairs[record]).tolist()
+    scenarios = [stored_scenario(directory, one) for one in group]
+    if pairs[record] >= 0 and scenarios[-1].record.rung != recipe.corpus.n_rungs - 1:
+        raise CorpusError(
+            f"{directory}: record {record}: cannot be replayed, because the largest severity of its pair, which set its level, is not here."
+        )
+    return picked([(made_from(scenarios, recipe), group.index(record))])
 
 
 def stored_scenario(directory: Path | str, record: int) -> Scenario:

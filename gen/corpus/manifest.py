@@ -46,6 +46,16 @@ class Overrides(Strict):
     records: int | None = None
 
 
+class Choice(Strict):
+    """Choice of records and channels of another corpus, as ``raceway select`` was called."""
+
+    records: Count
+    """Number of records that were chosen from."""
+    where: str | None = None
+    split: str | None = None
+    channels: _Texts | None = None
+
+
 class Manifest(Strict):
     """Contents of ``manifest.json`` after its check; fields of simulated corpora are None in imported ones, and the other way round."""
 
@@ -65,6 +75,10 @@ class Manifest(Strict):
     recordings: Count | None = None
     skipped: _Texts = ()
     warnings: _Texts = ()
+    selections: tuple[Choice, ...] = ()
+    """Choices by which the records were taken from a larger corpus, the first one first."""
+    scenarios: Literal["given"] | None = None
+    """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
 
     @property
     def parts(self) -> list[PartRow]:

@@ -56,7 +56,7 @@ if TYPE_CHECKING:
         fault_class,
     )
     from gen.recipe.finding import find_recipe, recipe_purpose, shipped_recipes
-    from gen.recipe.keywords import recipe_from
+    from gen.recipe.keywords import recipe_for
     from gen.recipe.machine import CatalogueBearing
     from gen.recipe.model import Recipe
     from gen.recipe.operation import ProfileSection
@@ -102,7 +102,7 @@ __all__ = [
     "plain",
     "quantities",
     "read_recipe",
-    "recipe_from",
+    "recipe_for",
     "recipe_hash",
     "recipe_purpose",
     "recipe_schema",
@@ -134,7 +134,7 @@ __getattr__, __dir__ = lazy_names(
             "recipe_purpose",
             "shipped_recipes",
         ),
-        "gen.recipe.keywords": ("recipe_from",),
+        "gen.recipe.keywords": ("recipe_for",),
         "gen.recipe.machine": ("CatalogueBearing",),
         "gen.recipe.model": ("Recipe",),
         "gen.recipe.operation": ("ProfileSection",),

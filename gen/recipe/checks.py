@@ -30,7 +30,7 @@ def _faults_problem(recipe: "Recipe") -> str | None:
     if recipe.corpus.fault_choice == "in_turn":
         for number, entry in enumerate(recipe.faults):
             if entry.weight != 1:
-                return f"faults[{number}].weight: has no effect with corpus.fault_choice: in_turn; leave one of the two out."
+                return f"faults[{number}].weight: has no effect with corpus.fault_choice: in_turn; leave it out, or choose by_weight."
     for entry in recipe.faults:
         weights["healthy" if fault_class(entry) == "healthy" else "faulty"] += entry.weight
     if sum(weights.values()) == 0:

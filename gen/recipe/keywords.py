@@ -26,6 +26,9 @@ DEFAULTS: Mapping[str, Any] = {
 }
 """Values of the keys that a recipe file must give."""
 
+FaultLike = Section | dict[str, Any] | str
+"""A fault: from a call such as :func:`gen.outer`, an entry of ``faults`` of a recipe, or a kind without required keys."""
+
 _COUNTED = ("rigs", "specimens_per_rig", "records_per_specimen")
 
 
@@ -37,22 +40,39 @@ class _Place(NamedTuple):
     """Values of ``kind`` of the last section that has the key; empty if the section has no kinds."""
 
 
-def recipe_from(faults: Sequence[Any], n: int | None, keys: Mapping[str, Any]) -> Recipe:
-    """Recipe with ``n`` records of each of the ``faults``, and further ``keys`` by their own names or as whole sections.
+def recipe_for(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, **keys: Any) -> Recipe:
+    """Recipe with ``n`` records of each fault, from keys by their own names: the one that :func:`gen.records` uses.
 
-    Each record has a specimen of its own on one rig, unless ``keys`` give rigs, specimens or records per specimen.
+    With :func:`gen.write_recipe` and :func:`gen.generate` it makes a corpus that does not fit into memory.
+
+    Parameters
+    ----------
+    fault : section, dict, str or list of them
+        One fault or several, which take turns; a healthy bearing if left out.
+    n : int
+        Number of records of each fault. Each record has a specimen of its own on one rig, unless ``keys`` give ``rigs``,
+        ``specimens_per_rig``, ``records_per_specimen`` or ``rungs``.
+    **keys
+        Keys of a recipe by their own names or as whole sections.
 
     Raises
     ------
     RecipeError
         If a key is unknown, ambiguous, given twice or wrong, or if ``n`` does not agree with the keys.
     """
-    given, data = plain(keys), {}
+    if "faults" in keys and fault is not None:
+        raise RecipeError("faults: is given twice, also as fault; give it once.")
+    given: dict[str, Any] = plain(keys)
+    data: dict[str, Any] = {}
     for name in [name for name in given if name in Recipe.model_fields]:
         data[name] = _section(name, given.pop(name))
     for name, value in given.items():
         _set(data, name, value)
-    data.setdefault("faults", [{"kind": fault} if isinstance(fault, str) else fault for fault in plain(faults)])
+    faults = plain("healthy" if fault is None else fault)
+    faults = [faults] if isinstance(faults, dict | str) else faults
+    if isinstance(faults, list):
+        faults = [{"kind": one} if isinstance(one, str) else one for one in faults]
+    data.setdefault("faults", faults)
     for name, value in DEFAULTS.items():
         if name in Recipe.model_fields:
             data.setdefault(name, _section(name, value))
@@ -116,7 +136,11 @@ def _place(name: str) -> _Place:
 
 
 def _advice(name: str) -> str:
-    of_faults = {key: get_args(model.model_fields["kind"].annotation)[-1] for model in reversed(_models(Fault)) for key in model.model_fields}
+    of_faults = {
+        key: get_args(model.model_fields["kind"].annotation)[-1]
+        for model in reversed(_models(Fault))
+        for key in model.model_fields
+    }
     if name in of_faults:
         return f"it is a key of faults; give it there, as in fault=gen.{of_faults[name]}({name}=...)."
     allowed = [*_places(), *Recipe.model_fields, *of_faults]

@@ -12,7 +12,9 @@ from gen.recipe.model import Recipe
 from gen.yaml_files import read_yaml
 
 
-def read_recipe(recipe: Path | str | Mapping[str, Any], *, seed: int | None = None, records: int | None = None) -> Recipe:
+def read_recipe(
+    recipe: Path | str | Mapping[str, Any], *, seed: int | None = None, records: int | None = None
+) -> Recipe:
     """Read and check a recipe.
 
     Parameters
@@ -55,5 +57,7 @@ def recipe_schema() -> str:
 
 def _checked(data: Any, place: str) -> dict[str, Any]:
     if not isinstance(data, Mapping) or not all(isinstance(key, str) for key in data):
-        raise RecipeError(f"{place}a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes.")
+        raise RecipeError(
+            f"{place}a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes."
+        )
     return dict(data)
