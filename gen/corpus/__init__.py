@@ -1,27 +1,28 @@
 """The corpus format: a folder of records that any netCDF-4 tool reads as one file.
 
-=========== =====================================================
-module      responsibility
-=========== =====================================================
-codecs      codecs of stored signals
-schema      dimensions, variables, units and roles
-simulated   further variables of simulated corpora
+============= =====================================================
+module        responsibility
+============= =====================================================
+codecs        codecs of stored signals
+schema        dimensions, variables, units and roles
+simulated     further variables of simulated corpora
 hdf5        lock of the HDF5 library, refusal of links to other files
-layout      allowed shapes, types and attributes in a file
-files       atomic writing, hashes
-signals     records that cannot be used
-part        one netCDF-4 file of records
-journal     finished parts of an unfinished corpus
-manifest    files of a corpus with size and hash
-reading     lazy reading, with a few files open at a time
-index       ``corpus.nc`` over the parts; opening a corpus
-validation  all checks of a corpus
-visible     faults that can be seen in their records
-recoverable labels that can be recovered from the signals
-card        data card of a corpus
-finishing   index, manifest and data card of finished parts
-description page about the format
-=========== =====================================================
+layout        allowed shapes, types and attributes in a file
+files         atomic writing, hashes
+signals       records that cannot be used
+part          one netCDF-4 file of records
+record_hashes SHA-256 of single records
+journal       finished parts of an unfinished corpus
+manifest      files of a corpus with size and hash
+reading       lazy reading, with a few files open at a time
+index         ``corpus.nc`` over the parts; opening a corpus
+validation    all checks of a corpus
+visible       faults that can be seen in their records
+recoverable   labels that can be recovered from the signals
+card          data card of a corpus
+finishing     index, manifest and data card of finished parts
+description   page about the format
+============= =====================================================
 """
 
 from typing import TYPE_CHECKING
