@@ -163,10 +163,13 @@ def checked_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> list[Sce
         try:
             found.append(read_scenario(scenario_texts([scenario])[0]))
         except (CorpusError, TypeError) as error:
-            raise RecipeError(f"scenarios[{place}]: {error}") from None
+            reason = str(error).removeprefix("stored scenario: ").partition("; ")[0]
+            raise RecipeError(
+                f"scenarios[{place}]: is no scenario ({reason}); change drawn ones with dataclasses.replace, in finite numbers and text."
+            ) from None
         problem = _problem(found[-1], recipe)
         first, rig = rigs.setdefault(scenario.rig.number, (place, found[-1].rig))
-        if rig != found[-1].rig:
+        if not problem and rig != found[-1].rig:
             problem = f"rig {rig.number} is not that of scenarios[{first}]; give another machine another number"
         if problem:
             raise RecipeError(f"scenarios[{place}]: {problem}.")
@@ -215,5 +218,6 @@ def _decoded(
     decoded = xr.decode_cf(dataset, decode_times=False).load()
     decoded.attrs |= {**part_attributes(recipe, failures), RECIPE: json.dumps(plain(recipe)), **attributes}
     if failures:
-        warnings.warn(f"{len(failures)} records are left out; the first: {failures[0]}", stacklevel=4)
+        left_out = f"{len(failures)} of {len(failures) + dataset.sizes['record']} records are left out"
+        warnings.warn(f"{left_out}; the first: {failures[0]}", stacklevel=4)
     return decoded
