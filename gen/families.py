@@ -133,9 +133,15 @@ def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> R
     n_rungs = recipe.corpus.n_rungs
     first, tries = number // n_rungs * n_rungs, {recipe.block_of(number).specimen_of(number): fault_try}
     group = draw_scenarios(recipe, first, first + n_rungs, fault_tries=tries)
-    runs = runs_of([with_level(scenario, recipe, level_try) for scenario in group], recipe)
+    made = made_from([with_level(scenario, recipe, level_try) for scenario in group], recipe)
+    return picked([(made, number - first)])
+
+
+def made_from(scenarios: list[Scenario], recipe: Recipe) -> Records:
+    """Records of scenarios as they are; nothing is drawn again."""
+    runs = runs_of(scenarios, recipe)
     integrate_all((one for run in runs for one in (run.own, run.twin) if one is not None), timeline(recipe))
-    return picked([(made_of(runs, recipe, 1), number - first)])
+    return made_of(runs, recipe, 1)
 
 
 def made_of(runs: list[Run], recipe: Recipe, level_tries: int) -> Records:

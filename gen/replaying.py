@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, plain_file, read_manifest
 from gen.corpus.manifest import Numbers, Origin
 from gen.errors import CorpusError
-from gen.families import made_again
+from gen.families import Records, made_again, made_from, picked
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import Scenario, read_scenario
@@ -81,12 +81,27 @@ def replay(directory: Path | str, record: int) -> Replayed:
         number = int(corpus["recording"][record]) - added.recording
         stored, channels = corpus[SIGNAL][record].values, [str(name) for name in corpus["channel"].values]
         tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
-    made = made_again(recipe, number, *tries)
+        if read_manifest(directory).scenarios == "given":
+            made = _made_as_given(directory, recipe, corpus, record)
+        else:
+            made = made_again(recipe, number, *tries)
     whole = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
     names = [str(name) for name in whole["channel"].values]
     dataset = renumbered(whole.isel(channel=[names.index(name) for name in channels]), added)
     again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values.astype(stored.dtype)
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
+
+
+def _made_as_given(directory: Path, recipe: Recipe, corpus: xr.Dataset, record: int) -> Records:
+    """Make a record again from its stored scenario; the largest severity of a group of records sets the level of the group."""
+    pairs = corpus["pair"].values
+    group = [record] if pairs[record] < 0 else np.flatnonzero(pairs == pairs[record]).tolist()
+    scenarios = [stored_scenario(directory, one) for one in group]
+    if pairs[record] >= 0 and scenarios[-1].record.rung != recipe.corpus.n_rungs - 1:
+        raise CorpusError(
+            f"{directory}: record {record}: cannot be replayed, because the largest severity of its pair, which set its level, is not here."
+        )
+    return picked([(made_from(scenarios, recipe), group.index(record))])
 
 
 def stored_scenario(directory: Path | str, record: int) -> Scenario:

@@ -131,6 +131,8 @@ class Manifest(Strict):
     """Choices by which the records were taken from a larger corpus, the first one first."""
     origins: tuple[Origin, ...] = ()
     """Corpora that were merged into this one, in the order of their records."""
+    scenarios: Literal["given"] | None = None
+    """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
 
     @property
     def parts(self) -> list[PartRow]:

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, PrivateAttr, StrictInt, StringConstraints, model_validator
+from pydantic import Field, PrivateAttr, StrictInt, StringConstraints, ValidationError, model_validator
 
 from gen.corpus import Codec
 from gen.errors import RecipeError
@@ -20,7 +20,7 @@ from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault
 from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing, MachineSection, SpecimenSection
 from gen.recipe.operation import OperationSection, Table
 from gen.recipe.publication import PublicationSection
-from gen.recipe.section import Count, Name, Section
+from gen.recipe.section import Count, Name, Section, plain
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
 from gen.recipe.sensor_faults import SensorFaultsSection
 from gen.recipe.shares import changed_operation, with_products
@@ -56,6 +56,9 @@ class CorpusSection(Section):
     """Shares of the drawn severity, in rising order, at which each record of a faulty specimen is repeated with all else the same; 0 is
     the bearing before the damage. `[0, 1]` gives counterfactual pairs, `[0, 0.25, 0.5, 1]` severity ladders. A healthy specimen gets as
     many records, each with conditions of its own."""
+    fault_choice: Literal["by_weight", "in_turn"] = "by_weight"
+    """`by_weight`: the classes have the shares of their weights, and entries of `faults` of one class are drawn by theirs. `in_turn`: the
+    specimens take the entries of `faults` one after the other, by their number, so that each entry has as many; no weights then."""
     records_per_part: Annotated[StrictInt, Field(ge=1, le=100_000)] = 256
     """Number of records in one file of the corpus. A part is simulated as a whole, so it sets the memory that is needed."""
     sampling: Literal["random", "sobol", "halton"] = "random"
@@ -131,6 +134,21 @@ class Recipe(Section):
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
     _extensions: tuple[Extension, ...] = PrivateAttr(())
+
+    def __init__(self, /, **keys: Any) -> None:
+        """Check a recipe given by its keys; sections are mappings, as in YAML.
+
+        Raises
+        ------
+        RecipeError
+            If there are wrong keys or values; one sentence for each of them.
+        """
+        from gen.recipe.sentences import sentences  # it needs the model
+
+        try:
+            super().__init__(**plain(keys))
+        except ValidationError as error:
+            raise RecipeError("\n".join(sentences(error, Recipe))) from None
 
     def __hash__(self) -> int:
         """Hash of name and seed; the hash of pydantic fails on the dictionaries of some sections."""

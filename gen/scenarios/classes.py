@@ -28,7 +28,7 @@ def class_shares(recipe: Recipe) -> dict[str, float]:
     for entry in recipe.faults:
         weights[fault_class(entry)] += entry.weight
     total, corpus = sum(weights.values()), recipe.corpus
-    if corpus.rungs is not None and corpus.rungs[0] == 0:
+    if corpus.rungs is not None and corpus.rungs[0] == 0 and corpus.fault_choice == "by_weight":
         # the specimens of a fault also have one healthy record for every n_rungs - 1 with their fault
         for kind in set(weights) - {"healthy"}:
             before_damage = weights[kind] / (corpus.n_rungs - 1)
@@ -45,6 +45,10 @@ def fault_of_each_specimen(recipe: Recipe, rig: int, block: Block | None = None)
     """
     block = recipe.blocks[0] if block is None else block
     shares, count = class_shares(recipe), block.specimens_per_rig
+    first = block.first_specimen_of(rig)
+    if recipe.corpus.fault_choice == "in_turn":
+        entries = recipe.faults
+        return [fault_class(entries[number % len(entries)]) for number in range(first, first + count)]
     offsets = _offsets(recipe.seed, rig, block)
     healthy = count * shares.pop("healthy", 0.0)
     n_healthy = math.floor(healthy + _ROUNDING)
@@ -52,8 +56,15 @@ def fault_of_each_specimen(recipe: Recipe, rig: int, block: Block | None = None)
     faulty = _shared_out(shares, count - n_healthy, offsets[1])
     chosen = [*["healthy"] * n_healthy, *faulty]
     # specimens that are added to a rig have a stream of their own
-    first = 0 if block.adds_rigs else block.first_specimen_of(rig)
-    return [chosen[i] for i in stream(recipe.seed, rig, first, 0, Purpose.CLASSES).permutation(count)]
+    of_stream = 0 if block.adds_rigs else first
+    return [chosen[i] for i in stream(recipe.seed, rig, of_stream, 0, Purpose.CLASSES).permutation(count)]
+
+
+def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
+    """Places in ``faults`` of the entries that a specimen with a fault class can have."""
+    if recipe.corpus.fault_choice == "in_turn":
+        return [specimen % len(recipe.faults)]
+    return [place for place, one in enumerate(recipe.faults) if fault_class(one) == fault]
 
 
 def _offsets(seed: int, rig: int, block: Block) -> tuple[float, float]:

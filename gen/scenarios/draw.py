@@ -25,10 +25,9 @@ from gen.recipe import (
     Modes,
     PathSection,
     Recipe,
-    fault_class,
 )
 from gen.recipe.distributions import weighted_index
-from gen.scenarios.classes import fault_of_each_specimen
+from gen.scenarios.classes import fault_of_each_specimen, possible_entries
 from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import damaged
 from gen.scenarios.model import (
@@ -243,7 +242,7 @@ def _draw_specimen(
         )
     position = number - block.first_specimen_of(rig.number)
     fault = classes[position]
-    wanted, entry = [place for place, one in enumerate(recipe.faults) if fault_class(one) == fault], 0
+    wanted, entry = possible_entries(recipe, number, fault), 0
     for attempt in sorted({0, fault_try}):
         draws = Draws(
             stream(recipe.seed, rig.number, number, attempt, Purpose.FAULT), np.empty(0), number, f"specimen {number}"
