@@ -141,7 +141,7 @@ def test_an_interrupted_extension_leaves_the_corpus_readable_and_is_completed(
     assert contents(copied) == contents(extended)
 
 
-@pytest.mark.parametrize("broken", ["write_manifest", "write_text_durably", "unlink"])
+@pytest.mark.parametrize("broken", ["write_manifest", "write_card", "unlink"])
 def test_an_extension_that_ended_while_its_files_were_replaced_is_completed(copied, monkeypatch, tmp_path, broken):
     """Between index and manifest the corpus cannot be read, and the error says what to do; afterwards it is the new one."""
     whole = shutil.copytree(copied, tmp_path / "whole")
