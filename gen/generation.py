@@ -208,14 +208,12 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
-        if manifest is not None and (manifest.selections or manifest.origins or manifest.scenarios == "given"):
-            how = (
-                "selected from a larger corpus"
-                if manifest.selections
-                else "merged from several corpora"
-                if manifest.origins
-                else "written from scenarios made one by one"
+        if manifest is not None and manifest.scenarios == "given":
+            raise CorpusError(
+                f"{directory}: holds records that were made one by one, not a whole recipe; choose another folder."
             )
+        if manifest is not None and (manifest.selections or manifest.origins):
+            how = "selected from a larger corpus" if manifest.selections else "merged from several corpora"
             raise CorpusError(f"{directory}: was {how}, so it cannot be generated; choose another folder.")
         if manifest is not None and any((directory / "parts").glob("*.nc")):
             if manifest.recipe_sha256 != facts["recipe_sha256"]:

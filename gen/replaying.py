@@ -76,12 +76,13 @@ def replay(directory: Path | str, record: int) -> Replayed:
     """
     directory = Path(directory)
     with open_corpus(directory, check="size") as corpus:
-        recipe, origin = corpus_recipe(directory, record), _origin_of(read_manifest(directory), record)
+        manifest, recipe = read_manifest(directory), corpus_recipe(directory, record)
+        origin = _origin_of(manifest, record)
         added = Numbers() if origin is None else origin.added
         number = int(corpus["recording"][record]) - added.recording
         stored, channels = corpus[SIGNAL][record].values, [str(name) for name in corpus["channel"].values]
         tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
-        if read_manifest(directory).scenarios == "given":
+        if (origin or manifest).scenarios == "given":
             made = _made_as_given(directory, recipe, corpus, record)
         else:
             made = made_again(recipe, number, *tries)

@@ -101,6 +101,7 @@ class Origin(Strict):
     versions: Annotated[dict[str, str], Field(default_factory=dict)]
     importer: str | None = None
     selections: tuple[Choice, ...] = ()
+    scenarios: Literal["given"] | None = None
 
 
 class Manifest(Strict):
