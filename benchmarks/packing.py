@@ -1,6 +1,6 @@
 """Size, CPU time and peak memory of pack, unpack and validate for a corpus of short records that is made without a simulation.
 
-    python benchmarks/packing.py --records 100000
+python benchmarks/packing.py --records 100000
 """
 
 import argparse

@@ -254,7 +254,7 @@ def _prepare(directory: Path, work: _Work) -> None:
     """
     journal = directory / JOURNAL_NAME
     try:
-        for name in (EXTENSION_NAME, "manifest.json", "corpus.nc", "README.md", "parts/part-*.nc"):
+        for name in (EXTENSION_NAME, "manifest.json", "corpus.nc", "README.md", "croissant.json", "parts/part-*.nc"):
             remove_left_behind((directory / name).parent, Path(name).name)
         if not work.known:
             journal.unlink(missing_ok=True)

@@ -147,6 +147,7 @@ def finished(
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
     rows = [*before, *rows]
     failed = (*failures, *(sentence for outcome in outcomes for sentence in outcome.failures))
+    facts = facts | {"publication": facts["publication"].dated()}
     signals = finish_corpus(directory, rows, failures=failed, **facts)
     (directory / JOURNAL_NAME).unlink()
     kept = sum(outcome.kept for outcome in outcomes)
@@ -205,7 +206,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     journal = directory / JOURNAL_NAME
     begun = (directory / "manifest.json").exists()
     try:
-        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
+        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml", "croissant.json"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
         if manifest is not None and manifest.scenarios == "given":

@@ -7,14 +7,14 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, plain_file, read_manifest
+from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, read_manifest, temporary_folder
 from gen.corpus.manifest import Numbers, Origin
 from gen.errors import CorpusError
 from gen.families import Records, made_again, made_from, picked
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import Scenario, read_scenario
-from gen.sharing.copying import renumbered
+from gen.sharing.copying import renumbered, small_file
 from gen.simulation.shaft import shaft_angles as angles_of
 from gen.simulation.timeline import timeline
 
@@ -33,14 +33,18 @@ def corpus_recipe(directory: Path, record: int = 0) -> Recipe:
     _check_record(directory, manifest.records, record)
     origin = _origin_of(manifest, record)
     facts, name = (manifest, "recipe.yaml") if origin is None else (origin, origin.recipe_file)
-    if facts.overrides is None or facts.recipe_sha256 is None or name is None or not (directory / name).is_file():
+    text = None if name is None else small_file(directory, name)
+    if text is None or facts.overrides is None or facts.recipe_sha256 is None:
         if origin is not None:
             title = origin.title or "without a title"
             raise CorpusError(f"{directory}: record {record} comes from a corpus ({title}) that was not generated.")
         raise CorpusError(f"{directory}: holds no recipe.yaml, so it was not generated and cannot be replayed.")
-    recipe = read_recipe(plain_file(directory, name), seed=facts.overrides.seed, records=facts.overrides.records)
+    with temporary_folder() as folder:  # a packed file has no path of its recipe
+        path = folder / "recipe.yaml"
+        path.write_bytes(text)
+        recipe = read_recipe(path, seed=facts.overrides.seed, records=facts.overrides.records)
     if recipe_hash(recipe) != facts.recipe_sha256:
-        raise CorpusError(f"{directory / name}: is not the recipe of the corpus; restore it to replay.")
+        raise CorpusError(f"{directory / str(name)}: is not the recipe of the corpus; restore it to replay.")
     return recipe.extended(facts.overrides.extensions)
 
 

@@ -22,6 +22,7 @@ from raceway.commands import (
     importing,
     models,
     packing,
+    publishing,
     reproduce,
 )
 from raceway.console.ending import NoReader, exit_code
@@ -70,8 +71,8 @@ def cli(limits: tuple[str, ...]) -> None:
       raceway info corpus                           show its contents
       raceway benchmark corpus -o report            score classifiers without leakage
 
-    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus. With --json
-    a command prints one JSON object on standard output; progress and errors go to standard error.
+    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus, or a file of
+    raceway pack. With --json a command prints one JSON object on standard output; progress and errors go to standard error.
 
     Exit codes:
 
@@ -118,6 +119,7 @@ for command in (
     diagnosing.diagnose,
     benchmarking.benchmark,
     comparing.compare,
+    publishing.card,
     benchmarking.bench,
     reproduce.reproduce,
     gallery.gallery,

@@ -69,16 +69,21 @@ def draw_examples(corpus: xr.Dataset) -> list[Example]:
 
 
 def _example(corpus: xr.Dataset, code: int) -> Example:
-    """Draw the record whose level at the fault lines is the median over some records of the class."""
-    fault, numbers = FAULT_NAMES[code], np.flatnonzero(corpus["fault"].values == code)
+    shown, caption = chosen_example(corpus, code)
+    return Example(FAULT_NAMES[code], caption, b"" if shown is None else picture(draw_record(shown), "svg"))
+
+
+def chosen_example(corpus: xr.Dataset, code: int) -> tuple[Shown | None, str]:
+    """Record whose level at the fault lines is the median over some records of the class, and its caption; None if none can be drawn."""
+    numbers = np.flatnonzero(corpus["fault"].values == code)
     numbers = numbers[np.linspace(0, len(numbers) - 1, min(CANDIDATES, len(numbers))).astype(int)]
     shown = {int(n): _shown(corpus.isel(record=n), int(n), 0) for n in numbers}
     levels = {n: _line_level(record) for n, record in shown.items() if _can_be_drawn(record)}
     if not levels:
-        return Example(fault, "No record of this class has a signal, a shaft rate and fault orders to draw.", b"")
+        return None, "No record of this class has a signal, a shaft rate and fault orders to draw."
     number = sorted(levels, key=lambda n: levels[n])[len(levels) // 2]
-    caption = f"{_conditions(corpus.isel(record=number))}; the median of {len(levels)} records by the level of the fault lines."
-    return Example(fault, caption, picture(draw_record(shown[number]), "svg"))
+    conditions = _conditions(corpus.isel(record=number))
+    return shown[number], f"{conditions}; the median of {len(levels)} records by the level of the fault lines."
 
 
 def _conditions(record: xr.Dataset) -> str:

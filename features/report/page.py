@@ -110,9 +110,6 @@ def make_folder(output: Path) -> None:
 def _content(corpus: xr.Dataset) -> dict[str, Any]:
     """Variables of the template that describe the records."""
     fault, rig, specimen = (corpus[name].values for name in ("fault", "rig", "specimen"))
-    quantities = [
-        Quantity(label, _of_faults(name, corpus) * factor) for name, label, factor in QUANTITIES if name in corpus
-    ]
     duration = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])
     return {
         "title": _text(corpus.attrs.get("title", "untitled corpus")),
@@ -124,7 +121,7 @@ def _content(corpus: xr.Dataset) -> dict[str, Any]:
         "fs": float(corpus["sample_rate"][0]),
         "counts": [_class_count(corpus, code) for code in np.unique(fault)],
         "splits": SPLITS,
-        "content": picture(draw_content(fault, rig, quantities), "svg"),
+        "content": picture(draw_content(fault, rig, quantities(corpus)), "svg"),
     }
 
 
@@ -139,6 +136,11 @@ def _class_count(corpus: xr.Dataset, code: int) -> ClassCount:
         rigs=len(np.unique(rig)),
         splits=dict(zip(SPLITS, np.bincount(split, minlength=len(SPLITS)).tolist(), strict=True)),
     )
+
+
+def quantities(corpus: xr.Dataset) -> list[Quantity]:
+    """Quantities whose distributions are drawn: speed, load, severities and levels."""
+    return [Quantity(label, _of_faults(name, corpus) * factor) for name, label, factor in QUANTITIES if name in corpus]
 
 
 def _of_faults(name: str, corpus: xr.Dataset) -> np.ndarray:
@@ -251,7 +253,10 @@ def _verdict(null: Scores, chance: float) -> str:
 
 def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Origin of the numbers: the manifest without its parts, and the settings of the benchmark."""
-    facts = manifest.model_dump(exclude={"parts_", "index", "complete", "records", "title"}, exclude_unset=True)
+    left_out = {"parts_", "index", "next_index", "complete", "records", "title", "publication"}
+    facts = manifest.model_dump(exclude=left_out, exclude_unset=True)
+    if manifest.publication.license:
+        facts["licence"] = manifest.publication.license
     benchmark = {
         "cross-validation": f"{results.folds} folds by {results.track}",
         "features": f"{results.features} ({', '.join(results.groups)})",

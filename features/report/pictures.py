@@ -92,7 +92,7 @@ def draw_record(shown: Shown) -> Figure:
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     draw_waveform(waveform, shown)
     draw_density(density, shown, BROAD)
-    _draw_envelope_spectrum(envelope, shown)
+    draw_envelope_spectrum(envelope, shown)
     figure.align_ylabels()
     return figure
 
@@ -129,7 +129,8 @@ def draw_density(axes: Axes, shown: Shown, band: tuple[float, float]) -> None:
     axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
 
 
-def _draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
+def draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:
+    """Squared envelope spectrum over orders, with the lines of the fault shaded and the others dashed."""
     order, spectrum = squared_envelope(shown)
     own, others = fault_lines(shown.orders, shown.fault)
     top = _highest_drawn_order(own, others)

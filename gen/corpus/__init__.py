@@ -7,15 +7,16 @@ codecs        codecs of stored signals
 schema        dimensions, variables, units and roles
 simulated     further variables of simulated corpora
 hdf5          lock of the HDF5 library, refusal of links to other files
+unicode_text  global attributes with letters beyond ASCII
 layout        allowed shapes, types and attributes in a file
 files         atomic writing, hashes
 signals       records that cannot be used
 part          one netCDF-4 file of records
 journal       finished parts of an unfinished corpus
+publication   licence, creators and references of a corpus
 part_forms    descriptions from which parts are written again
 packed        a corpus as one file: its parts and small files
 record_hashes SHA-256 of single records
-publication   licence, creators and references of a corpus
 reading       lazy reading, with a few files open at a time
 record_checks records of a packed file compared with their hashes
 manifest      files of a corpus with size and hash
@@ -25,6 +26,7 @@ visible       faults that can be seen in their records
 recoverable   labels that can be recovered from the signals
 card          data card of a corpus
 acdd          global attributes of a published corpus
+croissant     files, fields and licence for catalogues of data sets
 finishing     index, manifest and data card of finished parts
 description   page about the format
 ============= =====================================================

@@ -34,7 +34,7 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
         "summary": f"{manifest.records} labelled records of bearing vibration, {made}, with fault class, speed, load and nominal fault "
         f"frequencies of each.",
         "keywords": f"{_KEYWORDS}, {made}",
-        "id": publication.doi or str(uuid5(NAMESPACE_OID, " ".join(row.sha256 for row in manifest.parts))),
+        "id": publication.doi or content_id(manifest),
         "naming_authority": "https://doi.org" if publication.doi else "urn:uuid",
         "processing_level": f"acceleration in m s-2, {made}",
         "product_version": _product_version(manifest),
@@ -42,11 +42,12 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
         "instrument": instrument,
     }
     creators = publication.creators
+    institutional = all(creator.name == publication.institution for creator in creators)
     publisher = publication.institution or ", ".join(creator.name for creator in creators)
     given = {
-        "license": publication.license,
+        "license": _license(publication.license),
         "creator_name": ", ".join(creator.name for creator in creators),
-        "creator_type": "person" if any(creator.orcid for creator in creators) else None,
+        "creator_type": ("institution" if institutional else "person") if creators else None,
         "creator_url": _addresses(creators),
         "creator_email": publication.contact,
         "creator_institution": publication.institution,
@@ -60,6 +61,28 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
         "date_created": publication.date,
     }
     return fixed | {name: value for name, value in given.items() if value}
+
+
+def content_id(manifest: Manifest) -> str:
+    """Number (UUID) that follows from the hashes of all parts: the same records have the same, under every publication."""
+    return str(uuid5(NAMESPACE_OID, " ".join(row.sha256 for row in manifest.parts)))
+
+
+def license_address(name: str) -> str:
+    """Address of the text of a licence; a licence of its own, or several, stay as they are.
+
+    >>> license_address("CC-BY-4.0"), license_address("MIT OR Apache-2.0")
+    ('https://spdx.org/licenses/CC-BY-4.0.html', 'MIT OR Apache-2.0')
+    """
+    own = name.startswith("LicenseRef-") or " " in name
+    return name if own else f"https://spdx.org/licenses/{name.removesuffix('+')}.html"
+
+
+def _license(name: str | None) -> str | None:
+    if name is None:
+        return None
+    address = license_address(name)
+    return name if address == name else f"{name} ({address})"
 
 
 def _addresses(creators: tuple[Creator, ...]) -> str:

@@ -16,11 +16,16 @@ A corpus is a folder:
 | `parts.jsonl` | while the corpus is unfinished: one line for each finished part, as in `parts` of the manifest |
 | `recipe.yaml` | the recipe, if the corpus was simulated |
 | `README.md` | the data card |
+| `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
 
 HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds
 the number of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it
 reads, refuses a missing or altered file, and reads the signal from the parts. `raceway validate` checks everything.
 Further checks of a corpus from strangers: [security.md](security.md).
+
+`corpus.nc` without its parts holds no signals, and its attribute `comment` says so. `raceway pack` makes one file of the
+whole corpus, with the variables below, without a virtual dataset, and with a SHA-256 of each record: a packed file.
+[sharing.md](sharing.md) has its layout, and a table of the programs that read `corpus.nc`, a part and a packed file.
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;

@@ -10,6 +10,7 @@ from typing import Any
 
 from gen.corpus.acdd import publication_attributes
 from gen.corpus.card.page import write_card
+from gen.corpus.croissant import write_croissant
 from gen.corpus.index import new_index, write_index
 from gen.corpus.manifest import (
     INDEX_NAME,
@@ -33,20 +34,20 @@ def finish_corpus(
 ) -> SignalCounts:
     """Write index, manifest and data card over finished parts; returns the counts of records that cannot be used.
 
-    ``facts`` are further fields of the manifest. The date of ``publication`` is that of ``SOURCE_DATE_EPOCH`` if it has none.
+    ``facts`` are further fields of the manifest.
     """
     rows = list(rows)
     signals = summed(row.signals for row in rows)
-    facts["publication"] = (publication or Publication()).dated()
+    facts["publication"] = publication or Publication()
     write_index(directory, rows, publication_attributes(_manifest(manifest_content(rows, **facts))))
     write_manifest(directory, rows, complete=True, **facts)
     write_card(directory)
+    write_croissant(directory)
     return signals
 
 
 def publish(directory: Path | str, publication: Publication) -> None:
-    """Change licence, creators and references of a finished corpus: in the manifest, in the attributes of ``corpus.nc`` and in
-    the data card.
+    """Change licence, creators and references of a finished corpus: in its manifest, ``corpus.nc`` and data card.
 
     The parts stay as they are. The files are those of a corpus that was made with this publication from the start. A killed call leaves
     a corpus that can be read, with the old or the new facts, and the same call completes it.
@@ -58,6 +59,10 @@ def publish(directory: Path | str, publication: Publication) -> None:
     """
     directory = Path(directory)
     publication = publication.dated()
+    if directory.is_file():
+        raise CorpusError(
+            f"{directory}: is one file; unpack it with raceway unpack, publish the folder, and pack that."
+        )
     with _alone(directory):
         part_paths(directory, "sha256")
         rows = read_manifest(directory).parts
@@ -70,6 +75,7 @@ def publish(directory: Path | str, publication: Publication) -> None:
             write_content(directory, content | {"next_index": changed["index"]})  # until the new index is in place
         write_content(directory, changed)
         write_card(directory)
+        write_croissant(directory)
 
 
 def _manifest(content: dict[str, Any]) -> Manifest:

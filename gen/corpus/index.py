@@ -21,6 +21,7 @@ from gen.corpus.manifest import INDEX_NAME, Check, part_paths, read_manifest
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
+from gen.corpus.unicode_text import beyond_ascii, write_unicode
 
 _COMMENT = (
     "This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. "
@@ -81,13 +82,17 @@ def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str
     """Path of a written index that replaces ``corpus.nc`` at the end of the block."""
     with whole_or_not_at_all(directory / INDEX_NAME) as temporary:
         with LIBRARY_LOCK:
-            write_variables(directory, rows, temporary, {"comment": _COMMENT, **attributes})
+            texts = write_variables(directory, rows, temporary, {"comment": _COMMENT, **attributes})
             _write_virtual_signal(directory, rows, temporary)
+            with h5py.File(temporary, "r+") as file:
+                write_unicode(file, texts)
         yield temporary
 
 
-def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> None:
-    """Copy all variables of the parts except the signal into a new file; ``attributes`` are further global ones.
+def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> dict[str, str]:
+    """Copy all variables of the parts except the signal into a new file; ``attributes`` are global ones beside those of the parts.
+
+    Returns the global attributes with letters beyond ASCII, which are still to be written (:mod:`gen.corpus.unicode_text`).
 
     The width of a text is that of the longest in any part. The parts are read one after the other with h5py, and copied
     ``_COPIED_BYTES`` at a time: opening one with netCDF4 takes 4 ms, and writing the variables of each part on their own as long again.
@@ -106,13 +111,17 @@ def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes
         texts = [name for name, dtype in copied.items() if dtype == "S1"]
         lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
         lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
+        whole = {name: first.getncattr(name) for name in first.ncattrs() if name != "failures"}
+        whole |= attributes
+        texts = beyond_ascii(whole)
+        index.setncatts({name: value for name, value in whole.items() if name not in texts})
         _declare_like(first, index, lengths)
-        index.setncatts(attributes)
         start = 0
         for block in _blocks(directory, rows, copied):
             for name, values in zip(copied, block, strict=True):
                 index[name][(slice(start, start + len(values)), *map(slice, values.shape[1:]))] = values
             start += len(block[0])
+    return texts
 
 
 def _widths(directory: Path, rows: list[PartRow], texts: list[str]) -> dict[str, int]:
@@ -163,7 +172,6 @@ def _joined(values: tuple[NDArray[Any], ...]) -> NDArray[Any]:
 
 
 def _declare_like(part: netCDF4.Dataset, index: netCDF4.Dataset, lengths: dict[str, int]) -> None:
-    index.setncatts({name: part.getncattr(name) for name in part.ncattrs() if name != "failures"})
     for name, length in lengths.items():
         index.createDimension(name, length)
     for name, variable in part.variables.items():

@@ -63,7 +63,7 @@ class Choice(Strict):
 
     records: Count
     """Number of records that were chosen from."""
-    parts_sha256: str
+    parts_sha256: str | None = None
     """SHA-256 over those of the parts of the corpus that was chosen from."""
     where: str | None = None
     split: str | None = None
@@ -130,6 +130,8 @@ class Manifest(Strict):
     warnings: _Texts = ()
     selections: tuple[Choice, ...] = ()
     """Choices by which the records were taken from a larger corpus, the first one first."""
+    scenarios: Literal["given"] | None = None
+    """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
     origins: tuple[Origin, ...] = ()
     """Corpora that were merged into this one, in the order of their records."""
     scenarios: Literal["given"] | None = None

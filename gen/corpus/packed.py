@@ -100,7 +100,7 @@ def _contents(path: str, _stamp: Stamp) -> Packed:
 
 
 def _check_version(file: h5py.File) -> None:
-    version = file.attrs.get(PACKED)
+    version = np.ravel(file.attrs.get(PACKED, "unknown"))[0]
     if version != PACKED_VERSION:
         raise CorpusError(
             f"{file.filename}: packed in layout {version}, this version of raceway reads {PACKED_VERSION}; pack the corpus again."

@@ -16,6 +16,7 @@ from gen.corpus.files import sha256, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
 from gen.corpus.signals import SignalCounts, counted, judge
+from gen.corpus.unicode_text import beyond_ascii, write_unicode
 
 _INCOMPRESSIBLE = 7.8  # bits per byte
 
@@ -57,9 +58,10 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: C
     signal = dataset[SIGNAL].values
     if chunks is None:
         chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
+    texts = beyond_ascii(dataset.attrs)
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            file.setncatts(dataset.attrs)
+            file.setncatts({name: value for name, value in dataset.attrs.items() if name not in texts})
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)
             # all variables are declared before any is written: alternating takes 50 % longer
@@ -68,8 +70,10 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: C
             for stored, values in declared:
                 if stored.name != SIGNAL or not chunks:
                     stored[:] = values
-        if chunks:
-            _write_chunks(chunks, temporary)
+        if chunks or texts:
+            with h5py.File(temporary, "r+") as file:
+                write_unicode(file, texts)
+                _write_chunks(chunks, file)
     return PartRow(path.name, len(signal), path.stat().st_size, sha256(path), counted(judge(signal)))
 
 
@@ -105,12 +109,11 @@ def _declare(
     return stored, values
 
 
-def _write_chunks(chunks: Chunks, path: Path) -> None:
+def _write_chunks(chunks: Chunks, file: h5py.File) -> None:
     """Write compressed chunks of the signal directly: the zlib filter of HDF5 takes more than twice as long."""
-    with h5py.File(path, "r+") as file:
-        stored: Any = file[SIGNAL]
-        for (record, channel), chunk in chunks.items():
-            stored.id.write_direct_chunk((record, channel, 0), chunk)
+    stored: Any = file[SIGNAL]
+    for (record, channel), chunk in chunks.items():
+        stored.id.write_direct_chunk((record, channel, 0), chunk)
 
 
 def deflated(samples: NDArray[Any]) -> bytes:

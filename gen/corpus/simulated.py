@@ -5,7 +5,9 @@
 
 from gen.corpus.schema import DRAWS, Variable
 
-_DB = "in decibels re 1 (20 log10 of the ratio)"  # CF has no unit for levels
+# 20 log10 of the ratio of two rms; CF has no unit for levels
+_SNR = "bearing over background or rounding of the converter in decibels re 1, NaN without either or in silence"
+_FAULT_SNR = "what the fault adds over all else of the record in decibels re 1, NaN without a fault or if not known"
 
 SIMULATED = (
     Variable("axial_load", "f8", "N", "operating", "axial load"),
@@ -23,8 +25,8 @@ SIMULATED = (
     Variable("true_bpfo", "f8", "1", "latent", "mean ball pass frequency of the outer race in shaft orders, slip included"),
     Variable("true_bpfi", "f8", "1", "latent", "mean ball pass frequency of the inner race in shaft orders, slip included"),
     Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders"),
-    Variable("snr", "f8", "1", "latent", f"rms of bearing over rms of background or rounding of the converter, {_DB}, NaN without either or in silence"),
-    Variable("fault_snr", "f8", "1", "latent", f"rms of what the fault adds over rms of all else, {_DB}, NaN without a fault or if not known"),
+    Variable("snr", "f8", "1", "latent", _SNR),
+    Variable("fault_snr", "f8", "1", "latent", _FAULT_SNR),
     Variable("fault_share", "f8", "1", "latent", "power of what the fault adds over its sum with that of all else, NaN if not known"),
     Variable("loaded_hits", "i4", "1", "latent", "expected number of passages of loaded balls over spalls, -1 if not known"),
     Variable("detectable", "i1", "1", "latent", "whether the fault can be seen in the record", {0: "no", 1: "yes", 2: "unjudged"}),

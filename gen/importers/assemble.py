@@ -15,6 +15,7 @@ import numpy as np
 
 from gen.corpus import (
     PartRow,
+    Publication,
     Variable,
     finish_corpus,
     make_dataset,
@@ -170,6 +171,7 @@ def _finish(collection: Collection, rows: list[PartRow], log: _Log, directory: P
     finish_corpus(
         directory,
         rows,
+        publication=Publication().dated(),
         importer=collection.importer,
         basis=collection.facts,
         recordings=log.recordings.total(),

@@ -21,10 +21,13 @@ class Described(NamedTuple):
 
 
 class Columns(NamedTuple):
-    """All per-record variables of several corpora, and the names of those that one or more of them lack."""
+    """All per-record variables of several corpora."""
 
     variables: Mapping[str, Described]
     filled: tuple[str, ...]
+    """Names of those that one or more of the corpora lack."""
+    differing: frozenset[str]
+    """Attributes of the signal that are not the same in all corpora, such as whether it is simulated or measured."""
 
 
 def columns_of_all(corpora: Sequence[tuple[str, xr.Dataset]]) -> Columns:
@@ -45,7 +48,10 @@ def columns_of_all(corpora: Sequence[tuple[str, xr.Dataset]]) -> Columns:
             here = Described(variable.dtype.newbyteorder("="), variable.attrs, corpus)
             _check_same(name, found.setdefault(name, here), here)
             counts[name] = counts.get(name, 0) + 1
-    return Columns(found, tuple(name for name in found if counts[name] < len(corpora)))
+    signals = [dataset[SIGNAL].attrs for _, dataset in corpora]
+    differing = {key for attrs in signals for key in attrs if any(of.get(key) != attrs[key] for of in signals)}
+    filled = tuple(name for name in found if counts[name] < len(corpora))
+    return Columns(found, filled, frozenset(differing))
 
 
 def _check_same(name: str, first: Described, other: Described) -> None:
@@ -66,9 +72,11 @@ def _flags(variable: Described) -> str:
 
 
 def with_all(records: xr.Dataset, columns: Columns) -> xr.Dataset:
-    """Records with all variables; those that they lack are filled (:func:`not_known`)."""
+    """Records with all variables, of which those that they lack are filled (:func:`not_known`)."""
     count = records.sizes["record"]
-    data: dict[str, Any] = {SIGNAL: records[SIGNAL].variable}
+    signal = records[SIGNAL].variable
+    kept = {key: value for key, value in signal.attrs.items() if key not in columns.differing}
+    data: dict[str, Any] = {SIGNAL: (signal.dims, signal.values, kept)}
     coordinates: dict[str, Any] = {name: records[name].variable for name in ("channel", "elapsed_time")}
     for name, described in columns.variables.items():
         values = records[name].values if name in records.variables else np.full(count, not_known(described))

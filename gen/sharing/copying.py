@@ -2,7 +2,6 @@
 
 import glob
 import hashlib
-import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
@@ -22,8 +21,10 @@ from gen.corpus import (
     plain_file,
     remove_left_behind,
     temporary_beside,
+    write_durably,
 )
 from gen.corpus.manifest import Numbers
+from gen.corpus.packed import packed_contents
 from gen.corpus.record_hashes import RENUMBERED, stored_signal
 from gen.corpus.schema import SIGNAL_DIMS
 from gen.errors import CorpusError
@@ -67,7 +68,7 @@ def facts_of(manifest: Manifest) -> dict[str, Any]:
 def stored_records(
     corpus: xr.Dataset, records: Sequence[int] | NDArray[np.intp], channels: Sequence[int]
 ) -> xr.Dataset:
-    """Some records of an opened corpus as they are stored, ready for :func:`gen.corpus.write_part`.
+    """Some records of an opened corpus as they are stored: a part for :func:`gen.corpus.write_part` without its global attributes.
 
     ``records`` are ascending; their variables are read together, and their signals in blocks.
     """
@@ -87,7 +88,7 @@ def stored_records(
     time = some["elapsed_time"]
     some = some.assign_coords(elapsed_time=("elapsed_time", time.values.astype(np.float64), time.attrs))
     others = some.drop_vars(SIGNAL).isel(channel=[*channels]).load()
-    return xr.Dataset({SIGNAL: (SIGNAL_DIMS, counts, attributes), **others.data_vars}, others.coords, corpus.attrs)
+    return xr.Dataset({SIGNAL: (SIGNAL_DIMS, counts, attributes), **others.data_vars}, others.coords)
 
 
 def joined(blocks: list[xr.Dataset]) -> xr.Dataset:
@@ -104,12 +105,20 @@ def part_attributes(directory: Path) -> dict[str, Any]:
         return {str(name): value for name, value in part.attrs.items() if name not in _OF_ONE_PART}
 
 
+def small_file(directory: Path, name: str) -> bytes | None:
+    """Content of a file beside the parts of a corpus, in its folder or in a packed file; None if there is no such file."""
+    if directory.is_file():
+        return packed_contents(directory).files.get(name)
+    return plain_file(directory, name).read_bytes() if (directory / name).exists() else None
+
+
 def copy_recipes(source: Path, target: Path, names: Iterable[str | None]) -> None:
     """Copy ``recipe.yaml`` and the recipes with the given names from one corpus to another, as far as there are any."""
-    for name in {"recipe.yaml", *names}:
-        if name is not None and (source / name).exists():
-            (target / name).parent.mkdir(exist_ok=True)
-            shutil.copyfile(plain_file(source, name), target / name)
+    for name in {"recipe.yaml", *names} - {None}:
+        content = small_file(source, str(name))
+        if content is not None:
+            (target / str(name)).parent.mkdir(exist_ok=True)
+            write_durably(content, target / str(name))
 
 
 def parts_sha256(manifest: Manifest) -> str:

@@ -24,7 +24,6 @@ from gen.corpus import (
     finish_corpus,
     open_corpus,
     part_name,
-    plain_file,
     read_manifest,
     write_durably,
     write_part,
@@ -41,6 +40,7 @@ from gen.sharing.copying import (
     parts_sha256,
     records_of_origins,
     renumbered,
+    small_file,
     stored_records,
 )
 from gen.sharing.repeats import Seen, sample_digests
@@ -127,19 +127,19 @@ def merge(
 def _opened(directory: Path, stack: ExitStack) -> _Source:
     manifest = read_manifest(directory)
     corpus = stack.enter_context(open_corpus(directory))
-    origins = list(manifest.origins) or [_own_origin(directory, manifest, corpus.attrs.get("title"))]
+    origins = list(manifest.origins) or [_own_origin(manifest, corpus.attrs.get("title"))]
     return _Source(directory, manifest, corpus, origins)
 
 
-def _own_origin(directory: Path, manifest: Manifest, title: str | None) -> Origin:
+def _own_origin(manifest: Manifest, title: str | None) -> Origin:
     """Origin of the records of a corpus that was not merged."""
-    chosen_from = manifest.selections[0].parts_sha256 if manifest.selections else parts_sha256(manifest)
+    chosen_from = manifest.selections[0].parts_sha256 if manifest.selections else None
+    recipe = None if manifest.scenarios == "given" else manifest.recipe_sha256
     return Origin(
         parts=len(manifest.parts),
         added=Numbers(),
         title=title,
-        same_machines=manifest.recipe_sha256 or chosen_from,
-        recipe_file="recipes/00000.yaml" if (directory / "recipe.yaml").is_file() else None,
+        same_machines=recipe or chosen_from or parts_sha256(manifest),
         **{name: getattr(manifest, name) for name in _ORIGIN_FACTS},
     )
 
@@ -272,11 +272,8 @@ def _with_recipes(sources: Sequence[_Source], added: Mapping[str, Numbers], fold
     found = []
     for source in sources:
         for origin in source.origins:
-            recipe_file = origin.recipe_file
-            if recipe_file is not None:
-                text = plain_file(
-                    source.directory, recipe_file if source.manifest.origins else "recipe.yaml"
-                ).read_bytes()
+            text, recipe_file = _recipe(source, origin), None
+            if text is not None:
                 recipe_file = names.setdefault(text, f"recipes/{len(names):05d}.yaml")
                 (folder / "recipes").mkdir(exist_ok=True)
                 write_durably(text, folder / recipe_file)
@@ -287,10 +284,17 @@ def _with_recipes(sources: Sequence[_Source], added: Mapping[str, Numbers], fold
     return found
 
 
+def _recipe(source: _Source, origin: Origin) -> bytes | None:
+    """Recipe of the records of one origin; None if there is none."""
+    if not source.manifest.origins:
+        return small_file(source.directory, "recipe.yaml")
+    return None if origin.recipe_file is None else small_file(source.directory, origin.recipe_file)
+
+
 def _facts(sources: Sequence[_Source], title: str, origins: Sequence[Origin]) -> dict[str, Any]:
     """Facts about the merged corpus for its manifest."""
     facts: dict[str, Any] = {"title": title}
-    for name in ("failures", "basis", "skipped", "warnings"):
+    for name in ("basis", "failures", "skipped", "warnings"):
         sentences = [sentence for source in sources for sentence in getattr(source.manifest, name)]
         facts |= {name: sentences} if sentences else {}
     return facts | {"origins": [origin.model_dump(mode="json") for origin in origins]}

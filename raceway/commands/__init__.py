@@ -6,6 +6,7 @@ module         responsibility
 corpora        commands that make corpora and look at them
 cutting        commands that choose records, and that join corpora
 extending      rigs or specimens added to a corpus
+packing        commands that make one file of a corpus, and back
 importing      commands that convert real recordings into the format
 feature_tables a picture of one record, and features of all
 models         a model trained, and scored on another corpus
@@ -13,6 +14,7 @@ references     healthy records that the tested ones are compared with
 diagnosing     a diagnosis of one recording
 benchmarking   scores of all baselines, and the speed of this machine
 comparing      synthetic records against real ones
+publishing     the data card with terms of use, pictures and scores
 reproduce      the seed paper run again
 gallery        a page of pictures of simulated signals
 ============== ================================================================

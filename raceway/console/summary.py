@@ -63,7 +63,9 @@ def describe(directory: Path) -> dict[str, Any]:
         If the folder holds no corpus, or a part is missing or altered.
     """
     manifest = read_manifest(directory)
-    known = manifest.model_dump(exclude={"parts_", "complete", "records", "index", "signals"}, exclude_unset=True)
+    known = manifest.model_dump(
+        exclude={"parts_", "complete", "records", "index", "next_index", "signals"}, exclude_unset=True
+    )
     about = {
         "corpus": directory,
         "complete": manifest.complete,
@@ -162,6 +164,8 @@ def show_facts(facts: dict[str, Any]) -> None:
     )
     show.text(facts.get("title", str(facts["corpus"])), "")
     known = {"corpus": facts["corpus"], "made by": origin, "selected": chosen}
+    if license_name := facts.get("publication", {}).get("license"):
+        known["licence"] = license_name
     known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
     if (facts["corpus"] / EXTENSION_NAME).exists():
         known["state"] += "; an extension is unfinished, and the raceway extend command that began it completes it"

@@ -91,9 +91,15 @@ def write_additions(directory: Path, additions: CardAdditions) -> None:
     write_text_durably(json.dumps(additions.model_dump(mode="json"), indent=1) + "\n", directory / CARD_NAME)
 
 
+_LINES = (
+    "Under each waveform is its squared envelope spectrum over orders of the shaft, after whitening. The lines of the fault at their "
+    "nominal orders are shaded, those of other faults and of the shaft are dashed."
+)
+
+
 def pictures(found: Sequence[CardPicture]) -> list[str]:
     """Section with the pictures."""
-    lines = ["", "## Pictures"] if found else []
+    lines = ["", "## Pictures", "", _LINES] if found else []
     for picture in found:
         title, caption = plain_text(picture.title), plain_text(picture.caption)
         lines += ["", f"**{title}**: {caption}", "", f"![{title}]({PICTURES}/{_safe(picture.name)})"]

@@ -16,6 +16,16 @@ def plain_text(text: object) -> str:
     return shown
 
 
+def code_text(text: object) -> str:
+    """Text from a stranger as one line of a code block, which ends at the first line of back ticks.
+
+    >>> code_text("fault == 'inner' and load < 5 ```")
+    "fault == 'inner' and load < 5 '''"
+    """
+    shown = " ".join(str(text).replace("`", "'").split())
+    return "".join(letter if letter.isprintable() else "?" for letter in shown)
+
+
 _HARMLESS = str.maketrans({"|": "/", "<": "(", ">": ")", "`": "'", "\\": "/"})
 
 

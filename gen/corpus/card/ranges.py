@@ -25,7 +25,7 @@ IntArray = NDArray[np.intp]
 MOST_DRAWS = (
     1024  # records whose draws are read; they are drawn in runs, because text is stored in blocks of 256 records
 )
-_RUN = 16
+_RUN = 4
 MOST_QUANTITIES = 200  # rows of a table
 LARGEST_RECIPE = 1_000_000  # bytes that are searched for keys
 FEWEST = 12  # specimens of a class whose values are compared with those of the others
@@ -37,6 +37,12 @@ SI_SYMBOLS: Mapping[str, str] = {
     "kg_m3": "kg m-3", "per_gpa": "Pa-1",
 }  # fmt: skip
 """Unit of a drawn value by the suffix of its key; levels in decibels are drawn as ratios of amplitudes."""
+
+_UNITS = {
+    "machine.unbalance": "kg m", "harmonics.frequency": "1", "knocks.frequency": "1", "modulation.once": "1", "modulation.twice": "1",
+    "axis.jumps": "1",
+}  # fmt: skip
+"""Units by the end of the place, of values without a key of their own or with another unit than that of the key: orders of the shaft."""
 
 _NOT_DRAWN = {"seed", "number", "entry", "bearing", "fault_try", "level_try", "ball"}
 """Numbers and copies of the catalogue among the draws."""
@@ -62,8 +68,8 @@ class Range(NamedTuple):
 class Groups(NamedTuple):
     """Class and specimen of each value."""
 
-    fault: NDArray[np.int8]
-    specimen: NDArray[np.int32]
+    fault: NDArray[np.integer[Any]]
+    specimen: NDArray[np.integer[Any]]
 
 
 def ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> list[str]:
@@ -175,7 +181,10 @@ def drawn_ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> tuple[list[Rang
         values, name = np.array(numbers), path.rpartition(".")[2]
         if values.min() < values.max() and name not in corpus:
             of_path = Groups(*(group[places[path]] for group in groups))
-            rows += quantity_ranges(path, units.get(name, ""), values, of_path)
+            unit = next((unit for end, unit in _UNITS.items() if path.endswith(end)), units.get(name, ""))
+            rows += quantity_ranges(path, unit, values, of_path)
+    order = ("rig", "specimen", "record")
+    rows.sort(key=lambda row: [row.name.startswith(f"{section}.") for section in order], reverse=True)
     return rows, len(chosen)
 
 
@@ -216,7 +225,7 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
 
 def _units(recipes: Iterable[Path]) -> dict[str, str]:
     """Units of drawn values by name, from the keys of recipes: ``shaft_mass_kg`` tells that ``shaft_mass`` is in kg."""
-    units = {"unbalance": "kg m"}  # worked out from the balance quality
+    units: dict[str, str] = {}
     for recipe in recipes:
         with recipe.open("rb") as stream:
             text = stream.read(LARGEST_RECIPE).decode(errors="replace")

@@ -31,9 +31,7 @@ def _creator(name: str, orcid: str | None) -> str:
 
 def citation(title: str, manifest: Manifest, publication: Publication) -> list[str]:
     """Section with the citation as a sentence and for BibTeX; ``title`` is plain text."""
-    tool = f"Raceway {plain_text(manifest.versions.get('raceway', ''))}".strip()
-    verb = "converted" if manifest.importer else "made"
-    note = f"Bearing vibration corpus of {manifest.records} records, {verb} with {tool}"
+    note = _note(manifest)
     return [
         "",
         "## How to cite it",
@@ -41,9 +39,15 @@ def citation(title: str, manifest: Manifest, publication: Publication) -> list[s
         _sentence(title, note, publication),
         "",
         "```bibtex",
-        *_bibtex(title, note, publication),
+        bibtex(title, manifest),
         "```",
     ]
+
+
+def _note(manifest: Manifest) -> str:
+    tool = f"Raceway {plain_text(manifest.versions.get('raceway', ''))}".strip()
+    verb = "converted" if manifest.importer else "made"
+    return f"Bearing vibration corpus of {manifest.records} records, {verb} with {tool}"
 
 
 def _sentence(title: str, note: str, publication: Publication) -> str:
@@ -58,18 +62,19 @@ def _sentence(title: str, note: str, publication: Publication) -> str:
     return ". ".join(part for part in parts if part) + "."
 
 
-def _bibtex(title: str, note: str, publication: Publication) -> list[str]:
+def bibtex(title: str, manifest: Manifest) -> str:
     """Entry of type ``misc``, which every BibTeX style knows."""
+    publication, title = manifest.publication, plain_text(title)
     fields = {
         "title": f"{{{_escaped(title)}}}",
         "author": " and ".join(f"{{{_escaped(plain_text(person.name))}}}" for person in publication.creators),
         "year": (publication.date or "")[:4],
         "publisher": _escaped(plain_text(publication.institution or "")),
         "doi": plain_text(publication.doi or "").replace("{", "").replace("}", ""),
-        "note": _escaped(note),
+        "note": _escaped(_note(manifest)),
     }
     entries = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
-    return [f"@misc{{{_key(title, publication)},", *entries, "}"]
+    return "\n".join([f"@misc{{{_key(title, publication)},", *entries, "}"])
 
 
 def _key(title: str, publication: Publication) -> str:

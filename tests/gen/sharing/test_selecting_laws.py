@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from gen import generate, open_corpus, replay, select, validate_corpus
+from gen import generate, open_corpus, pack, replay, select, validate_corpus
 from gen.corpus import Publication, open_part, publish, read_manifest
 from gen.corpus.record_hashes import record_hashes
 from gen.errors import CorpusError
@@ -64,8 +64,10 @@ def test_the_manifest_tells_every_choice_and_keeps_the_publication(source, tmp_p
     ]
     assert manifest.publication.license == "CC-BY-4.0"
     card = (tmp_path / "two" / "README.md").read_text()
-    assert "Selected from 9 records" in card
-    assert "Selected from 8 records" in card
+    assert "Selected from a corpus of 9 records" in card
+    assert "Selected from a corpus of 8 records" in card
+    with open_part(tmp_path / "two" / "parts" / "part-00000.nc") as part:  # terms can change, and parts cannot
+        assert not {"license", "comment"} & set(part.attrs)
 
 
 def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path):
@@ -106,12 +108,22 @@ def test_a_selection_is_not_completed_by_generate(tiny_corpus, tiny_recipe, tmp_
     assert validate_corpus(tmp_path / "some") == []
 
 
-def test_every_selected_record_is_replayed(tiny_corpus, tmp_path):
+def test_selected_records_are_replayed(tiny_corpus, tmp_path):
     made = select(tiny_corpus, tmp_path / "some", where="fault != 'healthy' and rig == 1", split="train")
-    again = [replay(tmp_path / "some", record) for record in range(made.records)]
+    again = [replay(tmp_path / "some", record) for record in range(0, made.records, 4)]
     assert all(one.identical for one in again)
     with open_part(tmp_path / "some" / "parts" / "part-00000.nc") as part:
         assert part["recording"].values[0] == again[0].dataset["recording"].values[0] > 0
+
+
+def test_a_packed_file_is_selected_from_and_replayed_like_its_folder(tiny_corpus, tmp_path):
+    pack(tiny_corpus, tmp_path / "tiny.nc")
+    assert replay(tmp_path / "tiny.nc", 17).identical
+    for source, name in ((tiny_corpus, "of_folder"), (tmp_path / "tiny.nc", "of_file")):
+        select(source, tmp_path / name, where="specimen in (9, 12)")
+    assert replay(tmp_path / "of_file", 3).identical
+    one, other = ([row.sha256 for row in read_manifest(tmp_path / name).parts] for name in ("of_folder", "of_file"))
+    assert one == other
 
 
 def test_the_chosen_channels_are_replayed(write_recipe, tmp_path):

@@ -1,0 +1,193 @@
+"""``croissant.json``: files, fields, licence and citation of a corpus as catalogues of data sets read them, in the format Croissant 1.1.
+
+It lists the files with their SHA-256 and every variable with its type and meaning. A field names its variable in ``corpus.nc``: readers of
+Croissant find files and fields, and the files themselves are read with a netCDF reader.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from gen.corpus.acdd import content_id, license_address, publication_attributes
+from gen.corpus.card.origin import recipe_files
+from gen.corpus.card.terms import bibtex
+from gen.corpus.files import write_text_durably
+from gen.corpus.index import open_corpus
+from gen.corpus.manifest import INDEX_NAME, Manifest, listed_file, read_manifest
+from gen.corpus.publication import Publication
+from gen.corpus.schema import FAULT_NAMES, SIGNAL, SPLITS
+
+CROISSANT_NAME = "croissant.json"
+
+_NETCDF = "application/x-netcdf"
+_TERMS = (
+    "arrayShape", "citeAs", "column", "containedIn", "equivalentProperty", "extract", "field", "fileObject", "fileProperty", "fileSet",
+    "format", "includes", "isArray", "isLiveDataset", "jsonPath", "key", "md5", "parentField", "path", "recordSet", "references", "regex",
+    "repeated", "replace", "samplingRate", "separator", "source", "subField", "transform",
+)  # fmt: skip
+_CONTEXT = {
+    "@language": "en",
+    "@vocab": "https://schema.org/",
+    "conformsTo": "dct:conformsTo",
+    "cr": "http://mlcommons.org/croissant/",
+    "data": {"@id": "cr:data", "@type": "@json"},
+    "dataType": {"@id": "cr:dataType", "@type": "@vocab"},
+    "dct": "http://purl.org/dc/terms/",
+    "description": {"@container": "@language"},
+    "examples": {"@id": "cr:examples", "@type": "@json"},
+    "name": {"@container": "@language"},
+    "rai": "http://mlcommons.org/croissant/RAI/",
+    "sc": "https://schema.org/",
+    **{name: f"cr:{name}" for name in _TERMS},
+}
+"""Words of the format with their addresses; its readers expect all of them in every file."""
+
+
+def write_croissant(directory: Path) -> None:
+    """Write ``croissant.json`` of a finished corpus, whole or not at all; the same corpus gives the same bytes."""
+    text = json.dumps(croissant(directory), indent=1, ensure_ascii=False)
+    write_text_durably(text + "\n", directory / CROISSANT_NAME)
+
+
+def croissant(directory: Path) -> dict[str, Any]:
+    """Content of ``croissant.json`` of a finished corpus.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus is unfinished, or one of its files is missing or of another size than in the manifest.
+    """
+    manifest = read_manifest(directory)
+    attributes = publication_attributes(manifest)
+    with open_corpus(directory, check="size") as corpus:
+        title = str(corpus.attrs.get("title", "Untitled corpus"))
+        return {
+            "@context": _CONTEXT,
+            "@type": "sc:Dataset",
+            "conformsTo": "http://mlcommons.org/croissant/1.1",
+            "name": title,
+            "description": attributes["summary"],
+            "keywords": attributes["keywords"].split(", "),
+            "identifier": attributes["id"],
+            "version": f"1.0.0+{content_id(manifest)[:8]}",
+            "isLiveDataset": False,
+            **_published(manifest.publication),
+            "citeAs": bibtex(title, manifest),
+            "distribution": [*_netcdf_files(manifest), *_further_files(directory)],
+            "recordSet": [
+                _listed_values("faults", "Fault classes.", "sc:Enumeration", FAULT_NAMES),
+                _listed_values("splits", "Training, validation and test records.", "cr:Split", dict(enumerate(SPLITS))),
+                _records(corpus),
+            ],
+        }
+
+
+def _published(publication: Publication) -> dict[str, Any]:
+    """Licence, creators, publisher and dates, as far as they are given."""
+    creators = []
+    for creator in publication.creators:
+        kind = "sc:Organization" if creator.name == publication.institution else "sc:Person"
+        address = {"url": f"https://orcid.org/{creator.orcid}"} if creator.orcid else {}
+        creators.append({"@type": kind, "name": creator.name, **address})
+    publisher = {"@type": "sc:Organization", "name": publication.institution}
+    if publication.contact:
+        publisher["email"] = publication.contact
+    given = {
+        "license": license_address(publication.license) if publication.license else None,
+        "creator": creators,
+        "publisher": publisher if publication.institution else None,
+        "url": f"https://doi.org/{publication.doi}" if publication.doi else None,
+        "citation": list(publication.references),
+        "dateCreated": publication.date,
+        "datePublished": publication.date,
+    }
+    return {name: value for name, value in given.items() if value}
+
+
+def _netcdf_files(manifest: Manifest) -> list[dict[str, Any]]:
+    rows = [(f"parts/{row.name}", row.bytes, row.sha256) for row in manifest.parts]
+    if manifest.index is not None:
+        rows.insert(0, (INDEX_NAME, manifest.index.bytes, manifest.index.sha256))
+    return [_file(name, size, digest, _NETCDF) for name, size, digest in rows]
+
+
+def _further_files(directory: Path) -> list[dict[str, Any]]:
+    """Manifest and recipes."""
+    found = []
+    for path in (directory / "manifest.json", *recipe_files(directory)):
+        row = listed_file(path)
+        kind = "application/json" if path.suffix == ".json" else "application/yaml"
+        found.append(_file(str(path.relative_to(directory)), row["bytes"], row["sha256"], kind))
+    return found
+
+
+def _file(name: str, size: int, digest: str, kind: str) -> dict[str, Any]:
+    return {
+        "@type": "cr:FileObject",
+        "@id": name,
+        "name": name,
+        "contentUrl": name,
+        "contentSize": f"{size} B",
+        "encodingFormat": kind,
+        "sha256": digest,
+    }
+
+
+def _listed_values(name: str, description: str, kind: str, values: Mapping[int, str]) -> dict[str, Any]:
+    """Set of the codes of a variable with their names."""
+    code, text = f"{name}/code", f"{name}/name"
+    return {
+        "@type": "cr:RecordSet",
+        "@id": name,
+        "name": name,
+        "description": description,
+        "dataType": kind,
+        "key": {"@id": code},
+        "field": [
+            {"@type": "cr:Field", "@id": code, "name": "code", "dataType": "sc:Integer"},
+            {"@type": "cr:Field", "@id": text, "name": "name", "dataType": "sc:Text"},
+        ],
+        "data": [{code: number, text: word} for number, word in values.items()],
+    }
+
+
+def _records(corpus: xr.Dataset) -> dict[str, Any]:
+    """Set of the records with a field for each variable; the signal is one array of channels and samples."""
+    names = [str(name) for name, variable in corpus.variables.items() if variable.dims[:1] == ("record",)]
+    channels = ", ".join(str(name) for name in corpus["channel"].values)
+    return {
+        "@type": "cr:RecordSet",
+        "@id": "records",
+        "name": "records",
+        "description": f"Records of the corpus, one value of each variable of {INDEX_NAME} for each; channels of the signal: {channels}.",
+        "field": [_field(name, corpus.variables[name]) for name in names],
+    }
+
+
+def _field(name: str, variable: xr.Variable) -> dict[str, Any]:
+    attributes = variable.attrs
+    unit = attributes.get("units", "1")
+    meaning = str(attributes.get("long_name", name)) + (f" [{unit}]" if unit != "1" else "")
+    field: dict[str, Any] = {
+        "@type": "cr:Field",
+        "@id": f"records/{name}",
+        "name": name,
+        "description": f"{meaning} ({attributes.get('role', 'signal')})",
+        "dataType": _data_type(name, variable),
+        "source": {"fileObject": {"@id": INDEX_NAME}, "extract": {"column": name}},
+    }
+    if name == SIGNAL:
+        field |= {"isArray": True, "arrayShape": ",".join(str(size) for size in variable.shape[1:])}
+    if name in ("fault", "split"):
+        field["references"] = {"field": {"@id": f"{name}s/code"}}
+    return field
+
+
+def _data_type(name: str, variable: xr.Variable) -> str | list[str]:
+    if variable.dtype.kind not in "iuf":
+        return "sc:Text"
+    stored = f"cr:{variable.dtype.name.title().replace('Ui', 'UI')}"
+    return [stored, "cr:Label"] if name == "fault" else [stored, "cr:Split"] if name == "split" else stored

@@ -1,0 +1,113 @@
+"""Command that makes the data card of a corpus, with its terms of use, pictures and scores."""
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from raceway.console import show
+from raceway.console.options import A_PATH, corpus_argument, json_option
+
+if TYPE_CHECKING:
+    from gen import Publication
+
+
+def _creators(_context: click.Context, _option: click.Parameter, texts: tuple[str, ...]) -> list[dict[str, str]]:
+    """Name and, if given, ORCID of each creator."""
+    found: list[dict[str, str]] = []
+    for text in texts:
+        match = re.fullmatch(r"\s*([^<>]*[^<>\s])\s*(?:<\s*([^<>]+?)\s*>)?\s*", text)
+        if match is None:
+            raise click.BadParameter(f"{text!r} is not a name; write 'Jane Doe' or 'Jane Doe <0000-0002-1825-0097>'")
+        name, orcid = match.groups()
+        found.append({"name": name} | ({"orcid": orcid} if orcid else {}))
+    return found
+
+
+@click.command()
+@corpus_argument
+@click.option("--license", "license_", metavar="SPDX", help="Licence as an SPDX identifier, such as CC-BY-4.0.")
+@click.option(
+    "--creator",
+    "creators",
+    multiple=True,
+    metavar="'NAME <ORCID>'",
+    callback=_creators,
+    help="A person or organisation that made the corpus, with the ORCID if there is one. Repeatable.",
+)
+@click.option("--institution", metavar="NAME", help="Institution at which the corpus was made.")
+@click.option("--doi", metavar="DOI", help="DOI of the corpus, such as 10.1000/182.")
+@click.option("--references", multiple=True, metavar="TEXT", help="A paper or page on the corpus. Repeatable.")
+@click.option("--contact", metavar="E-MAIL", help="E-mail address for questions.")
+@click.option("--date", metavar="YYYY-MM-DD", help="Day on which the corpus was made.")
+@click.option("--scores", type=A_PATH, metavar="FILE", help="results.json of raceway benchmark on this corpus.")
+@json_option
+def card(
+    corpus: Path,
+    license_: str | None,
+    creators: list[dict[str, str]],
+    institution: str | None,
+    doi: str | None,
+    references: tuple[str, ...],
+    contact: str | None,
+    date: str | None,
+    scores: Path | None,
+    as_json: bool,
+) -> None:
+    """Complete the data card of DIR for publication.
+
+    The card is DIR/README.md. It is made from the files of the folder, with a picture of one record of each class and of the
+    distributions (DIR/pictures). Facts that are given replace those of the corpus, also in corpus.nc and manifest.json; the others stay.
+    No part changes. Call it again after any change of the corpus.
+
+      raceway card corpus --license CC-BY-4.0 --creator "Jane Doe <0000-0002-1825-0097>" --date 2026-03-31
+      raceway card corpus --doi 10.1000/182 --references "J. Doe, Bearings, 2026"
+      raceway benchmark corpus -o report
+      raceway card corpus --scores report/results.json
+
+    Next: read DIR/README.md, then raceway pack or raceway export
+    """
+    given = {
+        "license": license_,
+        "creators": creators,
+        "institution": institution,
+        "doi": doi,
+        "references": list(references),
+        "contact": contact,
+        "date": date,
+    }
+    publication = _published(corpus, {name: value for name, value in given.items() if value})
+    from raceway.studies.card_pictures import complete_card
+
+    added = complete_card(corpus, scores)
+    written = corpus / "README.md"
+    rows = () if added.scores is None else added.scores.rows
+    if as_json:
+        pictures = [corpus / "pictures" / picture.name for picture in added.pictures]
+        scored = {row.name: row.score for row in rows}
+        show.as_json({"card": written, "pictures": pictures, "scores": scored, "publication": publication.stored})
+        return
+    scored = f", scores of {show.counted(len(rows), 'classifier')}" if rows else ""
+    show.text(f"{written}: {show.counted(len(added.pictures), 'picture')}{scored}.")
+    missing = [
+        name
+        for name in ("license", "creator", "date")
+        if not publication.stored.get(name.replace("creator", "creators"))
+    ]
+    if missing:
+        show.text(f"Before you publish it: raceway card {corpus} {' '.join(f'--{name} ...' for name in missing)}")
+
+
+def _published(corpus: Path, given: dict[str, Any]) -> "Publication":
+    """Facts of the corpus after those that are given have replaced others."""
+    from gen.corpus import publish, read_manifest, read_publication
+    from gen.errors import CorpusError
+
+    if corpus.is_file():
+        raise CorpusError(f"{corpus}: is one file, and a data card belongs to a folder; use raceway unpack first.")
+    known = read_manifest(corpus).publication
+    wanted = read_publication(known.stored | given)
+    if wanted != known:
+        publish(corpus, wanted)
+    return read_manifest(corpus).publication

@@ -1,0 +1,156 @@
+"""Pictures and scores of a data card: ``corpus -> pictures/*.png``, ``results.json -> scores``, both listed in ``card.json``.
+
+``record-CLASS.png`` shows the waveform and the squared envelope spectrum of one record of a class, ``content.png`` the distributions of
+speed, load and severity by class. The same corpus and libraries give the same bytes.
+"""
+
+import io
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from matplotlib import rc_context
+from matplotlib.figure import Figure
+from PIL import Image
+
+from features.faults import LOOKS
+from features.report.examples import chosen_example
+from features.report.page import quantities
+from features.report.pictures import STYLE, WIDTH, Shown, draw_content, draw_envelope_spectrum, draw_waveform, picture
+from gen.corpus import FAULT_NAMES, open_corpus, read_manifest, remove_left_behind, write_card, write_durably
+from gen.corpus.card.additions import (
+    PICTURES,
+    CardAdditions,
+    CardPicture,
+    CardScore,
+    CardScores,
+    parts_digest,
+    read_additions,
+    write_additions,
+)
+from gen.errors import CorpusError
+from gen.limits import check_limit
+
+DPI = 110
+COLOURS = 48  # of a picture: lines, text and shades look the same, and the file has half the size
+
+
+def complete_card(directory: Path, scores: Path | None = None) -> CardAdditions:
+    """Draw the pictures of a corpus, take over scores, and write its data card; returns what was added.
+
+    Without ``scores``, those that the card already has are kept.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus is unfinished or altered, the scores are of another corpus, or a file cannot be written.
+    """
+    manifest = read_manifest(directory)
+    with open_corpus(directory) as corpus:
+        known = read_additions(directory, manifest)
+        taken = known.scores if scores is None else read_scores(scores, corpus)
+        added = CardAdditions(parts=parts_digest(manifest), pictures=_write_pictures(directory, corpus), scores=taken)
+    write_additions(directory, added)
+    write_card(directory)
+    return added
+
+
+def _write_pictures(directory: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]:
+    folder = directory / PICTURES
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise CorpusError(f"{folder}: cannot be created ({error.strerror}); free the name or the disk.") from None
+    remove_left_behind(folder, "*.png")
+    drawn: list[CardPicture] = []
+    for code in np.unique(corpus["fault"].values):
+        fault = FAULT_NAMES[int(code)]
+        shown, caption = chosen_example(corpus, int(code))
+        if shown is not None:
+            drawn.append(CardPicture(name=f"record-{fault}.png", title=f"One record: {fault}", caption=caption))
+            write_durably(small_png(draw_example(shown)), folder / drawn[-1].name)
+    drawn.append(
+        CardPicture(
+            name="content.png",
+            title="Records by rig, and distributions",
+            caption="Records of each class, stacked; sizes of faults are of the records with a spall.",
+        )
+    )
+    fault, rig = (corpus[name].values for name in ("fault", "rig"))
+    write_durably(small_png(draw_content(fault, rig, quantities(corpus))), folder / drawn[-1].name)
+    return tuple(drawn)
+
+
+@rc_context(STYLE)
+def draw_example(shown: Shown) -> Figure:
+    """Waveform above the squared envelope spectrum of a record, with the lines at the nominal orders."""
+    figure = Figure(figsize=(WIDTH, 4.6), layout="constrained")
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
+    waveform, envelope = figure.subplots(2, 1, height_ratios=(1, 1.3))
+    draw_waveform(waveform, shown)
+    draw_envelope_spectrum(envelope, shown)
+    figure.align_ylabels()
+    return figure
+
+
+def small_png(figure: Figure) -> bytes:
+    """Picture with few colours; equal figures give equal bytes."""
+    figure.set_dpi(DPI)
+    with Image.open(io.BytesIO(picture(figure, "png"))) as drawn:
+        few = drawn.convert("RGB").quantize(COLOURS, Image.Quantize.MEDIANCUT, dither=Image.Dither.NONE)
+    stream = io.BytesIO()
+    few.save(stream, "PNG", optimize=True)
+    return stream.getvalue()
+
+
+def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
+    """Scores of a corpus from ``results.json`` of ``raceway benchmark``.
+
+    Raises
+    ------
+    CorpusError
+        If the file is none, or its scores are of another corpus: one with another title, or other counts of records.
+    """
+    try:
+        check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
+        results = json.loads(path.read_bytes())
+        title, classes = results["corpus"]["title"], results["corpus"]["classes"]
+        scores = CardScores(
+            track=results["track"],
+            folds=results["folds"],
+            seed=results["seed"],
+            features=tuple(results["groups"]),
+            classes=tuple(classes),
+            records=results["corpus"]["records"],
+            raceway=results["versions"].get("raceway", "unknown"),
+            rows=tuple(_score(name, found) for name, found in results["baselines"].items()),
+        )
+    except OSError as error:
+        raise CorpusError(
+            f"{path}: cannot be read ({error.strerror}); give results.json of raceway benchmark."
+        ) from None
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        reason = f"no {error}" if isinstance(error, KeyError) else type(error).__name__
+        raise CorpusError(
+            f"{path}: is not a file of scores ({reason}); give results.json of raceway benchmark."
+        ) from None
+    codes, counts = np.unique(corpus["fault"].values, return_counts=True)
+    here = {FAULT_NAMES[int(code)]: int(count) for code, count in zip(codes, counts, strict=True)}
+    if title != corpus.attrs.get("title") or classes != {name: here[name] for name in here if name != "unknown"}:
+        raise CorpusError(
+            f"{path}: has scores of another corpus ({title!r}, {sum(classes.values())} records); run raceway benchmark on this one."
+        )
+    return scores
+
+
+def _score(name: str, found: dict[str, Any]) -> CardScore:
+    grouped, interval = found["grouped"], found["grouped"]["interval"]
+    return CardScore(
+        name=name,
+        score=grouped["balanced_accuracy"],
+        interval=None if interval is None else (interval[0], interval[1]),
+        random_records=found["leaky"]["balanced_accuracy"],
+        permuted_labels=found["null"]["balanced_accuracy"],
+    )

@@ -1,0 +1,210 @@
+"""Laws of the data card: it follows from the folder alone, its programs run, and its commands make the corpus again."""
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.corpus import FAULTS, Publication, data_card, open_corpus, publish, read_manifest, read_publication
+from gen.corpus.card import ranges
+from gen.corpus.card.additions import CardAdditions, CardPicture, parts_digest, write_additions
+from gen.corpus.card.origin import rebuilding
+from gen.corpus.card.ranges import FEWEST, Groups, quantity_ranges, some_records, variable_ranges
+from gen.corpus.card.terms import citation
+from gen.corpus.manifest import Choice, Manifest, Overrides
+from gen.errors import CorpusError
+from gen.units import UNITS
+from tests.tone_corpora import write_corpus
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("card") / "corpus"
+    rng = np.random.default_rng(1)
+    write_corpus(folder, load=rng.uniform(100, 900, 48), depth=1e-5 * (np.repeat(np.arange(16), 3) % 4))
+    return folder
+
+
+def blocks(card, language):
+    """Programs of a data card in one language."""
+    return re.findall(rf"^```{language}\n(.*?)^```$", card, re.MULTILINE | re.DOTALL)
+
+
+def test_the_same_files_give_the_same_page_in_any_folder(corpus, tmp_path):
+    copy = shutil.copytree(corpus, tmp_path / "another name")
+    assert data_card(copy) == data_card(corpus)
+
+
+def test_the_tables_count_the_records_of_the_corpus(corpus):
+    card = data_card(corpus)
+    for fault in FAULTS[:4]:
+        assert f"| {fault} | 12 | 12 | 4 | 4 | 12 | 0 | 0 |" in card
+    assert "| all | 48 | 48 | 16 | 4 | 48 | 0 | 0 |" in card
+    assert "All records belong to the split train" in card
+
+
+def test_every_variable_is_listed_with_its_range_or_its_one_value(corpus):
+    with open_corpus(corpus) as opened:
+        rows, constant = variable_ranges(opened)
+        load, depth = opened["load"].values, opened["depth"].values
+    found = {(row.name, row.fault): row[3:] for row in rows}
+    assert found["load", "all"] == (load.min(), np.median(load), load.max())
+    assert found["depth", "outer"] == (2e-5, 2e-5, 2e-5)
+    assert not any(name == "depth" and "healthy" in fault for name, fault in found)
+    assert depth.min() == 0
+    assert "`sample_rate` 4000 Hz" in constant
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=20, deadline=None)
+def test_classes_of_one_distribution_share_a_row_and_a_class_that_is_moved_has_its_own(seed):
+    rng = np.random.default_rng(seed)
+    specimen = np.repeat(np.arange(3 * 40), 2)
+    groups = Groups(specimen % 3, specimen)
+    values = rng.uniform(0, 1, specimen.size)
+    assert [row.fault for row in quantity_ranges("x", "m", values, groups)] == ["all"]
+    moved = values + 2 * (groups.fault == 1)
+    rows = {row.fault: row for row in quantity_ranges("x", "m", moved, groups)}
+    assert set(rows) == set(FAULTS[:3])
+    assert rows["inner"].least >= 2 > rows["outer"].largest
+
+
+def test_classes_with_few_specimens_are_not_compared():
+    specimen = np.repeat(np.arange(2 * (FEWEST - 1)), 50)
+    groups = Groups(specimen % 2, specimen)
+    assert [row.fault for row in quantity_ranges("x", "m", 1.0 * groups.fault, groups)] == ["all"]
+
+
+@given(st.integers(1, 5000))
+@settings(max_examples=40, deadline=None)
+def test_the_records_whose_draws_are_read_are_some_of_the_corpus(n):
+    chosen = some_records(n)
+    assert len(chosen) == min(n, ranges.MOST_DRAWS)
+    assert (np.diff(chosen) > 0).all()
+    assert 0 <= chosen[0] <= chosen[-1] < n
+
+
+def test_every_unit_of_a_recipe_has_its_symbol_in_si():
+    assert set(ranges.SI_SYMBOLS) == set(UNITS)
+
+
+def rms_of_first(corpus):
+    with open_corpus(corpus) as opened:
+        return float(np.sqrt(np.mean(opened["acceleration"].values[0, 0].astype(float) ** 2)))
+
+
+@pytest.mark.parametrize("place", [0, 1], ids=["raceway", "xarray alone"])
+def test_the_python_programs_of_the_card_read_the_first_record(corpus, place):
+    program = blocks(data_card(corpus), "python")[place]
+    run = subprocess.run([sys.executable, "-c", program], cwd=corpus, capture_output=True, text=True, check=True)
+    assert float(run.stdout) == pytest.approx(rms_of_first(corpus), rel=1e-5)
+
+
+PROGRAMS = {
+    "matlab": ["octave-cli", "--no-gui", "--eval", "pkg load netcdf\n{}"],
+    "r": ["Rscript", "-e", "{}"],
+    "julia": ["julia", "-e", "{}"],
+}
+PACKAGES = {
+    "matlab": ["octave-cli", "--eval", "pkg load netcdf"],
+    "r": ["Rscript", "-e", "library(ncdf4)"],
+    "julia": ["julia", "-e", "using NCDatasets"],
+}
+
+
+@pytest.mark.parametrize("language", PROGRAMS)
+def test_the_other_programs_of_the_card_read_the_first_record(corpus, language):
+    if shutil.which(PROGRAMS[language][0]) is None:
+        pytest.skip(f"no {PROGRAMS[language][0]} on this machine")
+    if subprocess.run(PACKAGES[language], capture_output=True, check=False).returncode:
+        pytest.skip(f"{PACKAGES[language][-1]} fails on this machine")
+    (program,) = blocks(data_card(corpus), language)
+    command = [word.replace("{}", program) for word in PROGRAMS[language]]
+    run = subprocess.run(command, cwd=corpus, capture_output=True, text=True, check=True)
+    assert float(run.stdout) == pytest.approx(rms_of_first(corpus), rel=1e-5)
+
+
+def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_path):
+    folder = shutil.copytree(corpus, tmp_path / "copy")
+    facts = {
+        "license": "CC-BY-4.0",
+        "creators": [{"name": "Jane Doe", "orcid": "0000-0002-1825-0097"}, {"name": "A & B"}],
+    }
+    publish(folder, read_publication(facts | {"doi": "10.1000/182", "date": "2026-03-31"}))
+    card = (folder / "README.md").read_text()
+    assert card == data_card(folder)
+    assert "| licence | CC-BY-4.0 |" in card
+    assert "| creator | Jane Doe, https://orcid.org/0000-0002-1825-0097 |" in card
+    assert "\nJane Doe and A & B (2026): tones. Bearing vibration corpus of 48 records, made with Raceway." in card
+    (entry,) = blocks(card, "bibtex")
+    assert entry.startswith("@misc{doe2026tones,\n")
+    assert r"author = {{Jane Doe} and {A \& B}}" in entry
+    assert "doi = {10.1000/182}" in entry
+    assert "No licence is stated" in data_card(corpus)
+
+
+@given(st.text(max_size=30), st.text(max_size=30))
+@settings(max_examples=40, deadline=None)
+def test_no_title_or_name_breaks_the_bibtex_entry(title, name):
+    name = "".join(letter for letter in name if letter.isprintable()).strip() or "N"
+    publication = Publication(creators=(read_publication({"creators": [{"name": name}]}).creators[0],))
+    manifest = Manifest.model_validate({"raceway_format": 2, "complete": False, "records": 0, "parts": ()})
+    lines = citation(title.replace("`", "'").replace("\\", "/"), manifest, publication)
+    entry = "\n".join(lines[lines.index("```bibtex") + 1 : -1])
+    depth = 0
+    for mark in re.findall(r"\\.|[{}]", entry):
+        depth += {"{": 1, "}": -1}.get(mark, 0)
+        assert depth >= 0
+    assert depth == 0
+
+
+def made(**facts):
+    return Manifest.model_validate({"raceway_format": 2, "complete": False, "records": 0, "parts": (), **facts})
+
+
+def commands(manifest):
+    (block,) = blocks("\n".join(rebuilding(manifest)), "sh")
+    return [shlex.split(line) for line in block.splitlines()]
+
+
+def test_the_commands_repeat_seed_records_extensions_and_choices():
+    overrides = Overrides.model_validate({"seed": 7, "records": 40, "extensions": ({"specimens": 2}, {"rigs": 3})})
+    where = """fault == 'inner' and load < 500 and bearing != "6205 $x" """.strip()
+    choices = (
+        Choice(records=40, parts_sha256="0", where=where),
+        Choice(records=9, parts_sha256="1", channels=("a", "b c")),
+    )
+    assert commands(made(recipe="small", overrides=overrides, selections=choices)) == [
+        ["raceway", "generate", "recipe.yaml", "-o", "../again", "--seed", "7", "--records", "40"],
+        ["raceway", "extend", "../again", "--specimens", "2"],
+        ["raceway", "extend", "../again", "--rigs", "3"],
+        ["raceway", "select", "../again", "--where", where, "-o", "../again-selected"],
+        ["raceway", "select", "../again-selected", "--channels", "a,b c", "-o", "../again-selected-selected-2"],
+    ]
+
+
+def test_a_corpus_without_a_recipe_or_with_scenarios_made_by_hand_has_no_command():
+    assert "The folder does not say how it was made" in rebuilding(made())[-1]
+    assert "raceway replay . --record I" in rebuilding(made(recipe="small", scenarios="given"))[-1]
+
+
+def test_pictures_and_scores_of_other_parts_are_left_out(corpus, tmp_path):
+    folder = shutil.copytree(corpus, tmp_path / "copy")
+    picture = CardPicture(name="record-inner.png", title="One record", caption="A caption")
+    write_additions(folder, CardAdditions(parts=parts_digest(read_manifest(folder)), pictures=(picture,)))
+    assert "![One record](pictures/record-inner.png)" in data_card(folder)
+    write_additions(folder, CardAdditions(parts="0" * 64, pictures=(picture,)))
+    assert data_card(folder) == data_card(corpus)
+
+
+def test_a_damaged_list_of_pictures_is_refused_with_a_sentence(corpus, tmp_path):
+    folder = shutil.copytree(corpus, tmp_path / "copy")
+    (folder / "card.json").write_text('{"parts": 3}')
+    with pytest.raises(CorpusError, match=r"card\.json: .*; delete it and run raceway card again\.$"):
+        data_card(folder)
