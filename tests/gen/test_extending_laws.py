@@ -56,11 +56,18 @@ def begun(recipe_file, tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def extended(begun, tmp_path_factory):
-    """The same corpus with one specimen more in both rigs, then with one rig more."""
-    folder = shutil.copytree(begun, tmp_path_factory.mktemp("extended") / "corpus")
+def with_specimens(begun, tmp_path_factory):
+    """The same corpus with one specimen more in both rigs."""
+    folder = shutil.copytree(begun, tmp_path_factory.mktemp("specimens") / "corpus")
     made = extend(folder, specimens=1)
     assert (made.records, made.added, made.parts, made.kept) == (17, 4, 5, 0)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def extended(with_specimens, tmp_path_factory):
+    """The same corpus with one specimen more in both rigs, then with one rig more."""
+    folder = shutil.copytree(with_specimens, tmp_path_factory.mktemp("extended") / "corpus")
     made = extend(folder, rigs=1)
     assert (made.records, made.added, made.parts, made.kept) == (25, 8, 7, 0)
     return folder
@@ -118,18 +125,15 @@ def interrupted_after(n_parts, monkeypatch):
 
 
 def test_an_interrupted_extension_leaves_the_corpus_readable_and_is_completed(
-    copied, extended, recipe_file, monkeypatch
+    with_specimens, extended, recipe_file, monkeypatch, tmp_path
 ):
-    old = contents(copied)
-    extend(copied, specimens=1)
-    before = contents(copied)
+    copied, before = shutil.copytree(with_specimens, tmp_path / "copy"), contents(with_specimens)
     with monkeypatch.context() as patched:
         interrupted_after(1, patched)
         with pytest.raises(KeyboardInterrupt):
             extend(copied, rigs=1)
     left = contents(copied)
     assert {name: left[name] for name in before} == before
-    assert old["recipe.yaml"] == left["recipe.yaml"]
     assert validate_corpus(copied) == []
     with pytest.raises(CorpusError, match="is being extended; run the raceway extend command"):
         generate(recipe_file, copied, records=13)
@@ -142,10 +146,10 @@ def test_an_interrupted_extension_leaves_the_corpus_readable_and_is_completed(
 
 
 @pytest.mark.parametrize("broken", ["write_manifest", "write_card", "unlink"])
-def test_an_extension_that_ended_while_its_files_were_replaced_is_completed(copied, monkeypatch, tmp_path, broken):
+def test_an_extension_that_ended_while_its_files_were_replaced_is_completed(
+    copied, with_specimens, monkeypatch, broken
+):
     """Between index and manifest the corpus cannot be read, and the error says what to do; afterwards it is the new one."""
-    whole = shutil.copytree(copied, tmp_path / "whole")
-    extend(whole, specimens=1)
     with monkeypatch.context() as patched:
 
         def ended(*_given, **_facts):
@@ -163,16 +167,14 @@ def test_an_extension_that_ended_while_its_files_were_replaced_is_completed(copi
     else:
         assert validate_corpus(copied) == []
     assert extend(copied, specimens=1).records == 17
-    assert contents(copied) == contents(whole)
+    assert contents(copied) == contents(with_specimens)
 
 
-def test_a_killed_extension_leaves_the_old_or_the_new_corpus_or_one_that_is_completed(copied, tmp_path):
-    folder, old = tmp_path / "killed", contents(copied)
+def test_a_killed_extension_leaves_the_old_or_the_new_corpus_or_one_that_is_completed(copied, with_specimens, tmp_path):
+    folder, old, new = tmp_path / "killed", contents(copied), contents(with_specimens)
     shutil.copytree(copied, folder)
-    new = None
     for _ in killed(lambda: extend(folder, specimens=1), moments=5):
         left = contents(folder)
-        new = new or left
         if left != new:
             assert {name: left[name] for name in old if name.startswith("parts/")} == parts(copied)
             whole = {name: found for name, found in left.items() if not name.endswith(".tmp")}
@@ -198,35 +200,26 @@ def test_records_that_cannot_be_simulated_are_left_out(write_recipe, tmp_path, m
     assert replay(folder, 11).identical
 
 
-def test_workers_do_not_change_an_extension(copied, tmp_path):
-    other = shutil.copytree(copied, tmp_path / "other")
-    extend(copied, rigs=2)
-    extend(other, rigs=2, workers=2)
-    assert contents(copied) == contents(other)
+def test_workers_do_not_change_an_extension(with_specimens, extended, tmp_path):
+    copied, shown = shutil.copytree(with_specimens, tmp_path / "copy"), []
+    extend(copied, rigs=1, workers=2, progress=lambda *counts: shown.append(counts))
+    assert contents(copied) == contents(extended)
+    assert shown[-1] == (8, 8)
 
 
-def test_progress_counts_the_new_records(copied):
-    shown = []
-    extend(copied, specimens=1, progress=lambda *counts: shown.append(counts))
-    assert shown[-1] == (4, 4)
-    assert new_block(copied, rigs=1).records == range(17, 25)
+def test_the_new_block_is_known_before_it_is_made(begun):
+    assert new_block(begun, rigs=1).records == range(13, 21)
 
 
-def test_facts_that_were_added_to_the_manifest_stay(copied):
-    manifest = read_manifest(copied)
-    facts = manifest.model_dump(mode="json", exclude_unset=True, exclude={*EXTENDING._NOT_COPIED})
-    write_manifest(copied, manifest.parts, complete=True, **facts, published="yes")
-    extend(copied, specimens=1)
-    assert read_manifest(copied).model_extra["published"] == "yes"
-
-
-def test_other_versions_are_told(copied):
+def test_facts_of_the_manifest_stay_and_other_versions_are_told(copied):
     manifest, told = read_manifest(copied), []
     facts = manifest.model_dump(mode="json", exclude_unset=True, exclude={*EXTENDING._NOT_COPIED})
-    write_manifest(copied, manifest.parts, complete=True, **facts | {"versions": {**manifest.versions, "scipy": "0.1"}})
+    facts |= {"versions": {**manifest.versions, "scipy": "0.1"}, "recordings": 77}
+    write_manifest(copied, manifest.parts, complete=True, **facts)
     extend(copied, specimens=1, notice=told.append)
     assert [sentence.split(": ")[1].split(" ")[::2] for sentence in told] == [["scipy", "instead", "0.1."]]
     assert read_manifest(copied).versions["scipy"] == "0.1"
+    assert read_manifest(copied).recordings == 77
 
 
 def test_a_corpus_whose_machines_are_drawn_otherwise_now_is_refused(copied, monkeypatch):
