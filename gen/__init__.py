@@ -29,8 +29,11 @@ part_task   parts labelled and written
 compilation kernels of a recipe compiled before its first record
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
+extending   rigs or specimens added to a corpus
+in_memory   records as one Dataset, from keys or from scenarios made by hand
 plan        counts, size and steps of a corpus before it is made
 pages       documentation pages written from the code
+writing     a Dataset of records as a corpus
 =========== ==================================================================
 
 Data flows down this list; a module imports only modules above it. Public names are imported when they are first used, so that
@@ -44,48 +47,96 @@ from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.corpus import Publication, open_corpus, publish, read_publication, validate_corpus
+    from gen.extending import extend
     from gen.generation import generate
-    from gen.recipe import read_recipe
+    from gen.in_memory import recipe_of, record, records, scenarios_of, simulate_scenarios
+    from gen.recipe import (
+        Recipe,
+        ball,
+        cage,
+        choice,
+        compound,
+        distributed,
+        grid,
+        healthy,
+        inner,
+        loguniform,
+        normal,
+        outer,
+        read_recipe,
+        recipe_for,
+        uniform,
+        write_recipe,
+    )
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
     from gen.sharing import export, merge, pack, select, torch_dataset, unpack
     from gen.simulation.simulate import simulate
+    from gen.writing import write_corpus
 
 __all__ = [
     "ClusterError",
     "CorpusError",
     "Publication",
     "RacewayError",
+    "Recipe",
     "RecipeError",
     "SimulationError",
+    "ball",
+    "cage",
+    "choice",
+    "compound",
+    "distributed",
     "draw_scenarios",
     "export",
+    "extend",
     "generate",
+    "grid",
+    "healthy",
+    "inner",
+    "loguniform",
     "merge",
+    "normal",
     "open_corpus",
+    "outer",
     "pack",
     "publish",
     "read_publication",
     "read_recipe",
+    "recipe_for",
+    "recipe_of",
+    "record",
+    "records",
     "replay",
+    "scenarios_of",
     "select",
     "shaft_angles",
     "simulate",
+    "simulate_scenarios",
     "stored_scenario",
     "torch_dataset",
+    "uniform",
     "unpack",
     "validate_corpus",
+    "write_corpus",
+    "write_recipe",
 ]
 
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "gen.corpus": ("Publication", "open_corpus", "publish", "read_publication", "validate_corpus"),
+        "gen.extending": ("extend",),
         "gen.generation": ("generate",),
-        "gen.recipe": ("read_recipe",),
+        "gen.in_memory": ("recipe_of", "record", "records", "scenarios_of", "simulate_scenarios"),
+        "gen.recipe": (
+            "Recipe", "ball", "cage", "choice", "compound", "distributed", "grid", "healthy", "inner", "loguniform", "normal", "outer",
+            "read_recipe", "recipe_for", "uniform", "write_recipe",
+        ),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
         "gen.sharing": ("export", "merge", "pack", "select", "torch_dataset", "unpack"),
         "gen.simulation.simulate": ("simulate",),
+        "gen.writing": ("write_corpus",),
     },
-)
+)  # fmt: skip

@@ -7,12 +7,17 @@ import functools
 import itertools
 import json
 import math
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
 from gen.corpus import PartRow, open_part, part_name, sha256, write_part
+from gen.families import Records
 from gen.labels import part_dataset
 from gen.making import ALONE, Crew, MadePart, made_parts
 from gen.recipe import Recipe, recipe_hash
@@ -36,21 +41,15 @@ def library_versions() -> dict[str, str]:
     return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
 
 
-def record_numbers(recipe: Recipe, part: int) -> range:
-    """Numbers of the records of a part."""
-    size = recipe.corpus.records_per_part
-    return range(part * size, min((part + 1) * size, recipe.n_records))
-
-
-def units(recipe: Recipe, workers: int) -> list[range]:
-    """Parts in units: consecutive parts that one task makes together, as evenly as possible.
+def units(recipe: Recipe, parts: range, workers: int) -> list[range]:
+    """``parts`` in units: consecutive parts that one task makes together, as evenly as possible.
 
     A unit has as many parts as ``UNIT_SAMPLES`` allows, but there are at least as many units as workers, if there are parts enough.
     """
     per_part = recipe.corpus.records_per_part * timeline(recipe).integrated
-    n_parts, wanted = recipe.n_parts, math.ceil(recipe.n_parts * per_part / UNIT_SAMPLES)
-    count = min(n_parts, math.ceil(wanted / workers) * workers)
-    edges = [place * n_parts // count for place in range(count + 1)]
+    wanted = math.ceil(len(parts) * per_part / UNIT_SAMPLES)
+    count = min(len(parts), math.ceil(wanted / workers) * workers)
+    edges = [parts.start + place * len(parts) // count for place in range(count + 1)]
     return [range(*some) for some in itertools.pairwise(edges)]
 
 
@@ -94,26 +93,38 @@ def make_parts(
         part = missing[made.place]
         return part, _written(made, recipe, directory / "parts" / part_name(part))
 
-    numbers = [record_numbers(recipe, part) for part in missing]
+    numbers = [recipe.records_of_part(part) for part in missing]
     yield from made_parts(recipe, numbers, written, lambda place, count: report(missing[place], count), meanwhile, crew)
 
 
 def _written(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
     """Write one part."""
-    response, scenarios = made.records.response, made.records.measured.scenarios
-    failures = tuple(response.failures[place] for place in sorted(response.failures))
-    fine = [place for place in range(len(scenarios)) if place not in response.failures]
-    if not fine:
+    dataset, failures = dataset_of(made.records, recipe, made.step_error)
+    if not dataset.sizes["record"]:
         return Outcome(PartRow(path.name, 0, 0, ""), kept=False, failures=failures)
-    dataset = part_dataset(made.records.measured, scenarios, recipe, response, made.step_error)
+    dataset.attrs |= part_attributes(recipe, failures)
+    return Outcome(write_part(dataset, path, recipe.corpus.codec), kept=False, failures=failures)
+
+
+def dataset_of(
+    records: Records, recipe: Recipe, step_error: NDArray[np.float64] | None = None
+) -> tuple[xr.Dataset, tuple[str, ...]]:
+    """Records with their labels in the layout of the corpus (undecoded), and one sentence for each record that is left out."""
+    response, scenarios = records.response, records.measured.scenarios
+    failures = tuple(response.failures[place] for place in sorted(response.failures))
+    dataset = part_dataset(records.measured, scenarios, recipe, response, step_error)
     if failures:
-        dataset = dataset.isel(record=fine)
-    dataset.attrs |= {
+        dataset = dataset.isel(record=[place for place in range(len(scenarios)) if place not in response.failures])
+    return dataset, failures
+
+
+def part_attributes(recipe: Recipe, failures: Sequence[str]) -> dict[str, str]:
+    """Global attributes of a part beside those of its records."""
+    return {
         "recipe_sha256": recipe_hash(recipe),
         "versions": json.dumps(library_versions()),
         "failures": json.dumps(failures),
     }
-    return Outcome(write_part(dataset, path, recipe.corpus.codec), kept=False, failures=failures)
 
 
 def _kept_part(path: Path, known: PartRow) -> Outcome | None:

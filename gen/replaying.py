@@ -11,7 +11,7 @@ from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, read_manifest, temp
 from gen.corpus.manifest import Numbers, Origin
 from gen.corpus.record_hashes import stored_signal
 from gen.errors import CorpusError
-from gen.families import made_again
+from gen.families import Records, made_again, made_from, picked
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import Scenario, read_scenario
@@ -21,7 +21,7 @@ from gen.simulation.timeline import timeline
 
 
 def corpus_recipe(directory: Path, record: int = 0) -> Recipe:
-    """Recipe of a record of a generated corpus, with the seed and the number of records of the call that generated it.
+    """Recipe of a record of a generated corpus, with the seed, the number of records and the extensions of its corpus.
 
     All records of a corpus have the same recipe, unless it was merged from several corpora.
 
@@ -46,7 +46,7 @@ def corpus_recipe(directory: Path, record: int = 0) -> Recipe:
         recipe = read_recipe(path, seed=facts.overrides.seed, records=facts.overrides.records)
     if recipe_hash(recipe) != facts.recipe_sha256:
         raise CorpusError(f"{directory / str(name)}: is not the recipe of the corpus; restore it to replay.")
-    return recipe
+    return recipe.extended(facts.overrides.extensions)
 
 
 def _origin_of(manifest: Manifest, record: int) -> Origin | None:
@@ -81,13 +81,17 @@ def replay(directory: Path | str, record: int) -> Replayed:
     """
     directory = Path(directory)
     with open_corpus(directory, check="size") as corpus:
-        recipe, origin = corpus_recipe(directory, record), _origin_of(read_manifest(directory), record)
+        manifest, recipe = read_manifest(directory), corpus_recipe(directory, record)
+        origin = _origin_of(manifest, record)
         added = Numbers() if origin is None else origin.added
         number = int(corpus["recording"][record]) - added.recording
         stored, scale = stored_signal(corpus[SIGNAL].variable[record : record + 1])
         channels = [str(name) for name in corpus["channel"].values]
         tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
-    made = made_again(recipe, number, *tries)
+        if (origin or manifest).scenarios == "given":
+            made = _made_as_given(directory, recipe, corpus, record)
+        else:
+            made = made_again(recipe, number, *tries)
     whole = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
     names = [str(name) for name in whole["channel"].values]
     dataset = renumbered(whole.isel(channel=[names.index(name) for name in channels]), added)
@@ -95,6 +99,18 @@ def replay(directory: Path | str, record: int) -> Replayed:
     new = dataset if scale is not None else in_floating_point(dataset)
     again = new[SIGNAL].values
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
+
+
+def _made_as_given(directory: Path, recipe: Recipe, corpus: xr.Dataset, record: int) -> Records:
+    """Make a record again from its stored scenario; the largest severity of a group of records sets the level of the group."""
+    pairs = corpus["pair"].values
+    group = [record] if pairs[record] < 0 else np.flatnonzero(pairs == pairs[record]).tolist()
+    scenarios = [stored_scenario(directory, one) for one in group]
+    if pairs[record] >= 0 and scenarios[-1].record.rung != recipe.corpus.n_rungs - 1:
+        raise CorpusError(
+            f"{directory}: record {record}: cannot be replayed, because the largest severity of its pair, which set its level, is not here."
+        )
+    return picked([(made_from(scenarios, recipe), group.index(record))])
 
 
 def stored_scenario(directory: Path | str, record: int) -> Scenario:

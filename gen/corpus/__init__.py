@@ -57,7 +57,7 @@ if TYPE_CHECKING:
     from gen.corpus.hdf5 import LIBRARY_LOCK
     from gen.corpus.index import open_corpus, write_index
     from gen.corpus.journal import JOURNAL_NAME, new_journal
-    from gen.corpus.manifest import Manifest, part_paths, read_manifest, write_manifest
+    from gen.corpus.manifest import EXTENSION_NAME, MOST_EXTENSIONS, Manifest, part_paths, read_manifest, write_manifest
     from gen.corpus.part import PartRow, part_name, write_part
     from gen.corpus.publication import Creator, Publication, read_publication
     from gen.corpus.reading import open_part, read_channel
@@ -84,12 +84,14 @@ if TYPE_CHECKING:
 __all__ = [
     "CODECS",
     "DRAWS",
+    "EXTENSION_NAME",
     "FAULTS",
     "FAULT_NAMES",
     "FORMAT",
     "JOURNAL_NAME",
     "LIBRARY_LOCK",
     "MISSING_COUNT",
+    "MOST_EXTENSIONS",
     "ROLES",
     "SCHEMA",
     "SIGNAL",
@@ -156,7 +158,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.corpus.hdf5": ("LIBRARY_LOCK",),
         "gen.corpus.index": ("open_corpus", "write_index"),
         "gen.corpus.journal": ("JOURNAL_NAME", "new_journal"),
-        "gen.corpus.manifest": ("Manifest", "part_paths", "read_manifest", "write_manifest"),
+        "gen.corpus.manifest": ("EXTENSION_NAME", "MOST_EXTENSIONS", "Manifest", "part_paths", "read_manifest", "write_manifest"),
         "gen.corpus.part": ("PartRow", "part_name", "write_part"),
         "gen.corpus.publication": ("Creator", "Publication", "read_publication"),
         "gen.corpus.reading": ("open_part", "read_channel"),

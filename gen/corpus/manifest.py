@@ -39,14 +39,23 @@ from gen.limits import check_limit
 Check = Literal["sha256", "size"]
 
 INDEX_NAME = "corpus.nc"
+MANIFEST_NAME = "manifest.json"
+EXTENSION_NAME = "extension.json"
+"""Manifest of a corpus that is being extended: as it will be, with the finished parts; the other manifest is as it was."""
+MOST_EXTENSIONS = 100
+
 _Texts = tuple[str, ...]
+_Added = Annotated[int, Field(ge=1, lt=2**31)]
+_Extension = Annotated[dict[Literal["rigs", "specimens"], _Added], Field(min_length=1, max_length=1)]
 
 
 class Overrides(Strict):
-    """Seed and number of records that replaced those of the recipe."""
+    """Seed and number of records that replaced those of the recipe, and what was added later."""
 
     seed: int | None = None
     records: int | None = None
+    extensions: Annotated[tuple[_Extension, ...], Field(max_length=MOST_EXTENSIONS)] = ()
+    """Extensions in the order in which they were made: number of added rigs, or of specimens added to every rig."""
 
 
 class Choice(Strict):
@@ -125,6 +134,8 @@ class Manifest(Strict):
     """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
     origins: tuple[Origin, ...] = ()
     """Corpora that were merged into this one, in the order of their records."""
+    scenarios: Literal["given"] | None = None
+    """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
 
     @property
     def parts(self) -> list[PartRow]:
@@ -170,31 +181,34 @@ def listed_file(path: Path) -> dict[str, Any]:
     return {"bytes": stamp(path)[0], "sha256": sha256(path)}
 
 
-def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, **facts: Any) -> None:
+def write_manifest(
+    directory: Path, rows: Iterable[PartRow], *, complete: bool, name: str = MANIFEST_NAME, **facts: Any
+) -> None:
     """Write ``manifest.json``: the finished parts, whether they are all, and ``facts`` such as recipe hash and versions.
 
     For a complete corpus the index must exist. ``publication`` is a :class:`gen.corpus.Publication`; other facts are values of JSON.
+    ``name`` is that of the file.
     """
     content = manifest_content(rows, index=directory / INDEX_NAME if complete else None, **facts)
-    write_content(directory, content)
+    write_content(directory, content, name)
 
 
-def write_content(directory: Path, content: dict[str, Any]) -> None:
+def write_content(directory: Path, content: dict[str, Any], name: str = MANIFEST_NAME) -> None:
     """Write ``manifest.json`` with the given content."""
-    write_text_durably(json.dumps(content, indent=1) + "\n", directory / "manifest.json")
+    write_text_durably(json.dumps(content, indent=1) + "\n", directory / name)
 
 
-def read_manifest(directory: Path) -> Manifest:
+def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
     """Read and check ``manifest.json`` of a folder or of a packed file, and the journal if the corpus is unfinished.
 
-    Names that lead out of the corpus are refused.
+    Names that lead out of the corpus are refused. ``name`` is that of the file in a folder.
 
     Raises
     ------
     CorpusError
         If it is missing, unreadable or of another format version, has a wrong or repeated name of a part, or its counts disagree.
     """
-    path = directory / "manifest.json"
+    path = directory / name
     if directory.is_file():
         return _checked(_packed_manifest(directory), path)
     if not directory.is_dir():
@@ -328,6 +342,10 @@ def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
     if not manifest.complete:
         raise CorpusError(f"{directory}: is unfinished; run the raceway generate command that began it again.")
     problems = file_problems(directory, manifest, check)
+    if problems and (directory / EXTENSION_NAME).exists():
+        raise CorpusError(
+            f"{problems[0].split('; ')[0]}; run the raceway extend command that began an extension of it again."
+        )
     if problems:
         raise CorpusError(problems[0])
     return [directory / "parts" / row.name for row in manifest.parts]

@@ -15,8 +15,12 @@ sensor_faults faults of mount, cable, amplifier and data transfer
 changes       keys of operation and level that one fault replaces
 shares        quantities that are a share of another
 loads         loads that no bearing of the recipe can carry
+extensions    blocks of a corpus that was extended
 checks        keys that contradict each other, weights that cannot be met
 model         the recipe as a whole
+constructors  faults and distributions by calls in Python
+keywords      a recipe from keys by their own names
+text          a recipe as YAML text
 keys          every key with unit, range, default and meaning
 sentences     error sentences for broken recipes
 finding       paths and names of recipe files
@@ -29,6 +33,21 @@ from typing import TYPE_CHECKING
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
+    from gen.recipe.constructors import (
+        ball,
+        cage,
+        choice,
+        compound,
+        distributed,
+        grid,
+        healthy,
+        inner,
+        loguniform,
+        normal,
+        outer,
+        uniform,
+    )
+    from gen.recipe.extensions import Block
     from gen.recipe.faults import (
         BallFault,
         CageFault,
@@ -40,13 +59,15 @@ if TYPE_CHECKING:
         fault_class,
     )
     from gen.recipe.finding import find_recipe, recipe_purpose, shipped_recipes
+    from gen.recipe.keywords import recipe_for
     from gen.recipe.machine import CatalogueBearing
     from gen.recipe.model import Recipe
     from gen.recipe.operation import ProfileSection
     from gen.recipe.reading import read_recipe, recipe_hash, recipe_schema
-    from gen.recipe.section import Section
+    from gen.recipe.section import Section, plain
     from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
     from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, LEAST_AXIAL_LOAD, STATIC_RATING, quantities
+    from gen.recipe.text import recipe_text, write_recipe
 
 __all__ = [
     "BALL_SPACING",
@@ -55,6 +76,7 @@ __all__ = [
     "MAX_OVERSAMPLING",
     "STATIC_RATING",
     "BallFault",
+    "Block",
     "CageFault",
     "CatalogueBearing",
     "CompoundFault",
@@ -68,20 +90,40 @@ __all__ = [
     "RaceFault",
     "Recipe",
     "Section",
+    "ball",
+    "cage",
+    "choice",
+    "compound",
+    "distributed",
     "fault_class",
     "find_recipe",
+    "grid",
+    "healthy",
+    "inner",
+    "loguniform",
+    "normal",
+    "outer",
+    "plain",
     "quantities",
     "read_recipe",
+    "recipe_for",
     "recipe_hash",
     "recipe_purpose",
     "recipe_schema",
+    "recipe_text",
     "shipped_recipes",
+    "uniform",
+    "write_recipe",
 ]
 
 # a name or a path of a recipe is looked up without the model of recipes
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
+        "gen.recipe.constructors": (
+            "ball", "cage", "choice", "compound", "distributed", "grid", "healthy", "inner", "loguniform", "normal", "outer", "uniform",
+        ),
+        "gen.recipe.extensions": ("Block",),
         "gen.recipe.faults": (
             "BallFault",
             "CageFault",
@@ -97,6 +139,7 @@ __getattr__, __dir__ = lazy_names(
             "recipe_purpose",
             "shipped_recipes",
         ),
+        "gen.recipe.keywords": ("recipe_for",),
         "gen.recipe.machine": ("CatalogueBearing",),
         "gen.recipe.model": ("Recipe",),
         "gen.recipe.operation": ("ProfileSection",),
@@ -105,7 +148,7 @@ __getattr__, __dir__ = lazy_names(
             "recipe_hash",
             "recipe_schema",
         ),
-        "gen.recipe.section": ("Section",),
+        "gen.recipe.section": ("Section", "plain"),
         "gen.recipe.sensing": (
             "MAX_OVERSAMPLING",
             "Modes",
@@ -119,5 +162,6 @@ __getattr__, __dir__ = lazy_names(
             "STATIC_RATING",
             "quantities",
         ),
+        "gen.recipe.text": ("recipe_text", "write_recipe"),
     },
-)
+)  # fmt: skip

@@ -27,6 +27,10 @@ def recipe_problem(recipe: "Recipe") -> str | None:
 
 def _faults_problem(recipe: "Recipe") -> str | None:
     weights = {"healthy": 0.0, "faulty": 0.0}
+    if recipe.corpus.fault_choice == "in_turn":
+        for number, entry in enumerate(recipe.faults):
+            if entry.weight != 1:
+                return f"faults[{number}].weight: has no effect with corpus.fault_choice: in_turn; leave it out, or choose by_weight."
     for entry in recipe.faults:
         weights["healthy" if fault_class(entry) == "healthy" else "faulty"] += entry.weight
     if sum(weights.values()) == 0:
@@ -48,7 +52,7 @@ def _rungs_problem(recipe: "Recipe", healthy: float, faulty: float) -> str | Non
     if faulty == 0:
         return "corpus.rungs: no entry of faults with a weight above 0 has a severity; add a fault, or leave rungs out."
     at_least = faulty / (len(rungs) - 1)
-    if rungs[0] == 0 and healthy < at_least * (1 - 1e-9):
+    if recipe.corpus.fault_choice == "by_weight" and rungs[0] == 0 and healthy < at_least * (1 - 1e-9):
         return (
             f"corpus.rungs: rung 0 makes at least {100 / len(rungs):.3g} % of all records healthy, and the weights of faults ask for "
             f"{100 * healthy / (healthy + faulty):.3g} %; give kind: healthy a weight of {at_least:.6g} or more, or leave out rung 0."

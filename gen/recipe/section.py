@@ -1,7 +1,9 @@
 """Base of every section of a recipe, and the types that several sections share."""
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
+import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, StrictInt, StringConstraints, ValidationInfo, field_validator
 
 from gen.recipe.distributions import Number, check_bounds
@@ -24,3 +26,20 @@ class Section(BaseModel):
     def _within_bounds(cls, value: Any, info: ValidationInfo) -> Any:
         bounds = cls.model_fields[info.field_name or ""].json_schema_extra
         return check_bounds(value, bounds) if isinstance(bounds, dict) else value
+
+
+def plain(value: Any) -> Any:
+    """Value of a recipe as YAML would give it: NumPy numbers and arrays as numbers and lists, sections as the keys that were given.
+
+    >>> plain({"widths": np.array([0.5, 1.0])})
+    {'widths': [0.5, 1.0]}
+    """
+    if isinstance(value, BaseModel):  # its kind names the section, also if it was not given
+        own = sorted(type(value).model_fields, key=lambda name: name != "kind")
+        given = [name for name in own if name in value.model_fields_set or name == "kind"]
+        return {name: plain(getattr(value, name)) for name in given}
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    return value.tolist() if isinstance(value, np.ndarray | np.generic) else value

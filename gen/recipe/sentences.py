@@ -7,20 +7,18 @@ from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 
-from gen.recipe.model import Recipe
-
 _MOST_SENTENCES = 20
 _LONGEST_KEY = 60  # characters shown
 _RENAMED = {"pitch_mm": "pitch_diameter_mm", "ball_mm": "ball_diameter_mm", "spalls": "n_spalls"}
 
 
-def sentences(error: ValidationError) -> list[str]:
-    """One sentence for each wrong key or value; a key that is missing because it is misspelt counts once."""
+def sentences(error: ValidationError, model: type[BaseModel]) -> list[str]:
+    """One sentence for each wrong key or value of a ``model``; a key that is missing because it is misspelt counts once."""
     items = error.errors()
-    meant = {(*item["loc"][:-1], _guess(item["loc"])) for item in items if item["type"] == "extra_forbidden"}
+    meant = {(*item["loc"][:-1], _guess(item["loc"], model)) for item in items if item["type"] == "extra_forbidden"}
     found: dict[str, None] = {}
     for place, item in enumerate(items):
-        sentence = None if item["loc"] in meant else _sentence(item)
+        sentence = None if item["loc"] in meant else _sentence(item, model)
         if sentence and len(found) == _MOST_SENTENCES:
             return [*found, f"there are up to {len(items) - place} more errors; correct these first."]
         if sentence:
@@ -28,18 +26,18 @@ def sentences(error: ValidationError) -> list[str]:
     return list(found)
 
 
-def _sentence(item: Any) -> str | None:
+def _sentence(item: Any, model: type[BaseModel]) -> str | None:
     """Sentence about one error; None if another error says more about it."""
-    place, value, kind, context = _place(item["loc"]), item["input"], item["type"], item.get("ctx", {})
+    place, value, kind, context = _place(item["loc"], model), item["input"], item["type"], item.get("ctx", {})
     shown = reprlib.repr(value) if isinstance(value, str | int | float) or value is None else "this"
     match kind:
         case "extra_forbidden":
-            guess, allowed = _guess(item["loc"]), ", ".join(_siblings(item["loc"]))
+            guess, allowed = _guess(item["loc"], model), ", ".join(_siblings(item["loc"], model))
             if guess and guess == _RENAMED.get(str(item["loc"][-1])):
                 return f"{place}: no such key; it is called {guess} now."
             return f"{place}: no such key; " + (f"did you mean {guess}?" if guess else f"allowed are {allowed}.")
         case "invalid_key":
-            section = _place(item["loc"][:-1])
+            section = _place(item["loc"][:-1], model)
             return f"{section}: {reprlib.repr(value)} is not a key; keys are words, and decimals have a point, not a comma."
         case "missing":
             return f"{place}: is missing; give it."
@@ -54,7 +52,7 @@ def _sentence(item: Any) -> str | None:
                 text = text.removesuffix(".") + "; for a bearing without a fault use kind: healthy."
             if not place:
                 return text
-            return f"{place}{'.' if text.partition(':')[0] in _siblings((*item['loc'], '')) else ': '}{text}"
+            return f"{place}{'.' if text.partition(':')[0] in _siblings((*item['loc'], ''), model) else ': '}{text}"
         case "too_short":
             least = context["min_length"]
             size = len(item["input"])
@@ -91,9 +89,9 @@ def _first_kind(item: Any) -> str:
     return known.get(place[-1], "uniform") if whole else "uniform"
 
 
-def _place(location: tuple[int | str, ...]) -> str:
+def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     """Path of a value in the file; the names of union branches, which pydantic inserts, are left out."""
-    place, node = "", _Cursor(Recipe)
+    place, node = "", _Cursor(model)
     for step in location:
         if isinstance(step, int):
             place += f"[{step}]"
@@ -146,18 +144,18 @@ def _sections(annotations: list[Any]) -> list[type[BaseModel]]:
     return sections
 
 
-def _siblings(location: tuple[int | str, ...]) -> list[str]:
+def _siblings(location: tuple[int | str, ...], model: type[BaseModel]) -> list[str]:
     """Keys that are allowed where ``location`` ends."""
-    node = _Cursor(Recipe)
+    node = _Cursor(model)
     for step in location[:-1]:
         if isinstance(step, str):
             node = node.into(step) if node.knows(step) else node.of_kind(step)
     return node.keys()
 
 
-def _guess(location: tuple[int | str, ...]) -> str | None:
+def _guess(location: tuple[int | str, ...], model: type[BaseModel]) -> str | None:
     """New name of the last key of ``location`` if it was renamed, else the most similar allowed key, if any."""
-    key, allowed = str(location[-1]), _siblings(location)
+    key, allowed = str(location[-1]), _siblings(location, model)
     if _RENAMED.get(key) in allowed:
         return _RENAMED[key]
     near = difflib.get_close_matches(key, allowed, 1)

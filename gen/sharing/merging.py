@@ -112,6 +112,7 @@ def merge(
         check_limit("records", total, "merge: the corpora hold", CorpusError)
         for source in sources[1:]:
             _check_same_form(sources[0], source, float32)
+        _check_extensions(sources)
         columns = columns_of_all([(str(source.directory), source.corpus) for source in sources])
         title = title or " + ".join(dict.fromkeys(str(source.corpus.attrs.get("title", "")) for source in sources))
         finish = partial(_finished, columns=columns, attributes=_attributes(sources, title), float32=float32)
@@ -157,6 +158,21 @@ def _check_same_form(first: _Source, other: _Source, float32: bool) -> None:
     ):
         if one != two and not (float32 and what == "storage of the signals"):
             raise CorpusError(f"{other.directory}: the {what}: {two}, that of {first.directory}: {one}; {advice}.")
+
+
+def _check_extensions(sources: Iterable[_Source]) -> None:
+    """Refuse corpora of one recipe that were extended in different ways: one number of a specimen stands for two bearings in them."""
+    longest: dict[str, tuple[Any, ...]] = {}
+    for source in sources:
+        for origin in source.origins:
+            found = () if origin.overrides is None else origin.overrides.extensions
+            short, long = sorted((longest.get(origin.same_machines, ()), found), key=len)
+            if long[: len(short)] != short:
+                raise CorpusError(
+                    f"{source.directory}: was extended in another way than a corpus of the same recipe before it, so that their "
+                    f"numbers stand for different bearings; merge corpora of different seeds, or one of the two."
+                )
+            longest[origin.same_machines] = long
 
 
 def _channels(source: _Source) -> str:

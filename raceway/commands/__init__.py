@@ -5,6 +5,7 @@ module         responsibility
 ============== ================================================================
 corpora        commands that make corpora and look at them
 cutting        commands that choose records, and that join corpora
+extending      rigs or specimens added to a corpus
 packing        commands that make one file of a corpus, and back
 importing      commands that convert real recordings into the format
 exporting      a corpus in the form of another program

@@ -13,6 +13,7 @@ import xarray as xr
 
 from gen.corpus import (
     DRAWS,
+    EXTENSION_NAME,
     FAULT_NAMES,
     SPLITS,
     Manifest,
@@ -152,8 +153,9 @@ def _range(values: np.ndarray) -> list[float] | None:
 
 def show_facts(facts: dict[str, Any]) -> None:
     """Print the facts of ``describe``; an unfinished corpus without a part has no contents yet."""
-    overrides = {key: value for key, value in facts.get("overrides", {}).items() if value is not None}
-    with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
+    overrides = {key: value for key, value in (facts.get("overrides") or {}).items() if value is not None}
+    extensions = [_shown_extension(**extension) for extension in overrides.pop("extensions", ())]
+    with_overrides = "".join([*(f", {key} {value}" for key, value in overrides.items()), *extensions])
     origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
     if facts.get("origins"):
         origin = "merge of " + ", ".join(of["title"] or "a corpus" for of in facts["origins"])
@@ -165,6 +167,8 @@ def show_facts(facts: dict[str, Any]) -> None:
     if license_name := facts.get("publication", {}).get("license"):
         known["licence"] = license_name
     known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
+    if (facts["corpus"] / EXTENSION_NAME).exists():
+        known["state"] += "; an extension is unfinished, and the raceway extend command that began it completes it"
     if "classes" in facts:
         known |= _shown_content(facts)
     known["not usable"] = described(SignalCounts(**facts["signals"]))
@@ -174,6 +178,11 @@ def show_facts(facts: dict[str, Any]) -> None:
     for heading, key in (("Left out:", "failures"), ("Skipped:", "skipped"), ("Warnings:", "warnings")):
         if facts[key]:
             show.text("", heading, *(f"- {sentence}" for sentence in facts[key]))
+
+
+def _shown_extension(rigs: int = 0, specimens: int = 0) -> str:
+    added = show.counted(rigs, "rig") if rigs else f"{show.counted(specimens, 'specimen')} in every rig"
+    return f", extended by {added}"
 
 
 def _shown_content(facts: dict[str, Any]) -> dict[str, str]:

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from scipy.optimize import root
 
 from gen.corpus import open_corpus
+from gen.errors import RecipeError
 from gen.generation import generate
 from gen.physics.axial import HALF_LOADED, axial_approach, check_axial_load
 from gen.physics.hertz import LINE_EXPONENT
@@ -139,7 +140,7 @@ def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write
 
 
 def test_an_axial_load_needs_a_bearing_with_a_contact_angle(recipe_with):
-    with pytest.raises(ValueError, match=r"operation\.axial_load_n: needs a contact angle"):
+    with pytest.raises(RecipeError, match=r"operation\.axial_load_n: needs a contact angle"):
         recipe_with({"operation.axial_load_n": 50})
 
 

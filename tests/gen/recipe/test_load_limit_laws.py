@@ -2,7 +2,7 @@
 
 import pytest
 
-from gen.errors import SimulationError
+from gen.errors import RecipeError, SimulationError
 from gen.generation import generate
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import LEAST_SAFETY, computed_rating, static_rating
@@ -40,7 +40,7 @@ SLANTED = {"specimen.contact_angle_deg": {"kind": "uniform", "low": 5, "high": 1
 )  # fmt: skip
 def test_a_recipe_whose_every_load_crushes_every_bearing_is_refused_when_it_is_read(recipe_with, changes, key, bearing):
     with pytest.raises(
-        ValueError, match=rf"operation.{key}: gives .* static rating of bearing {bearing}, is the limit"
+        RecipeError, match=rf"operation.{key}: gives .* static rating of bearing {bearing}, is the limit"
     ):
         recipe_with(changes)
 
@@ -107,7 +107,7 @@ def test_a_bearing_of_ones_own_is_rated_by_its_geometry(recipe_with):
     own = {"kind": "catalogue", "designations": ["mine"], "entries": {"mine": OWN}}
     limit = computed_rating(CATALOGUE["6205"]) / LEAST_SAFETY
     recipe_with({"bearing": own, "operation.load_n": limit - 1})
-    with pytest.raises(ValueError, match="static rating of bearing mine"):
+    with pytest.raises(RecipeError, match="static rating of bearing mine"):
         recipe_with({"bearing": own, "operation.load_n": limit + 1})
 
 

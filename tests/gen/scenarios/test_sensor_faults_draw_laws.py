@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import pytest
 
+from gen.errors import RecipeError
 from gen.scenarios import draw_scenarios
 from tests.sensor_faults import GEAR_MESH, SENSOR_FAULTS, rarely
 
@@ -128,7 +129,7 @@ def test_gain_steps_are_in_order_of_time(recipe_with):
     ],
 )  # fmt: skip
 def test_a_sensor_fault_without_effect_or_place_is_refused(recipe_with, path, value, sentence):
-    with pytest.raises(ValueError, match=sentence):
+    with pytest.raises(RecipeError, match=sentence):
         recipe_with({"sensor_faults": {name: dict(section) for name, section in SENSOR_FAULTS.items()}, path: value})
 
 

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gen.errors import RecipeError
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import static_rating
@@ -214,7 +215,7 @@ def test_the_support_of_a_share_that_is_known_only_when_drawn_is_that_of_its_fie
 def test_the_limits_of_loads_see_the_product(recipe_with):
     """A share of at least 20 of a bow of at least 1 kN is above the limit of a 6205, 15.8 kN; one of at least 10 is not."""
     heavy = {"machine.bow_n": uniform(1000, 2000), "operation.load_n": share("bow_n", 20, 30)}
-    with pytest.raises(ValueError, match=r"operation.load_n: gives an equivalent static load of at least 2e\+04 N"):
+    with pytest.raises(RecipeError, match=r"operation.load_n: gives an equivalent static load of at least 2e\+04 N"):
         recipe_with(heavy)
     recipe_with(heavy | {"operation.load_n": share("bow_n", 10, 30)})
 

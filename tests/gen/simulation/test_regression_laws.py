@@ -5,7 +5,7 @@ import json
 import numpy as np
 import pytest
 
-from gen import CorpusError, draw_scenarios, generate, simulate
+from gen import CorpusError, RecipeError, draw_scenarios, generate, simulate
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
 
@@ -33,7 +33,7 @@ def test_a_folder_with_somebody_elses_manifest_is_left_alone(tmp_path):
 
 
 def test_a_path_that_lets_nothing_through_is_refused(recipe_with):
-    with pytest.raises(ValueError, match=r"path\.direct: 0 without modes"):
+    with pytest.raises(RecipeError, match=r"path\.direct: 0 without modes"):
         recipe_with({"path": {"direct": 0}})
 
 

@@ -1,0 +1,104 @@
+"""Faults and distributions of a recipe by calls, for recipes written in Python.
+
+Each call takes the keys of the section of the same ``kind`` and gives the same errors as a recipe file; ``raceway recipes --keys faults``
+lists the keys with their units, ranges and defaults.
+"""
+
+from collections.abc import Sequence
+from typing import Any, TypeVar
+
+from pydantic import ValidationError
+
+from gen.errors import RecipeError
+from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
+from gen.recipe.section import Section, plain
+from gen.recipe.sentences import sentences
+
+_Of = TypeVar("_Of", bound=Section)
+
+
+def healthy(**keys: Any) -> Healthy:
+    """A bearing without a fault."""
+    return _checked(Healthy, "healthy", keys)
+
+
+def inner(**keys: Any) -> RaceFault:
+    """Spalls on the inner race; ``width_mm`` is required.
+
+    Raises
+    ------
+    RecipeError
+        If there are wrong keys or values; one sentence for each of them. All calls of this module raise it.
+
+    >>> inner(width_mm=0.8).kind
+    'inner'
+    """
+    return _checked(RaceFault, "inner", keys)
+
+
+def outer(**keys: Any) -> RaceFault:
+    """Spalls on the outer race; ``width_mm`` is required, ``depth_um``, ``angle_deg`` and ``n_spalls`` are further keys."""
+    return _checked(RaceFault, "outer", keys)
+
+
+def ball(**keys: Any) -> BallFault:
+    """Spalls on one ball; ``width_mm`` is required."""
+    return _checked(BallFault, "ball", keys)
+
+
+def cage(**keys: Any) -> CageFault:
+    """A broken cage, with ``pitch_error_deg`` and ``knock_n``."""
+    return _checked(CageFault, "cage", keys)
+
+
+def distributed(**keys: Any) -> DistributedFault:
+    """A race worn over its whole circumference; ``site="inner"`` or ``site="outer"`` is required."""
+    return _checked(DistributedFault, "distributed", keys)
+
+
+def compound(*parts: Section, **keys: Any) -> CompoundFault:
+    """Several faults in one bearing.
+
+    >>> [part.kind for part in compound(inner(width_mm=0.4), cage()).parts]
+    ['inner', 'cage']
+    """
+    return _checked(CompoundFault, "compound", {"parts": parts, **keys})
+
+
+def uniform(low: float, high: float, **keys: Any) -> dict[str, Any]:
+    """Any value from low to high, all equally likely.
+
+    All distributions also take ``share_of``, ``per`` and ``scatter_percent``; they are checked with the key that they are given for.
+
+    >>> uniform(1000, 3000)
+    {'kind': 'uniform', 'low': 1000, 'high': 3000}
+    """
+    return {"kind": "uniform", "low": low, "high": high, **keys}
+
+
+def loguniform(low: float, high: float, **keys: Any) -> dict[str, Any]:
+    """Any value from low to high, all decades equally likely; low must be above 0."""
+    return {"kind": "loguniform", "low": low, "high": high, **keys}
+
+
+def normal(mean: float, sd: float, low: float, high: float, **keys: Any) -> dict[str, Any]:
+    """A normal distribution truncated at low and high."""
+    return {"kind": "normal", "mean": mean, "sd": sd, "low": low, "high": high, **keys}
+
+
+def choice(values: Sequence[float], weights: Sequence[float] | None = None, **keys: Any) -> dict[str, Any]:
+    """One of a few values, with weights if they are not equally likely."""
+    weighted = {} if weights is None else {"weights": weights}
+    return {"kind": "choice", "values": values, **weighted, **keys}
+
+
+def grid(values: Sequence[float], **keys: Any) -> dict[str, Any]:
+    """Values in turn, by the number of the rig, specimen or record."""
+    return {"kind": "grid", "values": values, **keys}
+
+
+def _checked(model: type[_Of], kind: str, keys: dict[str, Any]) -> _Of:
+    try:
+        return model.model_validate({**plain(keys), "kind": kind})
+    except ValidationError as error:
+        raise RecipeError("\n".join(f"{kind} fault: {sentence}" for sentence in sentences(error, model))) from None

@@ -1,0 +1,225 @@
+"""A recipe from keys by their own names: ``shaft_rpm`` stands for ``operation.shaft_rpm``.
+
+A name that one section alone has is put into that section; a whole section can be given too, as a mapping. The recipe that results is
+checked like any other.
+"""
+
+import difflib
+import functools
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple, get_args, get_origin
+
+from pydantic import BaseModel
+
+from gen.errors import RecipeError
+from gen.recipe.changes import Changes
+from gen.recipe.faults import Fault
+from gen.recipe.model import Recipe
+from gen.recipe.section import Section, plain
+
+DEFAULTS: Mapping[str, Any] = {
+    "name": "records",
+    "bearing": "6205",
+    "shaft_rpm": 1500,
+    "sample_rate_hz": 25_600,
+    "duration_s": 1,
+}
+"""Values of the keys that a recipe file must give."""
+
+FaultLike = Section | dict[str, Any] | str
+"""A fault: from a call such as :func:`gen.outer`, an entry of ``faults`` of a recipe, or a kind without required keys."""
+
+_COUNTED = ("rigs", "specimens_per_rig", "records_per_specimen")
+
+
+class _Place(NamedTuple):
+    """A place where a key can be."""
+
+    sections: tuple[str, ...]
+    kinds: frozenset[str]
+    """Values of ``kind`` of the last section that has the key; empty if the section has no kinds."""
+
+
+def recipe_for(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, **keys: Any) -> Recipe:
+    """Recipe with ``n`` records of each fault, from keys by their own names: the one that :func:`gen.records` uses.
+
+    With :func:`gen.write_recipe` and :func:`gen.generate` it makes a corpus that does not fit into memory.
+
+    Parameters
+    ----------
+    fault : section, dict, str or list of them
+        One fault or several, which take turns; a healthy bearing if left out.
+    n : int
+        Number of records of each fault. Each record has a specimen of its own on one rig, unless ``keys`` give ``rigs``,
+        ``specimens_per_rig``, ``records_per_specimen`` or ``rungs``.
+    **keys
+        Keys of a recipe by their own names or as whole sections.
+
+    Raises
+    ------
+    RecipeError
+        If a key is unknown, ambiguous, given twice or wrong, or if ``n`` does not agree with the keys.
+    """
+    if "faults" in keys and fault is not None:
+        raise RecipeError("faults: is given twice, also as fault; give it once.")
+    given: dict[str, Any] = plain(keys)
+    data: dict[str, Any] = {}
+    for name in [name for name in given if name in Recipe.model_fields]:
+        data[name] = _section(name, given.pop(name))
+    for name, value in given.items():
+        _set(data, name, value)
+    faults = plain("healthy" if fault is None else fault)
+    faults = [faults] if isinstance(faults, dict | str) else faults
+    if isinstance(faults, list):
+        faults = [{"kind": one} if isinstance(one, str) else one for one in faults]
+    data.setdefault("faults", faults)
+    for name, value in DEFAULTS.items():
+        if name in Recipe.model_fields:
+            data.setdefault(name, _section(name, value))
+        else:
+            section = data.setdefault(_places()[name][0].sections[0], {})
+            if isinstance(section, dict):
+                section.setdefault(name, value)
+    corpus = data.setdefault("corpus", {})
+    if isinstance(corpus, dict) and isinstance(data["faults"], list):
+        corpus.setdefault("fault_choice", "in_turn")
+        _count(corpus, max(len(data["faults"]), 1), n)
+    data.setdefault("title", _title(data))
+    return Recipe(**data)
+
+
+def _section(name: str, value: Any) -> Any:
+    """Value of a key of the recipe; a bearing can be given by its designation, or several by a list."""
+    if name == "bearing" and isinstance(value, str | list):
+        return {"kind": "catalogue", "designations": [value] if isinstance(value, str) else value}
+    return dict(value) if isinstance(value, dict) else value
+
+
+def _set(data: dict[str, Any], name: str, value: Any) -> None:
+    """Put a value into the only section that has a key of this name."""
+    place = _place(name)
+    section = data
+    for step in place.sections:
+        section = section.setdefault(step, {})
+        if not isinstance(section, dict):
+            raise RecipeError(f"{name}: {'.'.join(place.sections)} is given and is no section; give one of the two.")
+    if name in section:
+        raise RecipeError(f"{name}: is given twice, also in {'.'.join(place.sections)}; give it once.")
+    section[name] = value
+    if place.kinds:
+        section.setdefault("kind", _usual_kind(place))
+
+
+def _usual_kind(place: _Place) -> str:
+    """Kind of a section that has a key: the default of the section if it has the key too."""
+    default: Any = Recipe.model_fields[place.sections[0]].default
+    for step in place.sections[1:]:
+        default = getattr(default, step, None)
+    usual = getattr(default, "kind", None)
+    return usual if usual in place.kinds else min(place.kinds)
+
+
+def _place(name: str) -> _Place:
+    found = _places().get(name, [])
+    if len(found) == 1:
+        return found[0]
+    if not found:
+        raise RecipeError(f"{name}: no such key; {_advice(name)}")
+    sections = [".".join(place.sections) for place in found]
+    first, *inside = found[0].sections
+    example = repr({name: ...}).replace("Ellipsis", "...")
+    for step in reversed(inside):
+        example = f"{{{step!r}: {example}}}"
+    raise RecipeError(
+        f"{name}: is a key of {', '.join(sections[:-1])} and {sections[-1]}; give the section, such as {first}={example}."
+    )
+
+
+def _advice(name: str) -> str:
+    of_faults = {
+        key: get_args(model.model_fields["kind"].annotation)[-1]
+        for model in reversed(_models(Fault))
+        for key in model.model_fields
+    }
+    if name in of_faults:
+        return f"it is a key of faults; give it there, as in fault=gen.{of_faults[name]}({name}=...)."
+    allowed = [*_places(), *Recipe.model_fields, *of_faults]
+    near = difflib.get_close_matches(name, allowed, 1)
+    if not near:
+        return "raceway recipes --keys lists all keys."
+    return f"did you mean {near[0]}{', a key of faults' if near[0] in of_faults else ''}?"
+
+
+@functools.cache
+def _places() -> dict[str, list[_Place]]:
+    """Places of every key below the sections of a recipe, by its name; keys in lists of sections are not among them."""
+    found: dict[str, dict[tuple[str, ...], set[str]]] = {}
+
+    def collect(models: Sequence[type[BaseModel]], sections: tuple[str, ...]) -> None:
+        for model in models:
+            kinds = get_args(model.model_fields["kind"].annotation) if "kind" in model.model_fields else ()
+            for name, field in model.model_fields.items():
+                if name == "kind":
+                    continue
+                if sections:
+                    found.setdefault(name, {}).setdefault(sections, set()).update(kinds)
+                if get_origin(field.annotation) not in (tuple, dict):
+                    collect(_models(field.annotation), (*sections, name))
+
+    collect((Recipe,), ())
+    return {
+        name: [_Place(sections, frozenset(kinds)) for sections, kinds in places.items()]
+        for name, places in found.items()
+    }
+
+
+def _models(annotation: Any) -> list[type[BaseModel]]:
+    if isinstance(annotation, type) and issubclass(annotation, Section):
+        return [] if issubclass(annotation, Changes) else [annotation]
+    if get_origin(annotation) in (tuple, dict):
+        return []
+    return [found for argument in get_args(annotation) for found in _models(argument)]
+
+
+def _count(corpus: dict[str, Any], n_faults: int, n: int | None) -> None:
+    """Complete the counts of a corpus so that each fault has ``n`` records; wrong counts are left to the model."""
+    rungs = corpus.get("rungs")
+    corpus.setdefault("records_per_specimen", 1)
+    counts = [corpus[name] for name in _COUNTED if name in corpus]
+    if any(type(count) is not int or count < 1 for count in counts) or not isinstance(rungs, list | None):
+        for name in _COUNTED:
+            corpus.setdefault(name, 1)
+        return
+    of_a_specimen = corpus["records_per_specimen"] * len(rungs or [1])
+    if n is None and {"rigs", "specimens_per_rig"} <= corpus.keys():
+        return
+    n = of_a_specimen if n is None else n
+    if type(n) is not int or n < 1:
+        raise RecipeError(f"n: {n!r} is not allowed; it must be a whole number of records, 1 or more.")
+    specimens, rest = divmod(n * n_faults, of_a_specimen)
+    if rest or n % of_a_specimen:
+        raise RecipeError(
+            f"n: {n} records of each fault are no whole number of specimens of {of_a_specimen} records; use a multiple of {of_a_specimen}."
+        )
+    for one, other in (("rigs", "specimens_per_rig"), ("specimens_per_rig", "rigs")):
+        if one in corpus and specimens % corpus[one]:
+            raise RecipeError(
+                f"n: {n} records of each of {n_faults} faults take {specimens} specimens, which cannot be divided by {one}: {corpus[one]}; "
+                f"change one of the two."
+            )
+        if one in corpus:
+            corpus.setdefault(other, specimens // corpus[one])
+    corpus.setdefault("rigs", 1)
+    corpus.setdefault("specimens_per_rig", specimens)
+    if corpus["rigs"] * corpus["specimens_per_rig"] != specimens:
+        raise RecipeError(
+            f"n: {n} records of each of {n_faults} faults take {specimens} specimens, and rigs * specimens_per_rig are "
+            f"{corpus['rigs'] * corpus['specimens_per_rig']}; leave one of the three out."
+        )
+
+
+def _title(data: Mapping[str, Any]) -> str:
+    bearing = data["bearing"]
+    names = bearing.get("designations") if isinstance(bearing, dict) else None
+    named = ", ".join(map(str, names)) if isinstance(names, list) else "of given dimensions"
+    return f"Records of bearing {named}"[:200]

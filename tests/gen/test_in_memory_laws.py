@@ -1,0 +1,277 @@
+"""Laws of records made in memory and of the corpora written from them: the same records as from a recipe, whole, and made again from it."""
+
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gen
+from gen.corpus import SIGNAL
+from gen.errors import CorpusError, RecipeError, SimulationError
+from gen.recipe import plain
+from tests.kills import killed
+
+# the kernel of the small recipes
+SHORT = {"waviness_nm": 20, "sample_rate_hz": 12000, "duration_s": 0.1, "settle_s": 0.06, "seed": 5}
+OUTER, INNER = gen.outer(width_mm=0.8), gen.inner(width_mm=0.4)
+SNR = {"kind": "snr", "faulty_db": 3, "healthy_db": 3}
+
+
+@pytest.fixture(scope="module")
+def ladder():
+    """Three records of each of two faults, in two parts."""
+    return gen.records([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
+
+
+def same_but_source(one, other):
+    return one.drop_vars("source").identical(other.drop_vars("source"))
+
+
+def replayed(directory):
+    with gen.open_corpus(directory) as corpus:
+        records = corpus.sizes["record"]
+    return all(gen.replay(directory, record).identical for record in range(records))
+
+
+def test_one_record_is_the_only_one_of_records():
+    one = gen.record(OUTER, **SHORT)
+    assert one[SIGNAL].dims == ("channel", "elapsed_time")
+    assert one["bpfo"].dims == ()
+    alone = gen.records(OUTER, **SHORT).isel(record=0)
+    assert same_but_source(one.drop_attrs(deep=False), alone.drop_attrs(deep=False))
+
+
+def test_records_do_not_depend_on_the_number_of_threads(ladder):
+    again = gen.records([OUTER, INNER], 3, workers=2, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
+    assert again.identical(ladder)
+
+
+def test_the_corpus_of_a_whole_dataset_is_that_of_its_recipe_byte_by_byte(ladder, tmp_path):
+    written = gen.write_corpus(ladder, tmp_path / "written")
+    gen.generate(written / "recipe.yaml", tmp_path / "generated")
+    names = ["manifest.json", "corpus.nc", "recipe.yaml", "parts/part-00000.nc", "parts/part-00001.nc"]
+    for name in names:
+        assert (written / name).read_bytes() == (tmp_path / "generated" / name).read_bytes()
+    assert gen.validate_corpus(written) == []
+    with gen.open_corpus(written) as corpus:
+        assert np.array_equal(corpus[SIGNAL].values, ladder[SIGNAL].values)
+
+
+def saved(dataset, folder):
+    dataset.to_netcdf(folder / "saved.nc")
+    return xr.open_dataset(folder / "saved.nc")
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda ladder, _: ladder.isel(record=[4, 1]),
+        lambda ladder, _: ladder.isel(record=2),
+        lambda ladder, _: ladder.sortby("width").isel(record=slice(2)),
+        lambda ladder, _: xr.concat([ladder.isel(record=[5, 3]), ladder.isel(record=0)], "record"),
+        lambda ladder, _: ladder.isel(record=[3]).transpose("elapsed_time", "channel", "record"),
+        lambda ladder, folder: saved(ladder.isel(record=[2]), folder),
+    ],
+    ids=["some", "one", "sorted", "joined", "transposed", "saved"],
+)
+def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tmp_path, changed):
+    directory = gen.write_corpus(changed(ladder, tmp_path), tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+
+
+def test_further_variables_are_written(ladder, tmp_path):
+    attributes = {"long_name": "name of the shift", "role": "provenance"}
+    shifts, grades = [f"shift {n}" for n in range(6)], np.arange(6.0)
+    more = ladder.assign(shift=("record", shifts, attributes), grade=("record", grades, attributes | {"units": "m"}))
+    directory = gen.write_corpus(more, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    with gen.open_corpus(directory) as corpus:
+        assert corpus["shift"].values.tolist() == shifts
+        assert corpus["grade"].values.tolist() == grades.tolist()
+        assert corpus["grade"].attrs["units"] == "m"
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        (
+            lambda ladder: ladder.isel(elapsed_time=slice(100)),
+            "acceleration has channels sensor and 100 samples, the recipe sensor and 1200",
+        ),
+        (
+            lambda ladder: ladder.assign(acceleration=1.001 * ladder[SIGNAL]),
+            "acceleration of record 0 is not as the converter gave it",
+        ),
+        (
+            lambda ladder: ladder.assign(acceleration=ladder[SIGNAL] * np.nan),
+            "acceleration of record 0 is not as the converter gave it",
+        ),
+        (lambda ladder: ladder.isel(record=[1, 1]), "record 1 is in the Dataset twice; give it once."),
+        (lambda ladder: ladder.isel(record=[]), "the Dataset has no record; give at least one."),
+        (lambda ladder: ladder.drop_vars("snr"), "the Dataset has no variable snr; keep all that gen.records gives."),
+        (lambda ladder: ladder.drop_vars("draws"), "the Dataset has no variable draws, so it holds no scenarios."),
+        (lambda ladder: ladder.drop_attrs(), "the Dataset has no attribute recipe; give one from gen.record"),
+        (
+            lambda ladder: ladder.assign(mine=("record", np.arange(6))),
+            "mine: needs one value for each record and the attributes long_name and",
+        ),
+        (
+            lambda ladder: ladder.assign_attrs(recipe=gen.record(**SHORT).attrs["recipe"]),
+            "records that were not drawn from its recipe",
+        ),
+    ],
+)
+def test_a_dataset_that_cannot_be_made_again_is_refused(ladder, tmp_path, changed, sentence):
+    with pytest.raises(CorpusError, match=r".") as caught:
+        gen.write_corpus(changed(ladder), tmp_path / "corpus")
+    assert sentence in str(caught.value)
+    assert not any(tmp_path.iterdir())
+
+
+def test_records_of_two_recipes_in_one_dataset_are_refused(ladder, tmp_path):
+    other = gen.records(OUTER, **SHORT | {"seed": 6})
+    with pytest.raises(CorpusError, match=r"not drawn from its recipe; write .* and join the corpora with gen\.merge"):
+        gen.write_corpus(xr.concat([ladder.isel(record=[1, 2]), other], "record"), tmp_path / "corpus")
+
+
+def test_a_folder_that_holds_something_is_left_as_it_is(ladder, tmp_path):
+    (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
+    for place in (tmp_path, tmp_path / "notes.txt"):
+        with pytest.raises(CorpusError, match="is there already; choose another folder, or remove it first"):
+            gen.write_corpus(ladder, place)
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_a_relative_and_an_empty_folder_are_taken(ladder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    assert gen.write_corpus(ladder.isel(record=[0]), "empty") == tmp_path / "empty"
+    assert gen.validate_corpus("empty") == []
+
+
+def test_a_killed_write_leaves_a_whole_corpus_or_none(ladder, tmp_path):
+    directory = tmp_path / "corpus"
+    for _ in killed(lambda: gen.write_corpus(ladder, directory), moments=5):
+        assert not directory.exists() or gen.validate_corpus(directory) == []
+        for left in tmp_path.iterdir():
+            assert left == directory or left.name.startswith(".")
+            shutil.rmtree(left)
+
+
+def test_the_corpus_of_a_choice_is_not_completed_by_its_recipe(ladder, tmp_path):
+    directory = gen.write_corpus(ladder.isel(record=[1]), tmp_path / "corpus")
+    with pytest.raises(CorpusError, match="was selected from a larger corpus, so it cannot be generated"):
+        gen.generate(directory / "recipe.yaml", directory)
+    assert gen.validate_corpus(directory) == []
+
+
+def test_a_record_that_cannot_be_simulated_is_an_error_or_left_out_with_a_warning(tmp_path):
+    crushing = {"load_n": gen.grid([500, 30_000]), "bearing": "6205"}
+    with pytest.warns(UserWarning, match=r"1 of 3 records are left out; the first: record 1: .*static rating"):
+        found = gen.records(OUTER, 3, **SHORT, **crushing)
+    assert found["recording"].values.tolist() == [0, 2]
+    directory = gen.write_corpus(found, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+    gen.generate(directory / "recipe.yaml", tmp_path / "generated")
+    assert (directory / "manifest.json").read_bytes() == (tmp_path / "generated" / "manifest.json").read_bytes()
+
+
+def test_gen_record_makes_one_record_alone():
+    with pytest.raises(
+        RecipeError, match=r"the keys ask for 4 records; gen\.record makes one, gen\.records makes several"
+    ):
+        gen.record(OUTER, rigs=2, specimens_per_rig=2)
+    with pytest.raises(RecipeError, match="workers: 0 is not allowed; use 1 or more"):
+        gen.records(OUTER, workers=0)
+    with pytest.raises(SimulationError):
+        gen.record(OUTER, shaft_rpm=100_000, oversampling=1, **SHORT)
+
+
+def test_drawn_scenarios_give_the_records_of_their_recipe(ladder):
+    scenarios = gen.scenarios_of(ladder)
+    assert scenarios == gen.draw_scenarios(gen.recipe_of(ladder))
+    again = gen.simulate_scenarios(scenarios, gen.recipe_of(ladder))
+    assert (
+        again.drop_vars("step_error")
+        .drop_attrs(deep=False)
+        .identical(ladder.drop_vars("step_error").drop_attrs(deep=False))
+    )
+
+
+def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_path):
+    recipe = gen.recipe_for([OUTER, INNER], 3, rungs=[0, 0.5, 1], level=SNR, **SHORT)
+    scenarios = gen.draw_scenarios(recipe)
+    faster = [
+        replace(one, record=replace(one.record, conditions=one.record.conditions | {"shaft": 61.0}))
+        for one in scenarios
+    ]
+    made = gen.simulate_scenarios(faster[3:] + faster[:3], recipe)
+    assert np.allclose(made["true_shaft_rate"], 61, rtol=0.02)
+    directory = gen.write_corpus(made, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+    assert gen.stored_scenario(directory, 0) == faster[3]
+    with pytest.raises(CorpusError, match="not a whole recipe; choose another folder"):
+        gen.generate(directory / "recipe.yaml", directory)
+    with pytest.raises(
+        CorpusError, match="the record with the largest severity of pair 1 is missing; write pairs whole"
+    ):
+        gen.write_corpus(made.isel(record=[0, 1]), tmp_path / "cut")
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        (
+            lambda one: replace(one, seed=1),
+            r"scenarios\[1\]: seed 1 is not that of the recipe, 5; give them the same seed\.",
+        ),
+        (
+            lambda one: replace(one, rig=replace(one.rig, gain=2.0)),
+            r"scenarios\[1\]: rig 0 is not that of scenarios\[0\]; give another machine",
+        ),
+        (
+            lambda one: replace(one, rig=replace(one.rig, channels=())),
+            r"need one entry for each of 1 recording\.channels",
+        ),
+        (
+            lambda one: replace(one, record=replace(one.record, snr=3.0)),
+            r"record\.snr and record\.rms must be None with level\.kind: physical",
+        ),
+        (
+            lambda one: replace(one, record=replace(one.record, pair=0, rung=0)),
+            r"record\.pair needs corpus\.rungs in the recipe",
+        ),
+        (
+            lambda one: replace(one, specimen=replace(one.specimen, entry=7)),
+            r"specimen\.entry 7 is no place in faults of the recipe, which has 2",
+        ),
+        (
+            lambda one: replace(one, seed="x"),
+            r"scenarios\[1\]: is no scenario \(the whole text: .*; change drawn ones with",
+        ),
+        (
+            lambda one: replace(one, record=replace(one.record, conditions={"shaft": float("nan")})),
+            r"scenarios\[1\]: is no scenario \(",
+        ),
+    ],
+)
+def test_scenarios_that_do_not_fit_the_recipe_or_each_other_are_refused(ladder, changed, sentence):
+    recipe, scenarios = gen.recipe_of(ladder), gen.scenarios_of(ladder)
+    with pytest.raises(RecipeError, match=sentence):
+        gen.simulate_scenarios([scenarios[0], changed(scenarios[1])], recipe)
+
+
+def test_no_scenarios_are_no_records(ladder):
+    with pytest.raises(RecipeError, match="scenarios: there are none; give at least one"):
+        gen.simulate_scenarios([], gen.recipe_of(ladder))
+
+
+def test_the_dataset_carries_the_recipe_as_it_was_given(ladder):
+    assert plain(gen.recipe_of(ladder)) == plain(
+        gen.recipe_for([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
+    )

@@ -1,0 +1,81 @@
+"""The examples of ``docs/python.md`` run as they stand, with fewer and shorter records and one sensor."""
+
+import re
+
+import pytest
+
+import gen
+from gen.recipe import recipe_hash
+from tests.paths import ROOT
+
+PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
+FAN_END = re.compile(r'^ +(- )?\{"?name"?: "?fan_end.*\n', re.MULTILINE)
+# one kernel of the small recipes, and seconds instead of minutes
+SMALLER = {
+    "n=40": "n=5",
+    "specimens_per_rig: 10": "specimens_per_rig: 5",
+    "rigs=4": "rigs=1",
+    "rigs: 4": "rigs: 1",
+    "duration_s=1": "duration_s=0.1",
+    "duration_s: 1": "duration_s: 0.1",
+    "n=4,": "n=1,",
+    "gen.record(\n": "gen.record(\n    waviness_nm=20,",
+}
+
+
+def blocks(language):
+    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
+
+
+def smaller(text):
+    text = FAN_END.sub("", text)
+    for whole, part in SMALLER.items():
+        text = text.replace(whole, part)
+    return text
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """Folder in which all examples ran, one after the other, and their variables."""
+    folder, names = tmp_path_factory.mktemp("page"), {}
+    with pytest.MonkeyPatch.context() as patch:
+        patch.chdir(folder)
+        for block in blocks("python"):
+            exec(smaller(block), names)  # noqa: S102 - our own page
+        (recipe,) = blocks("yaml")
+        (folder / "ladder.yaml").write_text(smaller(recipe), encoding="utf-8")
+        gen.generate("ladder.yaml", "of_yaml")
+    return folder, names
+
+
+def test_the_frequency_of_the_page_is_that_of_its_record(results):
+    assert f"{results[1]['ball_pass_frequency']:.1f}" == "88.4"
+    assert "in Hz: 88.4" in PAGE
+
+
+def test_the_recipe_in_yaml_is_that_of_the_calls_and_gives_the_same_parts(results):
+    folder, names = results
+    of_yaml = gen.read_recipe(folder / "ladder.yaml")
+    assert recipe_hash(of_yaml) == recipe_hash(gen.recipe_of(names["ladder"]))
+    parts = [path.read_bytes() for path in sorted((folder / "of_yaml" / "parts").iterdir())]
+    assert parts == [path.read_bytes() for path in sorted((folder / "ladder" / "parts").iterdir())]
+
+
+def test_the_page_has_two_hundred_records_at_five_severities_and_two_sensors(tmp_path):
+    (text,) = blocks("yaml")
+    (tmp_path / "r.yaml").write_text(text, encoding="utf-8")
+    recipe = gen.read_recipe(tmp_path / "r.yaml")
+    widths = [scenario.specimen.spalls[0].width for scenario in gen.draw_scenarios(recipe)]
+    assert len(widths) == 200
+    assert sorted({(width, widths.count(width)) for width in widths}) == [
+        (pytest.approx(width * 1e-3), 40) for width in (0.2, 0.4, 0.6, 0.8, 1.0)
+    ]
+    assert len(recipe.recording.channels) == 2
+
+
+def test_the_corpora_of_the_page_are_valid_and_replay(results):
+    folder, names = results
+    for corpus in ("ladder", "growing", "large"):
+        assert gen.validate_corpus(folder / corpus) == []
+        assert gen.replay(folder / corpus, 0).identical
+    assert names["again"].identical
