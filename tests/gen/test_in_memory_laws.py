@@ -25,6 +25,10 @@ def ladder():
     return gen.records([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
 
 
+def with_width(one, width):
+    return replace(one, specimen=replace(one.specimen, spalls=(replace(one.specimen.spalls[0], width=width),)))
+
+
 def same_but_source(one, other):
     return one.drop_vars("source").identical(other.drop_vars("source"))
 
@@ -82,6 +86,13 @@ def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tm
     assert replayed(directory)
 
 
+def test_records_in_floating_point_are_written_as_they_are(tmp_path):
+    made = gen.records(OUTER, 2, converter={"kind": "float32"}, **SHORT)
+    directory = gen.write_corpus(made, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+
+
 def test_further_variables_are_written(ladder, tmp_path):
     attributes = {"long_name": "name of the shift", "role": "provenance"}
     shifts, grades = [f"shift {n}" for n in range(6)], np.arange(6.0)
@@ -114,6 +125,14 @@ def test_further_variables_are_written(ladder, tmp_path):
         (lambda ladder: ladder.drop_vars("snr"), "the Dataset has no variable snr; keep all that gen.records gives."),
         (lambda ladder: ladder.drop_vars("draws"), "the Dataset has no variable draws, so it holds no scenarios."),
         (lambda ladder: ladder.drop_attrs(), "the Dataset has no attribute recipe; give one from gen.record"),
+        (
+            lambda ladder: ladder.assign_attrs(recipe="{"),
+            "the attribute recipe of the Dataset is not the JSON text of a recipe",
+        ),
+        (
+            lambda ladder: ladder.assign_attrs(recipe="[1]"),
+            "the attribute recipe of the Dataset is not the JSON text of a recipe",
+        ),
         (
             lambda ladder: ladder.assign(mine=("record", np.arange(6))),
             "mine: needs one value for each record and the attributes long_name and",
@@ -250,6 +269,12 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
             lambda one: replace(one, specimen=replace(one.specimen, entry=7)),
             r"specimen\.entry 7 is no place in faults of the recipe, which has 2",
         ),
+        (
+            lambda one: replace(one, specimen=replace(one.specimen, fault="outer")),
+            "the damage of the specimen is inner; change",
+        ),
+        (lambda one: with_width(one, 0.0), "width and depth of a spall must be above 0"),
+        (lambda one: with_width(one, 0.3), "specimen 1: a spall of 300 mm does not fit the inner radius of"),
         (
             lambda one: replace(one, seed="x"),
             r"scenarios\[1\]: is no scenario \(the whole text: .*; change drawn ones with",
