@@ -79,7 +79,7 @@ def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float, per_part
 
 def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, scheduler: psutil.Process) -> Cost:
     ending = []
-    finish = vars(generation)["_finished"]
+    finish = vars(generation)["finished"]
 
     def timed(*given: Any) -> Any:
         start = time.process_time()
@@ -88,7 +88,7 @@ def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, s
         return done
 
     before = time.process_time(), _cpu_seconds(scheduler)
-    with patch.object(generation, "_finished", timed):
+    with patch.object(generation, "finished", timed):
         generation.generate(recipe, folder, records=parts * per_part, scheduler=address)
     driver, of_scheduler = time.process_time() - before[0] - ending[0], _cpu_seconds(scheduler) - before[1]
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3

@@ -30,6 +30,7 @@ compilation kernels of a recipe compiled before its first record
 generation  a corpus, part by part, with dask
 replaying   any record made again, bit for bit
 in_memory   records as one Dataset, from keys or from scenarios made by hand
+extending   rigs or specimens added to a corpus
 plan        counts, size and steps of a corpus before it is made
 pages       documentation pages written from the code
 writing     a Dataset of records as a corpus
@@ -45,7 +46,8 @@ from gen.errors import ClusterError, CorpusError, RacewayError, RecipeError, Sim
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gen.corpus import open_corpus, validate_corpus
+    from gen.corpus import Publication, open_corpus, publish, read_publication, validate_corpus
+    from gen.extending import extend
     from gen.generation import generate
     from gen.in_memory import recipe_of, record, records, scenarios_of, simulate_scenarios
     from gen.recipe import (
@@ -68,12 +70,14 @@ if TYPE_CHECKING:
     )
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
+    from gen.sharing import merge, pack, select, unpack
     from gen.simulation.simulate import simulate
     from gen.writing import write_corpus
 
 __all__ = [
     "ClusterError",
     "CorpusError",
+    "Publication",
     "RacewayError",
     "Recipe",
     "RecipeError",
@@ -84,14 +88,19 @@ __all__ = [
     "compound",
     "distributed",
     "draw_scenarios",
+    "extend",
     "generate",
     "grid",
     "healthy",
     "inner",
     "loguniform",
+    "merge",
     "normal",
     "open_corpus",
     "outer",
+    "pack",
+    "publish",
+    "read_publication",
     "read_recipe",
     "recipe_for",
     "recipe_of",
@@ -99,11 +108,13 @@ __all__ = [
     "records",
     "replay",
     "scenarios_of",
+    "select",
     "shaft_angles",
     "simulate",
     "simulate_scenarios",
     "stored_scenario",
     "uniform",
+    "unpack",
     "validate_corpus",
     "write_corpus",
     "write_recipe",
@@ -112,7 +123,8 @@ __all__ = [
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "gen.corpus": ("open_corpus", "validate_corpus"),
+        "gen.corpus": ("Publication", "open_corpus", "publish", "read_publication", "validate_corpus"),
+        "gen.extending": ("extend",),
         "gen.generation": ("generate",),
         "gen.in_memory": ("recipe_of", "record", "records", "scenarios_of", "simulate_scenarios"),
         "gen.recipe": (
@@ -121,6 +133,7 @@ __getattr__, __dir__ = lazy_names(
         ),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
+        "gen.sharing": ("merge", "pack", "select", "unpack"),
         "gen.simulation.simulate": ("simulate",),
         "gen.writing": ("write_corpus",),
     },

@@ -58,8 +58,9 @@ class Families:
 
     def numbers(self, of: range) -> range:
         """Numbers of the records of all families that some records belong to."""
-        size = self.size
-        return range(of.start // size * size, min(-(-of.stop // size) * size, self.recipe.n_records))
+        block, size = self.recipe.block_of(of.start), self.size
+        first, stop = block.records.start, block.records.stop
+        return range(first + (of.start - first) // size * size, min(first - (first - of.stop) // size * size, stop))
 
     def drawn(self, numbers: range) -> list[Family]:
         """Families with the given numbers of records, which are those of whole families."""
@@ -92,15 +93,22 @@ class Families:
 
     def _cut(self, scenarios: list[Scenario], twins: dict[int, Integration]) -> list[Family]:
         """Families of scenarios, of which some twins are known."""
-        runs, size = runs_of(scenarios, self.recipe, twins), self.size
-        return [Family(scenarios[at : at + size], runs[at : at + size]) for at in range(0, len(scenarios), size)]
+        families: dict[tuple[int, int], Family] = {}
+        for scenario, run in zip(scenarios, runs_of(scenarios, self.recipe, twins), strict=True):
+            group = 0 if self._redraws else scenario.record.number // self.size
+            family = families.setdefault((scenario.specimen.number, group), Family([], []))
+            family.scenarios.append(scenario)
+            family.runs.append(run)
+        return list(families.values())
 
     def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
         """Scenarios of all records of some specimens with their next fault."""
-        per, found = self.size, []
+        found = []
         for number in specimens:
             self._tries[number] = self._tries.get(number, 0) + 1
-            found += draw_scenarios(self.recipe, number * per, (number + 1) * per, fault_tries=self._tries)
+            block = next(block for block in self.recipe.blocks if number < block.specimens.stop)
+            records = block.records_of(number)
+            found += draw_scenarios(self.recipe, records.start, records.stop, fault_tries=self._tries)
         return found
 
     def _with_hits(self, scenarios: list[Scenario]) -> list[Scenario]:
@@ -123,7 +131,7 @@ class Families:
 def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> Records:
     """Make one record again, with the fault and the level that were taken when it was made first."""
     n_rungs = recipe.corpus.n_rungs
-    first, tries = number // n_rungs * n_rungs, {number // recipe.corpus.records_of_a_specimen: fault_try}
+    first, tries = number // n_rungs * n_rungs, {recipe.block_of(number).specimen_of(number): fault_try}
     group = draw_scenarios(recipe, first, first + n_rungs, fault_tries=tries)
     made = made_from([with_level(scenario, recipe, level_try) for scenario in group], recipe)
     return picked([(made, number - first)])

@@ -8,7 +8,7 @@ other part is made again.
 import fcntl
 import os
 import threading
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any, cast
 
 from gen.compilation import compile_kernels
 from gen.corpus import (
+    EXTENSION_NAME,
     JOURNAL_NAME,
     PartRow,
     SignalCounts,
     check_name,
-    data_card,
     finish_corpus,
     new_journal,
     part_name,
@@ -32,7 +32,7 @@ from gen.corpus import (
 )
 from gen.errors import CorpusError, RecipeError
 from gen.making import Crew
-from gen.part_task import Outcome, library_versions, make_parts, record_numbers, units
+from gen.part_task import Outcome, library_versions, make_parts, units
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.workers import stream, threads_of
 
@@ -40,11 +40,6 @@ if TYPE_CHECKING:
     from distributed import Client
 
 Progress = Callable[[int, int], None]
-
-_HOW = (
-    "Simulated by Raceway from `recipe.yaml` (recipe {recipe}): Hertz contact between balls and raceways, shaft, housing and sensor "
-    "resonance, classical Runge-Kutta. `raceway replay` makes any record again, bit for bit."
-)
 
 
 @dataclass(frozen=True)
@@ -103,42 +98,79 @@ def generate(
         If the scheduler does not answer or has no workers, before anything is written; or if the cluster is lost.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
-    if workers < 1:
-        raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
     directory = Path(directory)
-    facts = _facts(checked, seed, records)
-    tally = Tally(checked, progress)
-    with _client_of(scheduler) as client, _claimed(directory):
+    with client_of(scheduler, workers) as client, claimed(directory):
+        extensions = _extensions(directory)
+        checked = checked.extended(extensions)
+        facts = facts_of(
+            checked, {"seed": seed, "records": records} | ({"extensions": extensions} if extensions else {})
+        )
         known = _prepare(directory, Path(find_recipe(recipe)), facts)
-        if client is None and len(known) < checked.n_parts:
-            compile_kernels(checked, notice)
-        outcomes: dict[int, Outcome] = {}
-        with new_journal(directory) as append, closing(_made(tally, directory, known, workers, client)) as made:
-            for part, outcome in made:
-                outcomes[part] = outcome
-                if outcome.row.records and not outcome.kept:
-                    append(outcome.row)
-                tally.note(part, len(record_numbers(checked, part)))
-                tally.show()
-        return _finished(directory, [outcomes[number] for number in sorted(outcomes)], checked, facts)
+        tally = Tally(checked, progress)
+        outcomes = finished_parts(tally, directory, known, workers, client, notice)
+        return finished(directory, outcomes, facts)
 
 
-def _finished(directory: Path, outcomes: list[Outcome], recipe: Recipe, facts: dict[str, Any]) -> Generated:
-    """Write index, manifest and data card of the finished parts."""
+def finished_parts(
+    tally: "Tally",
+    directory: Path,
+    known: dict[str, PartRow],
+    workers: int,
+    client: "Client | None",
+    notice: Callable[[str], None],
+) -> list[Outcome]:
+    """Make the parts of a tally that are missing, with a new journal; outcomes of all of them in their order."""
+    recipe = tally.recipe
+    if client is None and len(known) < len(tally.parts):
+        compile_kernels(recipe, notice)
+    outcomes: dict[int, Outcome] = {}
+    with new_journal(directory) as append, closing(_made(tally, directory, known, workers, client)) as made:
+        for part, outcome in made:
+            outcomes[part] = outcome
+            if outcome.row.records and not outcome.kept:
+                append(outcome.row)
+            tally.note(part, len(recipe.records_of_part(part)))
+            tally.show()
+    return [outcomes[number] for number in sorted(outcomes)]
+
+
+def finished(
+    directory: Path,
+    outcomes: list[Outcome],
+    facts: dict[str, Any],
+    before: Sequence[PartRow] = (),
+    failures: Sequence[str] = (),
+) -> Generated:
+    """Write index, manifest and data card of the finished parts, and of parts ``before`` them, of which ``failures`` are left out."""
     rows = [outcome.row for outcome in outcomes if outcome.row.records]
     if not rows:
         raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
-    failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
-    signals = finish_corpus(
-        directory, rows, partial(data_card, origin=_HOW.format(recipe=recipe.name)), failures=failures, **facts
-    )
+    rows = [*before, *rows]
+    failed = (*failures, *(sentence for outcome in outcomes for sentence in outcome.failures))
+    signals = finish_corpus(directory, rows, failures=failed, **facts)
     (directory / JOURNAL_NAME).unlink()
     kept = sum(outcome.kept for outcome in outcomes)
-    return Generated(directory, sum(row.records for row in rows), len(rows), kept, failures, signals)
+    return Generated(directory, sum(row.records for row in rows), len(rows), kept, failed, signals)
+
+
+def _extensions(directory: Path) -> tuple[dict[Any, int], ...]:
+    """Extensions of the corpus in a folder that were finished; none if it holds no corpus.
+
+    Raises
+    ------
+    CorpusError
+        If an extension is unfinished.
+    """
+    if (directory / EXTENSION_NAME).exists():
+        raise CorpusError(f"{directory}: is being extended; run the raceway extend command that began it again.")
+    if not (directory / "manifest.json").exists():
+        return ()
+    overrides = read_manifest(directory).overrides
+    return () if overrides is None else overrides.extensions
 
 
 @contextmanager
-def _claimed(directory: Path) -> Iterator[None]:
+def claimed(directory: Path) -> Iterator[None]:
     """Create the folder and lock it against other calls."""
     check_name(directory)
     if directory.exists() and not directory.is_dir():
@@ -153,7 +185,7 @@ def _claimed(directory: Path) -> Iterator[None]:
     except BlockingIOError:
         os.close(handle)
         raise CorpusError(
-            f"{directory}: another raceway generate is writing into it; wait until it ends, or choose another folder."
+            f"{directory}: another raceway generate or extend is writing into it; wait until it ends, or choose another folder."
         ) from None
     except OSError:  # a file system without locks
         pass
@@ -176,10 +208,13 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
-        if manifest is not None and (manifest.selections or manifest.scenarios == "given"):
+        if manifest is not None and manifest.scenarios is not None:
             raise CorpusError(
                 f"{directory}: holds records that were chosen or made one by one, not a whole recipe; choose another folder."
             )
+        if manifest is not None and (manifest.selections or manifest.origins):
+            how = "selected from a larger corpus" if manifest.selections else "merged from several corpora"
+            raise CorpusError(f"{directory}: was {how}, so it cannot be generated; choose another folder.")
         if manifest is not None and any((directory / "parts").glob("*.nc")):
             if manifest.recipe_sha256 != facts["recipe_sha256"]:
                 raise CorpusError(
@@ -187,14 +222,15 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
                 )
             if manifest.versions == facts["versions"]:  # other versions may write other bytes
                 known = {row.name: row for row in manifest.parts}
+            if not facts["publication"].stored:
+                facts["publication"] = manifest.publication  # given after the corpus was made
         elif manifest is None and any(directory.iterdir()):
             raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
         if not known:
             journal.unlink(missing_ok=True)  # first: no row of other versions may stand beside the new manifest
         write_manifest(directory, known.values(), complete=False, **facts)
         journal.unlink(missing_ok=True)
-        if not known:
-            write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
+        write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
         remove_left_behind(directory / "parts", "part-*.nc")
     except OSError as error:
@@ -202,23 +238,27 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     return known
 
 
-def _facts(recipe: Recipe, seed: int | None, records: int | None) -> dict[str, Any]:
+def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
+    """Fields of the manifest that say where a generated corpus comes from."""
     return {
         "title": recipe.title,
         "recipe": recipe.name,
         "recipe_sha256": recipe_hash(recipe),
-        "overrides": {"seed": seed, "records": records},
+        "overrides": overrides,
+        "publication": recipe.publication,
         "versions": library_versions(),
     }
 
 
 class Tally:
-    """Number of records that are done; it is changed by the thread that listens to the workers too."""
+    """Number of records that are done, of all parts or of some; it is changed by the thread that listens to the workers too."""
 
-    def __init__(self, recipe: Recipe, progress: Progress | None) -> None:
+    def __init__(self, recipe: Recipe, progress: Progress | None, parts: range | None = None) -> None:
         self.recipe = recipe
+        self.parts = range(recipe.n_parts) if parts is None else parts
         self._progress = progress
-        self._of_parts = [0] * recipe.n_parts
+        self._of_parts = dict.fromkeys(self.parts, 0)
+        self._all = sum(len(recipe.records_of_part(part)) for part in self.parts)
         self._done = 0  # their sum, which takes longer to compute the more parts there are
         self._lock = threading.Lock()
 
@@ -232,7 +272,7 @@ class Tally:
     def show(self) -> None:
         """Call ``progress`` with the number of records done, once it is not 0."""
         if self._progress is not None and self._done:
-            self._progress(self._done, self.recipe.n_records)
+            self._progress(self._done, self._all)
 
     def note_and_show(self, part: int, records: int) -> None:
         """Set the count of a part and call ``progress``."""
@@ -240,26 +280,28 @@ class Tally:
         self.show()
 
 
-def _client_of(scheduler: str | None) -> "AbstractContextManager[Client | None]":
-    """Client of the scheduler at an address; None if no address is given."""
+def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Client | None]":
+    """Client of the scheduler at an address; None if no address is given, but a number of workers that must be 1 or more."""
+    if workers < 1:
+        raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
     if scheduler is None:
         return nullcontext()
-    from gen.cluster import client_of  # distributed takes 0.3 s to load, and work in this process does not need it
+    from gen import cluster  # distributed takes 0.3 s to load, and work in this process does not need it
 
-    return client_of(scheduler)
+    return cluster.client_of(scheduler)
 
 
 def _made(
     tally: Tally, directory: Path, known: dict[str, PartRow], workers: int, client: "Client | None"
 ) -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
-    recipe = tally.recipe
-    numbered = {part: known[part_name(part)] for part in range(recipe.n_parts) if part_name(part) in known}
+    recipe, parts = tally.recipe, tally.parts
+    numbered = {part: known[part_name(part)] for part in parts if part_name(part) in known}
     of_this_process = Crew(threads_of(workers))
     processes = workers // of_this_process.threads
     if client is None and processes == 1:
         report = tally.note_and_show if workers == 1 else tally.note
-        for some in units(recipe, 1):
+        for some in units(recipe, parts, 1):
             yield from make_parts(recipe, some, directory, numbered, report, tally.show, of_this_process)
         return
     from gen.cluster import local_client
@@ -269,7 +311,9 @@ def _made(
         if client is not None:
             threads: list[int] = list(cast("Any", client).nthreads().values())
             crew, count = Crew(1, 1 / max(threads, default=1)), max(sum(threads), 1)
-        tasks = ((some, {part: numbered[part] for part in some if part in numbered}) for some in units(recipe, count))
+        tasks = (
+            (some, {part: numbered[part] for part in some if part in numbered}) for some in units(recipe, parts, count)
+        )
         task = partial(_unit, recipe, directory.resolve(), crew)
         yield from stream(task, tasks, scheduler=cluster, report=tally.note, meanwhile=tally.show)
 

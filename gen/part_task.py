@@ -41,21 +41,15 @@ def library_versions() -> dict[str, str]:
     return {name: version(name) for name in ("raceway", "numpy", "numba", "scipy", "netCDF4", "h5py", "xarray")}
 
 
-def record_numbers(recipe: Recipe, part: int) -> range:
-    """Numbers of the records of a part."""
-    size = recipe.corpus.records_per_part
-    return range(part * size, min((part + 1) * size, recipe.n_records))
-
-
-def units(recipe: Recipe, workers: int) -> list[range]:
-    """Parts in units: consecutive parts that one task makes together, as evenly as possible.
+def units(recipe: Recipe, parts: range, workers: int) -> list[range]:
+    """``parts`` in units: consecutive parts that one task makes together, as evenly as possible.
 
     A unit has as many parts as ``UNIT_SAMPLES`` allows, but there are at least as many units as workers, if there are parts enough.
     """
     per_part = recipe.corpus.records_per_part * timeline(recipe).integrated
-    n_parts, wanted = recipe.n_parts, math.ceil(recipe.n_parts * per_part / UNIT_SAMPLES)
-    count = min(n_parts, math.ceil(wanted / workers) * workers)
-    edges = [place * n_parts // count for place in range(count + 1)]
+    wanted = math.ceil(len(parts) * per_part / UNIT_SAMPLES)
+    count = min(len(parts), math.ceil(wanted / workers) * workers)
+    edges = [parts.start + place * len(parts) // count for place in range(count + 1)]
     return [range(*some) for some in itertools.pairwise(edges)]
 
 
@@ -99,7 +93,7 @@ def make_parts(
         part = missing[made.place]
         return part, _written(made, recipe, directory / "parts" / part_name(part))
 
-    numbers = [record_numbers(recipe, part) for part in missing]
+    numbers = [recipe.records_of_part(part) for part in missing]
     yield from made_parts(recipe, numbers, written, lambda place, count: report(missing[place], count), meanwhile, crew)
 
 

@@ -4,7 +4,6 @@ Records are drawn and checked as :func:`gen.generate` draws and checks them, so 
 on a sample of the records (:mod:`gen.pace`).
 """
 
-import math
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterable
@@ -90,14 +89,14 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     groups = [_groups(part, checked, failures) for part in parts]
     if len(failures) == n_drawn:
         raise SimulationError(failures[0])
-    recording, specimens = checked.recording, math.ceil(checked.n_records / checked.corpus.records_of_a_specimen)
+    recording, (block,) = checked.recording, checked.blocks
     seconds = _seconds_per_record(list(zip(parts, groups, strict=True)), checked)
     return Plan(
         recipe=checked.name,
         title=checked.title,
         seed=checked.seed,
-        rigs=math.ceil(specimens / checked.corpus.specimens_per_rig),
-        specimens=specimens,
+        rigs=len(block.rigs),
+        specimens=len(block.specimens),
         records=checked.n_records,
         parts=checked.n_parts,
         sample_rate=recording.sample_rate_hz,

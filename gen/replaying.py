@@ -7,32 +7,51 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, SIGNAL, open_corpus, read_manifest
+from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, plain_file, read_manifest
+from gen.corpus.manifest import Numbers, Origin
 from gen.errors import CorpusError
 from gen.families import Records, made_again, made_from, picked
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import Scenario, read_scenario
+from gen.sharing.copying import renumbered
 from gen.simulation.shaft import shaft_angles as angles_of
 from gen.simulation.timeline import timeline
 
 
-def corpus_recipe(directory: Path) -> Recipe:
-    """Recipe of a generated corpus, with the seed and the number of records of the call that generated it.
+def corpus_recipe(directory: Path, record: int = 0) -> Recipe:
+    """Recipe of a record of a generated corpus, with the seed, the number of records and the extensions of its corpus.
+
+    All records of a corpus have the same recipe, unless it was merged from several corpora.
 
     Raises
     ------
     CorpusError
-        If the corpus was not generated, or its recipe does not have the hash in the manifest.
+        If the record was not generated, or its recipe does not have the hash in the manifest.
     """
     manifest = read_manifest(directory)
-    path = directory / "recipe.yaml"
-    if not path.is_file() or manifest.overrides is None:
+    _check_record(directory, manifest.records, record)
+    origin = _origin_of(manifest, record)
+    facts, name = (manifest, "recipe.yaml") if origin is None else (origin, origin.recipe_file)
+    if facts.overrides is None or facts.recipe_sha256 is None or name is None or not (directory / name).is_file():
+        if origin is not None:
+            title = origin.title or "without a title"
+            raise CorpusError(f"{directory}: record {record} comes from a corpus ({title}) that was not generated.")
         raise CorpusError(f"{directory}: holds no recipe.yaml, so it was not generated and cannot be replayed.")
-    recipe = read_recipe(path, seed=manifest.overrides.seed, records=manifest.overrides.records)
-    if recipe_hash(recipe) != manifest.recipe_sha256:
-        raise CorpusError(f"{path}: is not the recipe of the corpus; restore it to replay.")
-    return recipe
+    recipe = read_recipe(plain_file(directory, name), seed=facts.overrides.seed, records=facts.overrides.records)
+    if recipe_hash(recipe) != facts.recipe_sha256:
+        raise CorpusError(f"{directory / name}: is not the recipe of the corpus; restore it to replay.")
+    return recipe.extended(facts.overrides.extensions)
+
+
+def _origin_of(manifest: Manifest, record: int) -> Origin | None:
+    """Corpus that a record of a merged corpus comes from; None if the corpus was not merged."""
+    rows = iter(manifest.parts)
+    for origin in manifest.origins:
+        record -= sum(next(rows).records for _ in range(origin.parts))
+        if record < 0:
+            return origin
+    return None
 
 
 @dataclass(frozen=True)
@@ -40,7 +59,7 @@ class Replayed:
     """A record that was simulated again."""
 
     dataset: xr.Dataset
-    """The new record, one row, in the layout of the corpus (undecoded)."""
+    """The new record, one row, with the channels and numbers of the corpus (undecoded)."""
     identical: bool
     """Whether its samples equal those of the stored record, bit for bit."""
 
@@ -56,18 +75,20 @@ def replay(directory: Path | str, record: int) -> Replayed:
         If the corpus has no such record, or was not generated.
     """
     directory = Path(directory)
-    recipe = corpus_recipe(directory)
     with open_corpus(directory, check="size") as corpus:
-        _check_record(directory, corpus, record)
-        number = int(corpus["recording"][record])
-        stored = corpus[SIGNAL][record].values
+        recipe, origin = corpus_recipe(directory, record), _origin_of(read_manifest(directory), record)
+        added = Numbers() if origin is None else origin.added
+        number = int(corpus["recording"][record]) - added.recording
+        stored, channels = corpus[SIGNAL][record].values, [str(name) for name in corpus["channel"].values]
         tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
-        if read_manifest(directory).scenarios == "given":
+        if (origin or read_manifest(directory)).scenarios == "given":
             made = _made_as_given(directory, recipe, corpus, record)
         else:
             made = made_again(recipe, number, *tries)
-    dataset = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
-    again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values
+    whole = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
+    names = [str(name) for name in whole["channel"].values]
+    dataset = renumbered(whole.isel(channel=[names.index(name) for name in channels]), added)
+    again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values.astype(stored.dtype)
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
 
 
@@ -95,7 +116,7 @@ def stored_scenario(directory: Path | str, record: int) -> Scenario:
     """
     directory = Path(directory)
     with open_corpus(directory, check="size") as corpus:
-        _check_record(directory, corpus, record)
+        _check_record(directory, corpus.sizes["record"], record)
         if DRAWS not in corpus:
             raise CorpusError(f"{directory}: has no variable {DRAWS}, so it was not generated and stores no scenarios.")
         text = str(corpus[DRAWS][record].values)
@@ -115,12 +136,11 @@ def shaft_angles(directory: Path | str, record: int) -> NDArray[np.float64]:
     CorpusError
         If there is no such record, or the corpus was not generated.
     """
-    recipe, scenario = corpus_recipe(Path(directory)), stored_scenario(directory, record)
+    recipe, scenario = corpus_recipe(Path(directory), record), stored_scenario(directory, record)
     axis = timeline(recipe)
     return angles_of(scenario, axis)[axis.kept]
 
 
-def _check_record(directory: Path, corpus: xr.Dataset, record: int) -> None:
-    n_records = corpus.sizes["record"]
+def _check_record(directory: Path, n_records: int, record: int) -> None:
     if not 0 <= record < n_records:
         raise CorpusError(f"{directory}: record {record} is not in it; it has records 0 to {n_records - 1}.")

@@ -6,7 +6,6 @@ is refused: records that were changed, cut in time, or joined from several recip
 
 import json
 from collections import Counter
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +19,6 @@ from gen.corpus import (
     SIMULATED,
     Variable,
     check_name,
-    data_card,
     finish_corpus,
     make_dataset,
     part_name,
@@ -29,16 +27,13 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.errors import CorpusError, RecipeError
+from gen.generation import facts_of
 from gen.in_memory import GIVEN, SCENARIOS, checked_scenarios, recipe_of, scenarios_of
 from gen.measurement.measure import LARGEST_COUNT
-from gen.part_task import library_versions, part_attributes
-from gen.recipe import Recipe, recipe_hash, recipe_text
+from gen.part_task import part_attributes
+from gen.recipe import Recipe, recipe_text
 from gen.scenarios import Scenario, draw_scenarios, with_level
 
-_HOW = (
-    "Simulated by Raceway in Python; `recipe.yaml` (recipe {recipe}) holds the settings: Hertz contact between balls and raceways, shaft, "
-    "housing and sensor resonance, classical Runge-Kutta. `raceway replay` makes any record again, bit for bit."
-)
 _NOT_A_COUNT = 0.01  # largest distance of a decoded sample from a count; single precision comes within 0.004
 
 
@@ -73,18 +68,9 @@ def write_corpus(dataset: xr.Dataset, directory: Path | str) -> Path:
     failures = () if given else _failures(rows, recipe)
     stored = _stored(rows, recipe)
     stored.attrs |= part_attributes(recipe, failures)
-    facts: dict[str, Any] = {
-        "failures": failures,
-        "title": recipe.title,
-        "recipe": recipe.name,
-        "recipe_sha256": recipe_hash(recipe),
-        "overrides": {"seed": None, "records": None},
-        "versions": library_versions(),
-    }
-    if given:
-        facts["scenarios"] = GIVEN
-    elif stored.sizes["record"] + len(failures) < recipe.n_records:
-        facts["selections"] = [{"records": recipe.n_records}]
+    facts = {"failures": failures} | facts_of(recipe, {"seed": None, "records": None})
+    if given or stored.sizes["record"] + len(failures) < recipe.n_records:
+        facts["scenarios"] = GIVEN if given else "chosen"
     _write(stored, recipe, directory, facts)
     return directory
 
@@ -108,7 +94,7 @@ def _write(stored: xr.Dataset, recipe: Recipe, directory: Path, facts: dict[str,
                 )
                 for first in range(0, stored.sizes["record"], size)
             ]
-            finish_corpus(folder, rows, partial(data_card, origin=_HOW.format(recipe=recipe.name)), **facts)
+            finish_corpus(folder, rows, **facts)
             folder.replace(directory)
     except OSError as error:
         raise CorpusError(

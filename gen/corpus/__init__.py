@@ -6,20 +6,25 @@ module        responsibility
 codecs        codecs of stored signals
 schema        dimensions, variables, units and roles
 simulated     further variables of simulated corpora
-hdf5        lock of the HDF5 library, refusal of links to other files
+hdf5          lock of the HDF5 library, refusal of links to other files
 layout        allowed shapes, types and attributes in a file
 files         atomic writing, hashes
 signals       records that cannot be used
 part          one netCDF-4 file of records
-record_hashes SHA-256 of single records
 journal       finished parts of an unfinished corpus
-manifest      files of a corpus with size and hash
+part_forms    descriptions from which parts are written again
+packed        a corpus as one file: its parts and small files
+record_hashes SHA-256 of single records
+publication   licence, creators and references of a corpus
 reading       lazy reading, with a few files open at a time
+record_checks records of a packed file compared with their hashes
+manifest      files of a corpus with size and hash
 index         ``corpus.nc`` over the parts; opening a corpus
 validation    all checks of a corpus
 visible       faults that can be seen in their records
 recoverable   labels that can be recovered from the signals
 card          data card of a corpus
+acdd          global attributes of a published corpus
 finishing     index, manifest and data card of finished parts
 description   page about the format
 ============= =====================================================
@@ -30,7 +35,8 @@ from typing import TYPE_CHECKING
 from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
-    from gen.corpus.card import data_card
+    from gen.corpus.acdd import publication_attributes
+    from gen.corpus.card.page import data_card, write_card
     from gen.corpus.codecs import CODECS, Codec
     from gen.corpus.description import format_page
     from gen.corpus.files import (
@@ -44,12 +50,13 @@ if TYPE_CHECKING:
         write_durably,
         write_text_durably,
     )
-    from gen.corpus.finishing import finish_corpus
+    from gen.corpus.finishing import finish_corpus, publish
     from gen.corpus.hdf5 import LIBRARY_LOCK
     from gen.corpus.index import open_corpus, write_index
     from gen.corpus.journal import JOURNAL_NAME, new_journal
-    from gen.corpus.manifest import Manifest, part_paths, read_manifest, write_manifest
+    from gen.corpus.manifest import EXTENSION_NAME, MOST_EXTENSIONS, Manifest, part_paths, read_manifest, write_manifest
     from gen.corpus.part import PartRow, part_name, write_part
+    from gen.corpus.publication import Creator, Publication, read_publication
     from gen.corpus.reading import open_part, read_channel
     from gen.corpus.schema import (
         DRAWS,
@@ -74,12 +81,14 @@ if TYPE_CHECKING:
 __all__ = [
     "CODECS",
     "DRAWS",
+    "EXTENSION_NAME",
     "FAULTS",
     "FAULT_NAMES",
     "FORMAT",
     "JOURNAL_NAME",
     "LIBRARY_LOCK",
     "MISSING_COUNT",
+    "MOST_EXTENSIONS",
     "ROLES",
     "SCHEMA",
     "SIGNAL",
@@ -88,9 +97,11 @@ __all__ = [
     "UNKNOWN",
     "UNKNOWN_CODE",
     "Codec",
+    "Creator",
     "FaultCounts",
     "Manifest",
     "PartRow",
+    "Publication",
     "SignalCounts",
     "Variable",
     "check_name",
@@ -107,8 +118,11 @@ __all__ = [
     "part_name",
     "part_paths",
     "plain_file",
+    "publication_attributes",
+    "publish",
     "read_channel",
     "read_manifest",
+    "read_publication",
     "remove_left_behind",
     "sha256",
     "summed",
@@ -116,6 +130,7 @@ __all__ = [
     "temporary_folder",
     "validate_corpus",
     "whole_or_not_at_all",
+    "write_card",
     "write_durably",
     "write_index",
     "write_manifest",
@@ -127,19 +142,21 @@ __all__ = [
 __getattr__, __dir__ = lazy_names(
     __name__,
     {
-        "gen.corpus.card": ("data_card",),
+        "gen.corpus.acdd": ("publication_attributes",),
+        "gen.corpus.card.page": ("data_card", "write_card"),
         "gen.corpus.description": ("format_page",),
         "gen.corpus.codecs": ("CODECS", "Codec"),
         "gen.corpus.files": (
             "check_name", "plain_file", "remove_left_behind", "sha256", "temporary_beside", "temporary_folder", "whole_or_not_at_all",
             "write_durably", "write_text_durably",
         ),
-        "gen.corpus.finishing": ("finish_corpus",),
+        "gen.corpus.finishing": ("finish_corpus", "publish"),
         "gen.corpus.hdf5": ("LIBRARY_LOCK",),
         "gen.corpus.index": ("open_corpus", "write_index"),
         "gen.corpus.journal": ("JOURNAL_NAME", "new_journal"),
-        "gen.corpus.manifest": ("Manifest", "part_paths", "read_manifest", "write_manifest"),
+        "gen.corpus.manifest": ("EXTENSION_NAME", "MOST_EXTENSIONS", "Manifest", "part_paths", "read_manifest", "write_manifest"),
         "gen.corpus.part": ("PartRow", "part_name", "write_part"),
+        "gen.corpus.publication": ("Creator", "Publication", "read_publication"),
         "gen.corpus.reading": ("open_part", "read_channel"),
         "gen.corpus.schema": (
             "DRAWS", "FAULT_NAMES", "FAULTS", "FORMAT", "MISSING_COUNT", "ROLES", "SCHEMA", "SIGNAL", "SPLITS", "UNKNOWN", "UNKNOWN_CODE",

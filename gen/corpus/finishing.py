@@ -1,29 +1,97 @@
-"""The files of a finished corpus beside its parts: index, manifest and data card."""
+"""The files of a finished corpus beside its parts: index, manifest and data card; and a change of its publication."""
 
-from collections.abc import Callable, Iterable
+import fcntl
+import json
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-import xarray as xr
-
-from gen.corpus.files import write_text_durably
-from gen.corpus.index import open_corpus, write_index
-from gen.corpus.manifest import write_manifest
+from gen.corpus.acdd import publication_attributes
+from gen.corpus.card.page import write_card
+from gen.corpus.index import new_index, write_index
+from gen.corpus.manifest import (
+    INDEX_NAME,
+    Manifest,
+    listed_file,
+    manifest_content,
+    part_paths,
+    read_manifest,
+    with_publication,
+    write_content,
+    write_manifest,
+)
 from gen.corpus.part import PartRow
+from gen.corpus.publication import Publication
 from gen.corpus.signals import SignalCounts, summed
+from gen.errors import CorpusError
 
-Page = Callable[[xr.Dataset, SignalCounts], str]
 
-
-def finish_corpus(directory: Path, rows: Iterable[PartRow], page: Page, **facts: Any) -> SignalCounts:
+def finish_corpus(
+    directory: Path, rows: Iterable[PartRow], *, publication: Publication | None = None, **facts: Any
+) -> SignalCounts:
     """Write index, manifest and data card over finished parts; returns the counts of records that cannot be used.
 
-    ``page`` makes the data card of the opened corpus; ``facts`` are further fields of the manifest.
+    ``facts`` are further fields of the manifest. The date of ``publication`` is that of ``SOURCE_DATE_EPOCH`` if it has none.
     """
     rows = list(rows)
     signals = summed(row.signals for row in rows)
-    write_index(directory, rows)
+    facts["publication"] = (publication or Publication()).dated()
+    write_index(directory, rows, publication_attributes(_manifest(manifest_content(rows, **facts))))
     write_manifest(directory, rows, complete=True, **facts)
-    with open_corpus(directory, check="size") as corpus:
-        write_text_durably(page(corpus, signals), directory / "README.md")
+    write_card(directory)
     return signals
+
+
+def publish(directory: Path | str, publication: Publication) -> None:
+    """Change licence, creators and references of a finished corpus: in the manifest, in the attributes of ``corpus.nc`` and in
+    the data card.
+
+    The parts stay as they are. The files are those of a corpus that was made with this publication from the start. A killed call leaves
+    a corpus that can be read, with the old or the new facts, and the same call completes it.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus is unfinished or altered, another call changes it, or a file cannot be written.
+    """
+    directory = Path(directory)
+    publication = publication.dated()
+    with _alone(directory):
+        part_paths(directory, "sha256")
+        rows = read_manifest(directory).parts
+        content: dict[str, Any] = json.loads((directory / "manifest.json").read_bytes())
+        content["index"] = listed_file(directory / INDEX_NAME)
+        content.pop("next_index", None)
+        changed = with_publication(content, publication)
+        with new_index(directory, rows, publication_attributes(_manifest(changed))) as temporary:
+            changed["index"] = listed_file(temporary)
+            write_content(directory, content | {"next_index": changed["index"]})  # until the new index is in place
+        write_content(directory, changed)
+        write_card(directory)
+
+
+def _manifest(content: dict[str, Any]) -> Manifest:
+    return Manifest.model_validate_json(json.dumps(content))
+
+
+@contextmanager
+def _alone(directory: Path) -> Iterator[None]:
+    """Lock a folder against other calls that write into it."""
+    try:
+        handle = os.open(directory, os.O_RDONLY)
+    except OSError as error:
+        raise CorpusError(f"{directory}: cannot be opened ({error.strerror}); give the folder of a corpus.") from None
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        os.close(handle)
+        raise CorpusError(f"{directory}: another command is writing into it; wait until it ends.") from None
+    except OSError:  # a file system without locks
+        pass
+    try:
+        yield
+    finally:
+        with suppress(OSError):
+            os.close(handle)

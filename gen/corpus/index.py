@@ -4,7 +4,8 @@
 reader sees one file. :func:`open_corpus` reads the variables from it, and the signal from the parts.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -22,10 +23,12 @@ from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
 
 _COMMENT = (
+    "This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. "
     f"{SIGNAL} is an HDF5 virtual dataset over the files in parts/. HDF5 reads a part that it cannot open as missing values, without an "
     "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
     "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
 )
+_NO_ATTRIBUTES: Mapping[str, str] = {}
 _CHUNK_RECORDS = 256  # records whose text forms one chunk
 _COPIED_BYTES = 16_000_000  # of the variables of some parts, in memory at a time
 
@@ -36,9 +39,10 @@ def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
     Parameters
     ----------
     directory : path
-        The folder that holds ``corpus.nc``.
+        The folder that holds ``corpus.nc``, or a packed file (:func:`gen.pack`).
     check : {"sha256", "size"}
-        Comparison of each file with the manifest before anything is read.
+        Comparison of each file with the manifest before anything is read; of a packed file, of each record with its hash ("sha256") or of
+        none.
 
     Returns
     -------
@@ -53,27 +57,40 @@ def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
     """
     directory = Path(directory)
     paths = part_paths(directory, check)
+    if directory.is_file():
+        return open_records(directory, [directory])
     return open_records(directory / INDEX_NAME, paths, [row.records for row in read_manifest(directory).parts])
 
 
-def write_index(directory: Path, rows: list[PartRow]) -> None:
-    """Write ``corpus.nc`` over the finished parts atomically; the same parts give the same bytes.
+def write_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str] = _NO_ATTRIBUTES) -> None:
+    """Write ``corpus.nc`` over the finished parts atomically; the same parts and attributes give the same bytes.
+
+    ``attributes`` are global attributes beside those of the parts.
 
     Raises
     ------
     CorpusError
         If writing fails, with the reason that the system gives.
     """
-    with whole_or_not_at_all(directory / INDEX_NAME) as temporary, LIBRARY_LOCK:
-        _write_variables(directory, rows, temporary)
-        _write_virtual_signal(directory, rows, temporary)
+    with new_index(directory, rows, attributes):
+        pass
 
 
-def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
-    """Copy all variables except the signal; the width of a text is that of the longest in any part.
+@contextmanager
+def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str]) -> Iterator[Path]:
+    """Path of a written index that replaces ``corpus.nc`` at the end of the block."""
+    with whole_or_not_at_all(directory / INDEX_NAME) as temporary:
+        with LIBRARY_LOCK:
+            write_variables(directory, rows, temporary, {"comment": _COMMENT, **attributes})
+            _write_virtual_signal(directory, rows, temporary)
+        yield temporary
 
-    The parts are read one after the other with h5py, and copied ``_COPIED_BYTES`` at a time: opening one with netCDF4 takes 4 ms, and
-    writing the variables of each part on their own takes as long again.
+
+def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> None:
+    """Copy all variables of the parts except the signal into a new file; ``attributes`` are further global ones.
+
+    The width of a text is that of the longest in any part. The parts are read one after the other with h5py, and copied
+    ``_COPIED_BYTES`` at a time: opening one with netCDF4 takes 4 ms, and writing the variables of each part on their own as long again.
     """
     with (
         netCDF4.Dataset(directory / "parts" / rows[0].name) as first,
@@ -90,6 +107,7 @@ def _write_variables(directory: Path, rows: list[PartRow], path: Path) -> None:
         lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
         lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
         _declare_like(first, index, lengths)
+        index.setncatts(attributes)
         start = 0
         for block in _blocks(directory, rows, copied):
             for name, values in zip(copied, block, strict=True):
@@ -145,9 +163,7 @@ def _joined(values: tuple[NDArray[Any], ...]) -> NDArray[Any]:
 
 
 def _declare_like(part: netCDF4.Dataset, index: netCDF4.Dataset, lengths: dict[str, int]) -> None:
-    index.setncatts(
-        {name: part.getncattr(name) for name in part.ncattrs() if name != "failures"} | {"comment": _COMMENT}
-    )
+    index.setncatts({name: part.getncattr(name) for name in part.ncattrs() if name != "failures"})
     for name, length in lengths.items():
         index.createDimension(name, length)
     for name, variable in part.variables.items():

@@ -9,6 +9,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.corpus.packed import PACKED
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -72,7 +73,8 @@ def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
     check_limit("records", records, f"{stored.file.filename}: holds", CorpusError)
     check_limit("record_samples", channels * samples, f"{stored.file.filename}: a record has", CorpusError)
     if not stored.is_virtual:
-        check_limit("part_samples", records * channels * samples, f"{stored.file.filename}: holds", CorpusError)
+        if PACKED not in stored.file.attrs:  # a packed file is read some records at a time
+            check_limit("part_samples", records * channels * samples, f"{stored.file.filename}: holds", CorpusError)
         if stored.chunks != (1, 1, samples) or stored.id.get_num_chunks() != records * channels:
             raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
     return stored.shape

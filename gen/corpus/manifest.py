@@ -13,7 +13,7 @@ from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field, StringConstraints, ValidationError
 
 from gen.corpus.files import plain_file, sha256, stamp, write_text_durably
 from gen.corpus.journal import (
@@ -27,7 +27,10 @@ from gen.corpus.journal import (
     part_number,
     read_journal,
 )
+from gen.corpus.packed import is_packed, packed_contents
 from gen.corpus.part import PartRow
+from gen.corpus.publication import Publication
+from gen.corpus.record_checks import record_problems
 from gen.corpus.schema import FORMAT
 from gen.corpus.signals import SignalCounts, summed
 from gen.errors import CorpusError
@@ -36,14 +39,23 @@ from gen.limits import check_limit
 Check = Literal["sha256", "size"]
 
 INDEX_NAME = "corpus.nc"
+MANIFEST_NAME = "manifest.json"
+EXTENSION_NAME = "extension.json"
+"""Manifest of a corpus that is being extended: as it will be, with the finished parts; the other manifest is as it was."""
+MOST_EXTENSIONS = 100
+
 _Texts = tuple[str, ...]
+_Added = Annotated[int, Field(ge=1, lt=2**31)]
+_Extension = Annotated[dict[Literal["rigs", "specimens"], _Added], Field(min_length=1, max_length=1)]
 
 
 class Overrides(Strict):
-    """Seed and number of records that replaced those of the recipe."""
+    """Seed and number of records that replaced those of the recipe, and what was added later."""
 
     seed: int | None = None
     records: int | None = None
+    extensions: Annotated[tuple[_Extension, ...], Field(max_length=MOST_EXTENSIONS)] = ()
+    """Extensions in the order in which they were made: number of added rigs, or of specimens added to every rig."""
 
 
 class Choice(Strict):
@@ -51,9 +63,45 @@ class Choice(Strict):
 
     records: Count
     """Number of records that were chosen from."""
+    parts_sha256: str
+    """SHA-256 over those of the parts of the corpus that was chosen from."""
     where: str | None = None
     split: str | None = None
     channels: _Texts | None = None
+
+    def __str__(self) -> str:
+        """Options of the call."""
+        given = {"where": self.where, "split": self.split, "channels": self.channels and ", ".join(self.channels)}
+        return "; ".join(f"{name}: {value}" for name, value in given.items() if value is not None)
+
+
+class Numbers(Strict):
+    """A number for each variable that is numbered anew when corpora are merged."""
+
+    rig: Count = 0
+    specimen: Count = 0
+    recording: Count = 0
+    pair: Count = 0
+
+
+class Origin(Strict):
+    """One of the corpora that a merged corpus was made from; fields that it shares with :class:`Manifest` were copied from there."""
+
+    parts: Count
+    """Number of consecutive parts of the merged corpus with the records of this one."""
+    added: Numbers
+    """What was added to the numbers of this corpus."""
+    same_machines: str
+    """Text that is the same for two corpora if the same numbers are the same machines: of one recipe and seed, or of one import."""
+    recipe_file: Annotated[str, StringConstraints(pattern=r"^recipes/[0-9]{5}\.yaml$")] | None = None
+    title: str | None = None
+    recipe: str | None = None
+    recipe_sha256: str | None = None
+    overrides: Overrides | None = None
+    versions: Annotated[dict[str, str], Field(default_factory=dict)]
+    importer: str | None = None
+    selections: tuple[Choice, ...] = ()
+    scenarios: Literal["given", "chosen"] | None = None
 
 
 class Manifest(Strict):
@@ -64,21 +112,29 @@ class Manifest(Strict):
     records: Count
     index: FileRow | None = None
     """``corpus.nc``; None until the corpus is complete."""
+    next_index: FileRow | None = None
+    """Another ``corpus.nc`` that may stand in place of ``index``, while :func:`gen.corpus.publish` replaces it."""
     parts_: Annotated[tuple[ListedPart, ...], Field(alias="parts")]
     title: str | None = None
     recipe: str | None = None
     recipe_sha256: str | None = None
     overrides: Overrides | None = None
+    publication: Publication = Publication()
     versions: Annotated[dict[str, str], Field(default_factory=dict)]
     failures: _Texts = ()
     importer: str | None = None
+    basis: _Texts = ()
+    """Sentences on what labels and units of recordings rest on."""
     recordings: Count | None = None
     skipped: _Texts = ()
     warnings: _Texts = ()
     selections: tuple[Choice, ...] = ()
     """Choices by which the records were taken from a larger corpus, the first one first."""
-    scenarios: Literal["given"] | None = None
-    """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
+    origins: tuple[Origin, ...] = ()
+    """Corpora that were merged into this one, in the order of their records."""
+    scenarios: Literal["given", "chosen"] | None = None
+    """``chosen`` if the records are some of those of the recipe; ``given`` if their scenarios were not drawn from it, so that each record
+    is made again from the scenario that is stored with it."""
 
     @property
     def parts(self) -> list[PartRow]:
@@ -86,41 +142,74 @@ class Manifest(Strict):
         return [part.row for part in self.parts_]
 
     @property
+    def importers(self) -> set[str | None]:
+        """Importers of all records; None stands for those that were simulated."""
+        return {origin.importer for origin in self.origins} or {self.importer}
+
+    @property
     def signals(self) -> SignalCounts:
         """Counts of the records that cannot be used."""
         return summed(row.signals for row in self.parts)
 
 
-def write_manifest(directory: Path, rows: Iterable[PartRow], *, complete: bool, **facts: Any) -> None:
-    """Write ``manifest.json``: the finished parts, whether they are all, and ``facts`` such as recipe hash and versions.
-
-    For a complete corpus the index must exist.
-    """
+def manifest_content(
+    rows: Iterable[PartRow], *, index: Path | None = None, publication: Publication | None = None, **facts: Any
+) -> dict[str, Any]:
+    """Content of ``manifest.json``; ``index`` is ``corpus.nc`` of a complete corpus."""
     rows = list(rows)
-    index = directory / INDEX_NAME
     content = {
         "raceway_format": FORMAT,
-        "complete": complete,
+        "complete": index is not None,
         "records": sum(row.records for row in rows),
         "signals": summed(row.signals for row in rows)._asdict(),
-        "index": {"bytes": stamp(index)[0], "sha256": sha256(index)} if complete else None,
+        "index": None if index is None else listed_file(index),
         **facts,
         "parts": [listed(row) for row in rows],
     }
-    write_text_durably(json.dumps(content, indent=1) + "\n", directory / "manifest.json")
+    return with_publication(content, publication or Publication())
 
 
-def read_manifest(directory: Path) -> Manifest:
-    """Read and check ``manifest.json``, and the journal if the corpus is unfinished; names that lead out of the corpus are refused.
+def with_publication(content: dict[str, Any], publication: Publication) -> dict[str, Any]:
+    """Content of ``manifest.json`` with another publication, which stands before the parts."""
+    kept = {key: value for key, value in content.items() if key not in ("publication", "parts")}
+    return kept | ({"publication": publication.stored} if publication.stored else {}) | {"parts": content["parts"]}
+
+
+def listed_file(path: Path) -> dict[str, Any]:
+    """Size and hash of a file as they are stored in JSON."""
+    return {"bytes": stamp(path)[0], "sha256": sha256(path)}
+
+
+def write_manifest(
+    directory: Path, rows: Iterable[PartRow], *, complete: bool, name: str = MANIFEST_NAME, **facts: Any
+) -> None:
+    """Write ``manifest.json``: the finished parts, whether they are all, and ``facts`` such as recipe hash and versions.
+
+    For a complete corpus the index must exist. ``publication`` is a :class:`gen.corpus.Publication`; other facts are values of JSON.
+    ``name`` is that of the file.
+    """
+    content = manifest_content(rows, index=directory / INDEX_NAME if complete else None, **facts)
+    write_content(directory, content, name)
+
+
+def write_content(directory: Path, content: dict[str, Any], name: str = MANIFEST_NAME) -> None:
+    """Write ``manifest.json`` with the given content."""
+    write_text_durably(json.dumps(content, indent=1) + "\n", directory / name)
+
+
+def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
+    """Read and check ``manifest.json`` of a folder or of a packed file, and the journal if the corpus is unfinished.
+
+    Names that lead out of the corpus are refused. ``name`` is that of the file in a folder.
 
     Raises
     ------
     CorpusError
         If it is missing, unreadable or of another format version, has a wrong or repeated name of a part, or its counts disagree.
     """
-    path = directory / "manifest.json"
+    path = directory / name
     if directory.is_file():
-        raise CorpusError(f"{directory}: is a file; give the folder of a corpus, the one that holds manifest.json.")
+        return _checked(_packed_manifest(directory), path)
     if not directory.is_dir():
         raise CorpusError(
             f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."
@@ -130,9 +219,17 @@ def read_manifest(directory: Path) -> Manifest:
     plain_file(directory, path.name)
     try:
         check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
-        manifest = Manifest.model_validate_json(path.read_bytes())
+        content = path.read_bytes()
     except OSError as error:
         raise CorpusError(f"{path}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
+    manifest = _checked(content, path)
+    return manifest if manifest.complete else _with_journal(manifest, directory)
+
+
+def _checked(content: bytes, path: Path) -> Manifest:
+    """Manifest from its JSON; CorpusError if it is of another format version or its counts disagree."""
+    try:
+        manifest = Manifest.model_validate_json(content)
     except ValidationError as error:
         raise CorpusError(
             f"{path}: not a corpus manifest ({first_problem(error)}); generate or copy the corpus again."
@@ -145,7 +242,31 @@ def read_manifest(directory: Path) -> Manifest:
     problem = _inconsistency(manifest)
     if problem is not None:
         raise CorpusError(f"{path}: {problem}; do not trust this corpus.")
-    return manifest if manifest.complete else _with_journal(manifest, directory)
+    return manifest
+
+
+def _packed_manifest(file: Path) -> bytes:
+    """Manifest in a packed file; CorpusError if the file is no packed file."""
+    if not is_packed(file):
+        raise CorpusError(not_a_corpus(file))
+    packed = packed_contents(file)
+    manifest = packed.files.get("manifest.json", b"")
+    listed = {part.name: part.records for part in _checked(manifest, file / "manifest.json").parts}
+    if listed != {name: part.records for name, part in packed.parts.items()}:
+        raise CorpusError(f"{file}: its manifest lists other parts than it holds; do not trust this corpus.")
+    return manifest
+
+
+def not_a_corpus(file: Path) -> str:
+    """Sentence about a file that is no packed corpus."""
+    if file.name != INDEX_NAME:
+        return f"{file}: is a file and no packed corpus; give the folder of a corpus, the one that holds manifest.json."
+    if (file.parent / "manifest.json").is_file():
+        return f"{file}: is one file of a corpus; give the folder of the corpus, {file.parent}."
+    return (
+        f"{file}: is the index of a corpus without its parts, so it holds no signals; copy the whole folder, "
+        "or make one file of it with raceway pack."
+    )
 
 
 def _with_journal(manifest: Manifest, directory: Path) -> Manifest:
@@ -168,15 +289,19 @@ def _inconsistency(manifest: Manifest) -> str | None:
         return f"it counts {manifest.records} records, its parts {records}"
     if manifest.complete and (manifest.index is None or not names):
         return "it is marked complete but has no hash of corpus.nc or no parts"
+    if manifest.origins and sum(origin.parts for origin in manifest.origins) != len(names):
+        return "its origins have another number of parts than it lists"
     check_limit("records", records, str(names and "the corpus holds"), CorpusError)
     return None
 
 
 def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str]:
-    """Missing and altered files, one sentence each; the index is included if the corpus is complete."""
-    wanted = {f"parts/{row.name}": FileRow(bytes=row.bytes, sha256=row.sha256) for row in manifest.parts}
-    if manifest.complete and manifest.index is not None:
-        wanted[INDEX_NAME] = manifest.index
+    """Missing and altered files, one sentence each; the index is included if the corpus is complete. Of a packed file: damaged records."""
+    if directory.is_file():
+        return record_problems(directory) if check == "sha256" else []
+    wanted = {f"parts/{row.name}": [FileRow(bytes=row.bytes, sha256=row.sha256)] for row in manifest.parts}
+    if manifest.complete:
+        wanted[INDEX_NAME] = [row for row in (manifest.index, manifest.next_index) if row is not None]
     judge, items = partial(_file_problem, directory, check), list(wanted.items())
     if check == "size":
         found = [judge(item) for item in items]
@@ -188,21 +313,23 @@ def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str
     return sorted(problem for problem in found if problem is not None)
 
 
-def _file_problem(directory: Path, check: Check, item: tuple[str, FileRow]) -> str | None:
-    name, row = item
+def _file_problem(directory: Path, check: Check, item: tuple[str, list[FileRow]]) -> str | None:
+    """Sentence about a file that is missing, or is none of those that the manifest allows under its name."""
+    name, rows = item
     try:
         path = plain_file(directory, name)
     except CorpusError as error:
         return str(error)
-    if path.stat().st_size == row.bytes and (check == "size" or sha256(path) == row.sha256):
+    size = path.stat().st_size
+    if any(size == row.bytes and (check == "size" or sha256(path) == row.sha256) for row in rows):
         return None
     return f"{path}: is altered: its size or hash differs from the manifest; copy it again, or delete it and make the corpus again."
 
 
 def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
-    """Paths of all parts of a finished corpus, after a check of every file.
+    """Paths of all parts of a finished corpus, after a check of every file; through a packed file they lead to ranges of its records.
 
-    ``check="size"`` compares sizes only, for corpora that take too long to hash.
+    ``check="size"`` compares sizes only, for corpora that take too long to hash. It checks no record of a packed file.
 
     Raises
     ------
@@ -214,6 +341,10 @@ def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
     if not manifest.complete:
         raise CorpusError(f"{directory}: is unfinished; run the raceway generate command that began it again.")
     problems = file_problems(directory, manifest, check)
+    if problems and (directory / EXTENSION_NAME).exists():
+        raise CorpusError(
+            f"{problems[0].split('; ')[0]}; run the raceway extend command that began an extension of it again."
+        )
     if problems:
         raise CorpusError(problems[0])
     return [directory / "parts" / row.name for row in manifest.parts]

@@ -1,6 +1,7 @@
 """One part of a corpus: a complete netCDF-4 file of some hundred records, written atomically."""
 
 import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -39,10 +40,14 @@ def part_name(number: int) -> str:
     return f"part-{number:05d}.nc"
 
 
-def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRow:
+Chunks = Mapping[tuple[int, ...], bytes]
+
+
+def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: Chunks | None = None) -> PartRow:
     """Write records as a part, atomically, with one chunk per record and channel.
 
-    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``.
+    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``. ``chunks`` are the deflated counts by
+    record and channel, if they are known already.
 
     Raises
     ------
@@ -50,7 +55,8 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
         If writing fails, with the reason that the system gives.
     """
     signal = dataset[SIGNAL].values
-    chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
+    if chunks is None:
+        chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
             file.setncatts(dataset.attrs)
@@ -99,7 +105,7 @@ def _declare(
     return stored, values
 
 
-def _write_chunks(chunks: dict[tuple[int, ...], bytes], path: Path) -> None:
+def _write_chunks(chunks: Chunks, path: Path) -> None:
     """Write compressed chunks of the signal directly: the zlib filter of HDF5 takes more than twice as long."""
     with h5py.File(path, "r+") as file:
         stored: Any = file[SIGNAL]

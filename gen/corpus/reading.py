@@ -35,7 +35,9 @@ from gen.corpus.layout import (
     packing_of,
     plain_attributes,
 )
+from gen.corpus.packed import FILES, PACKED, RECORD_HASH, home_of, packed_part
 from gen.corpus.part import inflated
+from gen.corpus.part_forms import read_attributes
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -263,14 +265,19 @@ def open_records(path: Path, parts: Sequence[Path], counts: Sequence[int] | None
 
 
 def open_part(path: Path) -> xr.Dataset:
-    """Records of one part, decoded to m s-2 and read lazily.
+    """Records of one part, decoded to m s-2 and read lazily. ``path`` can also lead through a packed file (:mod:`gen.corpus.packed`).
 
     Raises
     ------
     CorpusError
         If the file is missing or is not a part.
     """
-    return open_records(path, [path])
+    if home_of(path) is None:
+        return open_records(path, [path])
+    home, place = packed_part(path)
+    part = open_records(home, [home]).isel(record=slice(place.first, place.first + place.records))
+    part.attrs = read_attributes(place.attributes)
+    return part
 
 
 def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
@@ -279,47 +286,83 @@ def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArra
     It takes half the time of :func:`open_part`, which decodes in double precision; features use it. Chunks are inflated without the lock,
     so that threads run in parallel.
     """
-    source = source_of(path)
+    source, place = _rows_of(path)
     with _opened(source) as file:
         stored = own_dataset(file.handle, SIGNAL)
         records, _, samples = checked_shape(stored)
+        rows = place or range(records)
         packing, deflated = packing_of(stored), is_deflated(stored)
-        read: Any = _chunks(stored, range(records), range(channel, channel + 1)) if deflated else stored[:, channel]
-        columns = [_numbers(own_dataset(file.handle, name), name, records) for name in names]
-    _close([source])  # features read each part once, and an open file holds 1 MB
+        read: Any = (
+            _chunks(stored, rows, range(channel, channel + 1)) if deflated else stored[rows.start : rows.stop, channel]
+        )
+        columns = [_numbers(own_dataset(file.handle, name), name, records, rows) for name in names]
+    if place is None:
+        _close([source])  # features read each part once, and an open file holds 1 MB
     if packing.scale is None:
         return read, columns
-    signal = np.empty((records, samples), np.float32)
+    signal = np.empty((len(rows), samples), np.float32)
     for row, counts in zip(signal, _all_inflated(read, samples, source.path) if deflated else read, strict=True):
         np.multiply(counts, np.float32(packing.scale), out=row, dtype=np.float32)
         row[counts == packing.fill] = np.nan
     return signal, columns
 
 
+class StoredBlock(NamedTuple):
+    """Consecutive records of a part as they are stored; ``chunks`` are the deflated counts by record and channel, if they are deflated."""
+
+    values: NDArray[Any]
+    chunks: list[bytes] | None
+
+
 def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
     """Stored signal of a part in blocks of records: counts of the converter, or accelerations [m s-2]."""
-    source, first, records = source_of(path), 0, 1
-    while first < records:
+    return (block.values for block in blocks_with_chunks(path))
+
+
+def blocks_with_chunks(path: Path, most_samples: int = _BLOCK_SAMPLES) -> Iterator[StoredBlock]:
+    """Stored signal of a part in blocks of records, of at most so many samples; chunks are inflated without the lock."""
+    source, rows = _rows_of(path)
+    first, last = (0, 1) if rows is None else (rows.start, rows.stop)
+    while first < last:
         with _opened(source) as file:
             stored = own_dataset(file.handle, SIGNAL)
             records, channels, samples = checked_shape(stored)
-            size = max(1, _BLOCK_SAMPLES // max(1, channels * samples))
-            block = stored[first : first + size]
-        yield block
-        first += size
+            last = records if rows is None else rows.stop
+            block = range(first, min(first + max(1, most_samples // max(1, channels * samples)), last))
+            deflated = is_deflated(stored)
+            read: Any = _chunks(stored, block, range(channels)) if deflated else stored[block.start : block.stop]
+        if deflated:
+            values = np.empty((len(block), channels, samples), np.int16)
+            for counts, out in zip(_all_inflated(read, samples, source.path), values.reshape(-1, samples), strict=True):
+                out[:] = counts
+            yield StoredBlock(values, [chunk for _, chunk in read])
+        else:
+            yield StoredBlock(read, None)
+        first = block.stop
+    if rows is None:
+        _close([source])  # an open file holds 1 MB
 
 
-def _numbers(stored: h5py.Dataset, name: str, records: int) -> NDArray[Any]:
+def _rows_of(part: Path) -> tuple[Source, range | None]:
+    """File that holds a part, and the numbers of its records there if that is a packed file."""
+    if home_of(part) is None:
+        return source_of(part), None
+    home, place = packed_part(part)
+    return source_of(home), range(place.first, place.first + place.records)
+
+
+def _numbers(stored: h5py.Dataset, name: str, records: int, rows: range) -> NDArray[Any]:
     if not is_text(stored, name, "record", records):
-        return np.asarray(stored[:])
+        return np.asarray(stored[rows.start : rows.stop])
     raise ValueError(f"{name} is text, not numbers")
 
 
 def _variables(file: _OpenFile, source: Source, sizes: dict[str, int]) -> dict[str, xr.Variable]:
     """All variables of a file except the signal."""
     found: dict[str, xr.Variable] = {}
+    others = (SIGNAL, FILES, RECORD_HASH) if PACKED in file.handle.attrs else (SIGNAL,)
     for name in map(str, file.handle):
-        if name != SIGNAL:
+        if name not in others:
             stored = own_dataset(file.handle, name)
             if not is_bare_dimension(stored):
                 found[name] = _variable(source, stored, name, sizes)

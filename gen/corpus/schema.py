@@ -22,6 +22,12 @@ UNKNOWN, UNKNOWN_CODE = "unknown", 127  # recording whose class is not known: a 
 FAULT_NAMES: Mapping[int, str] = {**dict(enumerate(FAULTS)), UNKNOWN_CODE: UNKNOWN}
 SPLITS = ("train", "validation", "test")
 ROLES = ("operating", "label", "latent", "provenance")
+_CONTENT_OF_ROLES = {  # words of ISO 19115-1 in the attribute coverage_content_type of ACDD 1.3
+    "operating": "auxiliaryInformation",
+    "label": "referenceInformation",
+    "latent": "referenceInformation",
+    "provenance": "auxiliaryInformation",
+}
 SIGNAL = "acceleration"
 DRAWS = "draws"  # variable of simulated corpora: all drawn values of a record, as JSON of some kilobytes
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
@@ -96,6 +102,9 @@ def variable_attributes(variable: Variable) -> dict[str, Any]:
         "long_name": variable.long_name,
         "role": variable.role,
     }
+    attributes["coverage_content_type"] = (
+        "thematicClassification" if variable.flags else _CONTENT_OF_ROLES[variable.role]
+    )
     if variable.flags:
         attributes["flag_values"] = np.array([*variable.flags], dtype=variable.dtype)
         attributes["flag_meanings"] = " ".join(variable.flags.values())
@@ -152,21 +161,25 @@ def make_dataset(
     if names != set(columns):
         message = f"columns {sorted(names ^ set(columns))} are either missing or not described; give each exactly once."
         raise CorpusError(message)
-    data: dict[str, Any] = {SIGNAL: (SIGNAL_DIMS, signal, signal_attributes(counts_per_unit))}
+    simulated = any(variable.name == DRAWS for variable in extra)
+    content = {"coverage_content_type": "modelResult" if simulated else "physicalMeasurement"}
+    data: dict[str, Any] = {SIGNAL: (SIGNAL_DIMS, signal, signal_attributes(counts_per_unit) | content)}
     for variable in variables:
         dtype = object if variable.dtype == "str" else np.dtype(variable.dtype)
         values = np.asarray(columns[variable.name], dtype=dtype)
         data[variable.name] = ("record", values, variable_attributes(variable))
-    axis = {"units": "s", "long_name": "time since the start of the record"}
+    content = {"coverage_content_type": "coordinate"}
+    axis = {"units": "s", "long_name": "time since the start of the record", **content}
+    named = {"long_name": "name of the channel", **content}
     coordinates = {
-        "channel": ("channel", np.asarray(channels, dtype=object), {"long_name": "name of the channel"}),
+        "channel": ("channel", np.asarray(channels, dtype=object), named),
         "elapsed_time": ("elapsed_time", np.arange(signal.shape[2]) / fs, axis),
     }
     labels = {variable.name: data.pop(variable.name) for variable in variables if variable.dtype == "str"}
     return xr.Dataset(
         data,
         coordinates | labels,
-        {"Conventions": "CF-1.11", "raceway_format": FORMAT, **attributes},
+        {"Conventions": "CF-1.11, ACDD-1.3", "raceway_format": FORMAT, **attributes},
     )
 
 

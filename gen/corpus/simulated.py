@@ -5,6 +5,8 @@
 
 from gen.corpus.schema import DRAWS, Variable
 
+_DB = "in decibels re 1 (20 log10 of the ratio)"  # CF has no unit for levels
+
 SIMULATED = (
     Variable("axial_load", "f8", "N", "operating", "axial load"),
     Variable("temperature", "f8", "degC", "operating", "temperature of the oil in the contacts, NaN without a lubricant"),
@@ -21,8 +23,8 @@ SIMULATED = (
     Variable("true_bpfo", "f8", "1", "latent", "mean ball pass frequency of the outer race in shaft orders, slip included"),
     Variable("true_bpfi", "f8", "1", "latent", "mean ball pass frequency of the inner race in shaft orders, slip included"),
     Variable("true_bsf", "f8", "1", "latent", "mean ball spin frequency in shaft orders"),
-    Variable("snr", "f8", "dB", "latent", "bearing over background or rounding of the converter, NaN without either or in silence"),
-    Variable("fault_snr", "f8", "dB", "latent", "what the fault adds over all else of the record, NaN without a fault or if not known"),
+    Variable("snr", "f8", "1", "latent", f"rms of bearing over rms of background or rounding of the converter, {_DB}, NaN without either or in silence"),
+    Variable("fault_snr", "f8", "1", "latent", f"rms of what the fault adds over rms of all else, {_DB}, NaN without a fault or if not known"),
     Variable("fault_share", "f8", "1", "latent", "power of what the fault adds over its sum with that of all else, NaN if not known"),
     Variable("loaded_hits", "i4", "1", "latent", "expected number of passages of loaded balls over spalls, -1 if not known"),
     Variable("detectable", "i1", "1", "latent", "whether the fault can be seen in the record", {0: "no", 1: "yes", 2: "unjudged"}),

@@ -22,7 +22,7 @@ def validate_corpus(directory: Path | str) -> list[str]:
     """All problems of a corpus, one sentence each; an empty list if it has none.
 
     Checks the manifest, the bytes of every file, the format of every part, the values of the signal, and the agreement of ``corpus.nc``
-    with the parts. One part at a time is held in memory.
+    with the parts; of a packed file, every record in place of the files. One part at a time is held in memory.
     """
     directory, problems = Path(directory), []
     try:
@@ -30,7 +30,7 @@ def validate_corpus(directory: Path | str) -> list[str]:
         problems = file_problems(directory, manifest, "sha256")
         if problems or not manifest.complete:
             return problems or [f"{directory}: is unfinished; run the raceway generate command that began it again."]
-        problems = _mapping_problems(directory, manifest)
+        problems = [] if directory.is_file() else _mapping_problems(directory, manifest)
         if problems:
             return problems
         with open_corpus(directory, check="size") as index:

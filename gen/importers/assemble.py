@@ -14,18 +14,14 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.corpus import (
-    FAULT_NAMES,
     PartRow,
-    SignalCounts,
     Variable,
-    described,
     finish_corpus,
     make_dataset,
     part_name,
     temporary_beside,
     write_part,
 )
-from gen.corpus.card import plain_text
 from gen.errors import CorpusError
 from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
@@ -123,7 +119,7 @@ def import_recordings(
             rows = _write_parts(records, collection, temporary / "parts")
             if not rows:
                 raise CorpusError(_nothing_usable(collection.importer, log.skipped))
-            _finish(collection, rows, log, length, temporary)
+            _finish(collection, rows, log, temporary)
             temporary.replace(output)
     except OSError as error:
         message = f"{output}: could not be written ({error.strerror or error}); choose another folder."
@@ -170,12 +166,12 @@ def _write_parts(records: Iterator[Record], collection: Collection, folder: Path
     return rows
 
 
-def _finish(collection: Collection, rows: list[PartRow], log: _Log, length: int, directory: Path) -> None:
+def _finish(collection: Collection, rows: list[PartRow], log: _Log, directory: Path) -> None:
     finish_corpus(
         directory,
         rows,
-        lambda _corpus, signals: _data_card(collection, log, length, signals),
         importer=collection.importer,
+        basis=collection.facts,
         recordings=log.recordings.total(),
         skipped=tuple(log.skipped),
         warnings=tuple(log.warnings),
@@ -186,30 +182,3 @@ def _nothing_usable(importer: str, skipped: list[str]) -> str:
     if not skipped:
         return f"import {importer}: no recording of the set was found; give the folder that holds them."
     return f"import {importer}: no recording can be used; the first of {len(skipped)} skipped: {skipped[0]}"
-
-
-def _data_card(collection: Collection, log: _Log, length: int, signals: SignalCounts) -> str:
-    fs = collection.fs
-    names = ", ".join(plain_text(name) for name in collection.channels)
-    lines = [
-        f"# {plain_text(collection.title)}",
-        "",
-        f"Origin: {plain_text(collection.origin)}",
-        "",
-        f"Records of {length / fs:g} s at {fs:g} Hz, channel{'s' if len(collection.channels) > 1 else ''} {names}, in m/s^2.",
-        f"Records that cannot be used: {described(signals)}.",
-        "",
-        "| fault | recordings | records |",
-        "|---|---|---|",
-        *(
-            f"| {fault} | {log.recordings[fault]} | {log.records[fault]} |"
-            for fault in FAULT_NAMES.values()
-            if log.recordings[fault]
-        ),
-    ]
-    sections = [("Assumptions and changes", log.warnings), ("Skipped files", log.skipped)]
-    if collection.facts:
-        sections.insert(0, ("What labels and units rest on", [*collection.facts]))
-    for heading, sentences in sections:
-        lines += ["", f"## {heading}", "", *(f"- {plain_text(sentence)}" for sentence in sentences or ("Nothing.",))]
-    return "\n".join(lines) + "\n"

@@ -8,12 +8,14 @@ section       base of all sections: bounds, unknown keys, meanings
 machine       bearing, machine, lubricant, specimen
 faults        spalls, worn races, broken cages, several at once
 operation     speed and load with their profiles, slip, temperature
+publication   licence, creators and references of the corpus
 gear          gear mesh in the background
 sensing       sensors, path, background, level, converter
 sensor_faults faults of mount, cable, amplifier and data transfer
 changes       keys of operation and level that one fault replaces
 shares        quantities that are a share of another
 loads         loads that no bearing of the recipe can carry
+extensions    blocks of a corpus that was extended
 checks        keys that contradict each other, weights that cannot be met
 model         the recipe as a whole
 constructors  faults and distributions by calls in Python
@@ -45,6 +47,7 @@ if TYPE_CHECKING:
         outer,
         uniform,
     )
+    from gen.recipe.extensions import Block
     from gen.recipe.faults import (
         BallFault,
         CageFault,
@@ -73,6 +76,7 @@ __all__ = [
     "MAX_OVERSAMPLING",
     "STATIC_RATING",
     "BallFault",
+    "Block",
     "CageFault",
     "CatalogueBearing",
     "CompoundFault",
@@ -119,6 +123,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe.constructors": (
             "ball", "cage", "choice", "compound", "distributed", "grid", "healthy", "inner", "loguniform", "normal", "outer", "uniform",
         ),
+        "gen.recipe.extensions": ("Block",),
         "gen.recipe.faults": (
             "BallFault",
             "CageFault",

@@ -4,19 +4,22 @@ Keys end in their unit; most numbers can be distributions. Each section is drawn
 Whether a recipe as a whole can be made is checked in :mod:`gen.recipe.checks`.
 """
 
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, StrictInt, StringConstraints, ValidationError, model_validator
+from pydantic import Field, PrivateAttr, StrictInt, StringConstraints, ValidationError, model_validator
 
 from gen.corpus import Codec
 from gen.errors import RecipeError
 from gen.limits import check_limit
 from gen.recipe.checks import recipe_problem
 from gen.recipe.distributions import Number
+from gen.recipe.extensions import Block, Extension, first_block, with_blocks
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault
 from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing, MachineSection, SpecimenSection
 from gen.recipe.operation import OperationSection, Table
+from gen.recipe.publication import PublicationSection
 from gen.recipe.section import Count, Name, Section, plain
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
 from gen.recipe.sensor_faults import SensorFaultsSection
@@ -102,6 +105,8 @@ class Recipe(Section):
     """One line about the corpus, for its data card."""
     seed: Annotated[StrictInt, Field(ge=0, lt=2**63)] = 0
     """Start of all random streams; the same recipe and seed give the same corpus."""
+    publication: PublicationSection = PublicationSection()
+    """Licence, creators and references; no record depends on them, and `raceway card` can change them later."""
     corpus: CorpusSection
     """Size, split and storage of the corpus."""
     recording: RecordingSection
@@ -128,6 +133,7 @@ class Recipe(Section):
     """Faults of mount, cable, amplifier and data transfer; none if left out."""
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
+    _extensions: tuple[Extension, ...] = PrivateAttr(())
 
     def __init__(self, /, **keys: Any) -> None:
         """Check a recipe given by its keys; sections are mappings, as in YAML.
@@ -154,10 +160,32 @@ class Recipe(Section):
         return round(self.recording.duration_s * self.recording.sample_rate_hz)
 
     @property
+    def blocks(self) -> tuple[Block, ...]:
+        """Records that the recipe asks for, and those of each extension."""
+        corpus, whole = self.corpus, self.corpus.n_records
+        records = whole if self.records is None else min(whole, self.records)
+        first = first_block(
+            records,
+            whole,
+            per_specimen=corpus.records_of_a_specimen,
+            specimens_per_rig=corpus.specimens_per_rig,
+            per_part=corpus.records_per_part,
+            n_rungs=corpus.n_rungs,
+        )
+        return with_blocks(first, self._extensions)
+
+    def block_of(self, record: int) -> Block:
+        """Block of a record."""
+        return next(block for block in self.blocks if record < block.records.stop)
+
+    def records_of_part(self, part: int) -> range:
+        """Numbers of the records of a part."""
+        return next(block for block in self.blocks if part < block.parts.stop).records_of_part(part)
+
+    @property
     def n_records(self) -> int:
         """Number of records of the corpus."""
-        whole = self.corpus.n_records
-        return whole if self.records is None else min(whole, self.records)
+        return self.blocks[-1].records.stop
 
     def operation_of(self, entry: int) -> OperationSection:
         """Operating conditions of the records of one entry of ``faults``."""
@@ -175,7 +203,7 @@ class Recipe(Section):
     @property
     def n_parts(self) -> int:
         """Number of parts of the corpus."""
-        return -(-self.n_records // self.corpus.records_per_part)
+        return self.blocks[-1].parts.stop
 
     @model_validator(mode="after")
     def _within_limits(self) -> Self:
@@ -227,3 +255,18 @@ class Recipe(Section):
         if problem is not None:
             raise ValueError(problem)
         return self
+
+    def extended(self, extensions: Iterable[Mapping[Any, int]]) -> Self:
+        """The same recipe for a corpus with further rigs or specimens; an extension is ``{"rigs": 2}`` or ``{"specimens": 2}``.
+
+        Raises
+        ------
+        RecipeError
+            If the corpus would be larger than the limits allow.
+        """
+        extended = self.model_copy()
+        extended._extensions = (*self._extensions, *(Extension(**extension) for extension in extensions))  # noqa: SLF001 - a copy of this object
+        per_rig = max(block.specimens_per_rig for block in extended.blocks)
+        check_limit("rig_specimens", per_rig, "the extension: asks for", RecipeError)
+        check_limit("records", extended.n_records, "the extended corpus has", RecipeError)
+        return extended

@@ -41,8 +41,8 @@ def read_recipe(
 
 
 def recipe_hash(recipe: Recipe) -> str:
-    """SHA-256 of the values of a recipe; layout and comments do not count."""
-    values = recipe.model_dump(mode="json")
+    """SHA-256 of the values of a recipe that records depend on; ``publication``, layout and comments do not count."""
+    values = recipe.model_dump(mode="json", exclude={"publication"})
     if recipe.corpus.fault_choice == "by_weight":  # the key is younger than the first corpora, whose hashes stay
         del values["corpus"]["fault_choice"]
     text = json.dumps(values, sort_keys=True)

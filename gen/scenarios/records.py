@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
-from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
+from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Block, Fault, ProfileSection, Recipe, fault_class
 from gen.scenarios.draws import Combination, Draws, Known, known_of
 from gen.scenarios.model import Operation, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions
@@ -58,22 +58,24 @@ def source_of(
     return Source(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
 
 
-def record_points(recipe: Recipe, first: int, stop: int) -> dict[int, NDArray[np.float64]]:
-    """Quasi-random points of the groups of ``n_rungs`` records that hold the records ``first`` to ``stop``, by number.
+def record_points(recipe: Recipe, block: Block, numbers: range) -> dict[int, NDArray[np.float64]]:
+    """Quasi-random points of the groups of ``n_rungs`` records that hold some records of a block, by number.
 
     A faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
-    points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
+    points of all groups of the block, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
     """
     rungs = recipe.corpus.n_rungs
-    groups = recipe.corpus.n_records // rungs
     points: dict[int, NDArray[np.float64]] = {}
+    first, last = numbers[0] // rungs * rungs, numbers[-1] // rungs * rungs
     for place in range(rungs):
-        points |= points_of(recipe, Purpose.RECORD, place * groups + first // rungs, place * groups - (-stop // rungs))
+        points |= points_of(recipe, Purpose.RECORD, block.item_of(first + place), block.item_of(last + place) + 1)
     return points
 
 
-def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int, NDArray[np.float64]]) -> Scenario:
-    """Draw one record of a specimen.
+def draw_record(
+    recipe: Recipe, block: Block, source: Source, number: int, points: Mapping[int, NDArray[np.float64]]
+) -> Scenario:
+    """Draw one record of a specimen of a block.
 
     The records of a group have the streams of its first record, and the combination of grids and the quasi-random point of the group.
 
@@ -85,7 +87,7 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
     n_rungs = recipe.corpus.n_rungs
     group, place = divmod(number, n_rungs)
     rung = place if len(source.rungs) > 1 else -1
-    item = group if rung >= 0 else place * (recipe.corpus.n_records // n_rungs) + group
+    item = block.item_of(number if rung < 0 else group * n_rungs)
     specimen, first = source.rungs[max(rung, 0)], number - max(rung, 0)
     streams = functools.partial(stream, recipe.seed, source.rig.number, specimen.number, first)
     draws = Draws(streams(Purpose.RECORD), points[item], item, f"record {number}")

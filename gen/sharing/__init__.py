@@ -3,5 +3,57 @@
 =========== ======================================================
 module      responsibility
 =========== ======================================================
+where       conditions on records: parsed, never evaluated as Python
+choice      choice of records and channels
+copying     stored records read, and written into a new folder
+columns     variables of all corpora that are merged
+repeats     records with the same samples in different corpora
+selecting   some records or channels as a corpus of their own
+merging     several corpora as one
+packing     a whole corpus written into one netCDF-4 file
+unpacking   the folder of a packed corpus made again
+portable    a corpus, or a choice of it, as one file
 =========== ======================================================
 """
+
+from typing import TYPE_CHECKING
+
+from gen.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from gen.sharing.choice import chosen_channels, chosen_records
+    from gen.sharing.merging import Merged, merge
+    from gen.sharing.packing import PackedFile
+    from gen.sharing.portable import pack
+    from gen.sharing.selecting import Selected, select
+    from gen.sharing.unpacking import Unpacked, unpack
+    from gen.sharing.where import Condition, parse_where
+
+__all__ = [
+    "Condition",
+    "Merged",
+    "PackedFile",
+    "Selected",
+    "Unpacked",
+    "chosen_channels",
+    "chosen_records",
+    "merge",
+    "pack",
+    "parse_where",
+    "select",
+    "unpack",
+]
+
+# xarray and netCDF4 take 0.3 s to load, and a condition needs none of them
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "gen.sharing.choice": ("chosen_channels", "chosen_records"),
+        "gen.sharing.merging": ("Merged", "merge"),
+        "gen.sharing.packing": ("PackedFile",),
+        "gen.sharing.portable": ("pack",),
+        "gen.sharing.selecting": ("Selected", "select"),
+        "gen.sharing.unpacking": ("Unpacked", "unpack"),
+        "gen.sharing.where": ("Condition", "parse_where"),
+    },
+)

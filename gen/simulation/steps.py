@@ -108,14 +108,15 @@ def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[in
     These are the first record of each class, in the part where the first specimen of the class begins; in every ``CHECKED_PARTS``-th part
     also ``CHECKED_SHARE`` of the records of so many parts; and records that fill the batches of these at no more cost.
     """
-    corpus, begun = recipe.corpus, {scenario.record.number for scenario in scenarios}
+    begun = {scenario.record.number for scenario in scenarios}
     new = {fault for fault, number in first_records(recipe).items() if number in begun}
     first: dict[str, int] = {}
     for place in groups:
         if scenarios[place].specimen.fault in new:
             first.setdefault(scenarios[place].specimen.fault, place)
-    start, span = scenarios[0].record.number, CHECKED_PARTS * corpus.records_per_part
-    wanted = CHECKED_SHARE * min(span, recipe.n_records - start) if start % span == 0 else 0
+    span = CHECKED_PARTS * recipe.corpus.records_per_part
+    done, rest = _records_around(recipe, scenarios[0].record.number)
+    wanted = CHECKED_SHARE * min(span, rest) if done % span == 0 else 0
     chosen = _with_full_batches(list(first.values()), groups)
     for place in groups:
         if len(chosen) >= wanted:
@@ -127,8 +128,15 @@ def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[in
 
 def has_checks(recipe: Recipe, numbers: range) -> bool:
     """Whether the step of any of the records of a part may be checked, by :func:`checked_places`."""
-    every = numbers.start % (CHECKED_PARTS * recipe.corpus.records_per_part) == 0
+    done, _ = _records_around(recipe, numbers.start)
+    every = done % (CHECKED_PARTS * recipe.corpus.records_per_part) == 0
     return every or any(number in numbers for number in first_records(recipe).values())
+
+
+def _records_around(recipe: Recipe, record: int) -> tuple[int, int]:
+    """Number of the records of the same block before a record, and of those from it on."""
+    records = recipe.block_of(record).records
+    return record - records.start, records.stop - record
 
 
 def _with_full_batches(chosen: list[int], groups: Mapping[int, Group]) -> list[int]:

@@ -4,6 +4,8 @@
 module         responsibility
 ============== ================================================================
 corpora        commands that make corpora and look at them
+cutting        commands that choose records, and that join corpora
+extending      rigs or specimens added to a corpus
 importing      commands that convert real recordings into the format
 feature_tables a picture of one record, and features of all
 models         a model trained, and scored on another corpus

@@ -246,7 +246,7 @@ def validate(corpus: Path, as_json: bool) -> int:
     """
     from gen.corpus import read_manifest, validate_corpus
 
-    if not (corpus / "manifest.json").exists():
+    if not corpus.is_file() and not (corpus / "manifest.json").exists():
         read_manifest(corpus)  # raises: a folder without a manifest is bad input, not a damaged corpus
     problems = validate_corpus(corpus)
     warnings: list[str] = []

@@ -14,16 +14,22 @@ A_PATH = click.Path(path_type=Path)
 
 
 def corpus_folder(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
-    """Folder of a corpus; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
+    """Folder of a corpus, or a packed file; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
     if path is None or not path.is_file():
         return path
     if path.name == "corpus.nc" and (path.parent / "manifest.json").is_file():
         return path.parent
-    from gen.errors import CorpusError  # not at the top: help needs nothing of gen
+    from gen.corpus.manifest import not_a_corpus  # not at the top: help needs nothing of gen
+    from gen.corpus.packed import is_packed
+    from gen.errors import CorpusError
 
+    if is_packed(path):
+        return path
     for folder in path.absolute().parents[:2]:
         if (folder / "manifest.json").is_file():
             raise CorpusError(f"{path}: is one file of a corpus; give the folder of the corpus, {folder}.")
+    if path.name == "corpus.nc":
+        raise CorpusError(not_a_corpus(path))
     what = "a feature table" if _is_table(path) else "a file"
     raise CorpusError(f"{path}: is {what}; give the folder of a corpus, the one that holds manifest.json.")
 
@@ -86,6 +92,29 @@ def cores() -> int:
 def worker_options(command: Any) -> Any:
     """Add the options ``--workers`` and ``--scheduler``."""
     return _workers(_scheduler(command))
+
+
+def _names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...] | None:
+    """Names separated by commas."""
+    return None if text is None else tuple(name.strip() for name in text.split(","))
+
+
+_where: Decorator = click.option(
+    "--where",
+    metavar="TEXT",
+    help="Only records that meet this condition, such as \"fault == 'inner' and shaft_rate > 20\".",
+)
+_split: Decorator = click.option(
+    "--split", metavar="NAME", help="Only records of this split: train, validation or test."
+)
+_channels: Decorator = click.option(
+    "--channels", metavar="NAME[,NAME]", callback=_names, help="Only these channels, in the order of the corpus."
+)
+
+
+def choice_options(command: Any) -> Any:
+    """Add the options ``--where``, ``--split`` and ``--channels``, which choose records and channels of a corpus."""
+    return _where(_split(_channels(command)))
 
 
 speed_option: Decorator = click.option(

@@ -13,6 +13,7 @@ import xarray as xr
 
 from gen.corpus import (
     DRAWS,
+    EXTENSION_NAME,
     FAULT_NAMES,
     SPLITS,
     Manifest,
@@ -24,6 +25,7 @@ from gen.corpus import (
     plain_file,
     read_manifest,
 )
+from gen.corpus.manifest import Choice
 from gen.corpus.visible import VARIABLES
 from raceway.console import show
 
@@ -67,7 +69,7 @@ def describe(directory: Path) -> dict[str, Any]:
         "complete": manifest.complete,
         "records": manifest.records,
         "parts": len(manifest.parts),
-        "bytes": sum(path.stat().st_size for path in directory.rglob("*") if path.is_file()),
+        "bytes": sum(path.stat().st_size for path in (directory, *directory.rglob("*")) if path.is_file()),
         "failures": [],
         "warnings": [],
         "skipped": [],
@@ -149,12 +151,20 @@ def _range(values: np.ndarray) -> list[float] | None:
 
 def show_facts(facts: dict[str, Any]) -> None:
     """Print the facts of ``describe``; an unfinished corpus without a part has no contents yet."""
-    overrides = {key: value for key, value in facts.get("overrides", {}).items() if value is not None}
-    with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
+    overrides = {key: value for key, value in (facts.get("overrides") or {}).items() if value is not None}
+    extensions = [_shown_extension(**extension) for extension in overrides.pop("extensions", ())]
+    with_overrides = "".join([*(f", {key} {value}" for key, value in overrides.items()), *extensions])
     origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
+    if facts.get("origins"):
+        origin = "merge of " + ", ".join(of["title"] or "a corpus" for of in facts["origins"])
+    chosen = "; then ".join(
+        f"{Choice(**choice)}, of {choice['records']:,} records" for choice in facts.get("selections", ())
+    )
     show.text(facts.get("title", str(facts["corpus"])), "")
-    known = {"corpus": facts["corpus"], "made by": origin}
+    known = {"corpus": facts["corpus"], "made by": origin, "selected": chosen}
     known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
+    if (facts["corpus"] / EXTENSION_NAME).exists():
+        known["state"] += "; an extension is unfinished, and the raceway extend command that began it completes it"
     if "classes" in facts:
         known |= _shown_content(facts)
     known["not usable"] = described(SignalCounts(**facts["signals"]))
@@ -164,6 +174,11 @@ def show_facts(facts: dict[str, Any]) -> None:
     for heading, key in (("Left out:", "failures"), ("Skipped:", "skipped"), ("Warnings:", "warnings")):
         if facts[key]:
             show.text("", heading, *(f"- {sentence}" for sentence in facts[key]))
+
+
+def _shown_extension(rigs: int = 0, specimens: int = 0) -> str:
+    added = show.counted(rigs, "rig") if rigs else f"{show.counted(specimens, 'specimen')} in every rig"
+    return f", extended by {added}"
 
 
 def _shown_content(facts: dict[str, Any]) -> dict[str, str]:

@@ -31,7 +31,7 @@ from gen.corpus import (
 from gen.errors import CorpusError
 
 FS, SAMPLES, RECORDS, PARTS = 12_000.0, 3000, 5, 3
-SNR = Variable("snr", "f8", "dB", "latent", "ratio of signal to background")
+SNR = Variable("snr", "f8", "1", "latent", "ratio of signal to background in decibels")
 KNOWN = {"shaft_rate": 30.0, "sample_rate": FS, "ftf": 0.3983, "bpfo": 3.5848, "bpfi": 5.4152, "bsf": 2.3567}
 
 

@@ -90,7 +90,7 @@ def test_a_part_that_the_journal_lists_but_that_is_not_its_file_is_made_again(
 ):
     recipe = write_recipe(tmp_path / "r.yaml")
     whole = generate(recipe, tmp_path / "whole").directory
-    monkeypatch.setattr(GENERATE, "_finished", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    monkeypatch.setattr(GENERATE, "finished", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
         generate(recipe, tmp_path / "c")
     monkeypatch.undo()
@@ -106,7 +106,7 @@ def test_a_part_that_the_journal_lists_but_that_is_not_its_file_is_made_again(
 def test_rows_of_other_versions_do_not_stay_in_the_journal(write_recipe, tmp_path, monkeypatch):
     recipe = write_recipe(tmp_path / "r.yaml")
     monkeypatch.setattr(GENERATE, "library_versions", lambda: {"numpy": "1.0"})
-    monkeypatch.setattr(GENERATE, "_finished", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
+    monkeypatch.setattr(GENERATE, "finished", lambda *_: (_ for _ in ()).throw(KeyboardInterrupt))
     with pytest.raises(KeyboardInterrupt):
         generate(recipe, tmp_path / "c")
     assert len(read_manifest(tmp_path / "c").parts) == 3

@@ -55,7 +55,7 @@ def test_records_do_not_depend_on_the_number_of_threads(ladder):
 def test_the_corpus_of_a_whole_dataset_is_that_of_its_recipe_byte_by_byte(ladder, tmp_path):
     written = gen.write_corpus(ladder, tmp_path / "written")
     gen.generate(written / "recipe.yaml", tmp_path / "generated")
-    names = ["manifest.json", "corpus.nc", "recipe.yaml", "parts/part-00000.nc", "parts/part-00001.nc"]
+    names = ["manifest.json", "corpus.nc", "recipe.yaml", "README.md", "parts/part-00000.nc", "parts/part-00001.nc"]
     for name in names:
         assert (written / name).read_bytes() == (tmp_path / "generated" / name).read_bytes()
     assert gen.validate_corpus(written) == []
@@ -300,3 +300,27 @@ def test_the_dataset_carries_the_recipe_as_it_was_given(ladder):
     assert plain(gen.recipe_of(ladder)) == plain(
         gen.recipe_for([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
     )
+
+
+def test_a_corpus_with_faults_in_turn_goes_on_with_them_when_it_is_extended(ladder, tmp_path):
+    directory = gen.write_corpus(ladder, tmp_path / "corpus")
+    before = [path.read_bytes() for path in sorted((directory / "parts").iterdir())]
+    gen.extend(directory, specimens=3)
+    with gen.open_corpus(directory) as corpus:
+        assert corpus["parts"].values.tolist() == ["outer", "inner"] * 4 + ["outer"]
+    assert [path.read_bytes() for path in sorted((directory / "parts").iterdir())][:2] == before
+    assert gen.replay(directory, 8).identical
+
+
+def test_merged_corpora_of_drawn_and_of_given_scenarios_are_replayed(ladder, tmp_path):
+    other = gen.records(OUTER, 2, shaft_rpm=gen.uniform(3000, 4000), **SHORT | {"seed": 6})
+    scenarios = [replace(one, seed=5, record=replace(one.record, number=3)) for one in gen.scenarios_of(other)]
+    made = gen.simulate_scenarios(scenarios, gen.recipe_of(ladder))
+    drawn, given = gen.write_corpus(ladder, tmp_path / "drawn"), gen.write_corpus(made, tmp_path / "given")
+    gen.merge([drawn, given], tmp_path / "merged")
+    assert gen.validate_corpus(tmp_path / "merged") == []
+    with gen.open_corpus(tmp_path / "merged") as corpus:
+        assert corpus["rig"].values.tolist() == [0] * 6 + [1] * 2  # given machines are their own
+    assert replayed(tmp_path / "merged")
+    with pytest.raises(CorpusError, match="holds scenarios that were chosen or made by hand"):
+        gen.extend(given, rigs=1)

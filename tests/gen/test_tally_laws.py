@@ -4,13 +4,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from gen.generation import Tally
-from gen.part_task import record_numbers
 
 
 @given(per_part=st.integers(1, 50), records=st.integers(1, 24))
 def test_the_parts_hold_every_record_once(recipe_with, per_part, records):
     recipe = recipe_with({"corpus.records_per_part": per_part, "records": records})
-    numbers = [number for part in range(recipe.n_parts) for number in record_numbers(recipe, part)]
+    numbers = [number for part in range(recipe.n_parts) for number in recipe.records_of_part(part)]
     assert numbers == list(range(recipe.n_records))
     assert recipe.n_records == records
 

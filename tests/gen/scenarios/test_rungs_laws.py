@@ -11,7 +11,6 @@ from features.baselines.splits import grouped_splits
 from gen.corpus import FAULTS, open_corpus
 from gen.generation import generate
 from gen.measurement.measure import measure
-from gen.part_task import record_numbers
 from gen.plan import plan
 from gen.replaying import replay, stored_scenario
 from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
@@ -103,7 +102,7 @@ def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
     assert {one.record.rung for one in healthy} == {-1}
     speeds = Counter(one.record.conditions["shaft"] for one in healthy)
     assert max(speeds.values()) == 1  # each record of a healthy specimen has conditions of its own
-    assert sum(len(record_numbers(recipe, part)) for part in range(recipe.n_parts)) == recipe.n_records
+    assert sum(len(recipe.records_of_part(part)) for part in range(recipe.n_parts)) == recipe.n_records
 
 
 def test_the_last_rung_of_a_ladder_is_the_record_without_rungs(recipe_with):

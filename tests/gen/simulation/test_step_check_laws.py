@@ -117,9 +117,9 @@ def test_the_first_specimen_of_each_class_is_the_first_one_drawn_with_it(recipe_
 def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe_with, monkeypatch):
     seen = []
 
-    def looked_at(recipe, rig):
+    def looked_at(recipe, rig, block):
         seen.append(rig)
-        return fault_of_each_specimen(recipe, rig)
+        return fault_of_each_specimen(recipe, rig, block)
 
     monkeypatch.setattr("gen.scenarios.classes.fault_of_each_specimen", looked_at)
     assert first_specimens(recipe_with({"corpus.rigs": 1000, "seed": 12345})).keys() == set(FAULTS[:4])

@@ -1,0 +1,71 @@
+"""Global attributes of a published corpus, as the Attribute Convention for Data Discovery (ACDD 1.3) names them.
+
+Attributes without a fact behind them are left out, as are those about time and place on Earth, which a bearing on a test rig does not
+have. No variable has a CF standard name (the table has none for vibration), so that no table of them is named.
+"""
+
+from uuid import NAMESPACE_OID, uuid5
+
+from gen.corpus.manifest import Manifest
+from gen.corpus.publication import Creator
+from gen.corpus.schema import FORMAT
+
+_KEYWORDS = (
+    "bearing vibration, rolling bearing, bearing fault, fault diagnosis, condition monitoring, labelled recordings"
+)
+_SIMULATED = "simulated rotating machine", "simulated accelerometer", "simulated"
+_RECORDED = "rotating machine", "accelerometer", "cut from recordings"
+_BOTH = (
+    "rotating machine, simulated rotating machine",
+    "accelerometer, simulated accelerometer",
+    "recorded and simulated",
+)
+
+
+def publication_attributes(manifest: Manifest) -> dict[str, str]:
+    """Global attributes of ``corpus.nc``, of packed files and of exports, beside those of the parts.
+
+    They follow from the manifest alone: its ``publication``, its counts and the hashes of its parts.
+    """
+    publication = manifest.publication
+    importers = manifest.importers
+    platform, instrument, made = _SIMULATED if importers == {None} else _BOTH if None in importers else _RECORDED
+    fixed = {
+        "summary": f"{manifest.records} labelled records of bearing vibration, {made}, with fault class, speed, load and nominal fault "
+        f"frequencies of each.",
+        "keywords": f"{_KEYWORDS}, {made}",
+        "id": publication.doi or str(uuid5(NAMESPACE_OID, " ".join(row.sha256 for row in manifest.parts))),
+        "naming_authority": "https://doi.org" if publication.doi else "urn:uuid",
+        "processing_level": f"acceleration in m s-2, {made}",
+        "product_version": _product_version(manifest),
+        "platform": platform,
+        "instrument": instrument,
+    }
+    creators = publication.creators
+    publisher = publication.institution or ", ".join(creator.name for creator in creators)
+    given = {
+        "license": publication.license,
+        "creator_name": ", ".join(creator.name for creator in creators),
+        "creator_type": "person" if any(creator.orcid for creator in creators) else None,
+        "creator_url": _addresses(creators),
+        "creator_email": publication.contact,
+        "creator_institution": publication.institution,
+        "institution": publication.institution,
+        "publisher_name": publisher,
+        "publisher_type": "institution" if publication.institution else "person" if publisher else None,
+        "publisher_institution": publication.institution,
+        "publisher_email": publication.contact,
+        "references": "; ".join(publication.references),
+        "metadata_link": f"https://doi.org/{publication.doi}" if publication.doi else None,
+        "date_created": publication.date,
+    }
+    return fixed | {name: value for name, value in given.items() if value}
+
+
+def _addresses(creators: tuple[Creator, ...]) -> str:
+    return ", ".join(f"https://orcid.org/{creator.orcid}" for creator in creators if creator.orcid)
+
+
+def _product_version(manifest: Manifest) -> str:
+    version = manifest.versions.get("raceway")
+    return f"raceway {version}, format {FORMAT}" if version else f"raceway format {FORMAT}"

@@ -1,0 +1,96 @@
+"""Licence and creators of a corpus, and how to cite it, for its data card."""
+
+import re
+
+from gen.corpus.card.markdown import listed, plain_text, table
+from gen.corpus.manifest import Manifest
+from gen.corpus.publication import Publication
+
+
+def terms(publication: Publication) -> list[str]:
+    """Section with licence, creators, institution, contact, DOI, references and date."""
+    facts = (
+        ("licence", publication.license),
+        *(("creator", _creator(person.name, person.orcid)) for person in publication.creators),
+        ("institution", publication.institution),
+        ("contact", publication.contact),
+        ("DOI", f"https://doi.org/{publication.doi}" if publication.doi else None),
+        *(("reference", reference) for reference in publication.references),
+        ("date", publication.date),
+    )
+    rows = [(name, plain_text(value)) for name, value in facts if value]
+    lines = ["", "## Licence and creators"]
+    if publication.license is None:
+        lines += ["", "No licence is stated, so nobody may publish copies: ask the owner."]
+    return lines + (table(("fact", "value"), rows) if rows else [])
+
+
+def _creator(name: str, orcid: str | None) -> str:
+    return f"{name}, https://orcid.org/{orcid}" if orcid else name
+
+
+def citation(title: str, manifest: Manifest, publication: Publication) -> list[str]:
+    """Section with the citation as a sentence and for BibTeX; ``title`` is plain text."""
+    tool = f"Raceway {plain_text(manifest.versions.get('raceway', ''))}".strip()
+    verb = "converted" if manifest.importer else "made"
+    note = f"Bearing vibration corpus of {manifest.records} records, {verb} with {tool}"
+    return [
+        "",
+        "## How to cite it",
+        "",
+        _sentence(title, note, publication),
+        "",
+        "```bibtex",
+        *_bibtex(title, note, publication),
+        "```",
+    ]
+
+
+def _sentence(title: str, note: str, publication: Publication) -> str:
+    names = [plain_text(person.name) for person in publication.creators]
+    year = f" ({publication.date[:4]})" if publication.date else ""
+    parts = [
+        f"{listed(names)}{year}: {title}" if names else f"{title}{year}",
+        note,
+        plain_text(publication.institution or ""),
+        f"https://doi.org/{plain_text(publication.doi)}" if publication.doi else "",
+    ]
+    return ". ".join(part for part in parts if part) + "."
+
+
+def _bibtex(title: str, note: str, publication: Publication) -> list[str]:
+    """Entry of type ``misc``, which every BibTeX style knows."""
+    fields = {
+        "title": f"{{{_escaped(title)}}}",
+        "author": " and ".join(f"{{{_escaped(plain_text(person.name))}}}" for person in publication.creators),
+        "year": (publication.date or "")[:4],
+        "publisher": _escaped(plain_text(publication.institution or "")),
+        "doi": plain_text(publication.doi or "").replace("{", "").replace("}", ""),
+        "note": _escaped(note),
+    }
+    entries = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
+    return [f"@misc{{{_key(title, publication)},", *entries, "}"]
+
+
+def _key(title: str, publication: Publication) -> str:
+    """Key of an entry: last name of the first creator, year and first word of the title, in ASCII letters and digits.
+
+    >>> from gen.corpus.publication import Creator
+    >>> _key("Quickstart corpus", Publication(creators=(Creator(name="Jane Doe"),), date="2026-03-31"))
+    'doe2026quickstart'
+    """
+    names = publication.creators[0].name.split() if publication.creators else []
+    words = [*names[-1:], (publication.date or "")[:4], *re.findall(r"[A-Za-z0-9]+", title)[:1]]
+    return "".join(re.sub(r"[^a-z0-9]", "", word.lower()) for word in words) or "corpus"
+
+
+def _escaped(text: str) -> str:
+    r"""Text for a field of BibTeX.
+
+    >>> print(_escaped("50 % of A & B_1"))
+    50 \% of A \& B\_1
+    """
+    return "".join(_ESCAPES.get(letter, letter) for letter in text)
+
+
+_ESCAPES = {letter: f"\\{letter}" for letter in "&%$#_{}"} | {"~": r"\textasciitilde{}", "^": r"\textasciicircum{}"}

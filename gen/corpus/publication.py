@@ -1,0 +1,168 @@
+"""Who made a corpus, under which licence it may be used, and how to cite it.
+
+The same facts stand in the manifest, in the attributes of ``corpus.nc``, in ``croissant.json`` and in the data card. No part depends on
+them, so that a corpus can be published under another licence without a new simulation.
+"""
+
+import re
+from collections.abc import Mapping
+from datetime import UTC, date, datetime
+from os import environ
+from typing import Annotated, Any, Self
+
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, ValidationError
+
+from gen.errors import CorpusError
+
+EPOCH = "SOURCE_DATE_EPOCH"
+"""Environment variable with a time [s since 1970, UTC] that replaces that of the clock in reproducible files."""
+
+_ORCID = re.compile(r"(?:https?://orcid\.org/)?(\d{4}-\d{4}-\d{4}-\d{3}[\dX])")
+_DOI = re.compile(r"(?:https?://(?:dx\.)?doi\.org/|doi:)?(10\.\d{4,9}/[!-~]{1,200})", re.IGNORECASE)
+_SPDX_NAME = r"[A-Za-z0-9][A-Za-z0-9.-]{0,99}\+?"
+_SPDX = re.compile(rf"{_SPDX_NAME}(?: (?:AND|OR|WITH) {_SPDX_NAME}){{0,9}}")
+_EMAIL = re.compile(r"[^@\s<>,;]{1,64}@[^@\s<>,;]{1,200}\.[^@\s<>,;.]{2,63}")
+
+
+def checked_orcid(text: str) -> str:
+    """ORCID without the address before it; ValueError if it is none, or if its last character is not the check digit of ISO 7064 (11-2).
+
+    >>> checked_orcid("https://orcid.org/0000-0002-1825-0097")
+    '0000-0002-1825-0097'
+    """
+    found = _ORCID.fullmatch(text)
+    if found is None:
+        raise ValueError(f"{text!r} is not an ORCID; it has four groups of four digits, such as 0000-0002-1825-0097.")
+    *digits, last = found[1].replace("-", "")
+    total = 0
+    for digit in digits:
+        total = (total + int(digit)) * 2
+    check = (12 - total % 11) % 11
+    if last != "0123456789X"[check]:
+        raise ValueError(
+            f"{text!r} is not an ORCID: its last digit does not fit the others; compare it digit by digit."
+        )
+    return found[1]
+
+
+def checked_doi(text: str) -> str:
+    """DOI without the address before it; ValueError if it is none.
+
+    >>> checked_doi("https://doi.org/10.1000/182")
+    '10.1000/182'
+    """
+    found = _DOI.fullmatch(text)
+    if found is None:
+        raise ValueError(f"{text!r} is not a DOI; it begins with 10. and has a slash, such as 10.1000/182.")
+    return found[1]
+
+
+def _checked_license(text: str) -> str:
+    if _SPDX.fullmatch(text) is None:
+        raise ValueError(
+            f"{text!r} is not an SPDX identifier; give one of spdx.org/licenses, such as CC-BY-4.0 or CC0-1.0, "
+            f"several joined by AND or OR, or LicenseRef-NAME for a licence of your own."
+        )
+    return text
+
+
+def _checked_email(text: str) -> str:
+    if _EMAIL.fullmatch(text) is None:
+        raise ValueError(f"{text!r} is not an e-mail address; give one such as name@example.org.")
+    return text
+
+
+def _checked_date(text: str) -> str:
+    try:
+        if date.fromisoformat(text).isoformat() == text:
+            return text
+    except ValueError:
+        pass
+    raise ValueError(f"{text!r} is not a date; write year, month and day as 2026-03-31.")
+
+
+def _one_line(text: str) -> str:
+    if not text.isprintable() or text != text.strip():
+        raise ValueError(f"{text!r} has line breaks, other unprintable characters or spaces around it; give one line.")
+    return text
+
+
+Line = Annotated[str, StringConstraints(min_length=1, max_length=200), AfterValidator(_one_line)]
+Reference = Annotated[str, StringConstraints(min_length=1, max_length=500), AfterValidator(_one_line)]
+License = Annotated[str, AfterValidator(_checked_license)]
+Orcid = Annotated[str, AfterValidator(checked_orcid)]
+Doi = Annotated[str, AfterValidator(checked_doi)]
+Email = Annotated[str, AfterValidator(_checked_email)]
+Date = Annotated[str, AfterValidator(_checked_date)]
+
+
+class Creator(BaseModel):
+    """A person or an organisation that made the corpus."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    name: Line
+    """Name as in a citation, such as `Jane Doe`."""
+    orcid: Orcid | None = None
+    """ORCID of a person, such as `0000-0002-1825-0097`."""
+
+
+class Publication(BaseModel):
+    """Facts about a corpus that its publication needs; every one can be left out."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
+
+    license: License | None = None
+    """Licence of the corpus as an SPDX identifier (spdx.org/licenses), such as `CC-BY-4.0`."""
+    creators: Annotated[tuple[Creator, ...], Field(max_length=100)] = ()
+    """Persons or organisations that made the corpus, in the order of a citation."""
+    institution: Line | None = None
+    """Institution at which the corpus was made, and which publishes it."""
+    contact: Email | None = None
+    """E-mail address for questions about the corpus."""
+    doi: Doi | None = None
+    """DOI under which the corpus is or will be published, such as `10.1000/182`."""
+    references: Annotated[tuple[Reference, ...], Field(max_length=50)] = ()
+    """Papers, reports and web pages that describe the corpus, one text each."""
+    date: Date | None = None
+    """Day on which the corpus was made, such as `2026-03-31`; if left out, that of the environment variable SOURCE_DATE_EPOCH, if set."""
+
+    @property
+    def stored(self) -> dict[str, Any]:
+        """Facts that are given, as they are stored in JSON."""
+        return self.model_dump(mode="json", exclude_defaults=True)
+
+    def dated(self) -> Self:
+        """The same facts, with the date of ``SOURCE_DATE_EPOCH`` if none is given; CorpusError if that is not a number of seconds."""
+        seconds = environ.get(EPOCH)
+        if self.date is not None or not seconds:
+            return self
+        try:
+            day = datetime.fromtimestamp(int(seconds), UTC).date()
+        except (ValueError, OverflowError, OSError):
+            raise CorpusError(
+                f"{EPOCH}: {seconds!r} is not a time; give whole seconds since 1970, or unset it."
+            ) from None
+        return self.model_copy(update={"date": day.isoformat()})
+
+
+def read_publication(facts: Mapping[str, Any]) -> Publication:
+    """Facts from a mapping with the keys of :class:`Publication`; lists stand for tuples, and mappings for creators.
+
+    Raises
+    ------
+    CorpusError
+        If a key is unknown or a value is wrong, with the first of them in one sentence.
+
+    >>> read_publication({"license": "CC-BY-4.0", "creators": [{"name": "Jane Doe"}]}).creators[0].name
+    'Jane Doe'
+    """
+    try:
+        return Publication.model_validate(facts)
+    except ValidationError as error:
+        problem = error.errors()[0]
+        place = "".join(f"[{step}]" if isinstance(step, int) else f".{step}" for step in problem["loc"]).lstrip(".")
+        if problem["type"] == "extra_forbidden":
+            raise CorpusError(f"{place}: no such key; allowed are {', '.join(Publication.model_fields)}.") from None
+        text = problem["msg"].removeprefix("Value error, ").removesuffix(".")
+        raise CorpusError(f"{place}: {text}.") from None

@@ -1,0 +1,93 @@
+"""Per-record variables of corpora that are merged: all of them, and the values of those that one corpus lacks."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from gen.corpus import SIGNAL
+from gen.errors import CorpusError
+
+_NOT_KNOWN = ("unjudged", "unknown")
+
+
+class Described(NamedTuple):
+    """Type of a per-record variable, its attributes, and the corpus that they were taken from."""
+
+    dtype: np.dtype[Any]
+    attributes: Mapping[str, Any]
+    corpus: str
+
+
+class Columns(NamedTuple):
+    """All per-record variables of several corpora, and the names of those that one or more of them lack."""
+
+    variables: Mapping[str, Described]
+    filled: tuple[str, ...]
+
+
+def columns_of_all(corpora: Sequence[tuple[str, xr.Dataset]]) -> Columns:
+    """Variables of all corpora, in the order in which they first occur; the corpora are given with their names.
+
+    Raises
+    ------
+    CorpusError
+        If a variable has different types, units or class values in two of them.
+    """
+    found: dict[str, Described] = {}
+    counts: dict[str, int] = {}
+    for corpus, dataset in corpora:
+        for key, variable in dataset.variables.items():
+            name = str(key)
+            if name == SIGNAL or variable.dims != ("record",):
+                continue
+            here = Described(variable.dtype.newbyteorder("="), variable.attrs, corpus)
+            _check_same(name, found.setdefault(name, here), here)
+            counts[name] = counts.get(name, 0) + 1
+    return Columns(found, tuple(name for name in found if counts[name] < len(corpora)))
+
+
+def _check_same(name: str, first: Described, other: Described) -> None:
+    for what, one, two in (
+        ("type", first.dtype, other.dtype),
+        ("unit", first.attributes.get("units"), other.attributes.get("units")),
+        ("values", _flags(first), _flags(other)),
+    ):
+        if one != two:
+            raise CorpusError(
+                f"{other.corpus}: the {what} of {name} is {two}, in {first.corpus} {one}; make both with one version of raceway."
+            )
+
+
+def _flags(variable: Described) -> str:
+    codes = [int(code) for code in np.atleast_1d(variable.attributes.get("flag_values", []))]
+    return f"{codes} {variable.attributes.get('flag_meanings', '')}"
+
+
+def with_all(records: xr.Dataset, columns: Columns) -> xr.Dataset:
+    """Records with all variables; those that they lack are filled (:func:`not_known`)."""
+    count = records.sizes["record"]
+    data: dict[str, Any] = {SIGNAL: records[SIGNAL].variable}
+    coordinates: dict[str, Any] = {name: records[name].variable for name in ("channel", "elapsed_time")}
+    for name, described in columns.variables.items():
+        values = records[name].values if name in records.variables else np.full(count, not_known(described))
+        text = described.dtype.kind in "OSU"
+        variable = (
+            "record",
+            np.asarray(values, object) if text else values.astype(described.dtype),
+            described.attributes,
+        )
+        (coordinates if text else data)[name] = variable
+    return xr.Dataset(data, coordinates, records.attrs)
+
+
+def not_known(variable: Described) -> Any:
+    """Value of a variable that is not known: empty text, NaN, the class value ``unjudged`` or ``unknown``, or else -1."""
+    if variable.dtype.kind in "OSU":
+        return ""
+    if variable.dtype.kind == "f":
+        return np.nan
+    names = str(variable.attributes.get("flag_meanings", "")).split()
+    codes = np.atleast_1d(variable.attributes.get("flag_values", []))
+    return next((int(code) for code, name in zip(codes, names, strict=False) if name in _NOT_KNOWN), -1)

@@ -1,0 +1,119 @@
+"""The folder of a packed corpus, made again from its one file.
+
+Each record is compared with its hash before it is written. Deflated chunks go back into their parts as they are.
+"""
+
+import json
+from collections.abc import Callable, Mapping
+from itertools import chain
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import netCDF4
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.corpus.files import temporary_beside
+from gen.corpus.finishing import publish
+from gen.corpus.hdf5 import LIBRARY_LOCK
+from gen.corpus.index import write_index
+from gen.corpus.journal import listed
+from gen.corpus.manifest import INDEX_NAME, listed_file, read_manifest, write_content
+from gen.corpus.packed import PACKED, packed_contents, packed_part
+from gen.corpus.part import PartRow, write_part
+from gen.corpus.part_forms import dataset_of
+from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
+from gen.corpus.schema import SIGNAL
+from gen.errors import CorpusError
+
+Progress = Callable[[int, int], None]
+
+
+class Unpacked(NamedTuple):
+    """A corpus that was unpacked."""
+
+    directory: Path
+    records: int
+    parts: int
+    same_bytes: bool
+    """Whether every part has the bytes of the part that was packed; with other versions of the libraries only the records are the same."""
+
+
+def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None = None) -> Unpacked:
+    """Write the corpus of a packed file as a folder again, after a check of every record.
+
+    Parameters
+    ----------
+    file : path
+        A file that :func:`pack` made.
+    directory : path
+        Folder of the corpus: new or empty.
+    progress : callable, optional
+        Called with the number of records done and of all records.
+
+    Raises
+    ------
+    CorpusError
+        If the file is not a packed corpus or a record is damaged, the folder is not empty, or writing fails.
+    """
+    file, output = Path(file), Path(directory)
+    if not file.is_file():
+        raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
+    if output.exists() and (not output.is_dir() or any(output.iterdir())):
+        raise CorpusError(f"{output}: exists and is not an empty folder; give a new folder, or remove this one first.")
+    manifest, files = read_manifest(file), packed_contents(file).files
+    rows: list[PartRow] = []
+    try:
+        with temporary_beside(output.absolute()) as temporary:
+            (temporary / "parts").mkdir(parents=True)
+            for row in manifest.parts:
+                rows.append(_written_again(file / "parts" / row.name, temporary / "parts" / row.name))
+                if progress is not None:
+                    progress(sum(done.records for done in rows), manifest.records)
+            finish_again(temporary, rows, files, corpus_attributes(file))
+            temporary.replace(output)
+    except OSError as error:
+        raise CorpusError(
+            f"{output}: could not be written ({error.strerror or error}); choose another folder."
+        ) from error
+    return Unpacked(output, manifest.records, len(rows), rows == manifest.parts)
+
+
+def _written_again(packed: Path, path: Path) -> PartRow:
+    """Write one part of a packed file; CorpusError if a record is damaged."""
+    place = packed_part(packed)[1]
+    own = per_record(packed)[1]
+    blocks, hashes = zip(*hashed_blocks(packed), strict=True)
+    problem = damage_of(packed, listed_hashes(packed), list(chain.from_iterable(hashes)))
+    if problem is not None:
+        raise CorpusError(problem)
+    values: dict[str, NDArray[Any]] = {name: variable.values for name, variable in own.items()}
+    values[SIGNAL] = np.concatenate([block.values for block in blocks])
+    dataset, codec, chunks = dataset_of(place.form, place.attributes, values), place.form["codec"], None
+    if codec == "zlib" and blocks[0].chunks is not None:
+        stored = chain.from_iterable(block.chunks for block in blocks)
+        chunks = dict(zip(np.ndindex(values[SIGNAL].shape[:2]), stored, strict=True))
+    return write_part(dataset, path, codec, chunks)
+
+
+def corpus_attributes(file: Path) -> dict[str, Any]:
+    """Global attributes of ``corpus.nc`` or of a packed file, without those that only one of them has."""
+    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
+        own = ("comment", "_NCProperties", PACKED)
+        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in own}
+
+
+def finish_again(
+    directory: Path, rows: list[PartRow], files: Mapping[str, bytes], attributes: Mapping[str, Any]
+) -> None:
+    """Write index and small files beside parts; if these have other hashes than before, all that lists hashes is made anew."""
+    for name, content in files.items():
+        (directory / name).parent.mkdir(exist_ok=True)
+        (directory / name).write_bytes(content)
+    written = json.loads(files["manifest.json"]) | {"parts": [listed(row) for row in rows]}
+    written.pop("next_index", None)
+    write_index(directory, rows, attributes)
+    written["index"] = listed_file(directory / INDEX_NAME)
+    write_content(directory, written)
+    if (directory / "manifest.json").read_bytes() != files["manifest.json"]:
+        publish(directory, read_manifest(directory).publication)
