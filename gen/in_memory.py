@@ -123,6 +123,13 @@ def simulate_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> xr.Data
         If no record can be simulated.
     """
     scenarios = checked_scenarios(scenarios, recipe)
+    rungs: dict[int, int] = {}
+    for place, one in enumerate(scenarios):
+        if one.record.pair >= 0 and one.record.rung <= rungs.get(one.record.pair, -1):
+            raise RecipeError(
+                f"scenarios[{place}]: rung {one.record.rung} of pair {one.record.pair} does not rise; sort them, each once."
+            )
+        rungs[one.record.pair] = one.record.rung  # the last, with the largest severity, sets the level of the pair
     dataset, failures = dataset_of(made_from(scenarios, recipe), recipe)
     dataset.attrs["history"] = dataset.attrs["history"].replace(
         "from recipe", "from given scenarios, with the settings of recipe"

@@ -230,10 +230,12 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     ]
     made = gen.simulate_scenarios(faster[3:] + faster[:3], recipe)
     assert np.allclose(made["true_shaft_rate"], 61, rtol=0.02)
-    directory = gen.write_corpus(made, tmp_path / "corpus")
+    directory = gen.write_corpus(made.isel(record=[2, 0, 1, 5, 4, 3]), tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert replayed(directory)
-    assert gen.stored_scenario(directory, 0) == faster[3]
+    assert gen.stored_scenario(directory, 1) == faster[3]
+    with pytest.raises(RecipeError, match=r"scenarios\[1\]: rung 0 of pair 0 does not rise; sort them, each once"):
+        gen.simulate_scenarios([faster[1], faster[0]], recipe)
     with pytest.raises(CorpusError, match="not a whole recipe; choose another folder"):
         gen.generate(directory / "recipe.yaml", directory)
     with pytest.raises(
