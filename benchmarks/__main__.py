@@ -24,6 +24,7 @@ from benchmarks import (
     rivals,
     roofline,
     starting,
+    training,
     truth,
 )
 from benchmarks.pairs import Line, Row, Skipped
@@ -39,6 +40,7 @@ SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "features": features.rows,
     "opening": opening.rows,
     "reading": reading.rows,
+    "training": training.rows,
     "starting": starting.rows,
     "truth": truth.rows,
     "growth": growth.rows,

@@ -20,7 +20,7 @@ GROUPS = {
     "pipeline": ("pipeline", "against", "lanes", "growth", "start"),
     "million": ("million",),
     "features": ("features",),
-    "reading": ("opening", "reading"),
+    "reading": ("opening", "reading", "training"),
     "starting": ("starting",),
     "truth": ("truth",),
 }

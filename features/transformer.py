@@ -17,6 +17,8 @@ from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.signal.rows import FloatArray
 from features.speed import shaft_speed
 
+_FLOATS = (np.float64, np.float32)  # types of signals that are not converted
+
 
 class IndicatorTransformer(TransformerMixin, BaseEstimator):
     """Signals, shape (record, time), to features, shape (record, feature).
@@ -85,7 +87,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
 
     def _signals(self, X: ArrayLike, *, reset: bool) -> FloatArray:
         x: Any = X
-        return np.asarray(validate_data(self, x, dtype=np.float64, ensure_all_finite=False, reset=reset))
+        return np.asarray(validate_data(self, x, dtype=_FLOATS, ensure_all_finite=False, reset=reset))
 
     def get_feature_names_out(self, input_features: object = None) -> np.ndarray:  # noqa: ARG002
         """Names of the features, shape (feature,)."""

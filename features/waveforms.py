@@ -85,7 +85,7 @@ class Waveforms:
     def _read(self, rows: NDArray[np.intp]) -> NDArray[np.float32]:
         """Signals of some records of the corpus; samples that are not finite become 0."""
         stored = self.signal[rows]
-        x = np.nan_to_num(stored.values.astype(np.float32), nan=0.0, posinf=0.0, neginf=0.0)
+        x = np.nan_to_num(stored.values.astype(np.float32, copy=False), nan=0.0, posinf=0.0, neginf=0.0)
         if self.per_turn is not None:
             fs, shaft_rate = stored["sample_rate"].values, stored["shaft_rate"].values
             x = resample_to_orders(x, fs, shaft_rate, self.per_turn, self.samples)

@@ -70,7 +70,7 @@ if TYPE_CHECKING:
     )
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
-    from gen.sharing import merge, pack, select, unpack
+    from gen.sharing import merge, pack, select, torch_dataset, unpack
     from gen.simulation.simulate import simulate
     from gen.writing import write_corpus
 
@@ -113,6 +113,7 @@ __all__ = [
     "simulate",
     "simulate_scenarios",
     "stored_scenario",
+    "torch_dataset",
     "uniform",
     "unpack",
     "validate_corpus",
@@ -133,7 +134,7 @@ __getattr__, __dir__ = lazy_names(
         ),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
-        "gen.sharing": ("merge", "pack", "select", "unpack"),
+        "gen.sharing": ("merge", "pack", "select", "torch_dataset", "unpack"),
         "gen.simulation.simulate": ("simulate",),
         "gen.writing": ("write_corpus",),
     },

@@ -7,14 +7,16 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, plain_file, read_manifest
+from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, read_manifest, temporary_folder
 from gen.corpus.manifest import Numbers, Origin
+from gen.corpus.packed import small_file
+from gen.corpus.record_hashes import stored_signal
 from gen.errors import CorpusError
 from gen.families import Records, made_again, made_from, picked
 from gen.labels import part_dataset
 from gen.recipe import Recipe, read_recipe, recipe_hash
 from gen.scenarios import Scenario, read_scenario
-from gen.sharing.copying import renumbered
+from gen.sharing.copying import in_floating_point, renumbered
 from gen.simulation.shaft import shaft_angles as angles_of
 from gen.simulation.timeline import timeline
 
@@ -33,12 +35,15 @@ def corpus_recipe(directory: Path, record: int = 0) -> Recipe:
     _check_record(directory, manifest.records, record)
     origin = _origin_of(manifest, record)
     facts, name = (manifest, "recipe.yaml") if origin is None else (origin, origin.recipe_file)
-    if facts.overrides is None or facts.recipe_sha256 is None or name is None or not (directory / name).is_file():
+    content = None if name is None else small_file(directory, name)
+    if facts.overrides is None or facts.recipe_sha256 is None or name is None or content is None:
         if origin is not None:
             title = origin.title or "without a title"
             raise CorpusError(f"{directory}: record {record} comes from a corpus ({title}) that was not generated.")
         raise CorpusError(f"{directory}: holds no recipe.yaml, so it was not generated and cannot be replayed.")
-    recipe = read_recipe(plain_file(directory, name), seed=facts.overrides.seed, records=facts.overrides.records)
+    with temporary_folder() as room:  # a packed corpus has no file of it
+        (room / "recipe.yaml").write_bytes(content)
+        recipe = read_recipe(room / "recipe.yaml", seed=facts.overrides.seed, records=facts.overrides.records)
     if recipe_hash(recipe) != facts.recipe_sha256:
         raise CorpusError(f"{directory / name}: is not the recipe of the corpus; restore it to replay.")
     return recipe.extended(facts.overrides.extensions)
@@ -79,7 +84,8 @@ def replay(directory: Path | str, record: int) -> Replayed:
         recipe, origin = corpus_recipe(directory, record), _origin_of(read_manifest(directory), record)
         added = Numbers() if origin is None else origin.added
         number = int(corpus["recording"][record]) - added.recording
-        stored, channels = corpus[SIGNAL][record].values, [str(name) for name in corpus["channel"].values]
+        stored, scale = stored_signal(corpus[SIGNAL].variable[record : record + 1])
+        channels = [str(name) for name in corpus["channel"].values]
         tries = int(corpus["fault_tries"][record]), int(corpus["level_tries"][record])
         if (origin or read_manifest(directory)).scenarios == "given":
             made = _made_as_given(directory, recipe, corpus, record)
@@ -88,7 +94,9 @@ def replay(directory: Path | str, record: int) -> Replayed:
     whole = part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
     names = [str(name) for name in whole["channel"].values]
     dataset = renumbered(whole.isel(channel=[names.index(name) for name in channels]), added)
-    again = xr.decode_cf(dataset[[SIGNAL]], decode_times=False)[SIGNAL][0].values.astype(stored.dtype)
+    # counts are compared as counts: an older corpus decodes them to double precision
+    new = dataset if scale is not None else in_floating_point(dataset)
+    again = new[SIGNAL].values
     return Replayed(dataset, bool(np.array_equal(stored, again, equal_nan=True)))
 
 

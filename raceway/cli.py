@@ -70,7 +70,8 @@ def cli(limits: tuple[str, ...]) -> None:
       raceway info corpus                           show its contents
       raceway benchmark corpus -o report            score classifiers without leakage
 
-    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus. With --json
+    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus, or a
+    packed file of one. With --json
     a command prints one JSON object on standard output; progress and errors go to standard error.
 
     Exit codes:

@@ -66,7 +66,7 @@ def said(*command):
 def dumped(path):
     """Values that ncdump prints."""
     text = said("ncdump", "-v", "acceleration,shaft_rate,bearing", path).partition("\ndata:\n")[2]
-    found = dict(re.findall(r"^ (acceleration|shaft_rate|bearing) =\s+(.*?) ;$", text, re.S | re.M))
+    found = dict(re.findall(r"^ (acceleration|shaft_rate|bearing) =\s+(.*?) ;$", text, re.DOTALL | re.MULTILINE))
     numbers = [np.array(found[name].split(","), float) for name in ("acceleration", "shaft_rate")]
     return numbers[0].reshape(-1, 2, 1000)[:, -1, -1], numbers[1], re.findall(r'"([^"]*)"', found["bearing"])
 
@@ -113,15 +113,17 @@ def by_cdo(path):
 
 
 def by_octave(path):
-    lines = said("octave", "-qfW", "--eval", f"""pkg load netcdf; f = '{path}';
-x = ncread(f, 'acceleration'); printf('%.9g ', x(end, end, :)); printf('\\n'); printf('%.9g ', ncread(f, 'shaft_rate'));
-b = ncread(f, 'bearing'); for i = 1:columns(b), printf('\\n%s', strrep(b(:, i)', char(0), '')); end""").split("\n")  # fmt: skip
+    script = f"""pkg load netcdf; f = '{path}'; x = ncread(f, 'acceleration'); printf('%.9g ', x(end, end, :)); printf('\\n');
+printf('%.9g ', ncread(f, 'shaft_rate')); b = ncread(f, 'bearing');
+for i = 1:columns(b), printf('\\n%s', strrep(b(:, i)', char(0), '')); end"""
+    lines = said("octave", "-qfW", "--eval", script).split("\n")
     return np.array(lines[0].split(), float), np.array(lines[1].split(), float), lines[2:]
 
 
 def by_r(path):
-    lines = said("Rscript", "-e", f"""library(ncdf4); f <- nc_open("{path}"); x <- ncvar_get(f, "acceleration")
-cat(x[dim(x)[1], dim(x)[2], ], "\\n"); cat(ncvar_get(f, "shaft_rate"), "\\n"); cat(ncvar_get(f, "bearing"), sep = "\\n")""").strip().split("\n")  # fmt: skip
+    script = f"""library(ncdf4); f <- nc_open("{path}"); x <- ncvar_get(f, "acceleration")
+cat(x[dim(x)[1], dim(x)[2], ], "\\n"); cat(ncvar_get(f, "shaft_rate"), "\\n"); cat(ncvar_get(f, "bearing"), sep = "\\n")"""
+    lines = said("Rscript", "-e", script).strip().split("\n")
     return np.array(lines[0].split(), float), np.array(lines[1].split(), float), lines[2:]
 
 

@@ -22,13 +22,19 @@ the number of files a process may open. `gen.open_corpus` therefore compares eve
 reads, refuses a missing or altered file, and reads the signal from the parts. `raceway validate` checks everything.
 Further checks of a corpus from strangers: [security.md](security.md).
 
+`corpus.nc` without its parts holds no signals, and its attribute `comment` says so. `raceway pack` makes one file of the
+whole corpus, with the variables below, without a virtual dataset, and with a SHA-256 of each record: a packed file.
+[sharing.md](sharing.md) has its layout, and a table of the programs that read `corpus.nc`, a part and a packed file.
+
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
 `dead` if all samples of a channel are zero, `constant` if they all have one other value, `not_finite` if a sample
 is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
-and netCDF4 apply when they read, or 32-bit floating point. Text is stored as fixed-length characters. Every other
+and netCDF4 apply when they read, or 32-bit floating point. `scale_factor` and `add_offset` are 32-bit floating point,
+and so is the signal that these readers return; divided by `scale_factor` and rounded, it gives the counts exactly. In
+older corpora both are 64-bit, and so is what readers return. Text is stored as fixed-length characters. Every other
 variable has one value per record, and a `role`:
 
 - `operating`: known to an analyst on site; features may use it,

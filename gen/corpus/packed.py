@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import h5py
 import numpy as np
 
-from gen.corpus.files import Stamp, stamp
+from gen.corpus.files import Stamp, plain_file, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.journal import name_problem
 from gen.errors import CorpusError
@@ -70,6 +70,19 @@ def is_packed(path: Path) -> bool:
         return False
 
 
+def small_file(corpus: Path, name: str) -> bytes | None:
+    """Content of a small file of a corpus, a folder or a packed file; None if it has none of this name.
+
+    Raises
+    ------
+    CorpusError
+        If the file is not a plain file inside the folder, or the packed file is damaged.
+    """
+    if corpus.is_file():
+        return packed_contents(corpus).files.get(name)
+    return plain_file(corpus, name).read_bytes() if (corpus / name).exists() else None
+
+
 def packed_contents(path: Path) -> Packed:
     """Small files and parts of a packed file, after a check of their hashes.
 
@@ -100,7 +113,7 @@ def _contents(path: str, _stamp: Stamp) -> Packed:
 
 
 def _check_version(file: h5py.File) -> None:
-    version = file.attrs.get(PACKED)
+    version = np.ravel(file.attrs.get(PACKED, "unknown"))[0]
     if version != PACKED_VERSION:
         raise CorpusError(
             f"{file.filename}: packed in layout {version}, this version of raceway reads {PACKED_VERSION}; pack the corpus again."

@@ -57,10 +57,11 @@ def dataset_of(
 
     ``values`` are those of every variable by name: stored counts or accelerations, and text without the characters that fill it up.
     """
-    variables: dict[bool, dict[str, xr.Variable]] = {False: {}, True: {}}
+    variables: dict[str, xr.Variable] = {}
     for item in form["variables"]:
         name = item["name"]
         dimensions = SIGNAL_DIMS if values[name].ndim == 3 else (name if name in SIGNAL_DIMS else "record",)
         found = np.asarray(values[name], object if item["type"] == "text" else item["type"])
-        variables[item["label"]][name] = xr.Variable(dimensions, found, read_attributes(item["attributes"]))
-    return xr.Dataset(variables[False], variables[True], read_attributes(attributes))
+        variables[name] = xr.Variable(dimensions, found, read_attributes(item["attributes"]))
+    labels = [item["name"] for item in form["variables"] if item["label"]]
+    return xr.Dataset(variables, attrs=read_attributes(attributes)).set_coords(labels)  # in the order of the file

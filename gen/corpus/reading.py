@@ -6,6 +6,7 @@ Datasets hold paths instead of handles, so they can be pickled, sent to dask wor
 """
 
 import math
+import os
 import zlib
 from collections import OrderedDict
 from collections.abc import Iterator, Sequence
@@ -63,6 +64,8 @@ class _OpenFile(NamedTuple):
 
 
 _open_files: OrderedDict[Source, _OpenFile] = OrderedDict()
+_opened_by = os.getpid()
+"""Process that opened the files. A forked process closes them and opens its own."""
 
 
 def source_of(path: Path | str) -> Source:
@@ -92,6 +95,11 @@ def _opened(source: Source) -> Iterator[_OpenFile]:
 
 def _open_file(source: Source) -> _OpenFile:
     """Open file of a source; if too many are open, the least recently used one is closed."""
+    global _opened_by
+    if _opened_by != os.getpid():
+        while _open_files:
+            _open_files.popitem()[1].handle.close()
+        _opened_by = os.getpid()
     if stamp(source.path) != source.stamp:
         raise CorpusError(f"{source.path}: changed since the corpus was opened; open the corpus again.")
     if source not in _open_files:
@@ -283,8 +291,8 @@ def open_part(path: Path) -> xr.Dataset:
 def read_channel(path: Path, channel: int, names: Sequence[str]) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
     """Signal of one channel of a part in single precision, shape (record, elapsed_time) [m s-2], and columns by name.
 
-    It takes half the time of :func:`open_part`, which decodes in double precision; features use it. Chunks are inflated without the lock,
-    so that threads run in parallel.
+    Features use it: it closes the part, and reads the columns without xarray. Chunks are inflated without the lock, so that threads run in
+    parallel.
     """
     source, place = _rows_of(path)
     with _opened(source) as file:

@@ -80,7 +80,11 @@ SCHEMA = (
 
 
 def signal_attributes(counts_per_unit: float | None) -> dict[str, Any]:
-    """Attributes of the signal; with ``counts_per_unit``, also those for the conversion of counts to m s-2 (CF-1.11, section 8.1)."""
+    """Attributes of the signal; with ``counts_per_unit``, also those for the conversion of counts to m s-2 (CF-1.11, section 8.1).
+
+    Readers decode to the type of scale factor and offset. In single precision a count times the factor has a relative error of 6e-8, less
+    than a hundredth of a count, so the counts come back when the signal is divided by the factor and rounded.
+    """
     attributes: dict[str, Any] = {
         "units": "m s-2",
         "long_name": "acceleration of the sensor",
@@ -88,8 +92,8 @@ def signal_attributes(counts_per_unit: float | None) -> dict[str, Any]:
     }
     if counts_per_unit is not None:
         attributes |= {
-            "scale_factor": 1.0 / counts_per_unit,
-            "add_offset": 0.0,
+            "scale_factor": np.float32(1.0 / counts_per_unit),
+            "add_offset": np.float32(0.0),
             "_FillValue": np.int16(MISSING_COUNT),
         }
     return attributes

@@ -97,7 +97,10 @@ def measure(
     rigs = {scenario.rig.number: scenario.rig for scenario in scenarios}
     of_rig = {number: rig_filters(rig, axis.returned, axis.fs, recipe.seed) for number, rig in rigs.items()}
     converter = recording.converter
-    counts_per_unit = None if converter.kind == "float32" else LARGEST_COUNT / converter.full_scale_m_s2
+    # of the stored scale factor, which is in single precision
+    counts_per_unit = (
+        None if converter.kind == "float32" else 1 / float(np.float32(converter.full_scale_m_s2 / LARGEST_COUNT))
+    )
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, taken, flags = np.zeros(shape[0], np.int32), list(scenarios), [SensorFlags()] * shape[0]
     snr, fault_snr, fault_share = np.full((3, shape[0]), np.nan)

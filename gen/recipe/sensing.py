@@ -35,7 +35,7 @@ class Converter(Section):
 
     kind: Literal["adc"] = "adc"
     """Stores the signal as 16-bit counts."""
-    full_scale_m_s2: Annotated[Number, Field(gt=0, le=1e6)] = 500.0
+    full_scale_m_s2: Annotated[Number, Field(ge=1e-6, le=1e6)] = 500.0
     """Largest acceleration that the converter measures; samples beyond it are clipped, and counted per record."""
 
 

@@ -5,6 +5,7 @@ module      responsibility
 =========== ======================================================
 where       conditions on records: parsed, never evaluated as Python
 choice      choice of records and channels
+items       records one by one or in batches, for training
 copying     stored records read, and written into a new folder
 columns     variables of all corpora that are merged
 repeats     records with the same samples in different corpora
@@ -22,6 +23,7 @@ from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.sharing.choice import chosen_channels, chosen_records
+    from gen.sharing.items import LabelledRecords, torch_dataset
     from gen.sharing.merging import Merged, merge
     from gen.sharing.packing import PackedFile
     from gen.sharing.portable import pack
@@ -31,6 +33,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Condition",
+    "LabelledRecords",
     "Merged",
     "PackedFile",
     "Selected",
@@ -41,6 +44,7 @@ __all__ = [
     "pack",
     "parse_where",
     "select",
+    "torch_dataset",
     "unpack",
 ]
 
@@ -49,6 +53,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "gen.sharing.choice": ("chosen_channels", "chosen_records"),
+        "gen.sharing.items": ("LabelledRecords", "torch_dataset"),
         "gen.sharing.merging": ("Merged", "merge"),
         "gen.sharing.packing": ("PackedFile",),
         "gen.sharing.portable": ("pack",),

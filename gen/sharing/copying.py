@@ -2,7 +2,6 @@
 
 import glob
 import hashlib
-import shutil
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import pairwise
@@ -19,11 +18,11 @@ from gen.corpus import (
     check_name,
     open_part,
     part_paths,
-    plain_file,
     remove_left_behind,
     temporary_beside,
 )
 from gen.corpus.manifest import Numbers
+from gen.corpus.packed import small_file
 from gen.corpus.record_hashes import RENUMBERED, stored_signal
 from gen.corpus.schema import SIGNAL_DIMS
 from gen.errors import CorpusError
@@ -107,9 +106,10 @@ def part_attributes(directory: Path) -> dict[str, Any]:
 def copy_recipes(source: Path, target: Path, names: Iterable[str | None]) -> None:
     """Copy ``recipe.yaml`` and the recipes with the given names from one corpus to another, as far as there are any."""
     for name in {"recipe.yaml", *names}:
-        if name is not None and (source / name).exists():
+        content = None if name is None else small_file(source, name)
+        if name is not None and content is not None:
             (target / name).parent.mkdir(exist_ok=True)
-            shutil.copyfile(plain_file(source, name), target / name)
+            (target / name).write_bytes(content)
 
 
 def parts_sha256(manifest: Manifest) -> str:

@@ -64,26 +64,37 @@ def pack_whole(directory: Path, file: Path, codec: Codec, progress: Progress | N
         If the corpus is unfinished or damaged, its parts differ in their variables, or writing fails.
     """
     paths, manifest = part_paths(directory), read_manifest(directory)
-    forms = [form_of(path) for path in paths]
-    _check_alike(paths, [form for _, form in forms])
+    forms = _forms(paths)
     with whole_or_not_at_all(file) as temporary:
         with LIBRARY_LOCK:
             write_variables(directory, manifest.parts, temporary, {"comment": _COMMENT})
             _declare(temporary, directory, paths[0], codec)
             _write_files(temporary, small_files(directory), _contents(manifest, forms))
-        direct = codec == "zlib" == forms[0][1]["codec"]
+        direct = codec == "zlib" == json.loads(forms[0][1])["codec"]
         _copy_records(paths, temporary, direct, codec, _counted(progress, manifest.records))
     return PackedFile(file, manifest.records, len(paths), file.stat().st_size)
 
 
-def _check_alike(paths: list[Path], forms: list[dict[str, Any]]) -> None:
-    """Refuse parts with other variables or another packing than the first: the file would give them wrong values."""
-    first = _storage(forms[0])
-    for path, form in zip(paths, forms, strict=True):
-        if _storage(form) != first:
-            raise CorpusError(
-                f"{path}: has other variables or another scale than {paths[0].name}; the corpus cannot be one file."
-            )
+def _forms(paths: list[Path]) -> list[tuple[str, str]]:
+    """Attributes and form of each part as JSON; equal texts are kept once.
+
+    Parts with other variables or another packing than the first are refused: the file would give them wrong values.
+    """
+    kept: dict[str, str] = {}
+    found: list[tuple[str, str]] = []
+    first: list[str] = []
+    for path in paths:
+        attributes, form = form_of(path)
+        text = json.dumps(form)
+        if text not in kept:
+            first = first or _storage(form)
+            if _storage(form) != first:
+                raise CorpusError(
+                    f"{path}: has other variables or another scale than {paths[0].name}; the corpus cannot be one file."
+                )
+        attribute = json.dumps(attributes)
+        found.append((kept.setdefault(attribute, attribute), kept.setdefault(text, text)))
+    return found
 
 
 def _storage(form: dict[str, Any]) -> list[str]:
@@ -143,18 +154,17 @@ def small_files(directory: Path) -> dict[str, bytes]:
     return {name: (directory / name).read_bytes() for name in kept}
 
 
-def _contents(manifest: Manifest, forms: list[tuple[dict[str, Any], dict[str, Any]]]) -> dict[str, Any]:
-    """Parts with their records and forms; equal attributes and forms are listed once."""
-    attributes, shapes = ([json.dumps(form[place]) for form in forms] for place in (0, 1))
-    numbers = [{text: number for number, text in enumerate(dict.fromkeys(texts))} for texts in (attributes, shapes)]
+def _contents(manifest: Manifest, forms: list[tuple[str, str]]) -> dict[str, Any]:
+    """Parts with their records and the numbers of their attributes and forms, which are listed once."""
+    attributes, shapes = (
+        {text: number for number, text in enumerate(dict.fromkeys(texts))} for texts in zip(*forms, strict=True)
+    )
     parts = [
-        [row.name, row.records, numbers[0][attribute], numbers[1][shape]]
-        for row, attribute, shape in zip(manifest.parts, attributes, shapes, strict=True)
+        [row.name, row.records, attributes[attribute], shapes[shape]]
+        for row, (attribute, shape) in zip(manifest.parts, forms, strict=True)
     ]
-    listed = {
-        name: [json.loads(text) for text in found] for name, found in zip(("attributes", "forms"), numbers, strict=True)
-    }
-    return {**listed, "parts": parts}
+    listed = {"attributes": attributes, "forms": shapes}
+    return {name: [json.loads(text) for text in texts] for name, texts in listed.items()} | {"parts": parts}
 
 
 def _write_files(path: Path, files: dict[str, bytes], contents: dict[str, Any]) -> None:

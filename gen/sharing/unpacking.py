@@ -13,7 +13,6 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.files import temporary_beside
 from gen.corpus.finishing import publish
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.index import write_index
@@ -25,6 +24,7 @@ from gen.corpus.part_forms import dataset_of
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
+from gen.sharing.copying import new_corpus
 
 Progress = Callable[[int, int], None]
 
@@ -59,23 +59,14 @@ def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None
     file, output = Path(file), Path(directory)
     if not file.is_file():
         raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
-    if output.exists() and (not output.is_dir() or any(output.iterdir())):
-        raise CorpusError(f"{output}: exists and is not an empty folder; give a new folder, or remove this one first.")
     manifest, files = read_manifest(file), packed_contents(file).files
     rows: list[PartRow] = []
-    try:
-        with temporary_beside(output.absolute()) as temporary:
-            (temporary / "parts").mkdir(parents=True)
-            for row in manifest.parts:
-                rows.append(_written_again(file / "parts" / row.name, temporary / "parts" / row.name))
-                if progress is not None:
-                    progress(sum(done.records for done in rows), manifest.records)
-            finish_again(temporary, rows, files, corpus_attributes(file))
-            temporary.replace(output)
-    except OSError as error:
-        raise CorpusError(
-            f"{output}: could not be written ({error.strerror or error}); choose another folder."
-        ) from error
+    with new_corpus(output) as folder:
+        for row in manifest.parts:
+            rows.append(_written_again(file / "parts" / row.name, folder / "parts" / row.name))
+            if progress is not None:
+                progress(sum(done.records for done in rows), manifest.records)
+        finish_again(folder, rows, files, corpus_attributes(file))
     return Unpacked(output, manifest.records, len(rows), rows == manifest.parts)
 
 

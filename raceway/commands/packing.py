@@ -40,7 +40,7 @@ def pack(
     """Pack the corpus in DIR into one netCDF-4 file.
 
     Any netCDF-4 reader opens the file, and raceway info, validate, plot, features, train and export take it in place of DIR. It holds the
-    manifest, the recipe and the data card too, and unpack makes the same folder of it again. Every file of DIR is checked before.
+    manifest, the recipe and the data card too, and unpack makes the same folder of it again. Every file of DIR is checked first.
 
       raceway pack corpus -o corpus_2026.nc
       raceway pack corpus -o tests.nc --split test

@@ -19,6 +19,7 @@ from benchmarks import (
     rivals,
     roofline,
     starting,
+    training,
     truth,
 )
 from benchmarks.__main__ import table
@@ -149,6 +150,12 @@ def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
     assert set(found) == {
         f"reading {way}" for way in ("in order", "at random", "through dask", "in processes", "hashes")
     }
+
+
+def test_records_for_training_are_compared_with_numpy_and_h5py():
+    found = finite_rows(training.rows(1, parts=1, samples=16, batch=64))
+    assert set(found) == {f"training {name}" for name in ("numpy", "h5py", "zstd", "one by one", "decoded", "memory")}
+    assert found["training memory"].ratio == 0.5
 
 
 def test_short_commands_are_compared_with_the_import_of_the_libraries_they_need():

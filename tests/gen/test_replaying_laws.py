@@ -1,11 +1,14 @@
 """Laws of the scenario stored in a corpus: it is the drawn one, and a corpus without one gets a sentence."""
 
+import json
 import shutil
 
+import h5py
 import numpy as np
 import pytest
 
 from gen import draw_scenarios, generate, open_corpus, replay, shaft_angles, stored_scenario
+from gen.corpus import sha256
 from gen.errors import CorpusError
 from gen.replaying import corpus_recipe
 from gen.simulation.motion import start_of
@@ -29,6 +32,24 @@ def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for
     moved = numbers != np.arange(len(numbers))
     for wanted in (moved & (faults > 0), moved & (levels > 0)):
         assert replay(tmp_path / "corpus", int(np.flatnonzero(wanted)[0])).identical
+
+
+def test_an_older_corpus_that_decodes_to_double_precision_is_replayed_bit_for_bit(tiny_corpus, tmp_path):
+    older = shutil.copytree(tiny_corpus, tmp_path / "corpus")
+    manifest = json.loads((older / "manifest.json").read_text())
+    files = [older / "corpus.nc", *sorted((older / "parts").iterdir())]
+    for path, listed in zip(files, [manifest["index"], *manifest["parts"]], strict=True):
+        with h5py.File(path, "r+") as file:
+            attributes = file["acceleration"].attrs
+            scale = 500 / 32767
+            assert attributes["scale_factor"] == pytest.approx(scale)
+            for name, value in {"scale_factor": scale, "add_offset": 0.0}.items():
+                attributes.create(name, np.float64(value))
+        listed |= {"bytes": path.stat().st_size, "sha256": sha256(path)}
+    (older / "manifest.json").write_text(json.dumps(manifest))
+    with open_corpus(older) as corpus:
+        assert corpus["acceleration"].dtype == np.float64
+    assert replay(older, 5).identical
 
 
 def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):

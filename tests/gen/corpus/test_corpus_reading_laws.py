@@ -68,7 +68,7 @@ def test_nothing_in_the_environment_or_the_current_folder_redirects_the_signal(t
     write_corpus(tmp_path / "other", (3, 2))
     code = f"""
 from gen.corpus import open_corpus
-with open_corpus({str(tmp_path / "c")!r}) as corpus: print(float((corpus["acceleration"] ** 2).sum()))
+with open_corpus({str(tmp_path / "c")!r}) as corpus: print(float((corpus["acceleration"].astype(float) ** 2).sum()))
 """
     redirected = dict.fromkeys(("HDF5_VDS_PREFIX", "HDF5_EXTFILE_PREFIX", "HDF5_EXT_PREFIX"), str(tmp_path / "other"))
     run = subprocess.run(
@@ -78,7 +78,7 @@ with open_corpus({str(tmp_path / "c")!r}) as corpus: print(float((corpus["accele
         capture_output=True,
         check=True,
     )
-    np.testing.assert_allclose(float(run.stdout), sum((physical(part) ** 2).sum() for part in parts))
+    np.testing.assert_allclose(float(run.stdout), sum((physical(part).astype(float) ** 2).sum() for part in parts))
 
 
 def test_a_missing_part_is_never_taken_from_the_current_folder(tmp_path, monkeypatch):
@@ -158,7 +158,7 @@ def test_dask_reads_the_same_in_threads(many):
 
 
 def _sum(corpus, records):
-    return float(corpus[SIGNAL].isel(record=records).sum())
+    return float(corpus[SIGNAL].isel(record=records).sum(dtype=float))
 
 
 @pytest.mark.parametrize("method", ["fork", "spawn"])
@@ -182,7 +182,7 @@ def test_processes_of_a_data_loader_read_the_same_while_the_parent_reads_too(man
         finally:
             stop.set()
             reader.join()
-    np.testing.assert_allclose(sums, [signal[block].sum() for block in blocks])
+    np.testing.assert_allclose(sums, [signal[block].sum(dtype=float) for block in blocks])
 
 
 def test_threads_write_and_read_at_once(tmp_path):

@@ -5,6 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gen.corpus.schema import signal_attributes
 from gen.measurement.measure import LARGEST_COUNT, measure
 from gen.scenarios import draw_scenarios
 from gen.simulation.timeline import timeline
@@ -30,6 +31,22 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
     error = np.abs(counts.signal - scaled)[~over]
     assert error.max(initial=0.0) <= 0.5 + 1e-6 * np.abs(scaled).max()
     np.testing.assert_array_equal(counts.signal[over], np.sign(scaled[over]) * LARGEST_COUNT)
+
+
+@law
+@given(st.floats(1e-6, 1e6))
+def test_the_converter_rounds_in_steps_of_exactly_the_stored_scale_factor(recipe_with, full_scale):
+    """The factor is in single precision, so it can differ from that of the full scale by 6e-8."""
+    recipe = recipe_with(PLAIN | {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}})
+    found = measure(silence(recipe, 1), plain(recipe), recipe)
+    scale = signal_attributes(found.counts_per_unit)["scale_factor"]
+    assert scale.dtype == np.float32
+    assert found.counts_per_unit == 1 / float(scale)
+    assert float(scale) == pytest.approx(full_scale / LARGEST_COUNT, rel=6e-8)
+
+
+def test_counts_at_the_default_full_scale_are_those_of_packing_in_double_precision():
+    assert np.float32(1 / float(np.float32(COUNT))) == np.float32(1 / COUNT)
 
 
 def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):

@@ -1,0 +1,122 @@
+"""Laws of the packing of signals: they decode to single precision alike in every reader, and the counts come back exactly."""
+
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.corpus import (
+    MISSING_COUNT,
+    SIGNAL,
+    open_corpus,
+    open_part,
+    part_name,
+    validate_corpus,
+    write_index,
+    write_manifest,
+    write_part,
+)
+from gen.corpus.schema import signal_attributes
+from gen.errors import CorpusError
+from gen.recipe.sensing import Converter
+from tests.corpora import dataset, write_corpus
+
+law = settings(deadline=None, max_examples=100)
+EVERY_COUNT = np.arange(-(2**15), 2**15).astype(np.int16)
+LARGEST = 32767
+LIMITS = (1e-6, 1e6)  # of recording.converter.full_scale_m_s2
+
+
+def test_a_recipe_allows_no_other_full_scale():
+    least, most = LIMITS
+    assert [Converter(full_scale_m_s2=number).full_scale_m_s2 for number in LIMITS] == [least, most]
+    for number in (0.99 * least, 1.01 * most):
+        with pytest.raises(ValueError, match="full_scale_m_s2"):
+            Converter(full_scale_m_s2=number)
+
+
+def decoded_by_xarray(counts, attributes):
+    return xr.decode_cf(xr.Dataset({"x": ("time", counts, attributes)}))["x"]
+
+
+@law
+@given(st.floats(*LIMITS))
+def test_every_count_comes_back_from_single_precision_for_any_full_scale(full_scale):
+    attributes = signal_attributes(LARGEST / full_scale)
+    decoded = decoded_by_xarray(EVERY_COUNT, attributes)
+    assert decoded.dtype == np.float32
+    assert np.flatnonzero(np.isnan(decoded)).tolist() == [0]
+    assert EVERY_COUNT[0] == MISSING_COUNT
+    scale = attributes["scale_factor"]
+    np.testing.assert_array_equal(np.rint(decoded[1:] / scale), EVERY_COUNT[1:])
+    np.testing.assert_array_equal(np.rint(decoded[1:] * np.float32(1 / scale)), EVERY_COUNT[1:])
+    stored_again = xr.conventions.encode_cf_variable(decoded.variable)
+    assert stored_again.dtype == np.int16
+    np.testing.assert_array_equal(stored_again.values, EVERY_COUNT)
+    np.testing.assert_allclose(decoded[1:], EVERY_COUNT[1:] * (full_scale / LARGEST), rtol=1.2e-7)
+
+
+@pytest.fixture(scope="module")
+def corpus(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("packed") / "c"
+    return folder, np.concatenate([part[SIGNAL].values for part in write_corpus(folder)])
+
+
+def test_every_reader_decodes_to_the_same_single_precision_numbers(corpus):
+    folder, counts = corpus
+    with open_corpus(folder) as opened:
+        signal, scale = opened[SIGNAL].load(), opened[SIGNAL].encoding["scale_factor"]
+    assert (signal.dtype, signal.values.dtype, scale.dtype) == (np.float32, np.float32, np.float32)
+    np.testing.assert_array_equal(signal, counts * scale)
+    np.testing.assert_array_equal(np.rint(signal / scale), counts)
+    for engine in ("netcdf4", "h5netcdf"):
+        with xr.open_dataset(folder / "corpus.nc", engine=engine, decode_times=False) as index:
+            assert index[SIGNAL].dtype == index[SIGNAL].values.dtype == np.float32
+            np.testing.assert_array_equal(index[SIGNAL], signal)
+    with netCDF4.Dataset(folder / "corpus.nc") as index:
+        found = index[SIGNAL][:]
+        assert found.dtype == np.float32
+        np.testing.assert_array_equal(found, signal)
+
+
+def test_a_decoded_corpus_stored_by_xarray_has_the_same_counts(corpus, tmp_path):
+    folder, counts = corpus
+    with open_corpus(folder) as opened:
+        opened[[SIGNAL]].to_netcdf(tmp_path / "again.nc")
+    with netCDF4.Dataset(tmp_path / "again.nc") as again:
+        again.set_auto_maskandscale(False)
+        assert again[SIGNAL].dtype == np.int16
+        np.testing.assert_array_equal(again[SIGNAL][:], counts)
+
+
+def in_double_precision(part):
+    """A part as raceway wrote it before its signals decoded to single precision."""
+    attributes = part[SIGNAL].attrs
+    attributes |= {"scale_factor": 1 / 65.534, "add_offset": 0.0}
+    return part
+
+
+def test_an_older_corpus_with_packing_in_double_precision_opens_and_validates(tmp_path):
+    (tmp_path / "parts").mkdir()
+    part = in_double_precision(dataset(0, 4))
+    rows = [write_part(part, tmp_path / "parts" / part_name(0))]
+    write_index(tmp_path, rows)
+    write_manifest(tmp_path, rows, complete=True)
+    assert validate_corpus(tmp_path) == []
+    with open_corpus(tmp_path) as opened:
+        assert opened[SIGNAL].dtype == opened[SIGNAL].values.dtype == np.float64
+        np.testing.assert_array_equal(opened[SIGNAL], part[SIGNAL].values * (1 / 65.534))
+
+
+@pytest.mark.parametrize(
+    "scale",
+    [np.float32(0), np.float32(-1), np.float32(np.nan), np.float32(np.inf), np.float32(1e-40), np.float32(1e35), 1e-310, 1e304],
+)  # fmt: skip
+def test_a_scale_with_which_counts_are_no_normal_numbers_is_refused(tmp_path, scale):
+    part = dataset(0, 1)
+    part[SIGNAL].attrs["scale_factor"] = scale
+    write_part(part, tmp_path / part_name(0))
+    with pytest.raises(CorpusError, match="has scale_factor"):
+        open_part(tmp_path / part_name(0))
