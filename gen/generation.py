@@ -209,7 +209,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml", "croissant.json"):
             remove_left_behind(directory, name)
         manifest = read_manifest(directory) if begun else None
-        if manifest is not None and manifest.scenarios == "given":
+        if manifest is not None and manifest.scenarios is not None:
             raise CorpusError(
                 f"{directory}: holds records that were made one by one, not a whole recipe; choose another folder."
             )

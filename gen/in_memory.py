@@ -19,7 +19,7 @@ from gen.making import Crew, MadePart, made_parts
 from gen.part_task import dataset_of, part_attributes
 from gen.recipe import Recipe, plain, recipe_for
 from gen.recipe.keywords import FaultLike
-from gen.scenarios import Scenario, read_scenario, scenario_texts
+from gen.scenarios import Scenario, check_fits, read_scenario, scenario_texts
 
 RECIPE, SCENARIOS = "recipe", "scenarios"  # attributes of a Dataset of records
 GIVEN = "given"  # value of the attribute SCENARIOS for scenarios that were not drawn from the recipe
@@ -123,7 +123,17 @@ def simulate_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> xr.Data
         If no record can be simulated.
     """
     scenarios = checked_scenarios(scenarios, recipe)
+    rungs: dict[int, int] = {}
+    for place, one in enumerate(scenarios):
+        if one.record.pair >= 0 and one.record.rung <= rungs.get(one.record.pair, -1):
+            raise RecipeError(
+                f"scenarios[{place}]: rung {one.record.rung} of pair {one.record.pair} does not rise; sort them, each once."
+            )
+        rungs[one.record.pair] = one.record.rung  # the last, with the largest severity, sets the level of the pair
     dataset, failures = dataset_of(made_from(scenarios, recipe), recipe)
+    dataset.attrs["history"] = dataset.attrs["history"].replace(
+        "from recipe", "from given scenarios, with the settings of recipe"
+    )
     return _decoded([dataset], recipe, failures, {SCENARIOS: GIVEN})
 
 
@@ -139,7 +149,12 @@ def recipe_of(dataset: xr.Dataset) -> Recipe:
         raise CorpusError(
             f"the Dataset has no attribute {RECIPE}; give one from gen.record, gen.records or gen.simulate_scenarios, with its attributes."
         )
-    return Recipe(**json.loads(dataset.attrs[RECIPE]))
+    try:
+        return Recipe(**json.loads(dataset.attrs[RECIPE]))
+    except (ValueError, TypeError):
+        raise CorpusError(
+            f"the attribute {RECIPE} of the Dataset is not the JSON text of a recipe; make the records again."
+        ) from None
 
 
 def scenarios_of(dataset: xr.Dataset) -> list[Scenario]:
@@ -168,6 +183,8 @@ def checked_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> list[Sce
                 f"scenarios[{place}]: is no scenario ({reason}); change drawn ones with dataclasses.replace, in finite numbers and text."
             ) from None
         problem = _problem(found[-1], recipe)
+        for spall in found[-1].specimen.spalls:
+            check_fits(spall, found[-1].specimen.bearing, found[-1].specimen.number)
         first, rig = rigs.setdefault(scenario.rig.number, (place, found[-1].rig))
         if not problem and rig != found[-1].rig:
             problem = f"rig {rig.number} is not that of scenarios[{first}]; give another machine another number"
@@ -191,8 +208,15 @@ def _problem(scenario: Scenario, recipe: Recipe) -> str | None:
         )
     if scenario.record.pair >= 0 and not 0 <= scenario.record.rung < recipe.corpus.n_rungs > 1:
         return "record.pair needs corpus.rungs in the recipe, and record.rung a place in it; or set both to -1"
-    if not 0 <= scenario.specimen.entry < len(recipe.faults):
-        return f"specimen.entry {scenario.specimen.entry} is no place in faults of the recipe, which has {len(recipe.faults)}"
+    specimen = scenario.specimen
+    if not 0 <= specimen.entry < len(recipe.faults):
+        return f"specimen.entry {specimen.entry} is no place in faults of the recipe, which has {len(recipe.faults)}"
+    parts = specimen.damaged_parts
+    label = "compound" if len(parts) > 1 else (parts or ["healthy"])[0]
+    if specimen.fault != label:
+        return f"specimen.fault is {specimen.fault}, and the damage of the specimen is {label}; change one of the two"
+    if any(spall.width <= 0 or spall.depth <= 0 for spall in specimen.spalls):
+        return "specimen.spalls: width and depth of a spall must be above 0; leave out a spall that is not there"
     return None
 
 

@@ -68,8 +68,6 @@ def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
     """Variables of one record that are copied from its scenario."""
     rig, specimen, record = scenario.rig, scenario.specimen, scenario.record
     conditions = record.conditions
-    worn = [] if specimen.wear is None else [specimen.wear.site]
-    parts = [*worn, *dict.fromkeys(spall.site for spall in specimen.spalls), *(["cage"] if specimen.cage else [])]
     return {
         "sample_rate": recipe.recording.sample_rate_hz,
         "axial_load": conditions["axial_load"],
@@ -77,7 +75,7 @@ def _drawn(scenario: Scenario, recipe: Recipe) -> dict[str, Any]:
         **orders(rig.bearing)._asdict(),
         "bearing": rig.bearing.designation,
         "fault": FAULTS.index(specimen.fault),
-        "parts": "+".join(parts),
+        "parts": "+".join(specimen.damaged_parts),
         "n_spalls": len(specimen.spalls),
         "wear": 0.0 if specimen.wear is None else specimen.wear.waviness,
         "pitch_error": specimen.cage.get("pitch_error", 0.0),

@@ -105,6 +105,7 @@ def _made_as_given(directory: Path, recipe: Recipe, corpus: xr.Dataset, record: 
     """Make a record again from its stored scenario; the largest severity of a group of records sets the level of the group."""
     pairs = corpus["pair"].values
     group = [record] if pairs[record] < 0 else np.flatnonzero(pairs == pairs[record]).tolist()
+    group.sort(key=lambda one: int(corpus["rung"][one]))
     scenarios = [stored_scenario(directory, one) for one in group]
     if pairs[record] >= 0 and scenarios[-1].record.rung != recipe.corpus.n_rungs - 1:
         raise CorpusError(

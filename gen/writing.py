@@ -27,10 +27,11 @@ from gen.corpus import (
     write_text_durably,
 )
 from gen.errors import CorpusError, RecipeError
+from gen.generation import facts_of
 from gen.in_memory import GIVEN, SCENARIOS, checked_scenarios, recipe_of, scenarios_of
 from gen.measurement.measure import LARGEST_COUNT
-from gen.part_task import library_versions, part_attributes
-from gen.recipe import Recipe, recipe_hash, recipe_text
+from gen.part_task import part_attributes
+from gen.recipe import Recipe, recipe_text
 from gen.scenarios import Scenario, draw_scenarios, with_level
 
 _NOT_A_COUNT = 0.01  # largest distance of a decoded sample from a count; single precision comes within 0.004
@@ -60,34 +61,28 @@ def write_corpus(dataset: xr.Dataset, directory: Path | str) -> Path:
         from the recipe that the Dataset carries.
     """
     directory = Path(directory).absolute()
+    check_name(directory)
+    if directory.exists() and not (directory.is_dir() and not any(directory.iterdir())):
+        raise CorpusError(f"{directory}: is there already; choose another folder, or remove it first.")
     recipe = recipe_of(dataset)
     given = dataset.attrs.get(SCENARIOS) == GIVEN
     rows = dataset if "record" in dataset.dims else _as_one_row(dataset)
     _check_scenarios(rows, recipe, given)
-    failures = () if given else _failures(rows, recipe)
+    failures = tuple(json.loads(rows.attrs.get("failures", "[]")))
+    whole = not given and rows.sizes["record"] + len(failures) == recipe.n_records
+    failures = failures if whole or given else ()  # those of a choice may belong to records that were not chosen
     stored = _stored(rows, recipe)
     stored.attrs |= part_attributes(recipe, failures)
-    facts: dict[str, Any] = {
-        "failures": failures,
-        "title": recipe.title,
-        "recipe": recipe.name,
-        "recipe_sha256": recipe_hash(recipe),
-        "overrides": {"seed": None, "records": None},
-        "versions": library_versions(),
-    }
-    if given:
-        facts["scenarios"] = GIVEN
-    elif stored.sizes["record"] + len(failures) < recipe.n_records:
-        facts["selections"] = [{"records": recipe.n_records, "parts_sha256": ""}]
+    facts = {"failures": failures} | facts_of(recipe, {"seed": None, "records": None})
+    facts["publication"] = recipe.publication.dated()
+    if not whole:
+        facts["scenarios"] = GIVEN if given else "chosen"
     _write(stored, recipe, directory, facts)
     return directory
 
 
 def _write(stored: xr.Dataset, recipe: Recipe, directory: Path, facts: dict[str, Any]) -> None:
     """Write all files of the corpus into a temporary folder, which then gets its name."""
-    check_name(directory)
-    if directory.exists() and not (directory.is_dir() and not any(directory.iterdir())):
-        raise CorpusError(f"{directory}: is there already; choose another folder, or remove it first.")
     size = recipe.corpus.records_per_part
     try:
         directory.parent.mkdir(parents=True, exist_ok=True)
@@ -170,12 +165,6 @@ def _runs(numbers: list[int], recipe: Recipe) -> list[range]:
         first = runs.pop().start if runs and runs[-1].stop == number else number
         runs.append(range(first, number + 1))
     return runs
-
-
-def _failures(rows: xr.Dataset, recipe: Recipe) -> tuple[str, ...]:
-    """Sentences on the records that could not be simulated; none for some records of a recipe."""
-    failures = tuple(json.loads(rows.attrs.get("failures", "[]")))
-    return failures if rows.sizes["record"] + len(failures) == recipe.n_records else ()
 
 
 def _stored(rows: xr.Dataset, recipe: Recipe) -> xr.Dataset:

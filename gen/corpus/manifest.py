@@ -101,7 +101,7 @@ class Origin(Strict):
     versions: Annotated[dict[str, str], Field(default_factory=dict)]
     importer: str | None = None
     selections: tuple[Choice, ...] = ()
-    scenarios: Literal["given"] | None = None
+    scenarios: Literal["given", "chosen"] | None = None
 
 
 class Manifest(Strict):
@@ -130,12 +130,11 @@ class Manifest(Strict):
     warnings: _Texts = ()
     selections: tuple[Choice, ...] = ()
     """Choices by which the records were taken from a larger corpus, the first one first."""
-    scenarios: Literal["given"] | None = None
-    """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
     origins: tuple[Origin, ...] = ()
     """Corpora that were merged into this one, in the order of their records."""
-    scenarios: Literal["given"] | None = None
-    """``given`` if the scenarios were not drawn from the recipe: each record is made again from the scenario that is stored with it."""
+    scenarios: Literal["given", "chosen"] | None = None
+    """``chosen`` if the records are some of those of the recipe; ``given`` if their scenarios were not drawn from it, so that each record
+    is made again from the scenario that is stored with it."""
 
     @property
     def parts(self) -> list[PartRow]:

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from gen.corpus import write_text_durably
 from gen.recipe.model import Recipe
 from gen.recipe.section import plain
 
@@ -15,8 +16,14 @@ _WORD = re.compile(r"[a-z][a-z0-9_]*")
 
 
 def write_recipe(recipe: Recipe, path: Path | str) -> None:
-    """Write a recipe to a YAML file that :func:`gen.read_recipe` reads as the same recipe; an existing file is replaced."""
-    Path(path).write_text(recipe_text(recipe), encoding="utf-8")
+    """Write a recipe to a YAML file that :func:`gen.read_recipe` reads as the same recipe; an existing file is replaced.
+
+    Raises
+    ------
+    CorpusError
+        If the file cannot be written.
+    """
+    write_text_durably(recipe_text(recipe), Path(path))
 
 
 def recipe_text(recipe: Recipe) -> str:

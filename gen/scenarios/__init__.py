@@ -18,6 +18,7 @@ stored        write a scenario as the JSON text that a corpus stores, and read i
 
 from gen.scenarios.classes import fault_of_each_specimen, first_records, first_specimens
 from gen.scenarios.draw import draw_scenarios
+from gen.scenarios.faults import check_fits
 from gen.scenarios.model import (
     Background,
     Gear,
@@ -57,6 +58,7 @@ __all__ = [
     "Specimen",
     "Tone",
     "Wear",
+    "check_fits",
     "draw_scenarios",
     "fault_of_each_specimen",
     "first_records",

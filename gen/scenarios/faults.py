@@ -52,17 +52,15 @@ def _draw_spalls(
     draws: Draws, entry: RaceFault | BallFault, bearing: Bearing, specimen: int, known: Known
 ) -> tuple[Spall, ...]:
     carrier = int(draws.u() * bearing.n_balls)
-    radius = bearing.radius(entry.kind)
     trace = tuple(to_si(depth, "um") for depth in entry.trace_um or ())
     spalls = []
     for _ in range(round(draws.value(entry.n_spalls))):
         drawn = draws.section(entry, known, ("width_mm", "depth_um", "angle_deg", "roughness_um"))
-        width = drawn["width"]
         edge = {} if entry.jagged_edge is None else draws.section(entry.jagged_edge)
         spalls.append(
             Spall(
                 site=entry.kind,
-                width=width,
+                width=drawn["width"],
                 depth=max(trace, default=drawn["depth"]),
                 angle=drawn["angle"],
                 ball=carrier,
@@ -72,9 +70,16 @@ def _draw_spalls(
                 scatter=edge.get("scatter", 0.0),
             )
         )
-        if width > _WIDEST[entry.kind] * radius:
-            raise RecipeError(
-                f"specimen {specimen}: a spall of {width * 1e3:g} mm does not fit the {entry.kind} radius of {radius * 1e3:.3g} mm; "
-                f"keep width_mm below {_WIDEST[entry.kind] * radius * 1e3:.3g}."
-            )
+        check_fits(spalls[-1], bearing, specimen)
     return tuple(spalls)
+
+
+def check_fits(spall: Spall, bearing: Bearing, specimen: int) -> None:
+    """Refuse a spall that is too wide for its race or ball."""
+    radius = bearing.radius(spall.site)
+    widest = _WIDEST[spall.site] * radius
+    if spall.width > widest:
+        raise RecipeError(
+            f"specimen {specimen}: a spall of {spall.width * 1e3:g} mm does not fit the {spall.site} radius of {radius * 1e3:.3g} mm; "
+            f"keep width_mm below {widest * 1e3:.3g}."
+        )

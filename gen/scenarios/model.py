@@ -253,6 +253,12 @@ class Specimen:
     entry: int = 0
     """Place of the fault in ``faults`` of the recipe."""
 
+    @property
+    def damaged_parts(self) -> list[str]:
+        """Parts that are damaged, each once: a worn race, the sites of spalls, the cage."""
+        worn = [] if self.wear is None else [self.wear.site]
+        return list(dict.fromkeys([*worn, *(spall.site for spall in self.spalls), *(["cage"] if self.cage else [])]))
+
     def at_severity(self, share: float) -> "Specimen":
         """The same bearing with a share of its damage: of width and depth of spalls, of wear, and of pitch error and knock of a cage.
 

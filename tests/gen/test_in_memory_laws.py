@@ -25,6 +25,10 @@ def ladder():
     return gen.records([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
 
 
+def with_width(one, width):
+    return replace(one, specimen=replace(one.specimen, spalls=(replace(one.specimen.spalls[0], width=width),)))
+
+
 def same_but_source(one, other):
     return one.drop_vars("source").identical(other.drop_vars("source"))
 
@@ -51,7 +55,7 @@ def test_records_do_not_depend_on_the_number_of_threads(ladder):
 def test_the_corpus_of_a_whole_dataset_is_that_of_its_recipe_byte_by_byte(ladder, tmp_path):
     written = gen.write_corpus(ladder, tmp_path / "written")
     gen.generate(written / "recipe.yaml", tmp_path / "generated")
-    names = ["manifest.json", "corpus.nc", "recipe.yaml", "parts/part-00000.nc", "parts/part-00001.nc"]
+    names = ["manifest.json", "corpus.nc", "recipe.yaml", "README.md", "parts/part-00000.nc", "parts/part-00001.nc"]
     for name in names:
         assert (written / name).read_bytes() == (tmp_path / "generated" / name).read_bytes()
     assert gen.validate_corpus(written) == []
@@ -78,6 +82,13 @@ def saved(dataset, folder):
 )
 def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tmp_path, changed):
     directory = gen.write_corpus(changed(ladder, tmp_path), tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+
+
+def test_records_in_floating_point_are_written_as_they_are(tmp_path):
+    made = gen.records(OUTER, 2, converter={"kind": "float32"}, **SHORT)
+    directory = gen.write_corpus(made, tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert replayed(directory)
 
@@ -114,6 +125,14 @@ def test_further_variables_are_written(ladder, tmp_path):
         (lambda ladder: ladder.drop_vars("snr"), "the Dataset has no variable snr; keep all that gen.records gives."),
         (lambda ladder: ladder.drop_vars("draws"), "the Dataset has no variable draws, so it holds no scenarios."),
         (lambda ladder: ladder.drop_attrs(), "the Dataset has no attribute recipe; give one from gen.record"),
+        (
+            lambda ladder: ladder.assign_attrs(recipe="{"),
+            "the attribute recipe of the Dataset is not the JSON text of a recipe",
+        ),
+        (
+            lambda ladder: ladder.assign_attrs(recipe="[1]"),
+            "the attribute recipe of the Dataset is not the JSON text of a recipe",
+        ),
         (
             lambda ladder: ladder.assign(mine=("record", np.arange(6))),
             "mine: needs one value for each record and the attributes long_name and",
@@ -211,10 +230,12 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     ]
     made = gen.simulate_scenarios(faster[3:] + faster[:3], recipe)
     assert np.allclose(made["true_shaft_rate"], 61, rtol=0.02)
-    directory = gen.write_corpus(made, tmp_path / "corpus")
+    directory = gen.write_corpus(made.isel(record=[2, 0, 1, 5, 4, 3]), tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert replayed(directory)
-    assert gen.stored_scenario(directory, 0) == faster[3]
+    assert gen.stored_scenario(directory, 1) == faster[3]
+    with pytest.raises(RecipeError, match=r"scenarios\[1\]: rung 0 of pair 0 does not rise; sort them, each once"):
+        gen.simulate_scenarios([faster[1], faster[0]], recipe)
     with pytest.raises(CorpusError, match="not a whole recipe; choose another folder"):
         gen.generate(directory / "recipe.yaml", directory)
     with pytest.raises(
@@ -251,6 +272,12 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
             r"specimen\.entry 7 is no place in faults of the recipe, which has 2",
         ),
         (
+            lambda one: replace(one, specimen=replace(one.specimen, fault="outer")),
+            "the damage of the specimen is inner; change",
+        ),
+        (lambda one: with_width(one, 0.0), "width and depth of a spall must be above 0"),
+        (lambda one: with_width(one, 0.3), "specimen 1: a spall of 300 mm does not fit the inner radius of"),
+        (
             lambda one: replace(one, seed="x"),
             r"scenarios\[1\]: is no scenario \(the whole text: .*; change drawn ones with",
         ),
@@ -275,3 +302,27 @@ def test_the_dataset_carries_the_recipe_as_it_was_given(ladder):
     assert plain(gen.recipe_of(ladder)) == plain(
         gen.recipe_for([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
     )
+
+
+def test_a_corpus_with_faults_in_turn_goes_on_with_them_when_it_is_extended(ladder, tmp_path):
+    directory = gen.write_corpus(ladder, tmp_path / "corpus")
+    before = [path.read_bytes() for path in sorted((directory / "parts").iterdir())]
+    gen.extend(directory, specimens=3)
+    with gen.open_corpus(directory) as corpus:
+        assert corpus["parts"].values.tolist() == ["outer", "inner"] * 4 + ["outer"]
+    assert [path.read_bytes() for path in sorted((directory / "parts").iterdir())][:2] == before
+    assert gen.replay(directory, 8).identical
+
+
+def test_merged_corpora_of_drawn_and_of_given_scenarios_are_replayed(ladder, tmp_path):
+    other = gen.records(OUTER, 2, shaft_rpm=gen.uniform(3000, 4000), **SHORT | {"seed": 6})
+    scenarios = [replace(one, seed=5, record=replace(one.record, number=3)) for one in gen.scenarios_of(other)]
+    made = gen.simulate_scenarios(scenarios, gen.recipe_of(ladder))
+    drawn, given = gen.write_corpus(ladder, tmp_path / "drawn"), gen.write_corpus(made, tmp_path / "given")
+    gen.merge([drawn, given], tmp_path / "merged")
+    assert gen.validate_corpus(tmp_path / "merged") == []
+    with gen.open_corpus(tmp_path / "merged") as corpus:
+        assert corpus["rig"].values.tolist() == [0] * 6 + [1] * 2  # given machines are their own
+    assert replayed(tmp_path / "merged")
+    with pytest.raises(CorpusError, match="holds scenarios that were chosen or made by hand"):
+        gen.extend(given, rigs=1)

@@ -45,7 +45,7 @@ def _made(corpus: xr.Dataset, manifest: Manifest) -> str:
     if manifest.importer is not None:
         return f"Origin: {plain_text(corpus.attrs.get('source', 'unknown'))}"
     if manifest.recipe is not None:
-        return _SIMULATED.format(recipe=plain_text(manifest.recipe)) + _SCENARIOS.get(_scenarios(manifest), "")
+        return _SIMULATED.format(recipe=plain_text(manifest.recipe)) + _SCENARIOS.get(manifest.scenarios or "", "")
     facts = [plain_text(corpus.attrs[name]) for name in ("source", "history") if corpus.attrs.get(name)]
     return f"Origin: {'; '.join(facts) or 'unknown'}"
 
@@ -73,17 +73,12 @@ def _selected(choice: Choice) -> str:
     return f"Selected from {choice.records:,} records" + (f" by `raceway select` (`{asked}`)" if asked else "")
 
 
-def _scenarios(made: Manifest | Origin) -> str:
-    """``given`` or ``chosen`` if the records are not those that the recipe draws; else empty."""
-    return getattr(made, "scenarios", None) or ""
-
-
 def rebuilding(manifest: Manifest, window: float) -> list[str]:
     """Section with the commands that make the corpus again; ``window`` is the length of a record [s]."""
     lines = ["", "## How to make it again", ""]
     commands = _commands(manifest, window)
     if not commands:
-        if _scenarios(manifest):
+        if manifest.scenarios is not None:
             return [*lines, _WRITTEN]
         return [*lines, "The folder does not say how it was made; keep a copy."]
     if any(command[1] == "import" for command in commands):
@@ -136,7 +131,7 @@ def _made_from(made: Manifest | Origin, recipe_file: str, folder: str, window: f
     """Commands that make a corpus from recordings or a recipe, before any choice; the last word of each is the folder."""
     if made.importer is not None:
         return [["raceway", "import", made.importer, "SRC", "--window", f"{window:g}", "-o", folder]]
-    if made.recipe is not None and not _scenarios(made):
+    if made.recipe is not None and made.scenarios is None:
         return _simulating(made, recipe_file, folder)
     return []
 
