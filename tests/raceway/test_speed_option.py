@@ -1,9 +1,11 @@
 """The option --speed of the commands that compute features of recordings."""
 
 import json
+from types import SimpleNamespace
 
 import pytest
 
+from features.band import DEFAULT_BAND
 from features.recording_speeds import FOUND, SPEEDS
 from features.table_files import read_table
 from raceway.console.options import speed_option
@@ -34,12 +36,12 @@ def test_features_counts_the_recordings_with_another_speed(told, corpus, tmp_pat
 def test_recordings_that_are_tested_are_checked_and_others_are_not(run, monkeypatch, corpus, tmp_path, command):
     treatments = []
 
-    def table_of(_corpus, speed, _crew):
+    def table_of(_corpus, speed, _team, _analysis):
         treatments.append(speed)
 
     for module in ("models", "benchmarking"):
         monkeypatch.setattr(f"raceway.commands.{module}.table_of", table_of)
-    monkeypatch.setattr("features.baselines.load_model", lambda _: None)
+    monkeypatch.setattr("features.baselines.load_model", lambda _: SimpleNamespace(band=DEFAULT_BAND))
     line = {
         "evaluate": ("evaluate", corpus, "--model", tmp_path / "model"),
         "benchmark": ("benchmark", corpus, "--test", corpus, "-o", tmp_path / "report"),
