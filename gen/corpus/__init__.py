@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from gen.corpus.description import format_page
     from gen.corpus.files import (
         check_name,
+        check_new_folder,
+        new_corpus_folder,
         plain_file,
         remove_left_behind,
         sha256,
@@ -108,6 +110,7 @@ __all__ = [
     "SignalCounts",
     "Variable",
     "check_name",
+    "check_new_folder",
     "complaint",
     "data_card",
     "described",
@@ -115,6 +118,7 @@ __all__ = [
     "finish_corpus",
     "format_page",
     "make_dataset",
+    "new_corpus_folder",
     "new_journal",
     "open_corpus",
     "open_part",
@@ -151,8 +155,8 @@ __getattr__, __dir__ = lazy_names(
         "gen.corpus.description": ("format_page",),
         "gen.corpus.codecs": ("CODECS", "Codec"),
         "gen.corpus.files": (
-            "check_name", "plain_file", "remove_left_behind", "sha256", "temporary_beside", "temporary_folder", "whole_folder_or_none",
-            "whole_or_not_at_all", "write_durably", "write_text_durably",
+            "check_name", "check_new_folder", "new_corpus_folder", "plain_file", "remove_left_behind", "sha256", "temporary_beside",
+            "temporary_folder", "whole_folder_or_none", "whole_or_not_at_all", "write_durably", "write_text_durably",
         ),
         "gen.corpus.finishing": ("finish_corpus", "publish"),
         "gen.corpus.hdf5": ("LIBRARY_LOCK",),

@@ -22,6 +22,7 @@ from gen.corpus import (
     Publication,
     SignalCounts,
     finish_corpus,
+    new_corpus_folder,
     open_corpus,
     part_name,
     read_manifest,
@@ -35,7 +36,6 @@ from gen.limits import check_limit
 from gen.sharing.columns import Columns, columns_of_all, with_all
 from gen.sharing.copying import (
     in_floating_point,
-    new_corpus,
     part_attributes,
     parts_sha256,
     records_of_origins,
@@ -117,7 +117,7 @@ def merge(
         title = title or " + ".join(dict.fromkeys(str(source.corpus.attrs.get("title", "")) for source in sources))
         finish = partial(_finished, columns=columns, attributes=_attributes(sources, title), float32=float32)
         added = _new_numbers(sources)
-        with new_corpus(output) as folder:
+        with new_corpus_folder(output) as folder:
             rows = _write_parts(sources, added, finish, folder, progress)
             origins = _with_recipes(sources, added, folder)
             signals = finish_corpus(folder, rows, publication=_publication(sources), **_facts(sources, title, origins))

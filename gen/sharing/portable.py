@@ -2,7 +2,6 @@
 
 import glob
 from collections.abc import Callable, Sequence
-from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
@@ -65,11 +64,11 @@ def pack(
         raise CorpusError(f"{file}: exists; give another name, or remove it first.")
     if codec not in CODECS:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
-    for name in (file.name, f"{file.name}-choice", f"{file.name}-float32"):
-        remove_left_behind(file.parent, glob.escape(name))
-    with ExitStack() as rooms:
+    remove_left_behind(file.parent, glob.escape(file.name))
+    remove_left_behind(file.parent, glob.escape(f"{file.name}-corpora"))
+    with temporary_beside(file.with_name(f"{file.name}-corpora")) as corpora:
         if where is not None or split is not None or channels is not None:
-            chosen = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-choice")))
+            chosen = corpora / "chosen"
             select(directory, chosen, where=where, split=split, channels=channels)
             directory = chosen
         elif directory.is_file():
@@ -77,7 +76,7 @@ def pack(
                 f"{directory}: is one file already; copy it, or say which records with --where or --split."
             )
         if float32:
-            converted = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-float32")))
+            converted = corpora / "float32"
             _convert(directory, converted)
             directory = converted
         return pack_whole(directory, file, codec, progress)

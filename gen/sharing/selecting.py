@@ -18,6 +18,7 @@ from gen.corpus import (
     PartRow,
     SignalCounts,
     finish_corpus,
+    new_corpus_folder,
     open_corpus,
     part_name,
     read_manifest,
@@ -30,7 +31,6 @@ from gen.sharing.copying import (
     copy_recipes,
     facts_of,
     joined,
-    new_corpus,
     part_attributes,
     parts_sha256,
     records_of_origins,
@@ -103,7 +103,7 @@ def select(
         )
         told = f"selected by raceway select ({choice})"
         attributes = part_attributes(directory) | {"history": f"{corpus.attrs.get('history', '')}\n{told}"}
-        with new_corpus(output) as folder:
+        with new_corpus_folder(output) as folder:
             done, rows, origins = 0, list[PartRow](), Counter[int]()
             for number, part in _parts(corpus, manifest, records, kept):
                 rows.append(write_part(part.assign_attrs(attributes), folder / "parts" / part_name(len(rows))))

@@ -13,6 +13,7 @@ import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.corpus.files import new_corpus_folder
 from gen.corpus.finishing import publish
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.index import write_index
@@ -24,7 +25,6 @@ from gen.corpus.part_forms import dataset_of
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
-from gen.sharing.copying import new_corpus
 
 Progress = Callable[[int, int], None]
 
@@ -61,7 +61,7 @@ def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None
         raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
     manifest, files = read_manifest(file), packed_contents(file).files
     rows: list[PartRow] = []
-    with new_corpus(output) as folder:
+    with new_corpus_folder(output) as folder:
         for row in manifest.parts:
             rows.append(_written_again(file / "parts" / row.name, folder / "parts" / row.name))
             if progress is not None:
