@@ -5,8 +5,6 @@ the same call completes an interrupted corpus: a part is kept if manifest or jou
 other part is made again.
 """
 
-import fcntl
-import os
 import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
@@ -23,6 +21,7 @@ from gen.corpus import (
     SignalCounts,
     check_name,
     finish_corpus,
+    locked,
     new_journal,
     part_name,
     read_manifest,
@@ -178,22 +177,10 @@ def claimed(directory: Path) -> Iterator[None]:
         raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        handle = os.open(directory, os.O_RDONLY)
     except OSError as error:
         raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(handle)
-        raise CorpusError(
-            f"{directory}: another raceway generate or extend is writing into it; wait until it ends, or choose another folder."
-        ) from None
-    except OSError:  # a file system without locks
-        pass
-    try:
+    with locked(directory):
         yield
-    finally:
-        os.close(handle)
 
 
 def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, PartRow]:

@@ -27,6 +27,7 @@ recoverable   labels that can be recovered from the signals
 card          data card of a corpus
 acdd          global attributes of a published corpus
 croissant     files, fields and licence for catalogues of data sets
+locking       one call at a time writes into a folder
 finishing     index, manifest and data card of finished parts
 description   page about the format
 ============= =====================================================
@@ -59,6 +60,7 @@ if TYPE_CHECKING:
     from gen.corpus.hdf5 import LIBRARY_LOCK
     from gen.corpus.index import open_corpus, write_index
     from gen.corpus.journal import JOURNAL_NAME, new_journal
+    from gen.corpus.locking import locked
     from gen.corpus.manifest import EXTENSION_NAME, MOST_EXTENSIONS, Manifest, part_paths, read_manifest, write_manifest
     from gen.corpus.part import PartRow, part_name, write_part
     from gen.corpus.publication import Creator, Publication, read_publication
@@ -76,6 +78,7 @@ if TYPE_CHECKING:
         UNKNOWN,
         UNKNOWN_CODE,
         Variable,
+        class_names,
         make_dataset,
     )
     from gen.corpus.signals import SignalCounts, complaint, described, summed
@@ -111,12 +114,14 @@ __all__ = [
     "Variable",
     "check_name",
     "check_new_folder",
+    "class_names",
     "complaint",
     "data_card",
     "described",
     "fault_counts",
     "finish_corpus",
     "format_page",
+    "locked",
     "make_dataset",
     "new_corpus_folder",
     "new_journal",
@@ -161,6 +166,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.corpus.finishing": ("finish_corpus", "publish"),
         "gen.corpus.hdf5": ("LIBRARY_LOCK",),
         "gen.corpus.index": ("open_corpus", "write_index"),
+        "gen.corpus.locking": ("locked",),
         "gen.corpus.journal": ("JOURNAL_NAME", "new_journal"),
         "gen.corpus.manifest": ("EXTENSION_NAME", "MOST_EXTENSIONS", "Manifest", "part_paths", "read_manifest", "write_manifest"),
         "gen.corpus.part": ("PartRow", "part_name", "write_part"),
@@ -168,7 +174,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.corpus.reading": ("open_part", "read_channel"),
         "gen.corpus.schema": (
             "DRAWS", "FAULT_NAMES", "FAULTS", "FORMAT", "MISSING_COUNT", "ROLES", "SCHEMA", "SIGNAL", "SPLITS", "UNKNOWN", "UNKNOWN_CODE",
-            "Variable", "make_dataset",
+            "Variable", "class_names", "make_dataset",
         ),
         "gen.corpus.signals": ("SignalCounts", "complaint", "described", "summed"),
         "gen.corpus.simulated": ("SIMULATED",),

@@ -68,7 +68,7 @@ def format_page() -> str:
 def _table(variables: tuple[Variable, ...]) -> str:
     rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
     for variable in variables:
-        flags = f" ({listed_flags(variable)})" if variable.flags else ""
+        flags = f" ({listed_flags(variable.flags)})" if variable.flags else ""
         cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
         rows.append(f"| {' | '.join(cells)} |")
     return "\n".join(rows) + "\n"

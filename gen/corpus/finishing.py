@@ -1,10 +1,7 @@
 """The files of a finished corpus beside its parts: index, manifest and data card; and a change of its publication."""
 
-import fcntl
 import json
-import os
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +9,7 @@ from gen.corpus.acdd import publication_attributes
 from gen.corpus.card.page import write_card
 from gen.corpus.croissant import write_croissant
 from gen.corpus.index import new_index, write_index
+from gen.corpus.locking import locked
 from gen.corpus.manifest import (
     INDEX_NAME,
     Manifest,
@@ -63,7 +61,7 @@ def publish(directory: Path | str, publication: Publication) -> None:
         raise CorpusError(
             f"{directory}: is one file; unpack it with raceway unpack, publish the folder, and pack that."
         )
-    with _alone(directory):
+    with locked(directory):
         part_paths(directory, "sha256")
         rows = read_manifest(directory).parts
         content: dict[str, Any] = json.loads((directory / "manifest.json").read_bytes())
@@ -79,24 +77,3 @@ def publish(directory: Path | str, publication: Publication) -> None:
 
 def _manifest(content: dict[str, Any]) -> Manifest:
     return Manifest.model_validate_json(json.dumps(content))
-
-
-@contextmanager
-def _alone(directory: Path) -> Iterator[None]:
-    """Lock a folder against other calls that write into it."""
-    try:
-        handle = os.open(directory, os.O_RDONLY)
-    except OSError as error:
-        raise CorpusError(f"{directory}: cannot be opened ({error.strerror}); give the folder of a corpus.") from None
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(handle)
-        raise CorpusError(f"{directory}: another command is writing into it; wait until it ends.") from None
-    except OSError:  # a file system without locks
-        pass
-    try:
-        yield
-    finally:
-        with suppress(OSError):
-            os.close(handle)

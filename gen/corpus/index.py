@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from gen.corpus.files import whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.manifest import INDEX_NAME, Check, part_paths, read_manifest
+from gen.corpus.packed import PACKED
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
@@ -29,6 +30,8 @@ _COMMENT = (
     "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
     "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
 )
+OF_ONE_FILE = ("comment", "_NCProperties", PACKED)
+"""Global attributes about ``corpus.nc`` or a packed file itself."""
 _NO_ATTRIBUTES: Mapping[str, str] = {}
 _CHUNK_RECORDS = 256  # records whose text forms one chunk
 _COPIED_BYTES = 16_000_000  # of the variables of some parts, in memory at a time
@@ -87,6 +90,12 @@ def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str
             with h5py.File(temporary, "r+") as file:
                 write_unicode(file, texts)
         yield temporary
+
+
+def corpus_attributes(file: Path) -> dict[str, Any]:
+    """Global attributes of ``corpus.nc`` or of a packed file that belong to the corpus, whichever of the two holds it."""
+    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
+        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in OF_ONE_FILE}
 
 
 def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> dict[str, str]:

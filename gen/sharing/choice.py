@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import SPLITS
+from gen.corpus import SPLITS, class_names
 from gen.errors import CorpusError
 from gen.sharing.where import Column, nearest, parse_where
 
@@ -35,7 +35,9 @@ def chosen_records(corpus: xr.Dataset, where: str | None = None, split: str | No
         chosen &= corpus["split"].values == SPLITS.index(split)
     if where is not None:
         variables = [str(name) for name, variable in corpus.variables.items() if variable.dims == ("record",)]
-        chosen &= parse_where(where).holds(variables, lambda name: _column(corpus, name))
+        chosen &= parse_where(where).holds(
+            variables, lambda name: Column(corpus[name].values, class_names(corpus[name].attrs))
+        )
     if not chosen.any():
         asked = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
         raise CorpusError(f"{' and '.join(asked)}: none of {len(chosen)} records is chosen; choose others.")
@@ -59,11 +61,3 @@ def chosen_channels(corpus: xr.Dataset, channels: Sequence[str] | None) -> tuple
         if name not in names:
             raise CorpusError(f"channels: there is no channel {name}{nearest(name, names)}")
     return tuple(place for place, name in enumerate(names) if name in channels)
-
-
-def _column(corpus: xr.Dataset, name: str) -> Column:
-    """Values of a per-record variable with the names of its values, if it is a class variable."""
-    variable = corpus[name]
-    codes = [int(code) for code in np.atleast_1d(variable.attrs.get("flag_values", []))]
-    names = str(variable.attrs.get("flag_meanings", "")).split()
-    return Column(variable.values, dict(zip(codes, names, strict=False)))

@@ -19,7 +19,7 @@ import numpy as np
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.index import write_variables
+from gen.corpus.index import corpus_attributes, write_variables
 from gen.corpus.manifest import INDEX_NAME, Manifest, part_paths, read_manifest
 from gen.corpus.packed import (
     CONTENTS,
@@ -43,7 +43,6 @@ _COMMENT = (
     "A whole corpus in one file. Variables and units are those of every record; the group files holds manifest, recipe and data card. "
     "Python: gen.open_corpus(FILE), or any netCDF-4 reader. raceway validate FILE checks it, raceway unpack FILE -o DIR makes the folder."
 )
-_BLOCK_SAMPLES = 2_000_000  # samples of the records that are copied at a time: larger blocks are no faster
 _MOST_BYTES = 5_000_000  # of one of the small files; a longer one is left out
 
 
@@ -121,14 +120,8 @@ def _counted(progress: Progress | None, records: int) -> Callable[[int], None]:
 
 def _declare(path: Path, directory: Path, part: Path, codec: Codec) -> None:
     """Declare signal and hashes in the new file, and copy the attributes of the signal and of the corpus."""
-    with (
-        netCDF4.Dataset(directory / INDEX_NAME) as index,
-        netCDF4.Dataset(part) as like,
-        netCDF4.Dataset(path, "a") as file,
-    ):
-        attributes = {
-            name: index.getncattr(name) for name in index.ncattrs() if name not in ("comment", "_NCProperties")
-        }
+    attributes = corpus_attributes(directory / INDEX_NAME)
+    with netCDF4.Dataset(part) as like, netCDF4.Dataset(path, "a") as file:
         texts = beyond_ascii(attributes)
         plain = {name: value for name, value in attributes.items() if name not in texts}
         file.setncatts(plain | {PACKED: np.int32(PACKED_VERSION)})

@@ -8,6 +8,7 @@ import numpy as np
 
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import remove_left_behind, temporary_beside
+from gen.corpus.index import corpus_attributes
 from gen.corpus.manifest import INDEX_NAME, part_paths
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of, form_of
@@ -18,7 +19,7 @@ from gen.errors import CorpusError
 from gen.sharing.copying import in_floating_point
 from gen.sharing.packing import PackedFile, pack_whole, small_files
 from gen.sharing.selecting import select
-from gen.sharing.unpacking import corpus_attributes, finish_again
+from gen.sharing.unpacking import finish_again
 
 Progress = Callable[[int, int], None]
 

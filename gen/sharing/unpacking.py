@@ -9,17 +9,15 @@ from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.files import new_corpus_folder
 from gen.corpus.finishing import publish
-from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.index import write_index
+from gen.corpus.index import corpus_attributes, write_index
 from gen.corpus.journal import listed
 from gen.corpus.manifest import INDEX_NAME, listed_file, read_manifest, write_content
-from gen.corpus.packed import PACKED, packed_contents, packed_part
+from gen.corpus.packed import packed_contents, packed_part
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
@@ -85,13 +83,6 @@ def _written_again(packed: Path, path: Path) -> PartRow:
         stored = chain.from_iterable(block.chunks for block in blocks)
         chunks = dict(zip(np.ndindex(values[SIGNAL].shape[:2]), stored, strict=True))
     return write_part(dataset, path, codec, chunks)
-
-
-def corpus_attributes(file: Path) -> dict[str, Any]:
-    """Global attributes of ``corpus.nc`` or of a packed file, without those that only one of them has."""
-    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
-        own = ("comment", "_NCProperties", PACKED)
-        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in own}
 
 
 def finish_again(
