@@ -17,15 +17,17 @@ from gen.compilation import compile_kernels
 from gen.corpus import (
     EXTENSION_NAME,
     JOURNAL_NAME,
+    Extension,
     PartRow,
     SignalCounts,
     check_name,
+    extensions_of,
     finish_corpus,
     locked,
     new_journal,
     part_name,
     read_manifest,
-    remove_left_behind,
+    remove_temporary_files,
     write_durably,
     write_manifest,
 )
@@ -153,7 +155,7 @@ def finished(
     return Generated(directory, sum(row.records for row in rows), len(rows), kept, failed, signals)
 
 
-def _extensions(directory: Path) -> tuple[dict[Any, int], ...]:
+def _extensions(directory: Path) -> tuple[Extension, ...]:
     """Extensions of the corpus in a folder that were finished; none if it holds no corpus.
 
     Raises
@@ -165,8 +167,7 @@ def _extensions(directory: Path) -> tuple[dict[Any, int], ...]:
         raise CorpusError(f"{directory}: is being extended; run the raceway extend command that began it again.")
     if not (directory / "manifest.json").exists():
         return ()
-    overrides = read_manifest(directory).overrides
-    return () if overrides is None else overrides.extensions
+    return extensions_of(read_manifest(directory))
 
 
 @contextmanager
@@ -193,8 +194,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     journal = directory / JOURNAL_NAME
     begun = (directory / "manifest.json").exists()
     try:
-        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml", "croissant.json"):
-            remove_left_behind(directory, name)
+        remove_temporary_files(directory)
         manifest = read_manifest(directory) if begun else None
         if manifest is not None and manifest.scenarios is not None:
             raise CorpusError(
@@ -220,7 +220,6 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         journal.unlink(missing_ok=True)
         write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
-        remove_left_behind(directory / "parts", "part-*.nc")
     except OSError as error:
         raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
     return known

@@ -7,11 +7,14 @@ from typing import Any
 
 from gen.corpus.acdd import publication_attributes
 from gen.corpus.card.page import write_card
-from gen.corpus.croissant import write_croissant
+from gen.corpus.croissant import CROISSANT_NAME, write_croissant
+from gen.corpus.files import remove_left_behind
 from gen.corpus.index import new_index, write_index
 from gen.corpus.locking import locked
 from gen.corpus.manifest import (
+    EXTENSION_NAME,
     INDEX_NAME,
+    MANIFEST_NAME,
     Manifest,
     listed_file,
     manifest_content,
@@ -42,6 +45,13 @@ def finish_corpus(
     write_card(directory)
     write_croissant(directory)
     return signals
+
+
+def remove_temporary_files(directory: Path) -> None:
+    """Remove temporary files that killed calls have left beside the files of a corpus; no other process may be writing into it."""
+    for name in (MANIFEST_NAME, EXTENSION_NAME, INDEX_NAME, "README.md", "recipe.yaml", CROISSANT_NAME):
+        remove_left_behind(directory, name)
+    remove_left_behind(directory / "parts", "part-*.nc")
 
 
 def publish(directory: Path | str, publication: Publication) -> None:

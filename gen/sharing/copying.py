@@ -18,7 +18,7 @@ from gen.corpus import (
     plain_file,
     write_durably,
 )
-from gen.corpus.manifest import Numbers
+from gen.corpus.manifest_fields import Numbers
 from gen.corpus.packed import packed_contents
 from gen.corpus.record_hashes import RENUMBERED, stored_signal
 from gen.corpus.schema import SIGNAL_DIMS

@@ -21,6 +21,7 @@ from gen.corpus import (
     PartRow,
     Publication,
     SignalCounts,
+    extensions_of,
     finish_corpus,
     new_corpus_folder,
     open_corpus,
@@ -29,7 +30,7 @@ from gen.corpus import (
     write_durably,
     write_part,
 )
-from gen.corpus.manifest import Numbers, Origin
+from gen.corpus.manifest_fields import Numbers, Origin
 from gen.corpus.record_hashes import RENUMBERED
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -165,7 +166,7 @@ def _check_extensions(sources: Iterable[_Source]) -> None:
     longest: dict[str, tuple[Any, ...]] = {}
     for source in sources:
         for origin in source.origins:
-            found = () if origin.overrides is None else origin.overrides.extensions
+            found = extensions_of(origin)
             short, long = sorted((longest.get(origin.same_machines, ()), found), key=len)
             if long[: len(short)] != short:
                 raise CorpusError(

@@ -24,7 +24,7 @@ from gen.corpus import (
     read_manifest,
     write_part,
 )
-from gen.corpus.manifest import Choice
+from gen.corpus.manifest_fields import Choice
 from gen.errors import CorpusError
 from gen.sharing.choice import chosen_channels, chosen_records
 from gen.sharing.copying import (
