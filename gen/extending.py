@@ -150,9 +150,7 @@ def _not_of_one_recipe(manifest: Manifest) -> str | None:
     if manifest.selections:
         return "is a selection of another corpus; extend that one, and select from it again"
     if manifest.scenarios is not None:
-        return (
-            "holds scenarios that were chosen or made by hand; write more of them, and join the two with raceway merge"
-        )
+        return "holds some records of a recipe, or scenarios made by hand; write more of them, and join the two with raceway merge"
     if manifest.overrides is None:
         return (
             "was not generated from a recipe, which further records could be drawn from; make another corpus, and join the two with "

@@ -198,7 +198,7 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         manifest = read_manifest(directory) if begun else None
         if manifest is not None and manifest.scenarios is not None:
             raise CorpusError(
-                f"{directory}: holds records that were made one by one, not a whole recipe; choose another folder."
+                f"{directory}: holds some records of a recipe, or scenarios made by hand, so it cannot be generated; choose another folder."
             )
         if manifest is not None and (manifest.selections or manifest.origins):
             how = "selected from a larger corpus" if manifest.selections else "merged from several corpora"
