@@ -184,7 +184,9 @@ def test_a_killed_write_leaves_a_whole_corpus_or_none(ladder, tmp_path):
 
 def test_the_corpus_of_a_choice_is_not_completed_by_its_recipe(ladder, tmp_path):
     directory = gen.write_corpus(ladder.isel(record=[1]), tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="was selected from a larger corpus, so it cannot be generated"):
+    with pytest.raises(
+        CorpusError, match="holds some records of a recipe, or scenarios made by hand, so it cannot be generated"
+    ):
         gen.generate(directory / "recipe.yaml", directory)
     assert gen.validate_corpus(directory) == []
 
