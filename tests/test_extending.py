@@ -22,7 +22,7 @@ TASKS = (
     "quantity for shares",
 )
 PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
-FILE = re.compile(r"^(\d+)\. `([\w/.]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
+FILE = re.compile(r"^(\d+)\. `([\w/.-]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
 
 
 def steps(task):
