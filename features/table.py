@@ -33,12 +33,12 @@ from features.recording_speeds import (
 )
 from features.signal.rows import FloatArray
 from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
+from gen.progress import Progress
 from gen.workers import run
 
 if TYPE_CHECKING:
     from distributed import Client
 
-Progress = Callable[[int, int], None]
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 

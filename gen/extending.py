@@ -27,8 +27,9 @@ from gen.corpus import (
     write_manifest,
 )
 from gen.errors import CorpusError, RecipeError
-from gen.generation import Generated, Progress, Tally, claimed, client_of, finished, finished_parts
+from gen.generation import Generated, Tally, claimed, client_of, finished, finished_parts
 from gen.part_task import library_versions
+from gen.progress import Progress
 from gen.recipe import Block, Recipe
 from gen.replaying import corpus_recipe
 from gen.scenarios import draw_scenarios, read_scenario

@@ -34,13 +34,12 @@ from gen.corpus import (
 from gen.errors import CorpusError, RecipeError
 from gen.making import Crew
 from gen.part_task import Outcome, library_versions, make_parts, units
+from gen.progress import Progress
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.workers import stream, threads_of
 
 if TYPE_CHECKING:
     from distributed import Client
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)

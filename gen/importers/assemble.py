@@ -6,7 +6,7 @@ card and manifest are written.
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
@@ -28,8 +28,7 @@ from gen.errors import CorpusError
 from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
 from gen.limits import check_limit
-
-Progress = Callable[[int, int], None]
+from gen.progress import Progress
 
 _PART_RECORDS = 256
 _PART_BYTES = 64_000_000

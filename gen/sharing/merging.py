@@ -34,6 +34,7 @@ from gen.corpus.manifest_fields import Numbers, Origin
 from gen.corpus.record_hashes import RENUMBERED
 from gen.errors import CorpusError
 from gen.limits import check_limit
+from gen.progress import Progress, counter
 from gen.sharing.columns import Columns, columns_of_all, with_all
 from gen.sharing.copying import (
     in_floating_point,
@@ -45,8 +46,6 @@ from gen.sharing.copying import (
     stored_records,
 )
 from gen.sharing.repeats import Seen, sample_digests
-
-Progress = Callable[[int, int], None]
 
 _ORIGIN_FACTS = ("recipe", "recipe_sha256", "overrides", "versions", "importer", "selections", "scenarios")
 _LARGEST = 2**31 - 1
@@ -227,8 +226,8 @@ def _write_parts(
     progress: Progress | None,
 ) -> list[PartRow]:
     """Write every part of every corpus with new numbers; ``finish`` gives it the variables and attributes of the merged corpus."""
-    total, seen = sum(source.manifest.records for source in sources), Seen()
-    rows, done = list[PartRow](), 0
+    done = counter(progress, sum(source.manifest.records for source in sources))
+    rows, seen = list[PartRow](), Seen()
     for source in sources:
         channels, digests, first = range(source.corpus.sizes["channel"]), [], 0
         for origin, row in _parts_of(source):
@@ -237,9 +236,8 @@ def _write_parts(
             digests.append(sample_digests(part))
             seen.check(str(source.directory), first, digests[-1])
             rows.append(write_part(part, folder / "parts" / part_name(len(rows))))
-            first, done = first + row.records, done + row.records
-            if progress is not None:
-                progress(done, total)
+            first += row.records
+            done(row.records)
         seen.add(str(source.directory), digests)
     return rows
 

@@ -36,8 +36,7 @@ from gen.corpus.record_checks import hashed_blocks
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
 from gen.corpus.unicode_text import beyond_ascii, write_unicode
 from gen.errors import CorpusError
-
-Progress = Callable[[int, int], None]
+from gen.progress import Progress, counter
 
 _COMMENT = (
     "A whole corpus in one file. Variables and units are those of every record; the group files holds manifest, recipe and data card. "
@@ -71,7 +70,7 @@ def pack_whole(directory: Path, file: Path, codec: Codec, progress: Progress | N
             _declare(temporary, directory, paths[0], codec)
             _write_files(temporary, small_files(directory), _contents(manifest, forms))
         direct = codec == "zlib" == json.loads(forms[0][1])["codec"]
-        _copy_records(paths, temporary, direct, codec, _counted(progress, manifest.records))
+        _copy_records(paths, temporary, direct, codec, counter(progress, manifest.records))
     return PackedFile(file, manifest.records, len(paths), file.stat().st_size)
 
 
@@ -103,19 +102,6 @@ def _storage(form: dict[str, Any]) -> list[str]:
         json.dumps([item["name"], item["type"], item["attributes"] if item["name"] == SIGNAL else None])
         for item in form["variables"]
     )
-
-
-def _counted(progress: Progress | None, records: int) -> Callable[[int], None]:
-    """Function that takes the number of records that were done just now."""
-    done = 0
-
-    def more(count: int) -> None:
-        nonlocal done
-        done += count
-        if progress is not None:
-            progress(done, records)
-
-    return more
 
 
 def _declare(path: Path, directory: Path, part: Path, codec: Codec) -> None:

@@ -1,7 +1,7 @@
 """A corpus, or a choice of it, as one netCDF-4 file: ``folder -> (select, convert) -> pack -> FILE.nc``."""
 
 import glob
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -16,12 +16,11 @@ from gen.corpus.reading import stored_blocks
 from gen.corpus.record_checks import per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
+from gen.progress import Progress
 from gen.sharing.copying import in_floating_point
 from gen.sharing.packing import PackedFile, pack_whole, small_files
 from gen.sharing.selecting import select
 from gen.sharing.unpacking import finish_again
-
-Progress = Callable[[int, int], None]
 
 
 def pack(

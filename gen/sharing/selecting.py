@@ -4,7 +4,7 @@ Records keep all their numbers, and the corpus keeps its recipe, so that each re
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,6 +26,7 @@ from gen.corpus import (
 )
 from gen.corpus.manifest_fields import Choice
 from gen.errors import CorpusError
+from gen.progress import Progress, counter
 from gen.sharing.choice import chosen_channels, chosen_records
 from gen.sharing.copying import (
     copy_recipes,
@@ -36,8 +37,6 @@ from gen.sharing.copying import (
     records_of_origins,
     stored_records,
 )
-
-Progress = Callable[[int, int], None]
 
 _SPAN = 8  # times the records of a part; variables are read with those of the records between the chosen ones
 
@@ -104,13 +103,11 @@ def select(
         told = f"selected by raceway select ({choice})"
         attributes = part_attributes(directory) | {"history": f"{corpus.attrs.get('history', '')}\n{told}"}
         with new_corpus_folder(output) as folder:
-            done, rows, origins = 0, list[PartRow](), Counter[int]()
+            done, rows, origins = counter(progress, len(records)), list[PartRow](), Counter[int]()
             for number, part in _parts(corpus, manifest, records, kept):
                 rows.append(write_part(part.assign_attrs(attributes), folder / "parts" / part_name(len(rows))))
                 origins[number] += 1
-                done += rows[-1].records
-                if progress is not None:
-                    progress(done, len(records))
+                done(rows[-1].records)
             facts = _facts(manifest, choice, origins)
             copy_recipes(directory, folder, [origin["recipe_file"] for origin in facts.get("origins", ())])
             signals = finish_corpus(folder, rows, publication=manifest.publication, **facts)

@@ -4,7 +4,7 @@ Each record is compared with its hash before it is written. Deflated chunks go b
 """
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,8 +23,7 @@ from gen.corpus.part_forms import dataset_of
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
-
-Progress = Callable[[int, int], None]
+from gen.progress import Progress, counter
 
 
 class Unpacked(NamedTuple):
@@ -59,11 +58,11 @@ def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None
         raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
     manifest, files = read_manifest(file), packed_contents(file).files
     rows: list[PartRow] = []
+    done = counter(progress, manifest.records)
     with new_corpus_folder(output) as folder:
         for row in manifest.parts:
             rows.append(_written_again(file / "parts" / row.name, folder / "parts" / row.name))
-            if progress is not None:
-                progress(sum(done.records for done in rows), manifest.records)
+            done(row.records)
         finish_again(folder, rows, files, corpus_attributes(file))
     return Unpacked(output, manifest.records, len(rows), rows == manifest.parts)
 
