@@ -35,9 +35,7 @@ def chosen_records(corpus: xr.Dataset, where: str | None = None, split: str | No
         chosen &= corpus["split"].values == SPLITS.index(split)
     if where is not None:
         variables = [str(name) for name, variable in corpus.variables.items() if variable.dims == ("record",)]
-        chosen &= parse_where(where).holds(
-            variables, lambda name: Column(corpus[name].values, class_names(corpus[name].attrs))
-        )
+        chosen &= parse_where(where).holds(variables, lambda name: _column(corpus, name))
     if not chosen.any():
         asked = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
         raise CorpusError(f"{' and '.join(asked)}: none of {len(chosen)} records is chosen; choose others.")
@@ -61,3 +59,9 @@ def chosen_channels(corpus: xr.Dataset, channels: Sequence[str] | None) -> tuple
         if name not in names:
             raise CorpusError(f"channels: there is no channel {name}{nearest(name, names)}")
     return tuple(place for place, name in enumerate(names) if name in channels)
+
+
+def _column(corpus: xr.Dataset, name: str) -> Column:
+    """Values of a per-record variable with the names of its values, if it is a class variable."""
+    variable = corpus[name]
+    return Column(variable.values, class_names(variable.attrs))
