@@ -328,5 +328,5 @@ def test_merged_corpora_of_drawn_and_of_given_scenarios_are_replayed(ladder, tmp
     with gen.open_corpus(tmp_path / "merged") as corpus:
         assert corpus["rig"].values.tolist() == [0] * 6 + [1] * 2  # given machines are their own
     assert replayed(tmp_path / "merged")
-    with pytest.raises(CorpusError, match="holds scenarios that were chosen or made by hand"):
+    with pytest.raises(CorpusError, match="holds some records of a recipe, or scenarios made by hand"):
         gen.extend(given, rigs=1)
