@@ -240,7 +240,7 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     assert gen.stored_scenario(directory, 1) == faster[3]
     with pytest.raises(RecipeError, match=r"scenarios\[1\]: rung 0 of pair 0 does not rise; sort them, each once"):
         gen.simulate_scenarios([faster[1], faster[0]], recipe)
-    with pytest.raises(CorpusError, match="not a whole recipe; choose another folder"):
+    with pytest.raises(CorpusError, match="made by hand, so it cannot be generated; choose another folder"):
         gen.generate(directory / "recipe.yaml", directory)
     with pytest.raises(
         CorpusError, match="the record with the largest severity of pair 1 is missing; write pairs whole"
