@@ -22,7 +22,7 @@ from gen.corpus.packed import PACKED
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
-from gen.corpus.unicode_text import beyond_ascii, write_unicode
+from gen.corpus.unicode_text import set_attributes, write_unicode
 
 _COMMENT = (
     "This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. "
@@ -121,16 +121,14 @@ def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes
         lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
         lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
         whole = {name: first.getncattr(name) for name in first.ncattrs() if name != "failures"}
-        whole |= attributes
-        texts = beyond_ascii(whole)
-        index.setncatts({name: value for name, value in whole.items() if name not in texts})
+        beyond_ascii = set_attributes(index, {**whole, **attributes})
         _declare_like(first, index, lengths)
         start = 0
         for block in _blocks(directory, rows, copied):
             for name, values in zip(copied, block, strict=True):
                 index[name][(slice(start, start + len(values)), *map(slice, values.shape[1:]))] = values
             start += len(block[0])
-    return texts
+    return beyond_ascii
 
 
 def _widths(directory: Path, rows: list[PartRow], texts: list[str]) -> dict[str, int]:

@@ -34,7 +34,7 @@ from gen.corpus.part_forms import form_of
 from gen.corpus.reading import StoredBlock
 from gen.corpus.record_checks import hashed_blocks
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
-from gen.corpus.unicode_text import beyond_ascii, write_unicode
+from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.errors import CorpusError
 from gen.progress import Progress, counter
 
@@ -108,9 +108,7 @@ def _declare(path: Path, directory: Path, part: Path, codec: Codec) -> None:
     """Declare signal and hashes in the new file, and copy the attributes of the signal and of the corpus."""
     attributes = corpus_attributes(directory / INDEX_NAME)
     with netCDF4.Dataset(part) as like, netCDF4.Dataset(path, "a") as file:
-        texts = beyond_ascii(attributes)
-        plain = {name: value for name, value in attributes.items() if name not in texts}
-        file.setncatts(plain | {PACKED: np.int32(PACKED_VERSION)})
+        texts = set_attributes(file, attributes | {PACKED: np.int32(PACKED_VERSION)})
         model = like[SIGNAL]
         signal = {name: model.getncattr(name) for name in model.ncattrs()}
         storage = {

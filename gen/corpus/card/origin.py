@@ -22,8 +22,6 @@ _SCENARIOS = {
     "chosen": " The records are some of those of the recipe.",
     "given": " The scenarios were not drawn from the recipe; each is stored with its record, in `draws`.",
 }
-
-
 _WRITTEN = (
     "`gen.write_corpus` made it from records in Python; `raceway replay` makes each of them again from this folder."
 )
