@@ -3,7 +3,7 @@
 import re
 
 from gen.corpus.card.markdown import listed, plain_text, table
-from gen.corpus.manifest_fields import Manifest
+from gen.corpus.manifest import Manifest
 from gen.corpus.publication import Publication
 
 
