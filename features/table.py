@@ -12,7 +12,6 @@ parts before that of the features estimates them, since the records of a recordi
 from collections.abc import Callable, Generator, Sequence
 from contextlib import closing
 from functools import partial
-from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -33,12 +32,12 @@ from features.recording_speeds import (
 )
 from features.signal.rows import FloatArray
 from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
+from gen.progress import Progress, counter
 from gen.workers import run
 
 if TYPE_CHECKING:
     from distributed import Client
 
-Progress = Callable[[int, int], None]
 Item = TypeVar("Item")
 Result = TypeVar("Result")
 
@@ -102,7 +101,7 @@ def feature_table(
     paths = [path.absolute() for path in part_paths(corpus, check="size")]
     starts = np.cumsum([0, *(row.records for row in read_manifest(Path(corpus)).parts)])
     work = partial(_run, workers=min(workers, len(paths)), scheduler=scheduler)
-    report = _counted(progress, len(paths) * (1 if treatment == "off" else 2))
+    report = counter(progress, len(paths) * (1 if treatment == "off" else 2))
     if treatment != "off":
         recording = recording_numbers(table)
         tasks = list(zip(paths, np.split(recording, starts[1:-1]), strict=True))
@@ -149,20 +148,14 @@ def _features_of_part(task: tuple[Path, FloatArray], groups: Sequence[str], chan
     return part_features(path, groups, channel, shaft_rate, band)
 
 
-def _counted(progress: Progress | None, tasks: int) -> Callable[[], None]:
-    """Call ``progress`` with the number of tasks done and of all tasks, once per task."""
-    done = count(1)
-    return lambda: None if progress is None else progress(next(done), tasks)
-
-
 def _run(
-    compute: Callable[[Item], Result], items: Sequence[Item], report: Callable[[], None], **workers: Any
+    compute: Callable[[Item], Result], items: Sequence[Item], report: Callable[[int], None], **workers: Any
 ) -> Generator[tuple[int, Result]]:
     """Yield the number of each item and its result as they are completed; ``workers`` are options of `gen.workers.run`."""
     with closing(run(partial(_numbered, compute), enumerate(items), **workers)) as results:
         for result in results:
             yield result
-            report()
+            report(1)
 
 
 def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> tuple[int, Result]:

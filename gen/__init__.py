@@ -7,6 +7,7 @@ module      responsibility
 =========== ==================================================================
 errors      one exception class per stage; each carries one sentence
 lazy        public names that are imported when they are first used
+progress    progress of a long call
 limits      how much a file from elsewhere may ask for
 units       units of recipes and mapping files, turned into SI
 cluster     independent tasks on dask

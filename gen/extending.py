@@ -15,24 +15,24 @@ from gen.corpus import (
     EXTENSION_NAME,
     JOURNAL_NAME,
     MOST_EXTENSIONS,
+    Extension,
     Manifest,
     PartRow,
+    extensions_of,
     open_part,
     part_name,
     part_paths,
     read_manifest,
-    remove_left_behind,
+    remove_temporary_files,
     write_manifest,
 )
 from gen.errors import CorpusError, RecipeError
-from gen.generation import Generated, Progress, Tally, claimed, client_of, finished, finished_parts
+from gen.generation import Generated, Tally, claimed, client_of, finished, finished_parts
 from gen.part_task import library_versions
+from gen.progress import Progress
 from gen.recipe import Block, Recipe
 from gen.replaying import corpus_recipe
 from gen.scenarios import draw_scenarios, read_scenario
-
-Extension = dict[Any, int]
-"""As in the manifest: ``{"rigs": 2}`` or ``{"specimens": 2}``."""
 
 _NOT_COPIED = {"raceway_format", "complete", "records", "signals", "index", "parts_", "failures", "publication"}
 """Fields of the manifest that are given anew."""
@@ -141,7 +141,7 @@ def finished_extensions(directory: Path) -> tuple[Extension, ...]:
         raise CorpusError(
             f"{directory}: is unfinished; run the raceway generate command that began it again, then extend it."
         )
-    return _extensions(manifest)
+    return extensions_of(manifest)
 
 
 def _not_of_one_recipe(manifest: Manifest) -> str | None:
@@ -151,9 +151,7 @@ def _not_of_one_recipe(manifest: Manifest) -> str | None:
     if manifest.selections:
         return "is a selection of another corpus; extend that one, and select from it again"
     if manifest.scenarios is not None:
-        return (
-            "holds scenarios that were chosen or made by hand; write more of them, and join the two with raceway merge"
-        )
+        return "holds some records of a recipe, or scenarios made by hand; write more of them, and join the two with raceway merge"
     if manifest.overrides is None:
         return (
             "was not generated from a recipe, which further records could be drawn from; make another corpus, and join the two with "
@@ -164,7 +162,11 @@ def _not_of_one_recipe(manifest: Manifest) -> str | None:
 
 def _asked(rigs: int | None, specimens: int | None) -> Extension:
     """The one extension that is asked for."""
-    given = {name: count for name, count in (("rigs", rigs), ("specimens", specimens)) if count is not None}
+    given: Extension = {}
+    if rigs is not None:
+        given["rigs"] = rigs
+    if specimens is not None:
+        given["specimens"] = specimens
     if len(given) != 1:
         raise RecipeError(
             "an extension adds rigs, or specimens in every rig; give one of the two numbers, rigs or specimens."
@@ -178,7 +180,7 @@ def _asked(rigs: int | None, specimens: int | None) -> Extension:
 def _work(directory: Path, asked: Extension) -> _Work:
     """What is to be done for an extension, with the parts that an interrupted call has left."""
     manifest, done, begun = read_manifest(directory), finished_extensions(directory), _begun(directory, asked)
-    wanted = (*done, asked) if begun is None else _extensions(begun)
+    wanted = (*done, asked) if begun is None else extensions_of(begun)
     if done not in (wanted, wanted[:-1]) or (begun is not None and begun.recipe_sha256 != manifest.recipe_sha256):
         raise CorpusError(
             f"{directory / EXTENSION_NAME}: is of another corpus; delete it, and extend the corpus again."
@@ -206,10 +208,6 @@ def _work(directory: Path, asked: Extension) -> _Work:
     )
 
 
-def _extensions(manifest: Manifest) -> tuple[Extension, ...]:
-    return () if manifest.overrides is None else manifest.overrides.extensions
-
-
 def _begun(directory: Path, asked: Extension) -> Manifest | None:
     """Manifest of the extension that an interrupted call began; None if there is none.
 
@@ -221,9 +219,9 @@ def _begun(directory: Path, asked: Extension) -> Manifest | None:
     if not (directory / EXTENSION_NAME).exists():
         return None
     begun = read_manifest(directory, EXTENSION_NAME)
-    if not _extensions(begun):
+    if not extensions_of(begun):
         raise CorpusError(f"{directory / EXTENSION_NAME}: names no extension; delete it, and extend the corpus again.")
-    last = _extensions(begun)[-1]
+    last = extensions_of(begun)[-1]
     if last != asked:
         ((name, count),) = last.items()
         raise CorpusError(
@@ -256,8 +254,7 @@ def _prepare(directory: Path, work: _Work) -> None:
     """
     journal = directory / JOURNAL_NAME
     try:
-        for name in (EXTENSION_NAME, "manifest.json", "corpus.nc", "README.md", "croissant.json", "parts/part-*.nc"):
-            remove_left_behind((directory / name).parent, Path(name).name)
+        remove_temporary_files(directory)
         if not work.known:
             journal.unlink(missing_ok=True)
         rows = [*work.before, *work.known.values()]

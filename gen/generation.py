@@ -5,8 +5,6 @@ the same call completes an interrupted corpus: a part is kept if manifest or jou
 other part is made again.
 """
 
-import fcntl
-import os
 import threading
 from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
@@ -19,27 +17,29 @@ from gen.compilation import compile_kernels
 from gen.corpus import (
     EXTENSION_NAME,
     JOURNAL_NAME,
+    Extension,
     PartRow,
     SignalCounts,
     check_name,
+    extensions_of,
     finish_corpus,
+    locked,
     new_journal,
     part_name,
     read_manifest,
-    remove_left_behind,
+    remove_temporary_files,
     write_durably,
     write_manifest,
 )
 from gen.errors import CorpusError, RecipeError
 from gen.making import Crew
 from gen.part_task import Outcome, library_versions, make_parts, units
+from gen.progress import Progress
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
 from gen.workers import stream, threads_of
 
 if TYPE_CHECKING:
     from distributed import Client
-
-Progress = Callable[[int, int], None]
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def finished(
     return Generated(directory, sum(row.records for row in rows), len(rows), kept, failed, signals)
 
 
-def _extensions(directory: Path) -> tuple[dict[Any, int], ...]:
+def _extensions(directory: Path) -> tuple[Extension, ...]:
     """Extensions of the corpus in a folder that were finished; none if it holds no corpus.
 
     Raises
@@ -166,8 +166,7 @@ def _extensions(directory: Path) -> tuple[dict[Any, int], ...]:
         raise CorpusError(f"{directory}: is being extended; run the raceway extend command that began it again.")
     if not (directory / "manifest.json").exists():
         return ()
-    overrides = read_manifest(directory).overrides
-    return () if overrides is None else overrides.extensions
+    return extensions_of(read_manifest(directory))
 
 
 @contextmanager
@@ -178,22 +177,10 @@ def claimed(directory: Path) -> Iterator[None]:
         raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        handle = os.open(directory, os.O_RDONLY)
     except OSError as error:
         raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(handle)
-        raise CorpusError(
-            f"{directory}: another raceway generate or extend is writing into it; wait until it ends, or choose another folder."
-        ) from None
-    except OSError:  # a file system without locks
-        pass
-    try:
+    with locked(directory):
         yield
-    finally:
-        os.close(handle)
 
 
 def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, PartRow]:
@@ -206,12 +193,11 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
     journal = directory / JOURNAL_NAME
     begun = (directory / "manifest.json").exists()
     try:
-        for name in ("manifest.json", "corpus.nc", "README.md", "recipe.yaml", "croissant.json"):
-            remove_left_behind(directory, name)
+        remove_temporary_files(directory)
         manifest = read_manifest(directory) if begun else None
         if manifest is not None and manifest.scenarios is not None:
             raise CorpusError(
-                f"{directory}: holds records that were made one by one, not a whole recipe; choose another folder."
+                f"{directory}: holds some records of a recipe, or scenarios made by hand, so it cannot be generated; choose another folder."
             )
         if manifest is not None and (manifest.selections or manifest.origins):
             how = "selected from a larger corpus" if manifest.selections else "merged from several corpora"
@@ -233,7 +219,6 @@ def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[
         journal.unlink(missing_ok=True)
         write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
         (directory / "parts").mkdir(exist_ok=True)
-        remove_left_behind(directory / "parts", "part-*.nc")
     except OSError as error:
         raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
     return known

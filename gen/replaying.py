@@ -8,7 +8,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus import DRAWS, SIGNAL, Manifest, open_corpus, read_manifest, temporary_folder
-from gen.corpus.manifest import Numbers, Origin
+from gen.corpus.manifest_fields import Numbers, Origin
 from gen.corpus.record_hashes import stored_signal
 from gen.errors import CorpusError
 from gen.families import Records, made_again, made_from, picked

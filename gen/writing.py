@@ -18,11 +18,11 @@ from gen.corpus import (
     SIGNAL,
     SIMULATED,
     Variable,
-    check_name,
+    check_new_folder,
     finish_corpus,
     make_dataset,
+    new_corpus_folder,
     part_name,
-    temporary_beside,
     write_part,
     write_text_durably,
 )
@@ -61,9 +61,7 @@ def write_corpus(dataset: xr.Dataset, directory: Path | str) -> Path:
         from the recipe that the Dataset carries.
     """
     directory = Path(directory).absolute()
-    check_name(directory)
-    if directory.exists() and not (directory.is_dir() and not any(directory.iterdir())):
-        raise CorpusError(f"{directory}: is there already; choose another folder, or remove it first.")
+    check_new_folder(directory)
     recipe = recipe_of(dataset)
     given = dataset.attrs.get(SCENARIOS) == GIVEN
     rows = dataset if "record" in dataset.dims else _as_one_row(dataset)
@@ -82,27 +80,19 @@ def write_corpus(dataset: xr.Dataset, directory: Path | str) -> Path:
 
 
 def _write(stored: xr.Dataset, recipe: Recipe, directory: Path, facts: dict[str, Any]) -> None:
-    """Write all files of the corpus into a temporary folder, which then gets its name."""
+    """Write all files of the corpus."""
     size = recipe.corpus.records_per_part
-    try:
-        directory.parent.mkdir(parents=True, exist_ok=True)
-        with temporary_beside(directory) as folder:
-            (folder / "parts").mkdir(parents=True)
-            write_text_durably(recipe_text(recipe), folder / "recipe.yaml")
-            rows = [
-                write_part(
-                    stored.isel(record=slice(first, first + size)),
-                    folder / "parts" / part_name(first // size),
-                    recipe.corpus.codec,
-                )
-                for first in range(0, stored.sizes["record"], size)
-            ]
-            finish_corpus(folder, rows, **facts)
-            folder.replace(directory)
-    except OSError as error:
-        raise CorpusError(
-            f"{directory}: cannot be written ({error.strerror or error}); choose another folder."
-        ) from None
+    with new_corpus_folder(directory) as folder:
+        write_text_durably(recipe_text(recipe), folder / "recipe.yaml")
+        rows = [
+            write_part(
+                stored.isel(record=slice(first, first + size)),
+                folder / "parts" / part_name(first // size),
+                recipe.corpus.codec,
+            )
+            for first in range(0, stored.sizes["record"], size)
+        ]
+        finish_corpus(folder, rows, **facts)
 
 
 def _as_one_row(record: xr.Dataset) -> xr.Dataset:

@@ -12,6 +12,9 @@ TASKS = (
     "channel",
     "importer",
     "codec",
+    "file of a corpus",
+    "fact of publication",
+    "section of the data card",
     "form of export",
     "baseline",
     "bearing",
@@ -19,7 +22,7 @@ TASKS = (
     "quantity for shares",
 )
 PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
-FILE = re.compile(r"^(\d+)\. `([\w/.]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
+FILE = re.compile(r"^(\d+)\. `([\w/.-]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
 
 
 def steps(task):

@@ -6,7 +6,7 @@ at chance; and the score on another corpus.
 """
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
 from pathlib import Path
@@ -35,8 +35,7 @@ from features.baselines.tracks import TRACKS, Track
 from features.waveforms import Waveforms
 from gen.corpus import FAULTS, write_text_durably
 from gen.errors import CorpusError
-
-Progress = Callable[[int, int], None]
+from gen.progress import Progress
 
 BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 """Baselines that are scored on several tracks, because all would take several times as long."""

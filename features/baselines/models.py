@@ -27,7 +27,7 @@ from features.baselines.estimators import (
     Estimator,
     relative_name,
 )
-from features.baselines.fitting import FitProgress, Progress
+from features.baselines.fitting import FitProgress
 from features.baselines.model_check import check_estimator
 from features.baselines.model_file import pack, read_state, unpack
 from features.baselines.model_rules import brief, refuse
@@ -50,6 +50,7 @@ from features.indicators import GROUPS
 from gen.corpus import FAULTS, UNKNOWN_CODE, write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
+from gen.progress import Progress
 
 FORMAT = 4
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")

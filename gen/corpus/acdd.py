@@ -6,7 +6,7 @@ have. No variable has a CF standard name (the table has none for vibration), so 
 
 from uuid import NAMESPACE_OID, uuid5
 
-from gen.corpus.manifest import Manifest
+from gen.corpus.manifest_fields import Manifest
 from gen.corpus.publication import Creator
 from gen.corpus.schema import FORMAT
 

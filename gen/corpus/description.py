@@ -12,8 +12,9 @@ A corpus is a folder:
 |---|---|
 | `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: any netCDF-4 reader sees one file |
 | `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
-| `manifest.json` | whether the corpus is complete; `signals`; bytes and SHA-256 of `corpus.nc` and of each part; recipe hash, versions |
+| `manifest.json` | whether the corpus is complete; bytes and SHA-256 of `corpus.nc` and of each part; where the records come from |
 | `parts.jsonl` | while the corpus is unfinished: one line for each finished part, as in `parts` of the manifest |
+| `extension.json` | while the corpus is being extended: its manifest as it will be, with the finished new parts |
 | `recipe.yaml` | the recipe, if the corpus was simulated |
 | `recipes/` | the recipes of the corpora that were merged; `origins` of the manifest tells which records have which |
 | `README.md` | the [data card](data-card.md); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
@@ -27,6 +28,26 @@ Further checks of a corpus from strangers: [security.md](security.md).
 `corpus.nc` without its parts holds no signals, and its attribute `comment` says so. `raceway pack` makes one file of the
 whole corpus, with the variables below, without a virtual dataset, and with a SHA-256 of each record: a packed file.
 [sharing.md](sharing.md) has its layout, and a table of the programs that read `corpus.nc`, a part and a packed file.
+
+Other fields of the manifest tell where the records come from; each is there only if it has something to tell:
+
+| field | content |
+|---|---|
+| `title`, `recipe`, `recipe_sha256` | title of the corpus, name of its recipe and hash of that |
+| `versions` | versions of Raceway and its libraries |
+| `overrides` | `seed` and `records` that replaced those of the recipe; `extensions`: rigs or specimens that were added later |
+| `scenarios` | `chosen`: the records are some of those of the recipe; `given`: their scenarios were made by hand |
+| `importer`, `recordings` | importer, and number of the recordings |
+| `basis`, `skipped`, `warnings` | sentences on what labels and units rest on, on skipped files, and on assumptions |
+| `failures` | a sentence for each record that could not be simulated and is left out |
+| `selections` | choices by which the records were taken from a larger corpus, with a hash of the parts of that corpus |
+| `origins` | of a merged corpus: the corpora that it was made from, each with its parts, its recipe and what was added to its numbers |
+| `publication` | licence, creators and other facts of [publication](publishing.md) |
+| `next_index` | while `raceway card` replaces `corpus.nc`: size and hash of the new one |
+
+Every file has the global attributes `Conventions`, `raceway_format`, `title`, `history` and `source`; simulated parts
+also have `recipe_sha256`, `versions` and `failures`. `corpus.nc` repeats those of the first part except `failures`, and
+adds `comment` and the attributes of [publication](publishing.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
@@ -68,7 +89,7 @@ def format_page() -> str:
 def _table(variables: tuple[Variable, ...]) -> str:
     rows = ["| variable | type | unit | role | meaning |", "|---|---|---|---|---|"]
     for variable in variables:
-        flags = f" ({listed_flags(variable)})" if variable.flags else ""
+        flags = f" ({listed_flags(variable.flags)})" if variable.flags else ""
         cells = (f"`{variable.name}`", variable.dtype, variable.units, variable.role, variable.long_name + flags)
         rows.append(f"| {' | '.join(cells)} |")
     return "\n".join(rows) + "\n"

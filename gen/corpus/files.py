@@ -78,6 +78,13 @@ def check_name(path: Path) -> None:
         raise CorpusError(f"{path}: the name is not UTF-8, and netCDF needs UTF-8; choose another.") from None
 
 
+def check_new_folder(path: Path) -> None:
+    """Refuse a folder that holds something, and a name that netCDF cannot open."""
+    check_name(path)
+    if path.is_symlink() or (path.exists() and not (path.is_dir() and not any(path.iterdir()))):
+        raise CorpusError(f"{path}: exists and is not an empty folder; give a new folder, or remove this one first.")
+
+
 @contextmanager
 def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     """Temporary path to write to: it is flushed to disk and then replaces ``path`` in one step, or is removed if anything fails.
@@ -90,17 +97,12 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     check_name(path)
     if path.exists() and not path.is_file():
         raise CorpusError(f"{path}: exists and is not a plain file, so it cannot be replaced; choose another name.")
-    try:
-        with temporary_beside(path) as temporary:
-            yield temporary
-            with temporary.open("rb+") as stream:
-                os.fsync(stream.fileno())
-            temporary.replace(path)
-            _flush(path.parent)
-    except (OSError, RuntimeError) as error:
-        raise CorpusError(
-            f"{path}: could not be written ({_reason(error)}); free some space or choose another folder."
-        ) from error
+    with _written(path), temporary_beside(path) as temporary:
+        yield temporary
+        with temporary.open("rb+") as stream:
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+        _flush(path.parent)
 
 
 @contextmanager
@@ -112,19 +114,31 @@ def whole_folder_or_none(path: Path) -> Iterator[Path]:
     CorpusError
         If ``path`` exists and is not an empty folder, or if writing fails, with the reason that the system gives.
     """
-    check_name(path)
-    if path.is_symlink() or (path.exists() and not (path.is_dir() and not any(path.iterdir()))):
-        raise CorpusError(f"{path}: exists and is not an empty folder; choose another name, or remove it first.")
-    try:
-        path = path.absolute()  # "." has no name
+    check_new_folder(path)
+    path = path.absolute()  # "." has no name
+    with _written(path), temporary_beside(path) as temporary:
         _remove_left_behind_of(path)
-        with temporary_beside(path) as temporary:
-            temporary.mkdir(parents=True)
-            yield temporary
-            for written in (*temporary.rglob("*"), temporary):
-                _flush(written)
-            temporary.replace(path)
-            _flush(path.parent)
+        temporary.mkdir(parents=True)
+        yield temporary
+        for written in (*temporary.rglob("*"), temporary):
+            _flush(written)
+        temporary.replace(path)
+        _flush(path.parent)
+
+
+@contextmanager
+def new_corpus_folder(path: Path) -> Iterator[Path]:
+    """New folder of a corpus with an empty folder ``parts``, there as a whole or not at all (:func:`whole_folder_or_none`)."""
+    with whole_folder_or_none(path) as folder:
+        (folder / "parts").mkdir()
+        yield folder
+
+
+@contextmanager
+def _written(path: Path) -> Iterator[None]:
+    """CorpusError about ``path`` in place of an error of the system or of a library that writes."""
+    try:
+        yield
     except (OSError, RuntimeError) as error:
         raise CorpusError(
             f"{path}: could not be written ({_reason(error)}); free some space or choose another folder."

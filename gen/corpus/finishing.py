@@ -1,19 +1,20 @@
 """The files of a finished corpus beside its parts: index, manifest and data card; and a change of its publication."""
 
-import fcntl
 import json
-import os
-from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
 from gen.corpus.acdd import publication_attributes
 from gen.corpus.card.page import write_card
-from gen.corpus.croissant import write_croissant
+from gen.corpus.croissant import CROISSANT_NAME, write_croissant
+from gen.corpus.files import remove_left_behind
 from gen.corpus.index import new_index, write_index
+from gen.corpus.locking import locked
 from gen.corpus.manifest import (
+    EXTENSION_NAME,
     INDEX_NAME,
+    MANIFEST_NAME,
     Manifest,
     listed_file,
     manifest_content,
@@ -46,6 +47,13 @@ def finish_corpus(
     return signals
 
 
+def remove_temporary_files(directory: Path) -> None:
+    """Remove temporary files that killed calls have left beside the files of a corpus; no other process may be writing into it."""
+    for name in (MANIFEST_NAME, EXTENSION_NAME, INDEX_NAME, "README.md", "recipe.yaml", CROISSANT_NAME):
+        remove_left_behind(directory, name)
+    remove_left_behind(directory / "parts", "part-*.nc")
+
+
 def publish(directory: Path | str, publication: Publication) -> None:
     """Change licence, creators and references of a finished corpus: in its manifest, ``corpus.nc`` and data card.
 
@@ -63,7 +71,7 @@ def publish(directory: Path | str, publication: Publication) -> None:
         raise CorpusError(
             f"{directory}: is one file; unpack it with raceway unpack, publish the folder, and pack that."
         )
-    with _alone(directory):
+    with locked(directory):
         part_paths(directory, "sha256")
         rows = read_manifest(directory).parts
         content: dict[str, Any] = json.loads((directory / "manifest.json").read_bytes())
@@ -79,24 +87,3 @@ def publish(directory: Path | str, publication: Publication) -> None:
 
 def _manifest(content: dict[str, Any]) -> Manifest:
     return Manifest.model_validate_json(json.dumps(content))
-
-
-@contextmanager
-def _alone(directory: Path) -> Iterator[None]:
-    """Lock a folder against other calls that write into it."""
-    try:
-        handle = os.open(directory, os.O_RDONLY)
-    except OSError as error:
-        raise CorpusError(f"{directory}: cannot be opened ({error.strerror}); give the folder of a corpus.") from None
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
-        os.close(handle)
-        raise CorpusError(f"{directory}: another command is writing into it; wait until it ends.") from None
-    except OSError:  # a file system without locks
-        pass
-    try:
-        yield
-    finally:
-        with suppress(OSError):
-            os.close(handle)

@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 from gen.corpus.files import whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.manifest import INDEX_NAME, Check, part_paths, read_manifest
+from gen.corpus.packed import PACKED
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
-from gen.corpus.unicode_text import beyond_ascii, write_unicode
+from gen.corpus.unicode_text import set_attributes, write_unicode
 
 _COMMENT = (
     "This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. "
@@ -29,6 +30,8 @@ _COMMENT = (
     "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
     "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
 )
+OF_ONE_FILE = ("comment", "_NCProperties", PACKED)
+"""Global attributes about ``corpus.nc`` or a packed file itself."""
 _NO_ATTRIBUTES: Mapping[str, str] = {}
 _CHUNK_RECORDS = 256  # records whose text forms one chunk
 _COPIED_BYTES = 16_000_000  # of the variables of some parts, in memory at a time
@@ -89,6 +92,12 @@ def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str
         yield temporary
 
 
+def corpus_attributes(file: Path) -> dict[str, Any]:
+    """Global attributes of ``corpus.nc`` or of a packed file that belong to the corpus, whichever of the two holds it."""
+    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
+        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in OF_ONE_FILE}
+
+
 def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> dict[str, str]:
     """Copy all variables of the parts except the signal into a new file; ``attributes`` are global ones beside those of the parts.
 
@@ -112,16 +121,14 @@ def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes
         lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
         lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
         whole = {name: first.getncattr(name) for name in first.ncattrs() if name != "failures"}
-        whole |= attributes
-        texts = beyond_ascii(whole)
-        index.setncatts({name: value for name, value in whole.items() if name not in texts})
+        beyond_ascii = set_attributes(index, {**whole, **attributes})
         _declare_like(first, index, lengths)
         start = 0
         for block in _blocks(directory, rows, copied):
             for name, values in zip(copied, block, strict=True):
                 index[name][(slice(start, start + len(values)), *map(slice, values.shape[1:]))] = values
             start += len(block[0])
-    return texts
+    return beyond_ascii
 
 
 def _widths(directory: Path, rows: list[PartRow], texts: list[str]) -> dict[str, int]:

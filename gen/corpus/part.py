@@ -16,7 +16,7 @@ from gen.corpus.files import sha256, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
 from gen.corpus.signals import SignalCounts, counted, judge
-from gen.corpus.unicode_text import beyond_ascii, write_unicode
+from gen.corpus.unicode_text import set_attributes, write_unicode
 
 _INCOMPRESSIBLE = 7.8  # bits per byte
 
@@ -58,10 +58,9 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: C
     signal = dataset[SIGNAL].values
     if chunks is None:
         chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
-    texts = beyond_ascii(dataset.attrs)
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            file.setncatts({name: value for name, value in dataset.attrs.items() if name not in texts})
+            texts = set_attributes(file, {str(name): value for name, value in dataset.attrs.items()})
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)
             # all variables are declared before any is written: alternating takes 50 % longer

@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
+from gen.corpus.codecs import CODECS
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
 
@@ -22,7 +23,7 @@ def form_of(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
         filters = part[SIGNAL].filters()
         variables = [_variable(name, variable) for name, variable in part.variables.items()]
         attributes = {name: _written(part.getncattr(name)) for name in part.ncattrs()}
-    codec = next((codec for codec in ("zlib", "zstd") if filters[codec]), "none")
+    codec = next((codec for codec in CODECS if filters.get(codec)), "none")
     return attributes, {"codec": codec, "variables": variables}
 
 

@@ -115,13 +115,23 @@ def variable_attributes(variable: Variable) -> dict[str, Any]:
     return attributes
 
 
-def listed_flags(variable: Variable) -> str:
+def class_names(attributes: Mapping[Any, Any]) -> dict[int, str]:
+    """Names of the values of a class by their codes, from the attributes of its variable; empty for other variables.
+
+    >>> class_names({"flag_values": [0, 1], "flag_meanings": "train test"}), class_names({"units": "m"})
+    ({0: 'train', 1: 'test'}, {})
+    """
+    codes = [int(code) for code in np.atleast_1d(attributes.get("flag_values", []))]
+    return dict(zip(codes, str(attributes.get("flag_meanings", "")).split(), strict=False))
+
+
+def listed_flags(names: Mapping[int, str]) -> str:
     """Codes of a class with their names.
 
-    >>> listed_flags(Variable("split", "i1", "1", "provenance", "", {0: "train", 1: "test"}))
+    >>> listed_flags({0: "train", 1: "test"})
     '0 train, 1 test'
     """
-    return ", ".join(f"{code} {name}" for code, name in variable.flags.items())
+    return ", ".join(f"{code} {name}" for code, name in names.items())
 
 
 def make_dataset(
@@ -220,5 +230,5 @@ def _values_problems(variable: Variable, array: "xr.Variable") -> list[str]:
     if array.attrs.get("units") != variable.units:
         return [f"{variable.name} is in {array.attrs.get('units')!r}, not {variable.units!r}."]
     if variable.flags and not np.isin(array.values, [*variable.flags]).all():
-        return [f"{variable.name} has values other than {listed_flags(variable)}."]
+        return [f"{variable.name} has values other than {listed_flags(variable.flags)}."]
     return []

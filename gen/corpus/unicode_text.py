@@ -8,16 +8,15 @@ from collections.abc import Mapping
 from typing import Any
 
 import h5py
+import netCDF4
 import numpy as np
 
 
-def beyond_ascii(attributes: Mapping[str, Any]) -> dict[str, str]:
-    """Attributes whose text has letters beyond ASCII.
-
-    >>> beyond_ascii({"title": "Kugellager", "institution": "Universität", "format": 2})
-    {'institution': 'Universität'}
-    """
-    return {name: value for name, value in attributes.items() if isinstance(value, str) and not value.isascii()}
+def set_attributes(file: netCDF4.Dataset, attributes: Mapping[str, Any]) -> dict[str, str]:
+    """Set global attributes; returns those with letters beyond ASCII, which :func:`write_unicode` must still write."""
+    beyond = {name: value for name, value in attributes.items() if isinstance(value, str) and not value.isascii()}
+    file.setncatts({name: value for name, value in attributes.items() if name not in beyond})
+    return beyond
 
 
 def write_unicode(file: h5py.File, attributes: Mapping[str, str]) -> None:

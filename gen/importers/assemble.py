@@ -6,7 +6,7 @@ card and manifest are written.
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
@@ -17,18 +17,18 @@ from gen.corpus import (
     PartRow,
     Publication,
     Variable,
+    check_new_folder,
     finish_corpus,
     make_dataset,
+    new_corpus_folder,
     part_name,
-    temporary_beside,
     write_part,
 )
 from gen.errors import CorpusError
 from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
 from gen.limits import check_limit
-
-Progress = Callable[[int, int], None]
+from gen.progress import Progress
 
 _PART_RECORDS = 256
 _PART_BYTES = 64_000_000
@@ -101,9 +101,7 @@ def import_recordings(
         If the folder is not empty, the window is shorter than two samples, no file can be used, or writing fails.
     """
     output = output.resolve()
-    if output.exists() and (not output.is_dir() or any(output.iterdir())):
-        message = f"{output}: exists and is not an empty folder; give a new folder, or remove this one first."
-        raise CorpusError(message)
+    check_new_folder(output)
     samples = window * collection.fs
     length = round(samples) if math.isfinite(samples) else 0
     if length < 2:
@@ -113,18 +111,12 @@ def import_recordings(
         raise CorpusError(message)
     check_limit("record_samples", length * len(collection.channels), f"window: {window:g} s are", CorpusError)
     log = _Log(Counter(), Counter(), list(skipped), list(warnings))
-    try:
-        with temporary_beside(output) as temporary:
-            (temporary / "parts").mkdir(parents=True)
-            records = _records(candidates, collection, length, log, progress)
-            rows = _write_parts(records, collection, temporary / "parts")
-            if not rows:
-                raise CorpusError(_nothing_usable(collection.importer, log.skipped))
-            _finish(collection, rows, log, temporary)
-            temporary.replace(output)
-    except OSError as error:
-        message = f"{output}: could not be written ({error.strerror or error}); choose another folder."
-        raise CorpusError(message) from error
+    with new_corpus_folder(output) as temporary:
+        records = _records(candidates, collection, length, log, progress)
+        rows = _write_parts(records, collection, temporary / "parts")
+        if not rows:
+            raise CorpusError(_nothing_usable(collection.importer, log.skipped))
+        _finish(collection, rows, log, temporary)
     return Import(output, log.recordings.total(), log.records.total(), tuple(log.skipped), tuple(log.warnings))
 
 

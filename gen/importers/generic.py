@@ -14,7 +14,7 @@ from pydantic import ValidationError
 
 from gen.corpus import UNKNOWN
 from gen.errors import CorpusError
-from gen.importers.assemble import Collection, Import, Progress, import_recordings
+from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.assumptions import assumptions
 from gen.importers.conversion import accelerations, doubts
 from gen.importers.entry import Entry, bearing_of, sensors
@@ -25,6 +25,7 @@ from gen.importers.matlab import read_matlab
 from gen.importers.recordings import Candidate, Recording
 from gen.importers.resampling import resampled
 from gen.importers.signals import read_values, stated_rate
+from gen.progress import Progress
 from gen.units import rpm_to_hertz, to_si
 
 _NO_RATE = 10_000.0  # Hz, if no file tells a rate: each is then refused with its own reason

@@ -12,12 +12,13 @@ import math
 from functools import partial
 from pathlib import Path
 
-from gen.importers.assemble import Collection, Import, Progress, import_recordings
+from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.files import UnusableError, one_column
 from gen.importers.matlab import read_matlab
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.importers.resampling import resampled
 from gen.physics.catalogue import CATALOGUE
+from gen.progress import Progress
 from gen.units import POUND_FORCE, STANDARD_GRAVITY
 
 FS = 48_828.0

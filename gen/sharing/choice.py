@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import SPLITS
+from gen.corpus import SPLITS, class_names
 from gen.errors import CorpusError
 from gen.sharing.where import Column, nearest, parse_where
 
@@ -64,6 +64,4 @@ def chosen_channels(corpus: xr.Dataset, channels: Sequence[str] | None) -> tuple
 def _column(corpus: xr.Dataset, name: str) -> Column:
     """Values of a per-record variable with the names of its values, if it is a class variable."""
     variable = corpus[name]
-    codes = [int(code) for code in np.atleast_1d(variable.attrs.get("flag_values", []))]
-    names = str(variable.attrs.get("flag_meanings", "")).split()
-    return Column(variable.values, dict(zip(codes, names, strict=False)))
+    return Column(variable.values, class_names(variable.attrs))

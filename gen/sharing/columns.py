@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from gen.corpus import SIGNAL
+from gen.corpus import SIGNAL, class_names
+from gen.corpus.schema import listed_flags
 from gen.errors import CorpusError
 
 _NOT_KNOWN = ("unjudged", "unknown")
@@ -58,17 +59,12 @@ def _check_same(name: str, first: Described, other: Described) -> None:
     for what, one, two in (
         ("type", first.dtype, other.dtype),
         ("unit", first.attributes.get("units"), other.attributes.get("units")),
-        ("values", _flags(first), _flags(other)),
+        ("values", *(listed_flags(class_names(of.attributes)) for of in (first, other))),
     ):
         if one != two:
             raise CorpusError(
                 f"{other.corpus}: the {what} of {name} is {two}, in {first.corpus} {one}; make both with one version of raceway."
             )
-
-
-def _flags(variable: Described) -> str:
-    codes = [int(code) for code in np.atleast_1d(variable.attributes.get("flag_values", []))]
-    return f"{codes} {variable.attributes.get('flag_meanings', '')}"
 
 
 def with_all(records: xr.Dataset, columns: Columns) -> xr.Dataset:
@@ -96,6 +92,4 @@ def not_known(variable: Described) -> Any:
         return ""
     if variable.dtype.kind == "f":
         return np.nan
-    names = str(variable.attributes.get("flag_meanings", "")).split()
-    codes = np.atleast_1d(variable.attributes.get("flag_values", []))
-    return next((int(code) for code, name in zip(codes, names, strict=False) if name in _NOT_KNOWN), -1)
+    return next((code for code, name in class_names(variable.attributes).items() if name in _NOT_KNOWN), -1)

@@ -1,9 +1,7 @@
-"""Records copied from one corpus into another: read as they are stored, written as parts of a new folder."""
+"""Records copied from one corpus into another: read as they are stored, with their recipes and the facts of the manifest."""
 
-import glob
 import hashlib
-from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterable, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -15,48 +13,19 @@ from numpy.typing import NDArray
 from gen.corpus import (
     SIGNAL,
     Manifest,
-    check_name,
     open_part,
     part_paths,
     plain_file,
-    remove_left_behind,
-    temporary_beside,
     write_durably,
 )
-from gen.corpus.manifest import Numbers
+from gen.corpus.manifest_fields import Numbers
 from gen.corpus.packed import packed_contents
 from gen.corpus.record_hashes import RENUMBERED, stored_signal
 from gen.corpus.schema import SIGNAL_DIMS
-from gen.errors import CorpusError
 
 _BLOCK_SAMPLES = 10_000_000  # decoded at a time
 _OWN_FACTS = {"raceway_format", "complete", "records", "signals", "index", "next_index", "parts", "publication"}
 _OF_ONE_PART = ("failures",)
-
-
-@contextmanager
-def new_corpus(output: Path) -> Iterator[Path]:
-    """Temporary folder, with a folder ``parts``, that becomes ``output`` at the end, or is removed if anything fails.
-
-    Raises
-    ------
-    CorpusError
-        If ``output`` exists and is not an empty folder, or if it cannot be written.
-    """
-    output = output.absolute()
-    check_name(output)
-    if output.exists() and (not output.is_dir() or any(output.iterdir())):
-        raise CorpusError(f"{output}: exists and is not an empty folder; give a new folder, or remove this one first.")
-    try:
-        remove_left_behind(output.parent, glob.escape(output.name))
-        with temporary_beside(output) as temporary:
-            (temporary / "parts").mkdir(parents=True)
-            yield temporary
-            temporary.replace(output)
-    except OSError as error:
-        raise CorpusError(
-            f"{output}: could not be written ({error.strerror or error}); free some space or choose another folder."
-        ) from error
 
 
 def facts_of(manifest: Manifest) -> dict[str, Any]:

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import SIGNAL, open_corpus
+from gen.corpus import SIGNAL, class_names, open_corpus
 from gen.corpus.manifest import Check
 from gen.errors import CorpusError
 from gen.sharing.choice import chosen_channels, chosen_records
@@ -152,9 +152,7 @@ def _labels(opened: xr.Dataset, label: str, corpus: str) -> tuple[NDArray[Any], 
     if label not in known:
         raise CorpusError(f"{corpus}: label: there is no variable {label}{nearest(label, known)}")
     variable = opened[label]
-    codes = [int(code) for code in np.atleast_1d(variable.attrs.get("flag_values", []))]
-    names = dict(zip(codes, str(variable.attrs.get("flag_meanings", "")).split(), strict=False))
     values = variable.values
     if values.dtype.kind not in "iuf":
         return values.astype(str), {}
-    return (values.astype(np.float32), {}) if values.dtype.kind == "f" else (values, names)
+    return (values.astype(np.float32), {}) if values.dtype.kind == "f" else (values, class_names(variable.attrs))

@@ -21,21 +21,23 @@ from gen.corpus import (
     PartRow,
     Publication,
     SignalCounts,
+    extensions_of,
     finish_corpus,
+    new_corpus_folder,
     open_corpus,
     part_name,
     read_manifest,
     write_durably,
     write_part,
 )
-from gen.corpus.manifest import Numbers, Origin
+from gen.corpus.manifest_fields import Numbers, Origin
 from gen.corpus.record_hashes import RENUMBERED
 from gen.errors import CorpusError
 from gen.limits import check_limit
+from gen.progress import Progress, counter
 from gen.sharing.columns import Columns, columns_of_all, with_all
 from gen.sharing.copying import (
     in_floating_point,
-    new_corpus,
     part_attributes,
     parts_sha256,
     records_of_origins,
@@ -44,8 +46,6 @@ from gen.sharing.copying import (
     stored_records,
 )
 from gen.sharing.repeats import Seen, sample_digests
-
-Progress = Callable[[int, int], None]
 
 _ORIGIN_FACTS = ("recipe", "recipe_sha256", "overrides", "versions", "importer", "selections", "scenarios")
 _LARGEST = 2**31 - 1
@@ -117,7 +117,7 @@ def merge(
         title = title or " + ".join(dict.fromkeys(str(source.corpus.attrs.get("title", "")) for source in sources))
         finish = partial(_finished, columns=columns, attributes=_attributes(sources, title), float32=float32)
         added = _new_numbers(sources)
-        with new_corpus(output) as folder:
+        with new_corpus_folder(output) as folder:
             rows = _write_parts(sources, added, finish, folder, progress)
             origins = _with_recipes(sources, added, folder)
             signals = finish_corpus(folder, rows, publication=_publication(sources), **_facts(sources, title, origins))
@@ -165,7 +165,7 @@ def _check_extensions(sources: Iterable[_Source]) -> None:
     longest: dict[str, tuple[Any, ...]] = {}
     for source in sources:
         for origin in source.origins:
-            found = () if origin.overrides is None else origin.overrides.extensions
+            found = extensions_of(origin)
             short, long = sorted((longest.get(origin.same_machines, ()), found), key=len)
             if long[: len(short)] != short:
                 raise CorpusError(
@@ -226,8 +226,8 @@ def _write_parts(
     progress: Progress | None,
 ) -> list[PartRow]:
     """Write every part of every corpus with new numbers; ``finish`` gives it the variables and attributes of the merged corpus."""
-    total, seen = sum(source.manifest.records for source in sources), Seen()
-    rows, done = list[PartRow](), 0
+    done = counter(progress, sum(source.manifest.records for source in sources))
+    rows, seen = list[PartRow](), Seen()
     for source in sources:
         channels, digests, first = range(source.corpus.sizes["channel"]), [], 0
         for origin, row in _parts_of(source):
@@ -236,9 +236,8 @@ def _write_parts(
             digests.append(sample_digests(part))
             seen.check(str(source.directory), first, digests[-1])
             rows.append(write_part(part, folder / "parts" / part_name(len(rows))))
-            first, done = first + row.records, done + row.records
-            if progress is not None:
-                progress(done, total)
+            first += row.records
+            done(row.records)
         seen.add(str(source.directory), digests)
     return rows
 

@@ -19,7 +19,7 @@ import numpy as np
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.index import write_variables
+from gen.corpus.index import corpus_attributes, write_variables
 from gen.corpus.manifest import INDEX_NAME, Manifest, part_paths, read_manifest
 from gen.corpus.packed import (
     CONTENTS,
@@ -34,16 +34,14 @@ from gen.corpus.part_forms import form_of
 from gen.corpus.reading import StoredBlock
 from gen.corpus.record_checks import hashed_blocks
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
-from gen.corpus.unicode_text import beyond_ascii, write_unicode
+from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.errors import CorpusError
-
-Progress = Callable[[int, int], None]
+from gen.progress import Progress, counter
 
 _COMMENT = (
     "A whole corpus in one file. Variables and units are those of every record; the group files holds manifest, recipe and data card. "
     "Python: gen.open_corpus(FILE), or any netCDF-4 reader. raceway validate FILE checks it, raceway unpack FILE -o DIR makes the folder."
 )
-_BLOCK_SAMPLES = 2_000_000  # samples of the records that are copied at a time: larger blocks are no faster
 _MOST_BYTES = 5_000_000  # of one of the small files; a longer one is left out
 
 
@@ -72,7 +70,7 @@ def pack_whole(directory: Path, file: Path, codec: Codec, progress: Progress | N
             _declare(temporary, directory, paths[0], codec)
             _write_files(temporary, small_files(directory), _contents(manifest, forms))
         direct = codec == "zlib" == json.loads(forms[0][1])["codec"]
-        _copy_records(paths, temporary, direct, codec, _counted(progress, manifest.records))
+        _copy_records(paths, temporary, direct, codec, counter(progress, manifest.records))
     return PackedFile(file, manifest.records, len(paths), file.stat().st_size)
 
 
@@ -106,32 +104,11 @@ def _storage(form: dict[str, Any]) -> list[str]:
     )
 
 
-def _counted(progress: Progress | None, records: int) -> Callable[[int], None]:
-    """Function that takes the number of records that were done just now."""
-    done = 0
-
-    def more(count: int) -> None:
-        nonlocal done
-        done += count
-        if progress is not None:
-            progress(done, records)
-
-    return more
-
-
 def _declare(path: Path, directory: Path, part: Path, codec: Codec) -> None:
     """Declare signal and hashes in the new file, and copy the attributes of the signal and of the corpus."""
-    with (
-        netCDF4.Dataset(directory / INDEX_NAME) as index,
-        netCDF4.Dataset(part) as like,
-        netCDF4.Dataset(path, "a") as file,
-    ):
-        attributes = {
-            name: index.getncattr(name) for name in index.ncattrs() if name not in ("comment", "_NCProperties")
-        }
-        texts = beyond_ascii(attributes)
-        plain = {name: value for name, value in attributes.items() if name not in texts}
-        file.setncatts(plain | {PACKED: np.int32(PACKED_VERSION)})
+    attributes = corpus_attributes(directory / INDEX_NAME)
+    with netCDF4.Dataset(part) as like, netCDF4.Dataset(path, "a") as file:
+        texts = set_attributes(file, attributes | {PACKED: np.int32(PACKED_VERSION)})
         model = like[SIGNAL]
         signal = {name: model.getncattr(name) for name in model.ncattrs()}
         storage = {

@@ -4,7 +4,7 @@ Records keep all their numbers, and the corpus keeps its recipe, so that each re
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,26 +18,25 @@ from gen.corpus import (
     PartRow,
     SignalCounts,
     finish_corpus,
+    new_corpus_folder,
     open_corpus,
     part_name,
     read_manifest,
     write_part,
 )
-from gen.corpus.manifest import Choice
+from gen.corpus.manifest_fields import Choice
 from gen.errors import CorpusError
+from gen.progress import Progress, counter
 from gen.sharing.choice import chosen_channels, chosen_records
 from gen.sharing.copying import (
     copy_recipes,
     facts_of,
     joined,
-    new_corpus,
     part_attributes,
     parts_sha256,
     records_of_origins,
     stored_records,
 )
-
-Progress = Callable[[int, int], None]
 
 _SPAN = 8  # times the records of a part; variables are read with those of the records between the chosen ones
 
@@ -103,14 +102,12 @@ def select(
         )
         told = f"selected by raceway select ({choice})"
         attributes = part_attributes(directory) | {"history": f"{corpus.attrs.get('history', '')}\n{told}"}
-        with new_corpus(output) as folder:
-            done, rows, origins = 0, list[PartRow](), Counter[int]()
+        with new_corpus_folder(output) as folder:
+            done, rows, origins = counter(progress, len(records)), list[PartRow](), Counter[int]()
             for number, part in _parts(corpus, manifest, records, kept):
                 rows.append(write_part(part.assign_attrs(attributes), folder / "parts" / part_name(len(rows))))
                 origins[number] += 1
-                done += rows[-1].records
-                if progress is not None:
-                    progress(done, len(records))
+                done(rows[-1].records)
             facts = _facts(manifest, choice, origins)
             copy_recipes(directory, folder, [origin["recipe_file"] for origin in facts.get("origins", ())])
             signals = finish_corpus(folder, rows, publication=manifest.publication, **facts)

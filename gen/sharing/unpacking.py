@@ -4,29 +4,26 @@ Each record is compared with its hash before it is written. Deflated chunks go b
 """
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import netCDF4
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.corpus.files import new_corpus_folder
 from gen.corpus.finishing import publish
-from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.index import write_index
+from gen.corpus.index import corpus_attributes, write_index
 from gen.corpus.journal import listed
 from gen.corpus.manifest import INDEX_NAME, listed_file, read_manifest, write_content
-from gen.corpus.packed import PACKED, packed_contents, packed_part
+from gen.corpus.packed import packed_contents, packed_part
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of
 from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
-from gen.sharing.copying import new_corpus
-
-Progress = Callable[[int, int], None]
+from gen.progress import Progress, counter
 
 
 class Unpacked(NamedTuple):
@@ -61,11 +58,11 @@ def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None
         raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
     manifest, files = read_manifest(file), packed_contents(file).files
     rows: list[PartRow] = []
-    with new_corpus(output) as folder:
+    done = counter(progress, manifest.records)
+    with new_corpus_folder(output) as folder:
         for row in manifest.parts:
             rows.append(_written_again(file / "parts" / row.name, folder / "parts" / row.name))
-            if progress is not None:
-                progress(sum(done.records for done in rows), manifest.records)
+            done(row.records)
         finish_again(folder, rows, files, corpus_attributes(file))
     return Unpacked(output, manifest.records, len(rows), rows == manifest.parts)
 
@@ -85,13 +82,6 @@ def _written_again(packed: Path, path: Path) -> PartRow:
         stored = chain.from_iterable(block.chunks for block in blocks)
         chunks = dict(zip(np.ndindex(values[SIGNAL].shape[:2]), stored, strict=True))
     return write_part(dataset, path, codec, chunks)
-
-
-def corpus_attributes(file: Path) -> dict[str, Any]:
-    """Global attributes of ``corpus.nc`` or of a packed file, without those that only one of them has."""
-    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
-        own = ("comment", "_NCProperties", PACKED)
-        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in own}
 
 
 def finish_again(

@@ -25,7 +25,7 @@ from gen.corpus import (
     plain_file,
     read_manifest,
 )
-from gen.corpus.manifest import Choice
+from gen.corpus.manifest_fields import Choice
 from gen.corpus.visible import VARIABLES
 from raceway.console import show
 

@@ -235,7 +235,7 @@ def test_a_corpus_whose_machines_are_drawn_otherwise_now_is_refused(copied, monk
     ("facts", "sentence"),
     [
         ({}, "was not generated from a recipe"),
-        ({"scenarios": "given"}, "holds scenarios that were chosen or made by hand"),
+        ({"scenarios": "given"}, "holds some records of a recipe, or scenarios made by hand"),
         ({"selections": [{"records": 9, "parts_sha256": "0"}]}, "is a selection of another corpus; extend that one"),
         (
             {"origins": [{"parts": 3, "added": {}, "same_machines": "a"}]},

@@ -162,7 +162,7 @@ def test_no_part_of_other_library_versions_is_kept(recipe_file, whole, copied):
 def test_a_second_call_in_the_same_folder_is_told_so(recipe_file, copied):
     handle = os.open(copied, os.O_RDONLY)
     fcntl.flock(handle, fcntl.LOCK_EX)
-    with pytest.raises(CorpusError, match="another raceway generate or extend is writing into it; wait until it ends"):
+    with pytest.raises(CorpusError, match="another raceway command is writing into it; wait until it ends"):
         generate(recipe_file, copied)
     os.close(handle)
     assert generate(recipe_file, copied).kept == 3

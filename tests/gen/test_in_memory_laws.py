@@ -159,7 +159,9 @@ def test_records_of_two_recipes_in_one_dataset_are_refused(ladder, tmp_path):
 def test_a_folder_that_holds_something_is_left_as_it_is(ladder, tmp_path):
     (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
     for place in (tmp_path, tmp_path / "notes.txt"):
-        with pytest.raises(CorpusError, match="is there already; choose another folder, or remove it first"):
+        with pytest.raises(
+            CorpusError, match="exists and is not an empty folder; give a new folder, or remove this one first"
+        ):
             gen.write_corpus(ladder, place)
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 
@@ -182,7 +184,9 @@ def test_a_killed_write_leaves_a_whole_corpus_or_none(ladder, tmp_path):
 
 def test_the_corpus_of_a_choice_is_not_completed_by_its_recipe(ladder, tmp_path):
     directory = gen.write_corpus(ladder.isel(record=[1]), tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="holds records that were made one by one, not a whole recipe"):
+    with pytest.raises(
+        CorpusError, match="holds some records of a recipe, or scenarios made by hand, so it cannot be generated"
+    ):
         gen.generate(directory / "recipe.yaml", directory)
     assert gen.validate_corpus(directory) == []
 
@@ -236,7 +240,7 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     assert gen.stored_scenario(directory, 1) == faster[3]
     with pytest.raises(RecipeError, match=r"scenarios\[1\]: rung 0 of pair 0 does not rise; sort them, each once"):
         gen.simulate_scenarios([faster[1], faster[0]], recipe)
-    with pytest.raises(CorpusError, match="not a whole recipe; choose another folder"):
+    with pytest.raises(CorpusError, match="made by hand, so it cannot be generated; choose another folder"):
         gen.generate(directory / "recipe.yaml", directory)
     with pytest.raises(
         CorpusError, match="the record with the largest severity of pair 1 is missing; write pairs whole"
@@ -324,5 +328,5 @@ def test_merged_corpora_of_drawn_and_of_given_scenarios_are_replayed(ladder, tmp
     with gen.open_corpus(tmp_path / "merged") as corpus:
         assert corpus["rig"].values.tolist() == [0] * 6 + [1] * 2  # given machines are their own
     assert replayed(tmp_path / "merged")
-    with pytest.raises(CorpusError, match="holds scenarios that were chosen or made by hand"):
+    with pytest.raises(CorpusError, match="holds some records of a recipe, or scenarios made by hand"):
         gen.extend(given, rigs=1)

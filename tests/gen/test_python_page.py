@@ -79,3 +79,9 @@ def test_the_corpora_of_the_page_are_valid_and_replay(results):
         assert gen.validate_corpus(folder / corpus) == []
         assert gen.replay(folder / corpus, 0).identical
     assert names["again"].identical
+
+
+def test_the_page_lists_every_public_name_and_no_other():
+    _, _, section = PAGE.partition("\n## All names of `gen`\n")
+    listed = re.findall(r"`gen\.(\w+)`", section)
+    assert sorted(listed) == sorted(gen.__all__)

@@ -13,7 +13,7 @@ from pydantic import ValidationError
 from gen.corpus.card.markdown import plain_text, table
 from gen.corpus.files import plain_file, write_text_durably
 from gen.corpus.journal import Strict, first_problem
-from gen.corpus.manifest import Manifest
+from gen.corpus.manifest_fields import Manifest
 from gen.errors import CorpusError
 from gen.limits import check_limit
 

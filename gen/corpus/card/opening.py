@@ -9,15 +9,16 @@ from pathlib import Path
 import h5py
 
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
-from gen.corpus.schema import SIGNAL
+from gen.corpus.schema import FAULTS, SIGNAL, listed_flags
 
+_FAULTY = listed_flags({code: name for code, name in enumerate(FAULTS) if code > 0})
 _ZSTD = 32015  # number of the filter, registered with The HDF Group
 
 _PYTHON = """\
 import gen   # pip install raceway
 
 corpus = gen.open_corpus(".")   # an xarray.Dataset; the files are checked, and signals are read when they are used
-healthy = corpus.isel(record=corpus["fault"].values == 0)   # 1 inner, 2 outer, 3 ball, 4 cage, 5 compound
+healthy = corpus.isel(record=corpus["fault"].values == 0)   # {faults}
 signal = corpus["acceleration"][0, 0].values   # dimensions record, channel, elapsed_time, in m/s^2
 print((signal**2).mean() ** 0.5)
 """
@@ -33,7 +34,7 @@ print((signal**2).mean() ** 0.5)
 _MATLAB = """\
 % in Octave first: pkg load netcdf
 part = 'parts/{part}';
-fault = ncread(part, 'fault');   % 0 healthy, 1 inner, 2 outer, 3 ball, 4 cage, 5 compound
+fault = ncread(part, 'fault');   % 0 healthy, {faults}
 fs = ncread(part, 'sample_rate');
 % acceleration has dimensions elapsed_time, channel, record, in m/s^2
 signal = double(ncread(part, 'acceleration', [1 1 1], [Inf 1 1]));
@@ -43,7 +44,7 @@ fprintf('%.6g\\n', sqrt(mean(signal(:) .^ 2)));
 _R = """\
 library(ncdf4)
 part <- nc_open("parts/{part}")
-fault <- ncvar_get(part, "fault")   # 0 healthy, 1 inner, 2 outer, 3 ball, 4 cage, 5 compound
+fault <- ncvar_get(part, "fault")   # 0 healthy, {faults}
 # acceleration has dimensions elapsed_time, channel, record, in m/s^2
 signal <- ncvar_get(part, "acceleration", start = c(1, 1, 1), count = c(-1, 1, 1))
 cat(sqrt(mean(signal^2)), "\\n")
@@ -53,7 +54,7 @@ nc_close(part)
 _JULIA = """\
 using NCDatasets
 part = NCDataset("parts/{part}")
-fault = part["fault"][:]   # 0 healthy, 1 inner, 2 outer, 3 ball, 4 cage, 5 compound
+fault = part["fault"][:]   # 0 healthy, {faults}
 signal = part["acceleration"][:, 1, 1]   # elapsed_time, channel, record, in m/s^2
 println(sqrt(sum(abs2, signal) / length(signal)))
 """
@@ -78,7 +79,7 @@ def opening(first_part: Path) -> list[str]:
     if _needs_plugin(first_part):
         lines += ["", "The signals are compressed with zstd: readers other than Python need the zstd plugin of HDF5."]
     for title, language, program in _PROGRAMS:
-        text = program.replace("{part}", first_part.name)
+        text = program.replace("{part}", first_part.name).replace("{faults}", _FAULTY)
         lines += ["", f"### {title}", "", f"```{language}", *text.splitlines(), "```"]
     return lines
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import xarray as xr
 
 from gen.corpus.card.markdown import code_text, plain_text
-from gen.corpus.manifest import Choice, Manifest, Origin
+from gen.corpus.manifest_fields import Choice, Manifest, Origin, extensions_of
 
 RECIPE_NAME = "recipe.yaml"
 MOST_SENTENCES = 100  # of a list; the manifest has all
@@ -22,8 +22,6 @@ _SCENARIOS = {
     "chosen": " The records are some of those of the recipe.",
     "given": " The scenarios were not drawn from the recipe; each is stored with its record, in `draws`.",
 }
-
-
 _WRITTEN = (
     "`gen.write_corpus` made it from records in Python; `raceway replay` makes each of them again from this folder."
 )
@@ -153,7 +151,7 @@ def _simulating(made: Manifest | Origin, recipe_file: str, folder: str) -> list[
     words = ["raceway", "generate", recipe_file]
     for name in ("seed", "records"):
         words += [f"--{name}", str(overrides[name])] if overrides.get(name) is not None else []
-    extensions = [next(iter(extension.items())) for extension in overrides.get("extensions") or ()]
+    extensions = [next(iter(extension.items())) for extension in extensions_of(made)]
     words += ["-o", folder]
     return [words, *(["raceway", "extend", f"--{what}", str(count), folder] for what, count in extensions)]
 

@@ -13,13 +13,13 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, SCHEMA, SIGNAL
+from gen.corpus import DRAWS, SCHEMA, SIGNAL, class_names
+from gen.corpus.index import OF_ONE_FILE
 from gen.corpus.record_hashes import stored_signal
 from gen.sharing.choice import chosen_channels, chosen_records
 
 _LONGEST_NAME = 60  # letters; MATLAB allows 63
 _MOST_IN_BLOCK = 1024  # records; drawn values are text of some kilobytes a record
-_OF_THE_FILE = ("comment", "raceway_packed")  # global attributes about corpus.nc or a packed file
 _OF_THE_WHOLE = ("summary", "id", "naming_authority")  # global attributes that a choice of records does not have
 _RESERVED = ("record", "file", "place", "units", "channels")
 
@@ -140,7 +140,7 @@ def choose(
     """Records and channels of an opened corpus; CorpusError if there are none such."""
     found = Chosen(corpus, chosen_records(corpus, where, split), chosen_channels(corpus, channels))
     whole = len(found.records) == corpus.sizes["record"] and len(found.channels) == corpus.sizes["channel"]
-    left_out = _OF_THE_FILE if whole else (*_OF_THE_FILE, *_OF_THE_WHOLE)
+    left_out = OF_ONE_FILE if whole else (*OF_ONE_FILE, *_OF_THE_WHOLE)
     own = {name: value for name, value in corpus.attrs.items() if name not in left_out}
     return replace(found, corpus=corpus.drop_attrs(deep=False).assign_attrs(own))
 
@@ -166,8 +166,6 @@ def plain_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
 
 def _column(corpus: xr.Dataset, name: str, variable: str) -> Column:
     found = corpus[variable].variable
-    codes = [int(code) for code in np.atleast_1d(found.attrs.get("flag_values", []))]
-    names = str(found.attrs.get("flag_meanings", "")).split()
     units, role, meaning = (str(found.attrs.get(key, "")) for key in ("units", "role", "long_name"))
     dtype = None if found.dtype.kind in "OUS" or found.dtype.kind == "T" else found.dtype
-    return Column(name, variable, dtype, units, role, meaning, dict(zip(codes, names, strict=False)))
+    return Column(name, variable, dtype, units, role, meaning, class_names(found.attrs))

@@ -7,12 +7,13 @@ from typing import NamedTuple
 
 from gen.corpus import open_corpus, whole_folder_or_none
 from gen.errors import CorpusError
+from gen.progress import Progress
 from gen.sharing.exporting.choosing import Chosen, choose
 from gen.sharing.exporting.csv_files import write_csv
 from gen.sharing.exporting.huggingface import write_huggingface
 from gen.sharing.exporting.matlab_files import write_mat
 from gen.sharing.exporting.parquet_files import write_parquet
-from gen.sharing.exporting.report import Progress, Report, reporter
+from gen.sharing.exporting.report import Report, reporter
 from gen.sharing.exporting.wav_files import write_wav
 from gen.sharing.exporting.zarr_store import write_zarr
 

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from gen.corpus.card.markdown import plain_text
+from gen.progress import Progress, counter
 from gen.sharing.exporting.choosing import Block, Chosen
 
-Progress = Callable[[int, int], None]
 Report = Callable[[Block], None]
 """Called after each block that is written."""
 
@@ -16,15 +16,8 @@ _TERMS = {"license": "Licence", "creator_name": "Creators", "references": "Refer
 
 def reporter(chosen: Chosen, progress: Progress | None) -> Report:
     """Function that counts the records of finished blocks and passes on their number and that of all."""
-    done = 0
-
-    def report(block: Block) -> None:
-        nonlocal done
-        done += len(block.numbers)
-        if progress is not None:
-            progress(done, len(chosen.records))
-
-    return report
+    done = counter(progress, len(chosen.records))
+    return lambda block: done(len(block.numbers))
 
 
 def page(chosen: Chosen, reading: str) -> str:

@@ -17,7 +17,7 @@ from gen.corpus.card.additions import CardAdditions, CardPicture, parts_digest, 
 from gen.corpus.card.origin import rebuilding
 from gen.corpus.card.ranges import FEWEST, Groups, quantity_ranges, some_records, variable_ranges
 from gen.corpus.card.terms import citation
-from gen.corpus.manifest import Choice, Manifest, Overrides
+from gen.corpus.manifest_fields import Choice, Manifest, Overrides
 from gen.errors import CorpusError
 from gen.units import UNITS
 from tests.tone_corpora import write_corpus

@@ -14,7 +14,7 @@ import xarray as xr
 from gen.corpus import open_corpus, publish, read_manifest, read_publication, sha256
 from gen.generation import generate
 from gen.importers import import_generic
-from gen.sharing.portable import pack
+from gen.sharing import pack
 
 FACTS = {
     "license": "CC-BY-4.0",

@@ -25,7 +25,7 @@ from gen.corpus.manifest import manifest_content
 from gen.corpus.publication import checked_doi, checked_orcid
 from gen.errors import CorpusError, RecipeError
 from gen.recipe import read_recipe, recipe_hash
-from gen.sharing.portable import pack
+from gen.sharing import pack
 from gen.sharing.unpacking import unpack
 from tests import corpora, kills, tone_corpora
 from tests.paths import ROOT

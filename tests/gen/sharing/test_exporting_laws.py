@@ -317,7 +317,7 @@ def test_a_fault_that_is_not_known_is_null_for_hugging_face(tmp_path):
 def test_refusals_are_one_sentence(counts, tmp_path, monkeypatch):
     (tmp_path / "full").mkdir()
     (tmp_path / "full/own.txt").write_text("mine")
-    with pytest.raises(CorpusError, match=r"full: exists and is not an empty folder; choose another name"):
+    with pytest.raises(CorpusError, match=r"full: exists and is not an empty folder; give a new folder"):
         gen.export(counts, tmp_path / "full", "csv")
     assert (tmp_path / "full/own.txt").read_text() == "mine"
     with pytest.raises(CorpusError, match=r"to: there is no form 'xls'; allowed are parquet, mat, csv"):

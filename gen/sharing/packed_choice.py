@@ -1,14 +1,14 @@
 """A corpus, or a choice of it, as one netCDF-4 file: ``folder -> (select, convert) -> pack -> FILE.nc``."""
 
 import glob
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import remove_left_behind, temporary_beside
+from gen.corpus.index import corpus_attributes
 from gen.corpus.manifest import INDEX_NAME, part_paths
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of, form_of
@@ -16,12 +16,11 @@ from gen.corpus.reading import stored_blocks
 from gen.corpus.record_checks import per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
+from gen.progress import Progress
 from gen.sharing.copying import in_floating_point
 from gen.sharing.packing import PackedFile, pack_whole, small_files
 from gen.sharing.selecting import select
-from gen.sharing.unpacking import corpus_attributes, finish_again
-
-Progress = Callable[[int, int], None]
+from gen.sharing.unpacking import finish_again
 
 
 def pack(
@@ -65,11 +64,11 @@ def pack(
         raise CorpusError(f"{file}: exists; give another name, or remove it first.")
     if codec not in CODECS:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
-    for name in (file.name, f"{file.name}-choice", f"{file.name}-float32"):
-        remove_left_behind(file.parent, glob.escape(name))
-    with ExitStack() as rooms:
+    remove_left_behind(file.parent, glob.escape(file.name))
+    remove_left_behind(file.parent, glob.escape(f"{file.name}-corpora"))
+    with temporary_beside(file.with_name(f"{file.name}-corpora")) as corpora:
         if where is not None or split is not None or channels is not None:
-            chosen = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-choice")))
+            chosen = corpora / "chosen"
             select(directory, chosen, where=where, split=split, channels=channels)
             directory = chosen
         elif directory.is_file():
@@ -77,7 +76,7 @@ def pack(
                 f"{directory}: is one file already; copy it, or say which records with --where or --split."
             )
         if float32:
-            converted = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-float32")))
+            converted = corpora / "float32"
             _convert(directory, converted)
             directory = converted
         return pack_whole(directory, file, codec, progress)
