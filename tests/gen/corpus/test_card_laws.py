@@ -61,6 +61,14 @@ def test_every_variable_is_listed_with_its_range_or_its_one_value(corpus):
     assert "`sample_rate` 4000 Hz" in constant
 
 
+def test_a_level_has_the_unit_that_its_meaning_states(corpus):
+    with open_corpus(corpus) as opened:
+        levels = opened["load"].copy(data=np.linspace(-5.0, 40.0, opened.sizes["record"]))
+        levels.attrs |= {"units": "1", "long_name": "bearing over background in decibels re 1"}
+        rows, _ = variable_ranges(opened.assign(snr=levels))
+    assert {(row.name, row.unit) for row in rows if row.name == "snr"} == {("snr", "dB")}
+
+
 @given(st.integers(0, 10_000))
 @settings(max_examples=20, deadline=None)
 def test_classes_of_one_distribution_share_a_row_and_a_class_that_is_moved_has_its_own(seed):
