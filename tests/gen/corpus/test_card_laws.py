@@ -152,7 +152,7 @@ def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_pa
     assert "\nJane Doe and A & B (2026): tones. Bearing vibration corpus of 48 records, made with Raceway." in card
     (entry,) = blocks(card, "bibtex")
     assert entry.startswith("@misc{doe2026tones,\n")
-    assert r"author = {{Jane Doe} and {A \& B}}" in entry
+    assert r"author = {Jane Doe and {A \& B}}" in entry
     assert "doi = {10.1000/182}" in entry
     assert "No licence is stated" in data_card(corpus)
 
