@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from features.band import DEFAULT_BAND, Band, band_attributes
+from features.band import DEFAULT_BAND, Band, band_attributes, checked_band
 from features.channels import channel_number
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.recording_speeds import (
@@ -48,7 +48,7 @@ def feature_table(
     *,
     speed: Speed = "off",
     channel: int | str = 0,
-    band: Band = DEFAULT_BAND,
+    band: tuple[float, float] = DEFAULT_BAND,
     workers: int = 1,
     scheduler: "Client | str | None" = None,
     progress: Progress | None = None,
@@ -67,7 +67,7 @@ def feature_table(
     channel
         Name of the channel, or its number from 0.
     band
-        Band that lines and shape are computed from.
+        Band that lines and shape are computed from [Hz], such as ``(300, 9000)``.
     workers
         Number of parts at work at a time: 1 in this thread, a few in threads of this process, more in processes on this machine.
     scheduler
@@ -89,8 +89,9 @@ def feature_table(
     CorpusError
         If the corpus is unfinished, altered or has no such channel.
     ValueError
-        For a group or a treatment of speeds that does not exist.
+        For a group or a treatment of speeds that does not exist, or a band that is too narrow or out of range.
     """
+    band = checked_band(*band)
     names = feature_names(groups, band)
     with open_corpus(corpus) as opened:
         number = channel_number(opened, channel, corpus)

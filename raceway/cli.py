@@ -64,7 +64,7 @@ class Raceway(click.Group):
     help="Raise a limit on the contents of files, by the name in its error.",
 )
 def cli(limits: tuple[str, ...]) -> None:
-    """Make labelled vibration corpora of healthy and cracked rolling bearings, and score classifiers on them.
+    """Make labelled vibration corpora of healthy and damaged rolling bearings, and score classifiers on them.
 
     First steps:
 

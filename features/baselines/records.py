@@ -193,7 +193,10 @@ def check_classes(records: Records) -> IntArray:
     present = np.unique(records.fault)
     if len(present) < 2:
         only = FAULTS[present[0]]
-        message = f"{records.title}: all records are {only}; give a corpus with two or more classes."
+        message = (
+            f"{records.title}: all records are {only}; give a corpus with two or more classes (faults in its recipe, or "
+            f"raceway merge)."
+        )
         raise CorpusError(message)
     return present
 

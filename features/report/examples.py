@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.band import DEFAULT_BAND, LEAST_WIDTH, Band
+from features.band import DEFAULT_BAND, LEAST_WIDTH, checked_band
 from features.channels import channel_number
 from features.faults import COMBS, LOOKS
 from features.indicators import Orders, feature_names, indicators
@@ -26,7 +26,12 @@ class Example(NamedTuple):
 
 
 def plot_record(
-    corpus: Path | str, record: int, path: Path | str, *, channel: int | str = 0, band: Band = DEFAULT_BAND
+    corpus: Path | str,
+    record: int,
+    path: Path | str,
+    *,
+    channel: int | str = 0,
+    band: tuple[float, float] = DEFAULT_BAND,
 ) -> None:
     """Draw waveform, power spectral density and envelope spectrum of a record, with the fault lines.
 
@@ -41,14 +46,17 @@ def plot_record(
     channel
         Name or number of the channel.
     band
-        Band of the envelope spectrum.
+        Band of the envelope spectrum [Hz].
 
     Raises
     ------
     CorpusError
         If the corpus cannot be read or has no such record or channel, the suffix is another, the signal, shaft rate or
         orders of the record are not positive finite numbers, or the disk refuses the file.
+    ValueError
+        If the band is too narrow or an edge is out of range.
     """
+    band = checked_band(*band)
     path = Path(path)
     formats: dict[str, PictureFormat] = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
     suffix = path.suffix.lower()
@@ -88,7 +96,8 @@ def chosen_example(corpus: xr.Dataset, code: int) -> tuple[Shown | None, str]:
     """Record whose level at the fault lines is the median over some records of the class, and its caption; None if none can be drawn."""
     numbers = np.flatnonzero(corpus["fault"].values == code)
     numbers = numbers[np.linspace(0, len(numbers) - 1, min(CANDIDATES, len(numbers))).astype(int)]
-    shown = {int(n): _shown(corpus.isel(record=n), int(n), 0) for n in numbers}
+    several = corpus.sizes["channel"] > 1
+    shown = {int(n): _shown(corpus.isel(record=n), int(n), 0, named=several) for n in numbers}
     levels = {n: _line_level(record) for n, record in shown.items() if _can_be_drawn(record)}
     if not levels:
         return None, "No record of this class has a signal, a shaft rate and fault orders to draw."

@@ -21,6 +21,9 @@ _ORCID = re.compile(r"(?:https?://orcid\.org/)?(\d{4}-\d{4}-\d{4}-\d{3}[\dX])")
 _DOI = re.compile(r"(?:https?://(?:dx\.)?doi\.org/|doi:)?(10\.\d{4,9}/[!-~]{1,200})", re.IGNORECASE)
 _SPDX_NAME = r"[A-Za-z0-9][A-Za-z0-9.-]{0,99}\+?"
 _SPDX = re.compile(rf"{_SPDX_NAME}(?: (?:AND|OR|WITH) {_SPDX_NAME}){{0,9}}")
+_WITHOUT_VERSION = re.compile(
+    r"CC-BY(?:-[A-Z]{2})*|CC0|[AL]?GPL|BSD|Apache|MPL|EUPL|ODbL|ODC-By|PDDL|CDLA", re.IGNORECASE
+)
 _EMAIL = re.compile(r"[^@\s<>,;]{1,64}@[^@\s<>,;]{1,200}\.[^@\s<>,;.]{2,63}")
 
 
@@ -63,6 +66,11 @@ def _checked_license(text: str) -> str:
             f"{text!r} is not an SPDX identifier; give one of spdx.org/licenses, such as CC-BY-4.0 or CC0-1.0, "
             f"several joined by AND or OR, or LicenseRef-NAME for a licence of your own."
         )
+    for name in text.split():
+        if _WITHOUT_VERSION.fullmatch(name):
+            raise ValueError(
+                f"{name!r} lacks its version; give it as on spdx.org/licenses, such as CC-BY-4.0 or CC0-1.0."
+            )
     return text
 
 
@@ -87,6 +95,14 @@ def _one_line(text: str) -> str:
     return text
 
 
+def _name_alone(text: str) -> str:
+    if found := _ORCID.search(text):
+        raise ValueError(
+            f"{text!r} has an ORCID in the name; give it as orcid, or write 'Jane Doe <{found[1]}>' in a command."
+        )
+    return text
+
+
 Line = Annotated[str, StringConstraints(min_length=1, max_length=200), AfterValidator(_one_line)]
 Reference = Annotated[str, StringConstraints(min_length=1, max_length=500), AfterValidator(_one_line)]
 License = Annotated[str, AfterValidator(_checked_license)]
@@ -101,7 +117,7 @@ class Creator(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid", use_attribute_docstrings=True)
 
-    name: Line
+    name: Annotated[Line, AfterValidator(_name_alone)]
     """Name as in a citation, such as `Jane Doe`."""
     orcid: Orcid | None = None
     """ORCID of a person, such as `0000-0002-1825-0097`."""

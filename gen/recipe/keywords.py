@@ -89,9 +89,10 @@ def recipe_for(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | No
 
 
 def _section(name: str, value: Any) -> Any:
-    """Value of a key of the recipe; a bearing can be given by its designation, or several by a list."""
-    if name == "bearing" and isinstance(value, str | list):
-        return {"kind": "catalogue", "designations": [value] if isinstance(value, str) else value}
+    """Value of a key of the recipe; a bearing can be given by its designation (a text or a number), or several by a list."""
+    if name == "bearing" and isinstance(value, str | int | list):
+        several = value if isinstance(value, list) else [value]
+        return {"kind": "catalogue", "designations": [str(one) if isinstance(one, int) else one for one in several]}
     return dict(value) if isinstance(value, dict) else value
 
 
@@ -144,7 +145,7 @@ def _advice(name: str) -> str:
     if name in of_faults:
         return f"it is a key of faults; give it there, as in fault=gen.{of_faults[name]}({name}=...)."
     allowed = [*_places(), *Recipe.model_fields, *of_faults]
-    near = difflib.get_close_matches(name, allowed, 1)
+    near = [key for key in allowed if name in key.split("_")] or difflib.get_close_matches(name, allowed, 1)
     if not near:
         return "raceway recipes --keys lists all keys."
     return f"did you mean {near[0]}{', a key of faults' if near[0] in of_faults else ''}?"

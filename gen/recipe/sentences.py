@@ -71,7 +71,7 @@ _ALLOWED = {
     "int_type": "a whole number",
     "int_from_float": "a whole number",
     "float_type": "a number",
-    "string_type": "text",
+    "string_type": "text, in quotes if it is a number",
     "string_pattern_mismatch": "1 to 64 letters, digits, dots, dashes or underscores",
     "tuple_type": "a list",
     "model_type": "a section with keys of its own",

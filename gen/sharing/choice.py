@@ -1,5 +1,6 @@
 """Choice of records and channels of a corpus, as ``--where``, ``--split`` and ``--channels`` give it."""
 
+import re
 from collections.abc import Sequence
 
 import numpy as np
@@ -38,7 +39,9 @@ def chosen_records(corpus: xr.Dataset, where: str | None = None, split: str | No
         chosen &= parse_where(where).holds(variables, lambda name: _column(corpus, name))
     if not chosen.any():
         asked = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
-        raise CorpusError(f"{' and '.join(asked)}: none of {len(chosen)} records is chosen; choose others.")
+        raise CorpusError(
+            f"{' and '.join(asked)}: none of {len(chosen)} records is chosen; choose others{_extents(corpus, where)}."
+        )
     return np.flatnonzero(chosen)
 
 
@@ -59,6 +62,18 @@ def chosen_channels(corpus: xr.Dataset, channels: Sequence[str] | None) -> tuple
         if name not in names:
             raise CorpusError(f"channels: there is no channel {name}{nearest(name, names)}")
     return tuple(place for place, name in enumerate(names) if name in channels)
+
+
+def _extents(corpus: xr.Dataset, where: str | None) -> str:
+    """Least and largest value of the measured quantities in a condition, in brackets: a unit is easily mistaken."""
+    found: list[str] = []
+    for name in dict.fromkeys(re.findall(r"[A-Za-z_]\w*", where or "")):
+        variable = corpus.get(name)
+        unit = "1" if variable is None else str(variable.attrs.get("units", "1"))
+        if variable is not None and unit != "1" and np.isfinite(variable.values).any():
+            values = variable.values[np.isfinite(variable.values)]
+            found.append(f"{name} is {values.min():.4g} to {values.max():.4g} {unit}")
+    return f" ({', '.join(found)})" if found else ""
 
 
 def _column(corpus: xr.Dataset, name: str) -> Column:

@@ -147,9 +147,13 @@ def _own_origin(manifest: Manifest, title: str | None) -> Origin:
 def _check_same_form(first: _Source, other: _Source, float32: bool) -> None:
     """CorpusError unless two corpora have the same channels, sample rate and length, and the same storage if it is to be kept."""
     for what, one, two, advice in (
-        ("channels", *(_channels(source) for source in (first, other)), "choose the same channels with raceway select"),
+        (
+            "channels",
+            *(_channels(source) for source in (first, other)),
+            "choose the same channels with raceway select, or make both with these",
+        ),
         ("sample rate", *(_sample_rate(source) for source in (first, other)), "make both at one sample rate"),
-        ("length of a record", *(_length(source) for source in (first, other)), "make both with records of one length"),
+        ("record length", *(_length(source) for source in (first, other)), "make both with records of one length"),
         (
             "storage of the signals",
             *(_storage(source) for source in (first, other)),
@@ -157,7 +161,7 @@ def _check_same_form(first: _Source, other: _Source, float32: bool) -> None:
         ),
     ):
         if one != two and not (float32 and what == "storage of the signals"):
-            raise CorpusError(f"{other.directory}: the {what}: {two}, that of {first.directory}: {one}; {advice}.")
+            raise CorpusError(f"{other.directory}: has the {what} {two}, and {first.directory} has {one}; {advice}.")
 
 
 def _check_extensions(sources: Iterable[_Source]) -> None:

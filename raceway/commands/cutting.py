@@ -69,11 +69,12 @@ def _folders(context: click.Context, parameter: click.Parameter, paths: tuple[Pa
 )
 @json_option
 def merge(corpora: list[Path], output: Path, title: str | None, float32: bool, as_json: bool) -> None:
-    """Join corpora of one sample rate, record length and set of channels.
+    """Join corpora into one.
 
-    Records keep their samples, labels and splits. Rigs, specimens, recordings and pairs are numbered anew, so that machines of different
-    corpora never share a number; two selections of one corpus keep their common machines. Corpora that hold the same samples are refused,
-    because a record in training and test set makes every score too good. Simulated records can still be replayed.
+    They need the same sample rate, length of records and channels. Records keep their samples, labels and splits. Rigs, specimens,
+    recordings and pairs are numbered anew, so that machines of different corpora never share a number; two selections of one corpus keep
+    their common machines. Corpora that hold the same samples are refused, because a record in training and test set makes every score too
+    good. Simulated records can still be replayed.
 
       raceway merge monday tuesday -o week
       raceway merge simulated measured --float32 --title "Simulated and measured" -o both

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from features import feature_table
 from features.band import DEFAULT_BAND, ENERGY_EDGES, Band, checked_band
@@ -57,6 +58,8 @@ def test_the_default_band_has_the_features_it_always_had():
 def test_a_band_that_cannot_be_used_is_refused(edges):
     with pytest.raises(ValueError, match="give two edges"):
         checked_band(*edges)
+    with pytest.raises(ValueError, match="give two edges"):
+        feature_table("corpus", band=edges)
 
 
 def test_a_model_keeps_its_band_and_refuses_features_of_another(tmp_path):
@@ -65,6 +68,9 @@ def test_a_model_keeps_its_band_and_refuses_features_of_another(tmp_path):
     save_model(train(feature_table(tmp_path / "corpus", band=band), "logistic_regression"), tmp_path / "model.skops")
     model = load_model(tmp_path / "model.skops")
     assert model.band == band
+    xr.testing.assert_identical(
+        feature_table(tmp_path / "corpus", band=tuple(band)), feature_table(tmp_path / "corpus", band=band)
+    )
     assert evaluate(tmp_path / "corpus", model).records == 48
     with pytest.raises(
         CorpusError, match=r"computed from 300-5000 Hz, .* trained on 100-1800 Hz; .* --band 100 1800\.$"

@@ -110,7 +110,7 @@ def variable_ranges(corpus: xr.Dataset) -> tuple[list[Range], list[str]]:
         if "flag_values" in variable.attrs:
             continue
         # of a copy, because the corpus would keep the values in memory
-        values, unit = variable[:].values.astype(float), str(variable.attrs.get("units", ""))
+        values, unit = variable[:].values.astype(float), _unit(variable)
         finite = values[np.isfinite(values)]
         if finite.size and finite.min() < finite.max():
             rows += quantity_ranges(str(name), unit, values, groups, describes_fault=role == "label")
@@ -118,6 +118,11 @@ def variable_ranges(corpus: xr.Dataset) -> tuple[list[Range], list[str]]:
             value = f"{finite[0]:.6g}" + (f" {plain_text(unit)}" if unit not in ("", "1") else "")
             constant.append(f"`{plain_text(name)}` {value}")
     return rows, constant
+
+
+def _unit(variable: xr.Variable) -> str:
+    """Unit in a table; that of a level in decibels is stored as 1, because CF has no unit for it."""
+    return "dB" if "decibels" in str(variable.attrs.get("long_name")) else str(variable.attrs.get("units", ""))
 
 
 def quantity_ranges(

@@ -4,7 +4,7 @@ import re
 
 from gen.corpus.card.markdown import listed, plain_text, table
 from gen.corpus.manifest import Manifest
-from gen.corpus.publication import Publication
+from gen.corpus.publication import Creator, Publication
 
 
 def terms(publication: Publication) -> list[str]:
@@ -67,7 +67,7 @@ def bibtex(title: str, manifest: Manifest) -> str:
     publication, title = manifest.publication, plain_text(title)
     fields = {
         "title": f"{{{_escaped(title)}}}",
-        "author": " and ".join(f"{{{_escaped(plain_text(person.name))}}}" for person in publication.creators),
+        "author": " and ".join(_author(person) for person in publication.creators),
         "year": (publication.date or "")[:4],
         "publisher": _escaped(plain_text(publication.institution or "")),
         "doi": plain_text(publication.doi or "").replace("{", "").replace("}", ""),
@@ -77,10 +77,19 @@ def bibtex(title: str, manifest: Manifest) -> str:
     return "\n".join([f"@misc{{{_key(title, publication)},", *entries, "}"])
 
 
+def _author(creator: Creator) -> str:
+    """Name in the list of authors. BibTeX parts that of a person, one with an ORCID, into first and last name.
+
+    >>> _author(Creator(name="Jane Doe", orcid="0000-0002-1825-0097")), _author(Creator(name="Example Laboratory"))
+    ('Jane Doe', '{Example Laboratory}')
+    """
+    name = _escaped(plain_text(creator.name))
+    return name if creator.orcid and " and " not in f" {name.lower()} " else f"{{{name}}}"
+
+
 def _key(title: str, publication: Publication) -> str:
     """Key of an entry: last name of the first creator, year and first word of the title, in ASCII letters and digits.
 
-    >>> from gen.corpus.publication import Creator
     >>> _key("Quickstart corpus", Publication(creators=(Creator(name="Jane Doe"),), date="2026-03-31"))
     'doe2026quickstart'
     """

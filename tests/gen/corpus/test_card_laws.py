@@ -61,6 +61,14 @@ def test_every_variable_is_listed_with_its_range_or_its_one_value(corpus):
     assert "`sample_rate` 4000 Hz" in constant
 
 
+def test_a_level_has_the_unit_that_its_meaning_states(corpus):
+    with open_corpus(corpus) as opened:
+        levels = opened["load"].copy(data=np.linspace(-5.0, 40.0, opened.sizes["record"]))
+        levels.attrs |= {"units": "1", "long_name": "bearing over background in decibels re 1"}
+        rows, _ = variable_ranges(opened.assign(snr=levels))
+    assert {(row.name, row.unit) for row in rows if row.name == "snr"} == {("snr", "dB")}
+
+
 @given(st.integers(0, 10_000))
 @settings(max_examples=20, deadline=None)
 def test_classes_of_one_distribution_share_a_row_and_a_class_that_is_moved_has_its_own(seed):
@@ -144,7 +152,7 @@ def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_pa
     assert "\nJane Doe and A & B (2026): tones. Bearing vibration corpus of 48 records, made with Raceway." in card
     (entry,) = blocks(card, "bibtex")
     assert entry.startswith("@misc{doe2026tones,\n")
-    assert r"author = {{Jane Doe} and {A \& B}}" in entry
+    assert r"author = {Jane Doe and {A \& B}}" in entry
     assert "doi = {10.1000/182}" in entry
     assert "No licence is stated" in data_card(corpus)
 

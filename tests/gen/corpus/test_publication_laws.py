@@ -212,6 +212,18 @@ def test_a_wrong_fact_is_refused_with_one_sentence(write_recipe, tmp_path, key):
     assert "\n" not in str(refused.value)
 
 
+@pytest.mark.parametrize("text", ["CC-BY", "cc-by-nc-sa", "MIT OR GPL", "Apache"])
+def test_a_licence_without_its_version_is_refused(text):
+    with pytest.raises(CorpusError, match=r"lacks its version; give it as on spdx\.org/licenses"):
+        read_publication({"license": text})
+
+
+@pytest.mark.parametrize("name", ["Jane Doe 0000-0002-1825-0097", "Jane Doe, https://orcid.org/0000-0002-1825-0097"])
+def test_an_orcid_in_a_name_is_refused(name):
+    with pytest.raises(CorpusError, match="has an ORCID in the name; give it as orcid, or write 'Jane Doe <0000-0002"):
+        read_publication({"creators": [{"name": name}]})
+
+
 @pytest.mark.parametrize("text", ["CC-BY-4.0", "CC0-1.0", "MIT OR Apache-2.0", "GPL-2.0+", "LicenseRef-ours"])
 def test_forms_of_spdx_are_taken(text):
     assert read_publication({"license": text}).license == text

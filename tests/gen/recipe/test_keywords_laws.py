@@ -37,6 +37,11 @@ def test_a_key_by_its_own_name_is_that_of_its_section():
     assert named == gen.recipe_for(OUTER, **sections)
 
 
+def test_a_designation_can_be_a_number_in_python():
+    assert gen.recipe_for(OUTER, bearing=6206) == gen.recipe_for(OUTER, bearing="6206")
+    assert gen.recipe_for(OUTER, bearing=[6205, "6206"]) == gen.recipe_for(OUTER, bearing=["6205", "6206"])
+
+
 def test_every_name_has_a_section_unless_several_share_it():
     shared = [name for name, places in _places().items() if len(places) > 1]
     assert len(_places()) > 100
@@ -51,6 +56,7 @@ def test_every_name_has_a_section_unless_several_share_it():
     ("keys", "sentence"),
     [
         ({"shaft_rmp": 1480}, "shaft_rmp: no such key; did you mean shaft_rpm?"),
+        ({"rpm": 1480}, "rpm: no such key; did you mean shaft_rpm?"),
         ({"operation": {"shaft_rmp": 1}}, "operation.shaft_rmp: no such key; did you mean shaft_rpm?"),
         (
             {"width_mm": 1},

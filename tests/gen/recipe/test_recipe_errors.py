@@ -209,7 +209,11 @@ TABLE = [
      "operation.load_n: as a share of bow_n it can be 0, which is not in [1, "),
     (RPM, RPM + ", temperature_celsius: {share_of: load_n, kind: constant, value: 1}",
      "operation.temperature_celsius.share_of: a value in degC has no share; give it a range of its own."),
-    (RPM, RPM + ", load_n: {share_of: 3, kind: constant, value: 1}", "operation.load_n.share_of: 3 is not allowed here; it must be text."),
+    (
+        RPM,
+        RPM + ", load_n: {share_of: 3, kind: constant, value: 1}",
+        "operation.load_n.share_of: 3 is not allowed here; it must be text, in quotes if it is a number.",
+    ),
     ("shaft_mass_kg: 5", "bow_n: {share_of: load_n, kind: constant, value: 1}",
      "machine.bow_n.share_of: load_n is drawn after bow_n, not with it or before it; allowed are misalignment_n."),
     ("machine: {shaft_mass_kg: 5}", "specimen: {contact_angle_deg: {share_of: jitter_deg, kind: constant, value: 1}}",

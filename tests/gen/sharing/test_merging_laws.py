@@ -117,8 +117,8 @@ def test_corpora_that_do_not_fit_together_are_refused_with_the_difference(tones,
     corpora.write_corpus(tmp_path / "floats", kind="float32")
     select(tmp_path / "counts", tmp_path / "one", channels=["a"])
     for pair, sentence in (
-        (("counts", "one"), "the channels: a, that of .*counts: a, b; choose the same channels"),
-        (("counts", "floats"), r"the storage of the signals: float32, that of .* m s-2; .*--float32"),
+        (("counts", "one"), "one: has the channels a, and .*counts has a, b; choose the same channels"),
+        (("counts", "floats"), r"has the storage of the signals float32, and .* m s-2; .*--float32"),
     ):
         with pytest.raises(CorpusError, match=sentence):
             merge([tmp_path / name for name in pair], tmp_path / "merged")
@@ -134,7 +134,7 @@ def test_corpora_of_another_sample_rate_or_length_are_refused(tmp_path, monkeypa
     monkeypatch.setattr(corpora, "dataset", lambda *part, **how: usual(*part, **how, samples=samples))
     corpora.write_corpus(tmp_path / "b")
     with pytest.raises(
-        CorpusError, match="the sample rate: 2000 Hz" if fs == 2000 else "length of a record: 40 samples"
+        CorpusError, match="the sample rate 2000 Hz, and .* has 1000 Hz;" if fs == 2000 else "record length 40 samples"
     ):
         merge([tmp_path / "a", tmp_path / "b"], tmp_path / "merged")
 

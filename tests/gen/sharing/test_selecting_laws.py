@@ -82,7 +82,8 @@ def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path):
     ("choice", "sentence"),
     [
         ({}, "no choice is given"),
-        ({"where": "rig > 100"}, "none of 9 records is chosen"),
+        ({"where": "rig > 100"}, "none of 9 records is chosen; choose others."),
+        ({"where": "shaft_rate > 1e6"}, r"choose others \(shaft_rate is [0-9.]+ to [0-9.]+ Hz\)"),
         ({"channels": ["c"]}, "there is no channel c"),
     ],
 )
