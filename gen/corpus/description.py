@@ -10,7 +10,7 @@ A corpus is a folder:
 
 | file | content |
 |---|---|
-| `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: any netCDF-4 reader sees one file |
+| `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: most readers see one file |
 | `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
 | `manifest.json` | whether the corpus is complete; bytes and SHA-256 of `corpus.nc` and of each part; where the records come from |
 | `parts.jsonl` | while the corpus is unfinished: one line for each finished part, as in `parts` of the manifest |
@@ -27,7 +27,10 @@ Further checks of a corpus from strangers: [security.md](security.md).
 
 `corpus.nc` without its parts holds no signals, and its attribute `comment` says so. `raceway pack` makes one file of the
 whole corpus, with the variables below, without a virtual dataset, and with a SHA-256 of each record: a packed file.
-[sharing.md](sharing.md) has its layout, and a table of the programs that read `corpus.nc`, a part and a packed file.
+
+ncdump, NCO, Octave, h5py, netCDF4 and xarray read `corpus.nc` in its folder, parts and packed files. R's ncdf4 and
+`nccopy` read parts and packed files, but not `corpus.nc`. CDO reads all three without their text variables. MATLAB was
+not tried. [sharing.md](sharing.md#which-programs-read-what) has the versions, and the layout of a packed file.
 
 Other fields of the manifest tell where the records come from; each is there only if it has something to tell:
 
