@@ -62,7 +62,7 @@ def write_corpus(dataset: xr.Dataset, directory: Path | str) -> Path:
     """
     directory = Path(directory).absolute()
     check_name(directory)
-    if directory.exists() and not (directory.is_dir() and not any(directory.iterdir())):
+    if directory.is_symlink() or (directory.exists() and not (directory.is_dir() and not any(directory.iterdir()))):
         raise CorpusError(f"{directory}: is there already; choose another folder, or remove it first.")
     recipe = recipe_of(dataset)
     given = dataset.attrs.get(SCENARIOS) == GIVEN

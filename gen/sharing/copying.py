@@ -1,6 +1,5 @@
 """Records copied from one corpus into another: read as they are stored, written as parts of a new folder."""
 
-import glob
 import hashlib
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
@@ -19,7 +18,7 @@ from gen.corpus import (
     open_part,
     part_paths,
     plain_file,
-    remove_left_behind,
+    remove_left_behind_of,
     temporary_beside,
     write_durably,
 )
@@ -45,10 +44,10 @@ def new_corpus(output: Path) -> Iterator[Path]:
     """
     output = output.absolute()
     check_name(output)
-    if output.exists() and (not output.is_dir() or any(output.iterdir())):
+    if output.is_symlink() or (output.exists() and (not output.is_dir() or any(output.iterdir()))):
         raise CorpusError(f"{output}: exists and is not an empty folder; give a new folder, or remove this one first.")
     try:
-        remove_left_behind(output.parent, glob.escape(output.name))
+        remove_left_behind_of(output)
         with temporary_beside(output) as temporary:
             (temporary / "parts").mkdir(parents=True)
             yield temporary
@@ -139,7 +138,8 @@ def in_floating_point(records: xr.Dataset) -> xr.Dataset:
     if signal.dtype.kind == "f":
         return records
     missing = signal.values == signal.attrs["_FillValue"]
-    values = (signal.values * np.float64(signal.attrs["scale_factor"])).astype(np.float32)
+    scale = np.float32(signal.attrs["scale_factor"])  # double in older corpora; replay computes with the single one
+    values = (signal.values * np.float64(scale)).astype(np.float32)
     values[missing] = np.nan
     packing = ("scale_factor", "add_offset", "_FillValue")
     attributes = {name: value for name, value in signal.attrs.items() if name not in packing}

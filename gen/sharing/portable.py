@@ -1,6 +1,5 @@
 """A corpus, or a choice of it, as one netCDF-4 file: ``folder -> (select, convert) -> pack -> FILE.nc``."""
 
-import glob
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
 from pathlib import Path
@@ -8,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.files import remove_left_behind, temporary_beside
+from gen.corpus.files import remove_left_behind_of, temporary_beside
 from gen.corpus.manifest import INDEX_NAME, part_paths
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of, form_of
@@ -66,10 +65,10 @@ def pack(
     if codec not in CODECS:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
     for name in (file.name, f"{file.name}-choice", f"{file.name}-float32"):
-        remove_left_behind(file.parent, glob.escape(name))
+        remove_left_behind_of(file.with_name(name))
     with ExitStack() as rooms:
         if where is not None or split is not None or channels is not None:
-            chosen = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-choice")))
+            chosen = rooms.enter_context(temporary_beside(file.with_name(f"{file.name}-choice"))) / "corpus"
             select(directory, chosen, where=where, split=split, channels=channels)
             directory = chosen
         elif directory.is_file():
