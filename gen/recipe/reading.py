@@ -32,6 +32,10 @@ def read_recipe(
     overrides = {key: value for key, value in (("seed", seed), ("records", records)) if value is not None}
     if isinstance(recipe, Mapping):
         return Recipe(**_checked(recipe, "") | overrides)
+    if not isinstance(recipe, str | Path):
+        raise RecipeError(
+            f"recipe: {type(recipe).__name__} given; give a path, the name of a recipe or a mapping of its keys."
+        )
     path = find_recipe(recipe)
     data = _checked(read_yaml(path, RecipeError), f"{path}: ")
     try:
