@@ -23,4 +23,4 @@ def channel_number(corpus: xr.Dataset, channel: int | str, where: Path | str) ->
         return channel
     near = difflib.get_close_matches(str(channel), names, n=1)
     meant = f"; did you mean {near[0]}?" if near else "."
-    raise CorpusError(f"{where}: no channel {channel}; give one of {', '.join(names)}, or its number from 0{meant}")
+    raise CorpusError(f"{where}: no channel {channel!r}; give one of {', '.join(names)}, or its number from 0{meant}")

@@ -10,11 +10,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+import xarray as xr
+
 from gen.corpus import (
     DRAWS,
     EXTENSION_NAME,
     JOURNAL_NAME,
     MOST_EXTENSIONS,
+    SCHEMA,
+    SIGNAL,
+    SIMULATED,
     Extension,
     Manifest,
     PartRow,
@@ -172,8 +178,8 @@ def _asked(rigs: int | None, specimens: int | None) -> Extension:
             "an extension adds rigs, or specimens in every rig; give one of the two numbers, rigs or specimens."
         )
     for name, count in given.items():
-        if not 1 <= count < 2**31:
-            raise RecipeError(f"{name}: {count} is not allowed; use 1 or more.")
+        if type(count) is not int or not 1 <= count < 2**31:
+            raise RecipeError(f"{name}: {count!r} is not allowed; use a whole number from 1 to {2**31 - 1}.")
     return given
 
 
@@ -239,12 +245,24 @@ def _check_rigs(directory: Path, rows: list[PartRow], recipe: Recipe) -> None:
     for name in {rows[0].name, rows[-1].name}:
         with open_part(directory / "parts" / name) as part:
             stored = read_scenario(str(part[DRAWS].values[-1]))
+            _check_version(directory, part)
         number = stored.record.number
         if draw_scenarios(recipe, number, number + 1)[0].rig != stored.rig:
             raise CorpusError(
                 f"{directory}: the installed libraries draw another machine for record {number}; extend the corpus with the versions that "
                 f"raceway info shows, or make another corpus, and join the two with raceway merge."
             )
+
+
+def _check_version(directory: Path, part: xr.Dataset) -> None:
+    """Refuse a corpus of an older version: one file cannot hold both its signals and new ones."""
+    steps = part[SIGNAL].encoding.get("scale_factor", np.float32(1))
+    units = all(part[of.name].attrs.get("units", "1") == of.units for of in (*SCHEMA, *SIMULATED) if of.name in part)
+    if steps.dtype != np.float32 or not units:
+        raise CorpusError(
+            f"{directory}: was made by an older version of raceway, which stored signals and levels in another way; make another corpus, "
+            f"and join the two with raceway merge --float32."
+        )
 
 
 def _prepare(directory: Path, work: _Work) -> None:

@@ -145,6 +145,10 @@ def recipe_of(dataset: xr.Dataset) -> Recipe:
     CorpusError
         If the Dataset carries none.
     """
+    if not isinstance(dataset, xr.Dataset):
+        raise CorpusError(
+            f"{type(dataset).__name__} given in place of a Dataset; give one from gen.record or gen.records."
+        )
     if RECIPE not in dataset.attrs:
         raise CorpusError(
             f"the Dataset has no attribute {RECIPE}; give one from gen.record, gen.records or gen.simulate_scenarios, with its attributes."
@@ -165,19 +169,25 @@ def scenarios_of(dataset: xr.Dataset) -> list[Scenario]:
     CorpusError
         If the Dataset has no scenarios.
     """
-    if DRAWS not in dataset:
-        raise CorpusError(f"the Dataset has no variable {DRAWS}, so it holds no scenarios.")
+    if not isinstance(dataset, xr.Dataset) or DRAWS not in dataset:
+        raise CorpusError(
+            f"the Dataset has no variable {DRAWS}, so it holds no scenarios; give one from gen.record or gen.records."
+        )
     return [read_scenario(str(text)) for text in np.atleast_1d(dataset[DRAWS].values)]
 
 
 def checked_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> list[Scenario]:
     """Scenarios as they are stored; RecipeError if one does not fit the recipe or another scenario."""
+    if not isinstance(recipe, Recipe):
+        raise RecipeError(f"recipe: {type(recipe).__name__} given; give a gen.Recipe, such as gen.read_recipe makes.")
+    if not isinstance(scenarios, Sequence) or isinstance(scenarios, str | bytes):
+        raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
     rigs: dict[int, tuple[int, Any]] = {}
     found = []
     for place, scenario in enumerate(scenarios):
         try:
             found.append(read_scenario(scenario_texts([scenario])[0]))
-        except (CorpusError, TypeError) as error:
+        except (CorpusError, TypeError, AttributeError) as error:
             reason = str(error).removeprefix("stored scenario: ").partition("; ")[0]
             raise RecipeError(
                 f"scenarios[{place}]: is no scenario ({reason}); change drawn ones with dataclasses.replace, in finite numbers and text."

@@ -33,7 +33,18 @@ def killed(action, moments, seed=0):
         time.sleep(share * duration)
         os.killpg(child, signal.SIGKILL)
         os.waitpid(child, 0)
+        _wait_for_group(child)
         yield
+
+
+def _wait_for_group(group):
+    """Wait until the killed children of a child have ended too, which may hold its locks; at most a second."""
+    for _ in range(100):
+        try:
+            os.killpg(group, 0)
+        except ProcessLookupError:
+            return
+        time.sleep(0.01)
 
 
 def _forked(action):

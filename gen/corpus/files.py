@@ -117,7 +117,7 @@ def whole_folder_or_none(path: Path) -> Iterator[Path]:
     check_new_folder(path)
     path = path.absolute()  # "." has no name
     with _written(path), temporary_beside(path) as temporary:
-        _remove_left_behind_of(path)
+        remove_left_behind_of(path)
         temporary.mkdir(parents=True)
         yield temporary
         for written in (*temporary.rglob("*"), temporary):
@@ -145,12 +145,26 @@ def _written(path: Path) -> Iterator[None]:
         ) from error
 
 
-def _remove_left_behind_of(path: Path) -> None:
-    """Remove what killed processes have left of a folder; files whose names only begin with that of the folder are kept."""
-    own = re.compile(rf"\.{re.escape(path.name)}\.\d+\.\d+\.tmp")
+def remove_left_behind_of(path: Path) -> None:
+    """Remove what killed processes have left of a file or folder; those of running processes, and of longer names, are kept."""
+    own = re.compile(rf"\.{re.escape(path.name)}\.(\d+)\.\d+\.tmp")
     for found in path.parent.glob(".*.tmp"):
-        if own.fullmatch(found.name):
+        match = own.fullmatch(found.name)
+        if match is not None and not _is_being_written(found, int(match[1])):
             _remove(found)
+
+
+def _is_being_written(temporary: Path, process: int) -> bool:
+    """Whether a running process of this machine may be writing a temporary file; numbers of processes are given again."""
+    if process == os.getpid():
+        return temporary in _unfinished
+    try:
+        os.kill(process, 0)
+    except (ProcessLookupError, OverflowError):
+        return False
+    except PermissionError:
+        pass
+    return True
 
 
 def _flush(path: Path) -> None:

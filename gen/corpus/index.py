@@ -23,6 +23,7 @@ from gen.corpus.part import PartRow
 from gen.corpus.reading import open_records
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
 from gen.corpus.unicode_text import set_attributes, write_unicode
+from gen.errors import CorpusError
 
 _COMMENT = (
     "This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. "
@@ -94,8 +95,13 @@ def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str
 
 def corpus_attributes(file: Path) -> dict[str, Any]:
     """Global attributes of ``corpus.nc`` or of a packed file that belong to the corpus, whichever of the two holds it."""
-    with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
-        return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in OF_ONE_FILE}
+    try:
+        with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
+            return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in OF_ONE_FILE}
+    except (OSError, RuntimeError, AttributeError) as error:
+        raise CorpusError(
+            f"{file}: has no readable attributes ({error}); copy the file again, or pack again."
+        ) from None
 
 
 def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> dict[str, str]:

@@ -10,14 +10,15 @@ import re
 from functools import lru_cache
 from itertools import accumulate
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, Literal, NamedTuple
 
 import h5py
 import numpy as np
+from pydantic import StringConstraints, TypeAdapter, ValidationError
 
 from gen.corpus.files import Stamp, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
-from gen.corpus.journal import name_problem
+from gen.corpus.journal import Strict, first_problem, name_problem
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -34,6 +35,34 @@ FILE_NAME = re.compile(
 """Names of the small files of a corpus."""
 
 
+_Type = Annotated[str, StringConstraints(pattern=r"^[<|>](i[1248]|u[1248]|f[48]|S1)$")]
+
+
+class _Number(Strict):
+    """Attribute that is no text."""
+
+    type: _Type
+    value: int | float | list[int | float]
+
+
+_Attributes = dict[Annotated[str, StringConstraints(pattern=r"^\w+$")], str | _Number]
+
+
+class _Variable(Strict):
+    name: Annotated[str, StringConstraints(pattern=r"^\w+$")]
+    type: Literal["text"] | _Type
+    label: bool
+    attributes: _Attributes
+
+
+class _Form(Strict):
+    codec: Literal["zlib", "zstd", "none"]
+    variables: list[_Variable]
+
+
+_FORMS, _ATTRIBUTES = TypeAdapter(list[_Form]), TypeAdapter(list[_Attributes])
+
+
 class PackedPart(NamedTuple):
     """Place of a part in a packed file, and its form: attributes and variables, by which its file can be written again."""
 
@@ -48,6 +77,8 @@ class Packed(NamedTuple):
 
     files: dict[str, bytes]
     parts: dict[str, PackedPart]
+    axes_sha256: str
+    """SHA-256 of channels and times."""
 
 
 def home_of(part: Path) -> Path | None:
@@ -66,7 +97,7 @@ def is_packed(path: Path) -> bool:
     try:
         with LIBRARY_LOCK, h5py.File(path, "r", locking=False) as file:
             return PACKED in file.attrs
-    except (OSError, RuntimeError):
+    except (OSError, RuntimeError, KeyError):  # h5py raises KeyError if the attributes are damaged
         return False
 
 
@@ -89,7 +120,7 @@ def _contents(path: str, _stamp: Stamp) -> Packed:
             digest: Any = own_dataset(file, f"{FILES}/{CONTENTS}").attrs["sha256"]
             content = json.loads(_file(file, CONTENTS, digest.decode()))
             files = {name: _file(file, name, digest) for name, digest in content["files"].items()}
-            return Packed(files, _parts(content))
+            return Packed(files, _parts(content), str(content["axes_sha256"]))
     except CorpusError:
         raise
     except Exception as error:  # noqa: BLE001 - h5py raises a dozen unrelated types on damaged bytes
@@ -121,6 +152,11 @@ def _file(file: h5py.File, name: str, digest: str) -> bytes:
 
 def _parts(content: dict[str, Any]) -> dict[str, PackedPart]:
     rows = content["parts"]
+    try:
+        _FORMS.validate_python(content["forms"])
+        _ATTRIBUTES.validate_python(content["attributes"])
+    except ValidationError as error:
+        raise ValueError(f"its list of variables is altered: {first_problem(error)}") from None
     problem = next(filter(None, (name_problem(row[0]) for row in rows)), None)
     if problem is not None or any(not isinstance(row[1], int) or row[1] < 1 for row in rows):
         raise ValueError(problem or "a part has no records")

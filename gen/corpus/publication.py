@@ -173,6 +173,8 @@ def read_publication(facts: Mapping[str, Any]) -> Publication:
     >>> read_publication({"license": "CC-BY-4.0", "creators": [{"name": "Jane Doe"}]}).creators[0].name
     'Jane Doe'
     """
+    if not isinstance(facts, Mapping):
+        raise CorpusError(f"publication: {facts!r} is not a mapping; give keys such as license and creators.")
     try:
         return Publication.model_validate(facts)
     except ValidationError as error:

@@ -13,8 +13,8 @@ import xarray as xr
 from gen.corpus.files import Stamp, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.packed import RECORD_HASH, packed_contents, packed_part
-from gen.corpus.reading import StoredBlock, blocks_with_chunks, open_part
-from gen.corpus.record_hashes import hashes_of, packing_scale
+from gen.corpus.reading import StoredBlock, blocks_with_chunks, open_part, open_records
+from gen.corpus.record_hashes import axes_sha256, hashes_of, packing_scale
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 
@@ -23,7 +23,10 @@ _MOST_THREADS = 4  # the check of one part holds 20 to 60 MB
 
 
 def record_problems(file: Path) -> list[str]:
-    """Records of a packed file whose hash differs, one sentence for each part; kept in this process until the stamp of the file changes."""
+    """Records of a packed file whose hash differs, one sentence for each part, and damaged axes.
+
+    They are kept in this process until the stamp of the file changes.
+    """
     return list(_problems(file, stamp(file)))
 
 
@@ -31,7 +34,19 @@ def record_problems(file: Path) -> list[str]:
 def _problems(file: Path, _stamp: Stamp) -> tuple[str, ...]:
     paths = [file / "parts" / name for name in packed_contents(file).parts]
     with ThreadPoolExecutor(min(_MOST_THREADS, len(os.sched_getaffinity(0)))) as pool:
-        return tuple(filter(None, pool.map(_part_problem, paths)))
+        return tuple(filter(None, [axes_problem(file), *pool.map(_part_problem, paths)]))
+
+
+def axes_problem(file: Path) -> str | None:
+    """Sentence about channels or times of a packed file whose hash differs; None if they are whole."""
+    try:
+        with open_records(file, [file]) as records:
+            found = axes_sha256(records)
+    except CorpusError as error:
+        return str(error)
+    if found == packed_contents(file).axes_sha256:
+        return None
+    return f"{file}: its channels or times are damaged: their hash differs; copy the file again, or pack again."
 
 
 def _part_problem(path: Path) -> str | None:

@@ -5,6 +5,7 @@ only tell records of one corpus apart (:data:`RENUMBERED`) are left out, because
 """
 
 import hashlib
+import json
 from typing import Any
 
 import numpy as np
@@ -57,6 +58,12 @@ def hashes_of(signal: NDArray[Any], scale: float | None, variables: dict[str, xr
         record_hash.update(np.ascontiguousarray(stored[record]).data)
         found.append(record_hash.hexdigest())
     return found
+
+
+def axes_sha256(records: xr.Dataset) -> str:
+    """SHA-256 of the names of the channels and of the times of the samples, which all records share, in hexadecimal."""
+    names = json.dumps([str(name) for name in records["channel"].values])
+    return hashlib.sha256(names.encode() + _little_endian(records["elapsed_time"].values).tobytes()).hexdigest()
 
 
 def stored_signal(signal: xr.Variable) -> tuple[NDArray[Any], float | None]:

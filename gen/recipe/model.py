@@ -6,6 +6,7 @@ Whether a recipe as a whole can be made is checked in :mod:`gen.recipe.checks`.
 
 from collections.abc import Iterable, Mapping
 from itertools import pairwise
+from types import MappingProxyType
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, PrivateAttr, StrictInt, StringConstraints, ValidationError, model_validator
@@ -25,6 +26,7 @@ from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, Re
 from gen.recipe.sensor_faults import SensorFaultsSection
 from gen.recipe.shares import changed_operation, with_products
 
+_NO_KEYS: Mapping[str, Any] = MappingProxyType({})
 # memory of a record beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace
 _SAMPLES_OF_A_RECORD, _SAMPLES_OF_A_NUMBER = 4000, 12
 
@@ -135,8 +137,8 @@ class Recipe(Section):
     """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
     _extensions: tuple[Extension, ...] = PrivateAttr(())
 
-    def __init__(self, /, **keys: Any) -> None:
-        """Check a recipe given by its keys; sections are mappings, as in YAML.
+    def __init__(self, data: Mapping[str, Any] = _NO_KEYS, /, **keys: Any) -> None:
+        """Check a recipe given as a dict or by its keys; sections are mappings, as in YAML.
 
         Raises
         ------
@@ -145,8 +147,10 @@ class Recipe(Section):
         """
         from gen.recipe.sentences import sentences  # it needs the model
 
+        if not isinstance(data, Mapping) or not all(isinstance(key, str) for key in data):
+            raise RecipeError("a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes.")
         try:
-            super().__init__(**plain(keys))
+            super().__init__(**plain({**data, **keys}))
         except ValidationError as error:
             raise RecipeError("\n".join(sentences(error, Recipe))) from None
 

@@ -31,11 +31,15 @@ def read_recipe(
     """
     overrides = {key: value for key, value in (("seed", seed), ("records", records)) if value is not None}
     if isinstance(recipe, Mapping):
-        return Recipe(**_checked(recipe, "") | overrides)
+        return Recipe(recipe, **overrides)
+    if not isinstance(recipe, str | Path):
+        raise RecipeError(
+            f"recipe: {type(recipe).__name__} given; give a path, the name of a recipe or a mapping of its keys."
+        )
     path = find_recipe(recipe)
-    data = _checked(read_yaml(path, RecipeError), f"{path}: ")
+    data = read_yaml(path, RecipeError)
     try:
-        return Recipe(**data | overrides)
+        return Recipe(data, **overrides)
     except RecipeError as error:
         raise RecipeError("\n".join(f"{path}: {sentence}" for sentence in str(error).split("\n"))) from None
 
@@ -53,11 +57,3 @@ def recipe_schema() -> str:
     """JSON schema of a recipe, for editors."""
     schema = Recipe.model_json_schema()
     return json.dumps({"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}, indent=1) + "\n"
-
-
-def _checked(data: Any, place: str) -> dict[str, Any]:
-    if not isinstance(data, Mapping) or not all(isinstance(key, str) for key in data):
-        raise RecipeError(
-            f"{place}a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes."
-        )
-    return dict(data)

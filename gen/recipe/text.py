@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gen.corpus import write_text_durably
+from gen.errors import RecipeError
 from gen.recipe.model import Recipe
 from gen.recipe.section import plain
 
@@ -20,9 +21,13 @@ def write_recipe(recipe: Recipe, path: Path | str) -> None:
 
     Raises
     ------
+    RecipeError
+        If it is no recipe.
     CorpusError
         If the file cannot be written.
     """
+    if not isinstance(recipe, Recipe):
+        raise RecipeError(f"recipe: {type(recipe).__name__} given; give a gen.Recipe, such as gen.read_recipe makes.")
     write_text_durably(recipe_text(recipe), Path(path))
 
 

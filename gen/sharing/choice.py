@@ -60,7 +60,7 @@ def chosen_channels(corpus: xr.Dataset, channels: Sequence[str] | None) -> tuple
         raise CorpusError(f"channels: {channels!r} is not a list of names; allowed are {', '.join(names)}.")
     for name in channels:
         if name not in names:
-            raise CorpusError(f"channels: there is no channel {name}{nearest(name, names)}")
+            raise CorpusError(f"channels: there is no channel {name!r}{nearest(name, names)}")
     return tuple(place for place, name in enumerate(names) if name in channels)
 
 

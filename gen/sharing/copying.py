@@ -108,7 +108,8 @@ def in_floating_point(records: xr.Dataset) -> xr.Dataset:
     if signal.dtype.kind == "f":
         return records
     missing = signal.values == signal.attrs["_FillValue"]
-    values = (signal.values * np.float64(signal.attrs["scale_factor"])).astype(np.float32)
+    scale = np.float32(signal.attrs["scale_factor"])  # double in older corpora; replay computes with the single one
+    values = (signal.values * np.float64(scale)).astype(np.float32)
     values[missing] = np.nan
     packing = ("scale_factor", "add_offset", "_FillValue")
     attributes = {name: value for name, value in signal.attrs.items() if name not in packing}

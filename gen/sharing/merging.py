@@ -196,7 +196,7 @@ def _length(source: _Source) -> str:
 def _storage(source: _Source) -> str:
     encoding = source.corpus[SIGNAL].encoding
     return (
-        f"{encoding['dtype']} in steps of {encoding['scale_factor']!r} m s-2"
+        f"{encoding['dtype']} in {encoding['scale_factor'].dtype} steps of {encoding['scale_factor']:.9g} m s-2"
         if "scale_factor" in encoding
         else "float32"
     )

@@ -1,13 +1,12 @@
 """A corpus, or a choice of it, as one netCDF-4 file: ``folder -> (select, convert) -> pack -> FILE.nc``."""
 
-import glob
 from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.files import remove_left_behind, temporary_beside
+from gen.corpus.files import remove_left_behind_of, temporary_beside
 from gen.corpus.index import corpus_attributes
 from gen.corpus.manifest import INDEX_NAME, part_paths
 from gen.corpus.part import PartRow, write_part
@@ -64,9 +63,10 @@ def pack(
         raise CorpusError(f"{file}: exists; give another name, or remove it first.")
     if codec not in CODECS:
         raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
-    remove_left_behind(file.parent, glob.escape(file.name))
-    remove_left_behind(file.parent, glob.escape(f"{file.name}-corpora"))
-    with temporary_beside(file.with_name(f"{file.name}-corpora")) as corpora:
+    aside = file.with_name(f"{file.name}-corpora")
+    for path in (file, aside):
+        remove_left_behind_of(path)
+    with temporary_beside(aside) as corpora:
         if where is not None or split is not None or channels is not None:
             chosen = corpora / "chosen"
             select(directory, chosen, where=where, split=split, channels=channels)

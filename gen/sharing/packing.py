@@ -31,8 +31,9 @@ from gen.corpus.packed import (
 )
 from gen.corpus.part import deflated
 from gen.corpus.part_forms import form_of
-from gen.corpus.reading import StoredBlock
+from gen.corpus.reading import StoredBlock, open_part
 from gen.corpus.record_checks import hashed_blocks
+from gen.corpus.record_hashes import axes_sha256
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.errors import CorpusError
@@ -68,9 +69,11 @@ def pack_whole(directory: Path, file: Path, codec: Codec, progress: Progress | N
         with LIBRARY_LOCK:
             write_variables(directory, manifest.parts, temporary, {"comment": _COMMENT})
             _declare(temporary, directory, paths[0], codec)
-            _write_files(temporary, small_files(directory), _contents(manifest, forms))
+            _write_files(temporary, small_files(directory), _contents(manifest, forms, paths[0]))
         direct = codec == "zlib" == json.loads(forms[0][1])["codec"]
         _copy_records(paths, temporary, direct, codec, counter(progress, manifest.records))
+        if file.exists():
+            raise CorpusError(f"{file}: exists now, made by another command; give another name, or remove it first.")
     return PackedFile(file, manifest.records, len(paths), file.stat().st_size)
 
 
@@ -136,8 +139,11 @@ def small_files(directory: Path) -> dict[str, bytes]:
     return {name: (directory / name).read_bytes() for name in kept}
 
 
-def _contents(manifest: Manifest, forms: list[tuple[str, str]]) -> dict[str, Any]:
-    """Parts with their records and the numbers of their attributes and forms, which are listed once."""
+def _contents(manifest: Manifest, forms: list[tuple[str, str]], first: Path) -> dict[str, Any]:
+    """Hash of the axes of the ``first`` part, and parts with their records and the numbers of their attributes and forms.
+
+    Equal attributes and forms are listed once.
+    """
     attributes, shapes = (
         {text: number for number, text in enumerate(dict.fromkeys(texts))} for texts in zip(*forms, strict=True)
     )
@@ -146,7 +152,13 @@ def _contents(manifest: Manifest, forms: list[tuple[str, str]]) -> dict[str, Any
         for row, (attribute, shape) in zip(manifest.parts, forms, strict=True)
     ]
     listed = {"attributes": attributes, "forms": shapes}
-    return {name: [json.loads(text) for text in texts] for name, texts in listed.items()} | {"parts": parts}
+    with open_part(first) as part:
+        axes = axes_sha256(part)
+    return (
+        {"axes_sha256": axes}
+        | {name: [json.loads(text) for text in texts] for name, texts in listed.items()}
+        | {"parts": parts}
+    )
 
 
 def _write_files(path: Path, files: dict[str, bytes], contents: dict[str, Any]) -> None:

@@ -20,7 +20,7 @@ from gen.corpus.manifest import INDEX_NAME, listed_file, read_manifest, write_co
 from gen.corpus.packed import packed_contents, packed_part
 from gen.corpus.part import PartRow, write_part
 from gen.corpus.part_forms import dataset_of
-from gen.corpus.record_checks import damage_of, hashed_blocks, listed_hashes, per_record
+from gen.corpus.record_checks import axes_problem, damage_of, hashed_blocks, listed_hashes, per_record
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 from gen.progress import Progress, counter
@@ -57,6 +57,8 @@ def unpack(file: Path | str, directory: Path | str, *, progress: Progress | None
     if not file.is_file():
         raise CorpusError(f"{file}: is no file; give a file that raceway pack made.")
     manifest, files = read_manifest(file), packed_contents(file).files
+    if (problem := axes_problem(file)) is not None:
+        raise CorpusError(problem)
     rows: list[PartRow] = []
     done = counter(progress, manifest.records)
     with new_corpus_folder(output) as folder:
@@ -77,7 +79,13 @@ def _written_again(packed: Path, path: Path) -> PartRow:
         raise CorpusError(problem)
     values: dict[str, NDArray[Any]] = {name: variable.values for name, variable in own.items()}
     values[SIGNAL] = np.concatenate([block.values for block in blocks])
-    dataset, codec, chunks = dataset_of(place.form, place.attributes, values), place.form["codec"], None
+    try:
+        dataset = dataset_of(place.form, place.attributes, values)
+    except (KeyError, TypeError, ValueError) as error:
+        raise CorpusError(
+            f"{packed}: its list of variables does not fit them ({error}); do not trust this file."
+        ) from None
+    codec, chunks = place.form["codec"], None
     if codec == "zlib" and blocks[0].chunks is not None:
         stored = chain.from_iterable(block.chunks for block in blocks)
         chunks = dict(zip(np.ndindex(values[SIGNAL].shape[:2]), stored, strict=True))

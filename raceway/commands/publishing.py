@@ -1,6 +1,7 @@
 """Command that makes the data card of a corpus, with its terms of use, pictures and scores."""
 
 import re
+import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -96,7 +97,9 @@ def card(
         if not publication.stored.get(name.replace("creator", "creators"))
     ]
     if missing:
-        show.text(f"Before you publish it: raceway card {corpus} {' '.join(f'--{name} ...' for name in missing)}")
+        show.text(
+            f"Before you publish it: raceway card {shlex.quote(str(corpus))} {' '.join(f'--{name} ...' for name in missing)}"
+        )
 
 
 def _published(corpus: Path, given: dict[str, Any]) -> "Publication":

@@ -6,6 +6,7 @@ speed, load and severity by class. The same corpus and libraries give the same b
 
 import io
 import json
+import os
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,7 @@ from gen.corpus.card.additions import (
 )
 from gen.errors import CorpusError
 from gen.limits import check_limit
+from gen.plain_files import open_plain
 
 DPI = 110
 COLOURS = 48  # of a picture: lines, text and shades look the same, and the file has half the size
@@ -117,8 +119,9 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
         If the file is none, or its scores are of another corpus: one with another title, or other counts of records.
     """
     try:
-        check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
-        results = json.loads(path.read_bytes())
+        with open_plain(path) as file:
+            check_limit("manifest_bytes", os.fstat(file.fileno()).st_size, f"{path}:", CorpusError)
+            results = json.loads(file.read())
         title, classes = results["corpus"]["title"], results["corpus"]["classes"]
         scores = CardScores(
             track=results["track"],
@@ -134,7 +137,7 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
         raise CorpusError(
             f"{path}: cannot be read ({error.strerror}); give results.json of raceway benchmark."
         ) from None
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
+    except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         reason = f"no {error}" if isinstance(error, KeyError) else type(error).__name__
         raise CorpusError(
             f"{path}: is not a file of scores ({reason}); give results.json of raceway benchmark."

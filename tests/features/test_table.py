@@ -343,7 +343,8 @@ def test_a_channel_can_be_given_by_its_name(corpus):
     assert by_name.identical(by_number)
     assert by_name.attrs["channel"] == "sensor"
     with pytest.raises(
-        CorpusError, match=r"no channel senor; give one of housing, sensor, or its number from 0; did you mean sensor\?"
+        CorpusError,
+        match=r"no channel 'senor'; give one of housing, sensor, or its number from 0; did you mean sensor\?",
     ):
         feature_table(corpus, ("time",), channel="senor")
 

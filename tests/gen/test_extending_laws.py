@@ -231,6 +231,14 @@ def test_a_corpus_whose_machines_are_drawn_otherwise_now_is_refused(copied, monk
         extend(copied, specimens=1)
 
 
+def test_a_corpus_of_an_older_version_is_refused_before_anything_is_made(copied, monkeypatch):
+    before = contents(copied)
+    monkeypatch.setattr(EXTENDING, "SIMULATED", [of._replace(units="dB") for of in EXTENDING.SIMULATED])
+    with pytest.raises(CorpusError, match=r"was made by an older version of raceway.*; make another corpus"):
+        extend(copied, specimens=1)
+    assert contents(copied) == before
+
+
 @pytest.mark.parametrize(
     ("facts", "sentence"),
     [
@@ -267,7 +275,7 @@ def test_an_unfinished_corpus_is_refused(copied):
 
 @pytest.mark.parametrize("asked", [{}, {"rigs": 1, "specimens": 1}, {"rigs": 0}, {"specimens": -1}, {"rigs": 2**31}])
 def test_one_positive_number_is_wanted(copied, asked):
-    with pytest.raises(RecipeError, match=r"give one of the two numbers|use 1 or more"):
+    with pytest.raises(RecipeError, match=r"give one of the two numbers|use a whole number from 1 to"):
         extend(copied, **asked)
 
 

@@ -16,6 +16,7 @@ from tests.kills import killed
 # the kernel of the small recipes
 SHORT = {"waviness_nm": 20, "sample_rate_hz": 12000, "duration_s": 0.1, "settle_s": 0.06, "seed": 5}
 OUTER, INNER = gen.outer(width_mm=0.8), gen.inner(width_mm=0.4)
+QUICK = gen.read_recipe("quickstart")
 SNR = {"kind": "snr", "faulty_db": 3, "healthy_db": 3}
 
 
@@ -123,7 +124,10 @@ def test_further_variables_are_written(ladder, tmp_path):
         (lambda ladder: ladder.isel(record=[1, 1]), "record 1 is in the Dataset twice; give it once."),
         (lambda ladder: ladder.isel(record=[]), "the Dataset has no record; give at least one."),
         (lambda ladder: ladder.drop_vars("snr"), "the Dataset has no variable snr; keep all that gen.records gives."),
-        (lambda ladder: ladder.drop_vars("draws"), "the Dataset has no variable draws, so it holds no scenarios."),
+        (
+            lambda ladder: ladder.drop_vars("draws"),
+            "the Dataset has no variable draws, so it holds no scenarios; give one from",
+        ),
         (lambda ladder: ladder.drop_attrs(), "the Dataset has no attribute recipe; give one from gen.record"),
         (
             lambda ladder: ladder.assign_attrs(recipe="{"),
@@ -330,3 +334,30 @@ def test_merged_corpora_of_drawn_and_of_given_scenarios_are_replayed(ladder, tmp
     assert replayed(tmp_path / "merged")
     with pytest.raises(CorpusError, match="holds some records of a recipe, or scenarios made by hand"):
         gen.extend(given, rigs=1)
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "sentence"),
+    [
+        (lambda _: gen.write_corpus(None, "corpus"), CorpusError, "NoneType given in place of a Dataset"),
+        (lambda _: gen.recipe_of({}), CorpusError, "dict given in place of a Dataset"),
+        (lambda _: gen.scenarios_of(3), CorpusError, "so it holds no scenarios; give one from"),
+        (lambda some: gen.simulate_scenarios(some, None), RecipeError, r"recipe: NoneType given; give a gen\.Recipe"),
+        (lambda some: gen.simulate_scenarios(some, {}), RecipeError, "recipe: dict given"),
+        (lambda some: gen.simulate_scenarios(some[0], QUICK), RecipeError, "scenarios: Scenario given; give a list"),
+        (lambda _: gen.simulate_scenarios(None, QUICK), RecipeError, "scenarios: NoneType given; give a list"),
+        (lambda _: gen.simulate_scenarios("x", QUICK), RecipeError, "scenarios: str given; give a list"),
+        (lambda _: gen.simulate_scenarios([1], QUICK), RecipeError, r"scenarios\[0\]: is no scenario"),
+        (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
+        (lambda _: gen.write_recipe({}, "recipe.yaml"), RecipeError, r"recipe: dict given; give a gen\.Recipe"),
+        (lambda _: gen.read_publication([1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
+        (lambda _: gen.extend("corpus", rigs="2"), RecipeError, "rigs: '2' is not allowed; use a whole number from 1"),
+        (lambda _: gen.extend("corpus", rigs=True), RecipeError, "rigs: True is not allowed; use a whole number"),
+    ],
+)
+def test_an_argument_of_another_type_is_one_sentence(call, error, sentence, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(error, match=sentence) as caught:
+        call(gen.draw_scenarios(QUICK, 0, 1))
+    assert str(caught.value).endswith(".")
+    assert list(tmp_path.iterdir()) == []

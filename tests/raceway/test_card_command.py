@@ -111,6 +111,7 @@ def test_later_facts_join_the_others_and_the_scores_stay(told, copied, tmp_path)
         (("--creator", "<0000-0002-1825-0097>"), "is not a name"),
         (("--doi", "182"), "is not a DOI"),
         (("--date", "yesterday"), "is not a date"),
+        (("--scores", "/dev/zero"), "is a folder, a pipe or a device"),
         (("--scores", "missing.json"), "give results.json of raceway benchmark"),
     ],
 )
@@ -128,8 +129,9 @@ def test_scores_of_another_corpus_are_refused(run, copied, tmp_path):
         (tmp_path / "results.json").write_text(json.dumps(results_of(copied, **changed)))
         result = run("card", copied, "--scores", tmp_path / "results.json")
         assert (result.exit_code, "has scores of another corpus" in result.stderr) == (2, True)
-    (tmp_path / "results.json").write_text("[1]")
-    assert "is not a file of scores" in run("card", copied, "--scores", tmp_path / "results.json").stderr
+    for text in ("[1]", "[" * 100_000):
+        (tmp_path / "results.json").write_text(text)
+        assert "is not a file of scores" in run("card", copied, "--scores", tmp_path / "results.json").stderr
 
 
 @pytest.mark.usefixtures("undrawn")

@@ -50,7 +50,7 @@ def test_a_merge_is_made_and_described(told, run, tones, tmp_path):
             "character 1: there is no variable fualt; the nearest is fault.",
         ),
         ("select {one} --split tets -o {out}", "there is no split 'tets'"),
-        ("select {one} --channels a, -o {out}", "there is no channel a"),
+        ("select {one} --channels a, -o {out}", "there is no channel 'a'"),
         ("select {one} --split train -o {other}", "exists and is not an empty folder"),
         ("merge {one} -o {out}", "give two or more corpora"),
         ("merge {one} {one} -o {out}", "has the same samples as record 0"),

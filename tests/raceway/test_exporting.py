@@ -35,7 +35,7 @@ def test_an_export_says_how_many_records_and_files_there_are(run, told, corpus, 
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (["--to", "wav", "--channels", "z"], "channels: there is no channel z"),
+        (["--to", "wav", "--channels", "z"], "channels: there is no channel 'z'"),
         (["--to", "wav", "--where", "falt == 1"], "falt"),
         (["--to", "xls"], "xls"),
     ],

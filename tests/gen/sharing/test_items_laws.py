@@ -123,7 +123,7 @@ def test_a_packed_corpus_gives_the_same_items(corpus, tmp_path):
     ("asked", "sentence"),
     [
         ({"label": "falt"}, "label: there is no variable falt; the nearest is fault."),
-        ({"channels": ["c"]}, "channels: there is no channel c; allowed are a, b."),
+        ({"channels": ["c"]}, "channels: there is no channel 'c'; allowed are a, b."),
         ({"split": "tset"}, "split: there is no split 'tset'; allowed are train, validation, test."),
         ({"where": "fault == 'cage' and shaft_rate < 0"}, "none of 14 records is chosen"),
     ],

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from gen import generate, merge, open_corpus, pack, replay, select, shaft_angles, stored_scenario, validate_corpus
 from gen.corpus import (
@@ -17,6 +18,7 @@ from gen.corpus import (
 )
 from gen.corpus.record_hashes import RENUMBERED, record_hashes
 from gen.errors import CorpusError
+from gen.sharing.columns import columns_of_all
 from tests import corpora, tone_corpora
 from tests.kills import killed
 
@@ -150,6 +152,35 @@ def test_counts_and_floating_point_are_merged_in_floating_point_if_asked(tmp_pat
     expected = [columns(tmp_path / name, "acceleration")[0].astype(np.float32) for name in ("counts", "floats")]
     assert found.dtype == np.float32
     assert np.array_equal(found, np.concatenate(expected))
+
+
+def test_a_corpus_of_an_older_version_is_merged_in_floating_point(tmp_path, monkeypatch):
+    corpora.write_corpus(tmp_path / "new")
+    usual = corpora.dataset
+
+    def older(first, n, **how):
+        part = usual(first + 100, n, **how)
+        part["acceleration"].attrs |= {"scale_factor": np.float64(1) / 65.534, "add_offset": np.float64(0)}
+        part["elapsed_time"].attrs = {"units": "s"}
+        return part
+
+    monkeypatch.setattr(corpora, "dataset", older)
+    corpora.write_corpus(tmp_path / "old")
+    for order in (("new", "old"), ("old", "new")):
+        with pytest.raises(CorpusError, match=r"int16 in float(32|64) steps of 0\.0152592547 m s-2, and"):
+            merge([tmp_path / name for name in order], tmp_path / "merged")
+        merge([tmp_path / name for name in order], tmp_path / "-".join(order), float32=True)
+        assert validate_corpus(tmp_path / "-".join(order)) == []
+
+
+@pytest.mark.parametrize("units", [("dB", "1"), ("1", "dB")])
+def test_levels_of_older_corpora_have_the_unit_of_new_ones(units):
+    of = [xr.Dataset({"snr": ("record", [3.0], {"units": unit})}) for unit in units]
+    for one in of:
+        one["acceleration"] = ("record", "channel", "elapsed_time"), np.zeros((1, 1, 2))
+        one["channel"], one["elapsed_time"] = ["a"], [0.0, 1.0]
+    found = columns_of_all([("one", of[0]), ("other", of[1])])
+    assert found.variables["snr"].attributes["units"] == "1"
 
 
 def test_a_licence_is_kept_only_if_all_corpora_have_it(tones, tmp_path):

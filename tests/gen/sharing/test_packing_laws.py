@@ -1,5 +1,7 @@
 """Laws of packed files: the records, bytes and refusals of pack, open and unpack."""
 
+import hashlib
+import json
 import shutil
 from pathlib import Path
 
@@ -157,6 +159,64 @@ def change_a_label(file):
         opened["width"][8] = 0.5
 
 
+def change_a_time(file):
+    with h5py.File(file, "r+") as opened:
+        opened["elapsed_time"][3] += 1e-6
+
+
+def damage_the_attributes(file):
+    """Change one byte of the part of the file that h5py reads with the attributes, such that the file still opens."""
+    whole = bytearray(file.read_bytes())
+    place = whole.index(b"raceway_packed")
+    whole[place + 1] ^= 4
+    file.write_bytes(whole)
+
+
+def with_contents(change):
+    """Damage that keeps all hashes of the small files right, as a forger would."""
+
+    def damage(file):
+        with h5py.File(file, "r+") as opened:
+            content = json.loads(np.asarray(opened["files/contents.json"]).tobytes())
+            change(content)
+            text = json.dumps(content).encode()
+            del opened["files/contents.json"]
+            stored = opened["files"].create_dataset("contents.json", data=np.frombuffer(text, "S1"))
+            stored.attrs["sha256"] = np.bytes_(hashlib.sha256(text).hexdigest())
+
+    return damage
+
+
+FORGED = {
+    "a type that asks for a gigabyte": lambda content: content["forms"][0]["variables"][0].update(type="|V999999999"),
+    "a type of objects": lambda content: content["forms"][0]["variables"][0].update(type="O"),
+    "a name with a path": lambda content: content["forms"][0]["variables"][0].update(name="../x"),
+    "no attributes": lambda content: content["forms"][0]["variables"][0].update(attributes=3),
+    "an attribute with a line break": lambda content: content["attributes"][0].update({"a\nb": "x"}),
+    "an attribute of no type": lambda content: content["attributes"][0].update(a={"type": "x", "value": 3}),
+    "a codec with a path": lambda content: content["forms"][0].update(codec="../x"),
+}
+
+
+@pytest.mark.parametrize("what", FORGED)
+def test_a_forged_list_of_variables_is_refused_in_a_sentence(packed, tmp_path, what):
+    file = Path(shutil.copy(packed, tmp_path / "x.nc"))
+    with_contents(FORGED[what])(file)
+    for call in (open_corpus, lambda file: unpack(file, tmp_path / "d")):
+        with pytest.raises(CorpusError, match=r"not a whole packed corpus .its list of variables is altered: "):
+            call(file)
+    assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
+
+
+@pytest.mark.parametrize("change", [{"name": "no_such"}, {"type": "<f8"}])
+def test_a_list_of_other_variables_is_not_unpacked(packed, tmp_path, change):
+    file = Path(shutil.copy(packed, tmp_path / "x.nc"))
+    with_contents(lambda content: [of["variables"][-1].update(change) for of in content["forms"]])(file)
+    with pytest.raises(CorpusError, match="its list of variables does not fit them"):
+        unpack(file, tmp_path / "d")
+    assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
+
+
 def cut_a_chunk(file):
     with h5py.File(file, "r+") as opened:
         chunk = opened[SIGNAL].id.read_direct_chunk((2, 0, 0))[1]
@@ -177,6 +237,8 @@ def of_another_layout(file):
 DAMAGE = {
     "a sample": (change_a_chunk, r"record 4 is damaged: its hash differs; copy the file again"),
     "a label": (change_a_label, r"record 8 is damaged: its hash differs"),
+    "a time": (change_a_time, r"its channels or times are damaged: their hash differs; copy the file again"),
+    "the attributes": (damage_the_attributes, r"is a file and no packed corpus"),
     "a chunk": (cut_a_chunk, r"damaged \(.*\); generate or copy it again"),
     "the manifest": (change_the_manifest, r"not a whole packed corpus \(manifest\.json is altered: its hash differs\)"),
     "the layout": (of_another_layout, r"packed in layout 7, this version of raceway reads 1; pack the corpus again"),
@@ -194,6 +256,20 @@ def test_damage_is_refused_in_a_sentence(packed, tmp_path, what):
     with pytest.raises(CorpusError, match=sentence):
         unpack(file, tmp_path / "d")
     assert len(validate_corpus(file)) == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
+
+
+def test_a_file_that_another_command_made_meanwhile_is_kept(folder, tmp_path):
+    file = tmp_path / "x.nc"
+    with pytest.raises(CorpusError, match="exists now, made by another command"):
+        pack(folder, file, progress=lambda *_: file.write_text("another"))
+    assert [(path.name, path.read_text()) for path in tmp_path.iterdir()] == [("x.nc", "another")]
+
+
+def test_what_a_killed_pack_of_a_choice_leaves_is_removed_by_the_next(folder, tmp_path):
+    for _ in killed(lambda: pack(folder, tmp_path / "x.nc", split="train", float32=True), moments=4):
+        (tmp_path / "x.nc").unlink(missing_ok=True)
+    pack(folder, tmp_path / "x.nc", split="train", float32=True)
     assert [path.name for path in tmp_path.iterdir()] == ["x.nc"]
 
 

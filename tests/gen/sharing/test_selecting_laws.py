@@ -84,7 +84,7 @@ def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path):
         ({}, "no choice is given"),
         ({"where": "rig > 100"}, "none of 9 records is chosen; choose others."),
         ({"where": "shaft_rate > 1e6"}, r"choose others \(shaft_rate is [0-9.]+ to [0-9.]+ Hz\)"),
-        ({"channels": ["c"]}, "there is no channel c"),
+        ({"channels": ["c"]}, "there is no channel 'c'"),
     ],
 )
 def test_a_choice_of_nothing_is_refused_and_leaves_nothing(source, tmp_path, choice, sentence):

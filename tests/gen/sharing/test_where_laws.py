@@ -159,7 +159,7 @@ def test_a_choice_without_records_or_of_an_unknown_split_is_refused(corpus):
 def test_channels_are_chosen_by_name_in_the_order_of_the_corpus(corpus):
     assert chosen_channels(corpus, None) == chosen_channels(corpus, ["b", "a"]) == (0, 1)
     assert chosen_channels(corpus, ("b",)) == (1,)
-    with pytest.raises(CorpusError, match="there is no channel aa; the nearest is a"):
+    with pytest.raises(CorpusError, match="there is no channel 'aa'; the nearest is a"):
         chosen_channels(corpus, ["a", "aa"])
     for none in ([], "a"):
         with pytest.raises(CorpusError, match="is not a list of names; allowed are a, b"):
