@@ -6,9 +6,8 @@ import sys
 
 import pytest
 
-from gen.corpus import remove_left_behind_of, temporary_beside
+from gen.corpus import new_corpus_folder, remove_left_behind_of, temporary_beside
 from gen.errors import CorpusError
-from gen.sharing.copying import new_corpus
 
 
 @pytest.fixture
@@ -33,5 +32,5 @@ def test_only_files_of_ended_processes_are_removed(tmp_path, ended):
 
 def test_a_link_in_place_of_a_new_corpus_is_refused_before_the_work(tmp_path):
     (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(CorpusError, match="exists and is not an empty folder"), new_corpus(tmp_path / "link"):
+    with pytest.raises(CorpusError, match="exists and is not an empty folder"), new_corpus_folder(tmp_path / "link"):
         pytest.fail("the work began")
