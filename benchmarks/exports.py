@@ -1,7 +1,7 @@
 """Size, CPU time and memory of a corpus in every form of ``raceway export``: ``python -m benchmarks.exports [RECORDS [SAMPLES]]``.
 
 The corpus is made without a simulation: noise of 11 bits and one tone, 10,000 records of 4096 samples if not told otherwise, with all
-labels of a simulated corpus. Every export runs in a process of its own. The first line is the corpus itself.
+labels of a simulated corpus. Every export runs in a process of its own. The first line is the corpus itself, the second a packed file.
 """
 
 import json
@@ -32,9 +32,12 @@ FS = 12_800.0
 _EXPORT = """
 import json, re, sys, time
 import gen
-made = gen.export(*sys.argv[1:])
+if sys.argv[3] == "packed file":
+    gen.pack(*sys.argv[1:3])
+else:
+    gen.export(*sys.argv[1:])
 peak = re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1]  # ru_maxrss counts the parent process too
-print(json.dumps({"files": made.files, "bytes": made.bytes, "seconds": time.process_time(), "memory": int(peak) / 1e3}))
+print(json.dumps({"seconds": time.process_time(), "memory": int(peak) / 1e3}))
 """
 IN_PART = 500
 COUNTS_PER_UNIT = 65.534
@@ -69,9 +72,8 @@ def costs(records: int = 10_000, samples: int = 4096) -> Iterator[Cost]:
     """Cost of each form for a corpus of so many records and samples a record."""
     with tempfile.TemporaryDirectory() as temporary:
         corpus = make_corpus(Path(temporary) / "corpus", records, samples)
-        files = [path for path in corpus.rglob("*") if path.is_file()]
-        yield Cost("corpus", len(files), sum(path.stat().st_size for path in files) / 1e6, np.nan, np.nan)
-        for form in FORMS:
+        yield Cost("corpus", *_size(corpus), np.nan, np.nan)
+        for form in ("packed file", *FORMS):
             yield _cost(corpus, Path(temporary) / form, form)
 
 
@@ -104,7 +106,13 @@ def _records(first: int, n: int, samples: int) -> xr.Dataset:
 def _cost(corpus: Path, output: Path, form: str) -> Cost:
     """Export in a process of its own."""
     told = json.loads(run_python("-c", _EXPORT, corpus, output, form))
-    return Cost(form, told["files"], told["bytes"] / 1e6, told["seconds"], told["memory"])
+    return Cost(form, *_size(output), told["seconds"], told["memory"])
+
+
+def _size(made: Path) -> tuple[int, float]:
+    """Number and size [MB] of the files in a folder, or of one file."""
+    files = [made] if made.is_file() else [path for path in made.rglob("*") if path.is_file()]
+    return len(files), sum(path.stat().st_size for path in files) / 1e6
 
 
 if __name__ == "__main__":
