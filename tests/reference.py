@@ -195,13 +195,15 @@ def split_mix(number: int, seed: int) -> float:
     return (((x ^ x >> 31) >> 12) + 0.5) / 2**52
 
 
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)  # of Gauss and Legendre, for integrals over part of a half sine
+
+
 def half_sine_under_slope(since: float, reach: float, length: float = KNOCK_SECONDS) -> float:
     """Integral of the unit half sine that began ``since`` seconds ago, under a line from 1 now to 0 at ``reach`` from now [s]."""
     low, high = np.clip(sorted((since, since + reach)), 0.0, length)
-    nodes, weights = np.polynomial.legendre.leggauss(24)
-    at = (low + high) / 2 + (high - low) / 2 * nodes
+    at = (low + high) / 2 + (high - low) / 2 * NODES
     line = 1 - (at - since) / reach
-    return float((high - low) / 2 * weights @ (np.sin(np.pi * at / length) * line))
+    return float((high - low) / 2 * WEIGHTS @ (np.sin(np.pi * at / length) * line))
 
 
 def waviness(record: KernelInput, on_inner: FloatArray, on_outer: FloatArray) -> FloatArray:
