@@ -11,6 +11,7 @@ import argparse
 import asyncio
 import logging
 import multiprocessing
+import os
 import resource
 import tempfile
 import time
@@ -35,6 +36,9 @@ PARTS = (100, 10_000)
 WORKERS = 64
 TASK_S = 0.1  # shorter than any real part, so that a run takes minutes
 GROUPS = 4  # processes that hold the workers
+TICK_S = 1 / os.sysconf(
+    "SC_CLK_TCK"
+)  # the system counts the time of another process in such steps; a short run takes none
 
 
 class Cost(NamedTuple):
@@ -90,7 +94,7 @@ def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, s
     before = time.process_time(), _cpu_seconds(scheduler)
     with patch.object(generation, "finished", timed):
         generation.generate(recipe, folder, records=parts * per_part, scheduler=address)
-    driver, of_scheduler = time.process_time() - before[0] - ending[0], _cpu_seconds(scheduler) - before[1]
+    driver, of_scheduler = time.process_time() - before[0] - ending[0], max(_cpu_seconds(scheduler) - before[1], TICK_S)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     return Cost(parts, driver / parts, of_scheduler / parts, ending[0] / parts, memory)
 
