@@ -7,7 +7,6 @@ holds the unfinished recordings alone and no signals.
 """
 
 from collections.abc import Iterable
-from pathlib import Path
 from typing import Any, Literal, NamedTuple, cast
 
 import numpy as np
@@ -18,7 +17,7 @@ from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from features.signal.speed import DISAGREEMENT, EVIDENCE, ShaftSpeed, find_speed
 from features.speed import line_levels
-from gen.corpus import read_channel
+from gen.corpus import RecordBlock, read_channel
 
 Speed = Literal["off", "check", "correct"]
 SPEEDS: tuple[Speed, ...] = ("off", "check", "correct")
@@ -63,13 +62,13 @@ def recording_numbers(table: xr.Dataset) -> IntArray:
     return np.unique(keys, axis=1, return_inverse=True)[1].reshape(-1)
 
 
-def part_sums(task: tuple[Path, IntArray], channel: int = 0) -> list[Sums]:
-    """Sums of the levels of lines of the recordings in one part.
+def block_sums(task: tuple[RecordBlock, IntArray], channel: int = 0) -> list[Sums]:
+    """Sums of the levels of lines of the recordings in one block of records.
 
-    ``task`` is the path of the part and the number of the recording of each of its records, shape (record,).
+    ``task`` is the block and the number of the recording of each of its records, shape (record,).
     """
-    path, recording = task
-    x, (fs, shaft_rate, *nominal) = read_channel(path, channel, ("sample_rate", "shaft_rate", *Orders._fields))
+    block, recording = task
+    x, (fs, shaft_rate, *nominal) = read_channel(block, channel, ("sample_rate", "shaft_rate", *Orders._fields))
     levels: dict[int, FloatArray] = {}
     windows: dict[int, int] = {}
     for rate in np.unique(fs[fs > 0]):
@@ -87,9 +86,9 @@ def part_sums(task: tuple[Path, IntArray], channel: int = 0) -> list[Sums]:
 
 
 def recording_speeds(
-    recording: IntArray, shaft_rate: FloatArray, parts: Iterable[tuple[int, list[Sums]]]
+    recording: IntArray, shaft_rate: FloatArray, blocks: Iterable[tuple[int, list[Sums]]]
 ) -> list[ShaftSpeed]:
-    """Estimate of each recording, by its number, from the sums of all parts in any order.
+    """Estimate of each recording, by its number, from the sums of all blocks in any order.
 
     Parameters
     ----------
@@ -97,22 +96,22 @@ def recording_speeds(
         Number of the recording of each record, shape (record,).
     shaft_rate
         As labelled [Hz], shape (record,); a recording with several rates is estimated relative to its first.
-    parts
-        Number and sums of each part.
+    blocks
+        Number and sums of each block.
     """
     _, first, missing = np.unique(recording, return_index=True, return_counts=True)
     label = shaft_rate[first]
     waiting: dict[int, dict[int, Sums]] = {}
     found: list[ShaftSpeed | None] = [None] * len(first)
-    for part, sums in parts:
+    for block, sums in blocks:
         for new in sums:
-            waiting.setdefault(new.recording, {})[part] = new
+            waiting.setdefault(new.recording, {})[block] = new
             missing[new.recording] -= new.records
             if missing[new.recording] == 0:
                 held = waiting.pop(new.recording)
                 ordered = [held[number] for number in sorted(held) if held[number].windows]
                 windows = sum(one.windows for one in ordered)
-                # summed in the order of the parts, so that the result does not depend on that of the tasks
+                # summed in the order of the blocks, so that the result does not depend on that of the tasks
                 mean = sum((one.levels for one in ordered), np.zeros((1, 1))) / max(windows, 1)
                 found[new.recording] = find_speed(mean, windows, float(label[new.recording]))
     return [speed for speed in found if speed is not None]

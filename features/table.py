@@ -1,12 +1,12 @@
 """Feature table: a corpus in, one row per record out, with features and all variables of the record.
 
-``parts -> one task per part: read signal and operating variables -> indicators -> rows, in corpus order``
+``records -> one task per block of them: read signal and operating variables -> indicators -> rows, in corpus order``
 
 Features are computed from the signal and the ``operating`` variables only; labels, simulator truth and provenance are
 copied unchanged. A task returns features and no signals, and its rows are copied into a table that is allocated once: a worker needs
-memory for the signals of one part, and this process needs that of the table, which is 1.4 kB per record with all groups. A
-task is one part, so the features do not depend on the number of workers. If shaft speeds are wanted, a pass over all
-parts before that of the features estimates them, since the records of a recording may lie in several parts.
+memory for the signals of one block, and this process needs that of the table, which is 1.4 kB per record with all groups. A
+task is one block of records, so the features do not depend on the number of workers. If shaft speeds are wanted, a pass over
+all blocks before that of the features estimates them, since the records of a recording may lie in several blocks.
 """
 
 from collections.abc import Callable, Generator, Sequence
@@ -23,15 +23,15 @@ from features.channels import channel_number
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.recording_speeds import (
     Speed,
+    block_sums,
     checked_speed,
-    part_sums,
     rates_to_use,
     recording_numbers,
     recording_speeds,
     with_speeds,
 )
 from features.signal.rows import FloatArray
-from gen.corpus import DRAWS, open_corpus, part_paths, read_channel, read_manifest
+from gen.corpus import DRAWS, RecordBlock, open_corpus, read_channel, record_blocks
 from gen.progress import Progress, counter
 from gen.workers import run
 
@@ -69,11 +69,11 @@ def feature_table(
     band
         Band that lines and shape are computed from [Hz], such as ``(300, 9000)``.
     workers
-        Number of parts at work at a time: 1 in this thread, a few in threads of this process, more in processes on this machine.
+        Number of blocks at work at a time: 1 in this thread, a few in threads of this process, more in processes on this machine.
     scheduler
         A dask client, or the address of a dask scheduler whose workers see ``corpus`` under the same path; replaces ``workers``.
     progress
-        Called after each part with the number of parts done and of all parts; speeds count every part twice.
+        Called after each block of records with the number of blocks done and of all; speeds count every block twice.
 
     Returns
     -------
@@ -99,41 +99,41 @@ def feature_table(
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
     treatment = checked_speed(speed, table)
-    paths = [path.absolute() for path in part_paths(corpus, check="size")]
-    starts = np.cumsum([0, *(row.records for row in read_manifest(Path(corpus)).parts)])
-    work = partial(_run, workers=min(workers, len(paths)), scheduler=scheduler)
-    report = counter(progress, len(paths) * (1 if treatment == "off" else 2))
+    blocks = record_blocks(Path(corpus).absolute(), check="size")
+    starts = np.cumsum([0, *(block.stop - block.first for block in blocks)])
+    work = partial(_run, workers=min(workers, len(blocks)), scheduler=scheduler)
+    report = counter(progress, len(blocks) * (1 if treatment == "off" else 2))
     if treatment != "off":
         recording = recording_numbers(table)
-        tasks = list(zip(paths, np.split(recording, starts[1:-1]), strict=True))
-        with closing(work(partial(part_sums, channel=number), tasks, report)) as sums:
+        tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))
+        with closing(work(partial(block_sums, channel=number), tasks, report)) as sums:
             found = recording_speeds(recording, table["shaft_rate"].values, sums)
         table = with_speeds(table, recording, found, treatment)
     rates = rates_to_use(table) if treatment == "correct" else table["shaft_rate"].values
     values, missing = np.empty((table.sizes["record"], len(names))), 0
-    compute = partial(_features_of_part, groups=tuple(groups), channel=number, band=band)
-    tasks = list(zip(paths, np.split(rates, starts[1:-1]), strict=True))
-    with closing(work(compute, tasks, report)) as blocks:
-        for part, block in blocks:
-            values[starts[part] : starts[part + 1]] = block
-            missing += int(np.isnan(block).any(axis=1).sum())
+    compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)
+    tasks = list(zip(blocks, np.split(rates, starts[1:-1]), strict=True))
+    with closing(work(compute, tasks, report)) as made:
+        for number, rows in made:
+            values[starts[number] : starts[number + 1]] = rows
+            missing += int(np.isnan(rows).any(axis=1).sum())
     return _assemble(table, values, names, feature_groups(groups, band)).assign_attrs(
         records_with_missing_features=missing, **read
     )
 
 
-def part_features(
-    path: Path,
+def block_features(
+    block: RecordBlock,
     groups: Sequence[str] = GROUPS,
     channel: int = 0,
     shaft_rate: FloatArray | None = None,
     band: Band = DEFAULT_BAND,
 ) -> FloatArray:
-    """Features of the records of one part, shape (record, feature); NaN as in `features.indicators`.
+    """Features of a block of records, shape (record, feature); NaN as in `features.indicators`.
 
     ``shaft_rate`` [Hz], shape (record,), replaces the labelled rates.
     """
-    x, (fs, labelled, *nominal) = read_channel(path, channel, ("sample_rate", "shaft_rate", *Orders._fields))
+    x, (fs, labelled, *nominal) = read_channel(block, channel, ("sample_rate", "shaft_rate", *Orders._fields))
     shaft_rate = labelled if shaft_rate is None else shaft_rate
     orders = Orders(*nominal)
     values = np.full((len(x), len(feature_names(groups, band))), np.nan)
@@ -144,9 +144,11 @@ def part_features(
     return values
 
 
-def _features_of_part(task: tuple[Path, FloatArray], groups: Sequence[str], channel: int, band: Band) -> FloatArray:
-    path, shaft_rate = task
-    return part_features(path, groups, channel, shaft_rate, band)
+def _features_of_block(
+    task: tuple[RecordBlock, FloatArray], groups: Sequence[str], channel: int, band: Band
+) -> FloatArray:
+    block, shaft_rate = task
+    return block_features(block, groups, channel, shaft_rate, band)
 
 
 def _run(

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gen.corpus import LIBRARY_LOCK, whole_or_not_at_all
+from gen.corpus import LIBRARY_LOCK, check_result_file, whole_or_not_at_all
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -40,7 +40,8 @@ def check_destination(path: Path | str) -> None:
     Raises
     ------
     CorpusError
-        If the suffix is neither ``.nc`` nor ``.parquet``, or is ``.parquet`` without pyarrow.
+        If the suffix is neither ``.nc`` nor ``.parquet``, or is ``.parquet`` without pyarrow; if the path lies in a corpus, or is a file
+        that is no feature table.
     """
     path = Path(path)
     if path.suffix not in WRITERS:
@@ -49,6 +50,7 @@ def check_destination(path: Path | str) -> None:
     if path.suffix == ".parquet" and find_spec("pyarrow") is None:
         message = f"{path}: Parquet needs pyarrow; pip install 'raceway[parquet]', or write .nc instead."
         raise CorpusError(message)
+    check_result_file(path, "feature table")
 
 
 def read_table(path: Path | str) -> xr.Dataset:

@@ -34,12 +34,8 @@ LIMITS: Mapping[str, Limit] = {
     # responses, counts and the paths of every rig: 8 to 12 bytes a sample were measured, so 1.8 GB beside the batch
     "part_samples": Limit(150_000_000, "samples", "samples of all records of a part; other memory of a record is counted in samples"),
     "recording_files": Limit(100_000, "files", "files of recordings that one import examines"),
-    "file_bytes": Limit(2_000_000_000, "bytes", "bytes of values in a file of recordings, of a corpus or of a model, after decompression"),
+    "file_bytes": Limit(2_000_000_000, "bytes", "size of a file of recordings or a model, and of the values of a corpus"),
     "manifest_bytes": Limit(50_000_000, "bytes", "size of the manifest of a corpus"),
-    "schema_bytes": Limit(50_000_000, "bytes", "size of the description of the objects in a model file"),
-    "model_objects": Limit(1_000_000, "objects", "objects in a model file; an object with two references counts twice"),
-    "model_features": Limit(1_000, "features", "features of a model"),
-    "model_nodes": Limit(50_000_000, "nodes", "nodes of all trees of a forest in a model; a tree with two references counts twice"),
 }  # fmt: skip
 
 

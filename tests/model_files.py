@@ -43,47 +43,33 @@ def write_models(folder: Path, classes: int, seed: int = 0) -> dict[str, Path]:
 
 
 class Archive:
-    """Members of a model file, to be changed and zipped again with the right checksums."""
+    """Members of a model file, to be examined, or changed and zipped again with the right checksums."""
 
     def __init__(self, path: Path) -> None:
         with zipfile.ZipFile(path) as archive:
             self.members = {name: archive.read(name) for name in archive.namelist()}
         self.schema = json.loads(self.members.pop("schema.json"))
 
-    def places(self, key: str) -> list[dict]:
-        """Every JSON object under a key, outermost first."""
-        return [value[key] for value in self._values() if isinstance(value, dict) and isinstance(value.get(key), dict)]
-
-    def objects(self, name: str) -> list[dict]:
-        """Attributes of every object of a class."""
-        found = [value for value in self._values() if isinstance(value, dict) and value.get("__class__") == name]
-        return [value["content"]["content"] for value in found if "content" in value]
-
-    def array(self, place: str | dict) -> np.ndarray:
-        """Copy of the array at a place, or of the first array under a key."""
-        return np.load(io.BytesIO(self.members[self._found(place)["file"]]))
-
-    def put(self, place: str | dict, array: np.ndarray) -> None:
-        """Replace the array at a place, or the first array under a key."""
-        file, found = io.BytesIO(), self._found(place)
-        np.save(file, array)
-        found["file"] = f"{1000 + len(self.members)}.npy"  # other objects may share the old file
-        self.members[found["file"]] = file.getvalue()
-
-    def _values(self) -> list[Any]:
+    def values(self) -> list[Any]:
+        """Every part of the schema, outermost first."""
         found: list[Any] = [self.schema]
         for value in found:
             found += list(value.values()) if isinstance(value, dict) else value if isinstance(value, list) else []
         return found
 
-    def _found(self, place: str | dict) -> dict:
-        return self.places(place)[0] if isinstance(place, str) else place
+    def places(self, key: str) -> list[dict]:
+        """Every JSON object under a key, outermost first."""
+        return [value[key] for value in self.values() if isinstance(value, dict) and isinstance(value.get(key), dict)]
+
+    def array(self, key: str) -> np.ndarray:
+        """Copy of the first array under a key."""
+        return np.load(io.BytesIO(self.members[self.places(key)[0]["file"]]))
 
     def field(self, name: str) -> dict:
         return self.schema["content"][name]
 
-    def write(self, path: Path, compression: int = zipfile.ZIP_STORED) -> Path:
-        with zipfile.ZipFile(path, "w", compression) as archive:
+    def write(self, path: Path) -> Path:
+        with zipfile.ZipFile(path, "w") as archive:
             for name, content in {**self.members, "schema.json": json.dumps(self.schema).encode()}.items():
                 archive.writestr(name, content)
         return path

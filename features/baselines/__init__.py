@@ -19,11 +19,7 @@ fitting           fits of one classifier to several selections of records
 splits            cross-validation on a track, with its two controls
 curves            score against the number of training specimens
 cross_calibration calibration on rigs or specimens outside the training
-model_members     the zip archive of a model file and its arrays, checked before they are read
-model_states      content of a model file as plain values
-model_file        the only module that reads and writes skops archives
-model_rules       allowed values of the attributes that training sets
-model_check       comparison of the estimator in a model file with one trained in this process
+model_file        the only module that reads and writes archives of skops
 models            training, saving, loading, evaluation
 unlabelled        answers for recordings whose class is not known
 benchmark         scores of every baseline with controls, and on another corpus

@@ -1,113 +1,128 @@
-"""Model files: the only module that reads and writes skops archives.
+"""Model files: archives of skops, which name the type of every object and contain no code.
 
-``bytes of a file -> members -> State, checked by the caller -> skops -> Python objects``
+A file is read only if skops or this module trusts each type in it, so no code of the file runs. The content of the arrays is not checked:
+load only models of people you trust.
 
-A skops archive is a zip of arrays (``.npy``) and of ``schema.json``, which names the type of every object. The origin of
-a file is unknown, so it is first read into plain values: see `features.baselines.model_states`. skops creates objects
-only after the caller has compared these values with a model that was trained in this process.
-
-`pack` numbers objects by their first appearance. So equal models give equal bytes in every process, and a file contains
-each array once.
+skops numbers objects by their address in memory and names arrays at random. `write_model_file` numbers both by their first appearance, so
+that equal models give equal bytes in every process.
 """
 
 import io
 import json
 import warnings
+import zipfile
 from collections.abc import Mapping
-from functools import cache
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
+import numpy as np
 import skops.io
+from sklearn.exceptions import InconsistentVersionWarning
+from skops.io.exceptions import UntrustedTypesFoundException
 
-from features.baselines.model_members import SCHEMA, read_members, write_members
-from features.baselines.model_states import KINDS, OBJECT_LOADERS, PROTOCOL, Known, State, StateReader
+from gen.corpus import write_durably
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
+TRUSTED = (
+    "features.baselines.estimators.EnvelopeRule",
+    "numpy.dtype",
+    "sklearn.ensemble._hist_gradient_boosting.predictor.TreePredictor",
+    "sklearn.tree._tree.Tree",
+    "sklearn.utils._bunch.Bunch",
+)
+"""Types in the models of Raceway that skops does not trust by itself."""
+_SCHEMA = "schema.json"
+_SHARED = (
+    "ObjectNode",
+    "NdArrayNode",
+)  # loaders of objects that have several owners, such as the members of an ensemble
+_MOMENT = (1980, 1, 1, 0, 0, 0)  # earliest date of the zip format, used for all members
 
-def pack(content: Mapping[str, Any]) -> bytes:
-    """Bytes of a model file with some objects; equal objects give equal bytes in any process."""
-    return _archive(read_packed(skops.io.dumps(dict(content)), Known()))
 
-
-def unpack(state: State) -> Any:
-    """Create the objects of a state, which `features.baselines.model_check` must have accepted."""
-    return skops.io.loads(_archive(state), trusted=[f"{module}.{name}" for module, name, _ in KINDS])
-
-
-def read_state(path: Path, known: Known) -> State:
-    """Read a model file as plain values.
+def read_model_file(path: Path) -> Any:
+    """Read the objects of a model file.
 
     Raises
     ------
     CorpusError
-        If it is missing, damaged, larger than the limits, or names a type that no model of Raceway contains.
+        If it is missing, damaged or larger than the limit, names a type that no model of Raceway contains, or was made with another
+        version of scikit-learn.
     """
-    if not path.exists():
-        raise CorpusError(f"{path}: no such file; give a model made with raceway train.")
     if not path.is_file():
-        raise CorpusError(f"{path}: not a file; give a model made with raceway train.")
+        reason = "not a file" if path.exists() else "no such file"
+        raise CorpusError(f"{path}: {reason}; give a model made with raceway train.")
     check_limit("file_bytes", path.stat().st_size, f"{path}: has", CorpusError)
     try:
-        return _read(path, known, str(path))
-    except CorpusError:
-        raise
-    except Exception as error:
-        # the readers of zip, JSON and NumPy raise many unrelated types for a damaged file
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", InconsistentVersionWarning)
+            return skops.io.load(path, trusted=TRUSTED)
+    except UntrustedTypesFoundException as error:
+        foreign = sorted(set(skops.io.get_untrusted_types(file=path)) - set(TRUSTED))
+        raise CorpusError(
+            f"{path}: holds {', '.join(foreign)}, which no model of raceway contains; give a model made with raceway train."
+        ) from error
+    except InconsistentVersionWarning as error:
+        raise CorpusError(
+            f"{path}: was trained with scikit-learn {error.original_sklearn_version}, and {error.current_sklearn_version} is installed; "
+            "train it again with raceway train."
+        ) from error
+    except Exception as error:  # the readers of zip, JSON and NumPy raise many unrelated types for a damaged file
         reason = (str(error) or type(error).__name__).splitlines()[0]
-        raise CorpusError(f"{path}: not a readable model ({reason}); train it again.") from error
+        raise CorpusError(f"{path}: not a readable model ({reason}); train it again with raceway train.") from error
 
 
-def read_packed(content: bytes, known: Known) -> State:
-    """Read the bytes of an archive made in this process as plain values."""
-    return _read(io.BytesIO(content), known, "model")
-
-
-def _read(source: Path | IO[bytes], known: Known, name: str) -> State:
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")  # NumPy warns of headers in a form that it does not write itself
-        return StateReader(read_members(source, name), known, name).root()
-
-
-def _archive(root: State) -> bytes:
-    """Zip archive of a state, with objects and arrays numbered by first appearance, and one date for all members."""
-    done: dict[State, dict[str, Any]] = {}
+def write_model_file(content: Mapping[str, Any], path: Path) -> None:
+    """Write a model file, whole or not at all; equal objects give equal bytes in any process."""
+    with zipfile.ZipFile(io.BytesIO(skops.io.dumps(dict(content)))) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
     arrays: dict[bytes, str] = {}
-
-    def written(value: Any) -> Any:
-        match value:
-            case State() if value in done:
-                # skops resolves the number of an object only after it has read the object; other states are short
-                return {"__id__": done[value]["__id__"]} if value.kind[2] in OBJECT_LOADERS else done[value]
-            case State():
-                found = done[value] = _opening(value, len(done) + 1)
-                if value.array is not None:
-                    found["file"] = arrays.setdefault(value.content, f"{len(arrays)}.npy")
-                found |= {key: written(part) for key, part in value.parts.items()}
-                if value.kind[2] in OBJECT_LOADERS and "content" in found:
-                    # scikit-learn removes the version from the attributes of an object, so objects may not share them
-                    found["content"] = {key: part for key, part in found["content"].items() if key != "__id__"}
-                return found
-            case dict():
-                return {key: written(part) for key, part in value.items()}
-            case tuple():
-                return [written(part) for part in value]
-            case _:
-                return value
-
-    schema = json.dumps(written(root) | _protocol(), separators=(",", ":"))
-    return write_members({name: content for content, name in arrays.items()} | {SCHEMA: schema.encode()})
+    schema = _renumbered(json.loads(members.pop(_SCHEMA)), members, arrays, {})
+    file = io.BytesIO()
+    with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
+        text = json.dumps(schema, separators=(",", ":")).encode()
+        for name, held in {**{name: array for array, name in arrays.items()}, _SCHEMA: text}.items():
+            entry = zipfile.ZipInfo(name, _MOMENT)
+            entry.create_system = 3  # Unix on every system
+            archive.writestr(entry, held)
+    write_durably(file.getvalue(), path)
 
 
-def _opening(state: State, number: int) -> dict[str, Any]:
-    """First keys of the JSON object of a state."""
-    module, name, loader = state.kind
-    return {"__class__": name, "__module__": module, "__loader__": loader, "__id__": number}
+def _renumbered(value: Any, members: Mapping[str, bytes], arrays: dict[bytes, str], numbers: dict[Any, int]) -> Any:
+    """Part of a schema with its objects and arrays numbered by first appearance.
+
+    Parameters
+    ----------
+    value
+        The part.
+    members
+        Arrays of the archive by name.
+    arrays, numbers
+        New name of each array, and new number of each shared object by the number that skops gave it; both are extended.
+    """
+    if isinstance(value, list):
+        return [_renumbered(part, members, arrays, numbers) for part in value]
+    if not isinstance(value, dict):
+        return value
+    number = value.get("__id__")
+    if number in numbers:
+        return {"__id__": numbers[number]}  # skops looks up the number of an object before it reads the rest
+    found = {key: part for key, part in value.items() if key != "__id__"}
+    if value.get("__loader__") in _SHARED:
+        found["__id__"] = numbers[number] = len(numbers) + 1
+    if found.get("__loader__") == "NdArrayNode" and found["type"] == "numpy":
+        found["file"] = arrays.setdefault(_without_padding(members[found["file"]]), f"{len(arrays)}.npy")
+    return {key: _renumbered(part, members, arrays, numbers) for key, part in found.items()}
 
 
-@cache
-def _protocol() -> dict[str, Any]:
-    """Protocol and version that the installed skops writes into its archives."""
-    schema = json.loads(read_members(io.BytesIO(skops.io.dumps(None)), "skops")[SCHEMA])
-    return {key: schema[key] for key in PROTOCOL}
+def _without_padding(content: bytes) -> bytes:
+    """The same ``.npy`` file with zeros between the fields of a record, which NumPy leaves uninitialised."""
+    array = np.load(io.BytesIO(content), allow_pickle=False)
+    if array.dtype.names is None:
+        return content
+    clean = np.zeros(array.shape, array.dtype)
+    for name in array.dtype.names:
+        clean[name] = array[name]
+    file = io.BytesIO()
+    np.save(file, clean, allow_pickle=False)
+    return file.getvalue()

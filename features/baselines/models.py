@@ -1,39 +1,32 @@
 """A trained baseline with the names of its features, its classes and a description of its training.
 
-Model files contain no pickle, and loading one runs no code from it. `load_model` checks the whole content before it creates any object:
-see `features.baselines.model_file` and `features.baselines.model_check`.
+Model files contain no pickle, and loading one runs no code from it: see `features.baselines.model_file`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
-from pandas import DataFrame, Index
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from features.band import HIGHEST, Band, band_of
+from features.band import Band, band_of
 from features.baselines.calibration import Calibration
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
     ESTIMATORS,
-    RELATIVE_ESTIMATORS,
     UNTRAINED,
     Estimator,
     relative_name,
 )
 from features.baselines.fitting import FitProgress
-from features.baselines.model_check import check_estimator
-from features.baselines.model_file import pack, read_state, unpack
-from features.baselines.model_rules import brief, refuse
-from features.baselines.model_states import Known, State, plain
+from features.baselines.model_file import read_model_file, write_model_file
 from features.baselines.own import Maker, maker_name
-from features.baselines.predictions import class_names, estimator_probabilities, predict
+from features.baselines.predictions import class_names, predict
 from features.baselines.records import (
     DEFAULT_GROUPS,
     check_classes,
@@ -43,13 +36,12 @@ from features.baselines.records import (
     seen_records,
 )
 from features.baselines.reference_choice import check_durations, compared
-from features.baselines.references import RELATIVE, paired_table, relative_names, with_energies
+from features.baselines.references import RELATIVE, paired_table, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
-from gen.corpus import FAULTS, UNKNOWN_CODE, write_durably
+from gen.corpus import UNKNOWN_CODE, check_result_file
 from gen.errors import CorpusError
-from gen.limits import check_limit
 from gen.progress import Progress
 
 FORMAT = 4
@@ -235,7 +227,7 @@ def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dat
     unknown = [group for group in model.groups if group not in GROUPS]
     if unknown:
         message = (
-            f"{corpus}: the model takes features of the group {brief(unknown[0])!r}, and the groups are "
+            f"{corpus}: the model takes features of the group {unknown[0]!r}, and the groups are "
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)
@@ -251,14 +243,16 @@ def save_model(model: Model, path: Path | str) -> None:
     Raises
     ------
     CorpusError
-        If the disk refuses the file, or the model is not one of the baselines: only those can be read without running code.
+        If the disk refuses the file, it lies in a corpus or is no model, or the model is not one of the baselines: only those can be read
+        without running code.
     """
     if model.name not in ESTIMATORS:
         raise CorpusError(
             f"{path}: {model.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
         )
-    content = _content(model) | {"relative": None if model.relative is None else _content(model.relative)}
-    write_durably(pack({"raceway_model": FORMAT, **content}), Path(path))
+    check_result_file(Path(path), "model")
+    relative = None if model.relative is None else _content(model.relative)
+    write_model_file({"raceway_model": FORMAT, **_content(model), "relative": relative}, Path(path))
 
 
 def _content(model: Model) -> dict[str, Any]:
@@ -266,134 +260,24 @@ def _content(model: Model) -> dict[str, Any]:
     return {name: getattr(model, name) for name in _OWN} | {"calibration": model.calibration.model_dump()}
 
 
-def load_model(path: Path | str, *, relative: bool = True) -> Model:
-    """Read a model file; every part of it is checked before any object is created from that part.
-
-    Parameters
-    ----------
-    path
-        The file.
-    relative
-        Whether to create the part for records with a healthy reference too.
+def load_model(path: Path | str) -> Model:
+    """Read a model file; no code of the file runs, but load only models of people you trust.
 
     Raises
     ------
     CorpusError
-        If the file is missing, damaged, larger than the limits, or not as this version writes it.
+        If the file is missing, damaged, larger than the limit, or no model of this version.
     """
-    path, known = Path(path), Known()
-    held = _contents(path, read_state(path, known))
-    about = _checked(str(path), held, known)
-    inner, part = held["relative"], None
-    if not relative:
-        return _created(str(path), held, about)
-    if inner.kind[2] != "JsonNode" or plain(inner) is not None:
-        part = inner.parts["content"] if inner.kind[2] == "DictNode" else {}
-        if set(part) != set(_OWN):
-            raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
-        its = _checked(f"{path}: relative", part, known)
-        own = {"records": its.records, "widths": its.widths, "calibration": its.calibration}
-        named = {"name": relative_name(about.name), "features": relative_names(about.features), "groups": (RELATIVE,)}
-        if its != about.model_copy(update=own | named):
-            refuse(f"{path}: relative:", "is not of the same estimator, seed, classes, features and corpus")
-        part = _created(f"{path}: relative", part, its)
-    return replace(_created(str(path), held, about), relative=part)
-
-
-def _checked(where: str, held: Mapping[str, State], known: Known) -> "_About":
-    """Plain values of a model, or of its relative part, after a check of all its content."""
-    about = _about(where, {name: plain(held[name]) for name in _About.model_fields})
-    theirs, mine = about.versions.get("scikit-learn", "of another version"), version("scikit-learn")
-    if theirs != mine:
-        refuse(f"{where}:", f"was trained with scikit-learn {brief(theirs)}, and {mine} is installed")
-    check_limit("model_features", len(about.features), f"{where}: has", CorpusError)
-    digests = held["digests"].array
-    if digests is None or digests.dtype != np.uint64 or digests.shape != (about.records,):
-        refuse(f"{where}: digests", f"must be {about.records} of 64 bits, one per record")
-    expected = {"name": about.name, "seed": about.seed, "classes": about.classes, "features": about.features}
-    check_estimator(where, held["estimator"], known, **expected)
-    return about
-
-
-def _created(where: str, held: Mapping[str, State], about: "_About") -> Model:
-    """Create a model from checked content, and try it."""
-    digests: Any = held["digests"].array
-    model = Model(estimator=unpack(held["estimator"]), digests=digests, **dict(about))
-    if class_names(model.estimator.classes_) != model.classes:
-        refuse(f"{where}: classes", "are not those of the estimator")
-    trial = _trial_records(len(model.features)).set_axis(Index(model.features), axis=1)
-    estimator_probabilities(model, trial, where)
-    return model
-
-
-def _encodable(text: str) -> str:
-    text.encode()  # raises ValueError for half of a surrogate pair, which JSON can contain and a terminal cannot show
-    return text
-
-
-def _fault_class(name: str) -> str:
-    if name not in FAULTS:
-        raise ValueError(f"{brief(name)!r} is no fault class; the classes are {', '.join(FAULTS)}")
-    return name
-
-
-Text = Annotated[str, AfterValidator(_encodable)]
-FaultName = Annotated[str, AfterValidator(_fault_class)]
-Width = Annotated[float, Field(gt=0, allow_inf_nan=False)]
-Edge = Annotated[float, Field(ge=0, le=HIGHEST)]
-
-
-class _About(BaseModel):
-    """Fields of `Model` that are plain values, as a model file must contain them."""
-
-    model_config = ConfigDict(strict=True, extra="forbid", frozen=True)
-
-    name: Text
-    classes: tuple[FaultName, ...] = Field(min_length=2)
-    features: tuple[Text, ...] = Field(min_length=1)
-    groups: tuple[Text, ...]
-    band: tuple[Edge, Edge]
-    corpus: Text
-    records: Annotated[int, Field(ge=1)]
-    seed: Annotated[int, Field(ge=0, lt=2**32)]
-    widths: dict[FaultName, Annotated[tuple[tuple[Width, Width], ...], Field(min_length=1)]]
-    versions: dict[Text, Text]
-    calibration: Calibration
-
-    @field_validator("name")
-    @classmethod
-    def _is_a_baseline(cls, name: str) -> str:
-        if name not in ESTIMATORS | RELATIVE_ESTIMATORS:
-            raise ValueError(f"{brief(name)!r} is no baseline; the baselines are {', '.join(ESTIMATORS)}")
-        return name
-
-    @field_validator("classes", "features", "groups")
-    @classmethod
-    def _names_are_distinct(cls, names: tuple[str, ...]) -> tuple[str, ...]:
-        if len(set(names)) < len(names):
-            raise ValueError("two names are the same")
-        return names
-
-
-def _about(where: str, values: dict[str, Any]) -> _About:
-    try:
-        return _About.model_validate(values)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in first["loc"]).removeprefix(".")
-        refuse(f"{where}: {place}:", f"{first['msg'].removeprefix('Value error, ')}")
-
-
-def _contents(path: Path, root: State) -> Mapping[str, State]:
-    """Fields of a model file by name."""
-    held = root.parts["content"] if root.kind[2] == "DictNode" else {}
-    if "raceway_model" not in held or plain(held["raceway_model"]) != FORMAT:
+    content = read_model_file(Path(path))
+    if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
         raise CorpusError(f"{path}: not a model of this version of raceway; train it again with raceway train.")
-    if set(held) != {"raceway_model", *(field.name for field in fields(Model))}:
+    relative = content.pop("relative", None)
+    model = _model(path, content)
+    return model if relative is None else replace(model, relative=_model(path, relative))
+
+
+def _model(path: Path | str, content: Mapping[str, Any]) -> Model:
+    """Model of the fields in a model file."""
+    if set(content) != set(_OWN):
         raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
-    return held
-
-
-def _trial_records(features: int) -> DataFrame:
-    """Records that a loaded model must be able to classify: constants, and one without any feature."""
-    return DataFrame(np.repeat([[0.0], [1.0], [-1.0], [np.nan]], features, axis=1))
+    return Model(**{**content, "calibration": Calibration(**content["calibration"])})

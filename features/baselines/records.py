@@ -195,7 +195,7 @@ def check_classes(records: Records) -> IntArray:
         only = FAULTS[present[0]]
         message = (
             f"{records.title}: all records are {only}; give a corpus with two or more classes (faults in its recipe, or "
-            f"raceway merge)."
+            f"raceway copy)."
         )
         raise CorpusError(message)
     return present

@@ -87,6 +87,8 @@ def _part(comparison: Comparison, fault: str) -> ClassPart:
         f"{measure.name} [{measure.unit}]": {letters[w.name]: _column(w, fault, measure.name) for w in sets}
         for measure in measures
     }
+    # in short windows no line stands out, so the measures of lines have no values
+    drawn = {label: columns for label, columns in values.items() if any(column.size for column in columns.values())}
     numbers = {name: number for number, name in enumerate(letters)}
     shown = {numbers[w.name]: _shown(w, fault, letters[w.name], comparison) for w in sets}
     return ClassPart(
@@ -95,7 +97,7 @@ def _part(comparison: Comparison, fault: str) -> ClassPart:
         counts=[(windows.name, len(_of_class(windows, fault))) for windows in sets],
         rows=[_row(comparison, fault, measure) for measure in measures],
         sides=picture(draw_sides(shown, comparison.common.top), "svg"),
-        distributions=picture(draw_distributions(values, list(letters.values())), "svg"),
+        distributions=picture(draw_distributions(drawn, list(letters.values())), "svg"),
     )
 
 

@@ -22,8 +22,17 @@ from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve
 from features.report.examples import draw_examples
 from features.report.pictures import Quantity, draw_content, draw_reliability, draw_scores, picture
-from gen.corpus import FAULT_NAMES, FAULTS, SPLITS, Manifest, open_corpus, read_manifest, write_text_durably
-from gen.errors import CorpusError
+from gen.corpus import (
+    FAULT_NAMES,
+    FAULTS,
+    SPLITS,
+    Manifest,
+    check_result_folder,
+    open_corpus,
+    read_manifest,
+    write_text_durably,
+    writing,
+)
 
 LONGEST_TEXT = 300
 QUANTITIES = (
@@ -100,11 +109,9 @@ def template(name: str) -> jinja2.Template:
 
 def make_folder(output: Path) -> None:
     """Create the folder of a page if it does not exist; CorpusError if the disk refuses."""
-    try:
+    check_result_folder(output)
+    with writing(output):
         output.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        message = f"{output}: this folder cannot be created ({error.strerror}); choose another one."
-        raise CorpusError(message) from error
 
 
 def _content(corpus: xr.Dataset) -> dict[str, Any]:
@@ -253,7 +260,7 @@ def _verdict(null: Scores, chance: float) -> str:
 
 def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Origin of the numbers: the manifest without its parts, and the settings of the benchmark."""
-    left_out = {"parts_", "index", "next_index", "complete", "records", "title", "publication"}
+    left_out = {"parts_", "parts_sha256", "signals_", "complete", "records", "title", "publication"}
     facts = manifest.model_dump(exclude=left_out, exclude_unset=True)
     if manifest.publication.license:
         facts["licence"] = manifest.publication.license

@@ -45,7 +45,7 @@ def phase_wander(envelope: FloatArray, fs: float, frequency: FloatArray, half_wi
     The envelope is tapered, so that neighbouring lines do not leak, and filtered to the frequencies within
     ``half_width`` of the line. The phase of this analytic signal is unwrapped and compared with its best straight line
     over time. Squares are weighted with the power of the filtered line, so that the phase counts little while the line
-    fades and at the ends of the record.
+    fades and at the ends of the record. It is NaN if no frequency of a short record lies within ``half_width``.
 
     Parameters
     ----------
@@ -68,6 +68,7 @@ def phase_wander(envelope: FloatArray, fs: float, frequency: FloatArray, half_wi
 def _wander(phase: FloatArray, weight: FloatArray) -> FloatArray:
     """Weighted rms of the residuals of a weighted straight line through each phase, shape (record,)."""
     total = weight.sum(axis=-1, keepdims=True)
+    total[total == 0] = np.nan
     time = np.linspace(-1.0, 1.0, phase.shape[-1])
     time = time - (weight * time).sum(axis=-1, keepdims=True) / total
     phase = phase - (weight * phase).sum(axis=-1, keepdims=True) / total

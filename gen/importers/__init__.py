@@ -6,9 +6,9 @@ module         responsibility
 cwru           Case Western Reserve University set, drive end, 12 kHz
 mfpt           MFPT fault data set of Bechhoefer
 generic        recordings of the user, described by a mapping file
-mapping        the mapping file as a whole, and its error sentences
-section        a section of its files: keys from the path, from tables and from the file
-entry          description of one recording: place, unit, bearing, speed, fault
+mapping        the mapping file as a whole
+section        files of one path: their keys, and the facts of one of them
+mapping_keys   keys of files and channels: values, tables, readings
 mapping_values types of the values in a mapping file
 paths          patterns of paths with groups
 listing        files that a mapping names, and the recordings that they make up
@@ -17,13 +17,8 @@ resampling     recordings brought to another sample rate
 bearing_text   a bearing on the command line
 signals        one recording of the user, in m/s^2
 conversion     from the unit of a file to m/s^2
-wav            WAV files
 matlab         one variable of a MATLAB file
-level_7_3      MATLAB files of level 7.3, which are HDF5 files
-level_5        MATLAB files of level 5
-apart          reading in a child process, which a library may crash
-unfolding      decompression within bounds
-files          columns of text and NumPy files
+files          text, NumPy and WAV files; errors of libraries as sentences
 recordings     recordings, their checks, their division into records
 assemble       recordings written as a corpus
 ============== ==================================================================

@@ -1,9 +1,9 @@
 """Write the recordings of a set as a corpus; a failed import leaves nothing behind.
 
-Files are read one after the other, and their records are written part by part into a temporary folder, which is renamed when index, data
-card and manifest are written.
+Files are read one after the other, and their records are written part by part.
 """
 
+import hashlib
 import math
 from collections import Counter
 from collections.abc import Iterator, Sequence
@@ -13,17 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gen.corpus import (
-    PartRow,
-    Publication,
-    Variable,
-    check_new_folder,
-    finish_corpus,
-    make_dataset,
-    new_corpus_folder,
-    part_name,
-    write_part,
-)
+from gen.corpus import NewCorpus, Publication, Variable, check_new_target, identity, make_dataset, new_corpus
 from gen.errors import CorpusError
 from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
@@ -52,7 +42,7 @@ class Collection(NamedTuple):
 class Import(NamedTuple):
     """The new corpus, its counts, and a sentence for each skipped file, each assumption and each change of a signal."""
 
-    directory: Path
+    path: Path
     recordings: int
     records: int
     skipped: tuple[str, ...]
@@ -87,7 +77,7 @@ def import_recordings(
     candidates : sequence of Candidate
         The files; a file that cannot be used is skipped with a sentence.
     output : Path
-        Folder of the new corpus; it must be empty or not exist.
+        New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
     window : float
         Length of a record [s].
     skipped, warnings : sequence of str
@@ -98,10 +88,10 @@ def import_recordings(
     Raises
     ------
     CorpusError
-        If the folder is not empty, the window is shorter than two samples, no file can be used, or writing fails.
+        If the output exists, the window is shorter than two samples, no file can be used, or writing fails.
     """
-    output = output.resolve()
-    check_new_folder(output)
+    output = output.absolute()
+    check_new_target(output)
     samples = window * collection.fs
     length = round(samples) if math.isfinite(samples) else 0
     if length < 2:
@@ -111,13 +101,19 @@ def import_recordings(
         raise CorpusError(message)
     check_limit("record_samples", length * len(collection.channels), f"window: {window:g} s are", CorpusError)
     log = _Log(Counter(), Counter(), list(skipped), list(warnings))
-    with new_corpus_folder(output) as temporary:
-        records = _records(candidates, collection, length, log, progress)
-        rows = _write_parts(records, collection, temporary / "parts")
-        if not rows:
+    with new_corpus(
+        output,
+        title=collection.title,
+        publication=Publication().dated(),
+        importer=collection.importer,
+        basis=collection.facts,
+    ) as corpus:
+        _write_parts(_records(candidates, collection, length, log, progress), collection, candidates, corpus)
+        if not corpus.rows:
             raise CorpusError(_nothing_usable(collection.importer, log.skipped))
-        _finish(collection, rows, log, temporary)
-    return Import(output, log.recordings.total(), log.records.total(), tuple(log.skipped), tuple(log.warnings))
+        recordings, left_out, changes = log.recordings.total(), tuple(log.skipped), tuple(log.warnings)
+        corpus.facts |= {"recordings": recordings, "skipped": left_out, "warnings": changes}
+    return Import(output, recordings, log.records.total(), left_out, changes)
 
 
 def _records(
@@ -138,16 +134,29 @@ def _records(
             progress(done, len(candidates))
 
 
-def _write_parts(records: Iterator[Record], collection: Collection, folder: Path) -> list[PartRow]:
-    rows: list[PartRow] = []
+def _corpus_identity(importer: str, candidates: Sequence[Candidate], first: Record) -> str:
+    """First 12 digits of the SHA-256 of the importer, the names of all files and the first record: another set has another identity."""
+    digest = hashlib.sha256(first.signal.tobytes())
+    for text in (importer, *(candidate.source for candidate in candidates)):
+        digest.update(f"{text}\n".encode())
+    return digest.hexdigest()[:12]
+
+
+def _write_parts(
+    records: Iterator[Record], collection: Collection, candidates: Sequence[Candidate], corpus: NewCorpus
+) -> None:
+    own = None
     for first in records:
+        own = own or _corpus_identity(collection.importer, candidates, first)
         size = max(1, min(_PART_RECORDS, _PART_BYTES // first.signal.nbytes))
         batch = [first, *islice(records, size - 1)]
+        columns = {name: [record.columns[name] for record in batch] for name in first.columns}
+        numbers = zip(columns["rig"], columns["specimen"], columns["recording"], strict=True)
         dataset = make_dataset(
             np.stack([record.signal for record in batch]),
             collection.fs,
             collection.channels,
-            {name: [record.columns[name] for record in batch] for name in first.columns},
+            columns | {"identity": [identity(own, *some) for some in numbers]},
             extra=collection.extra,
             attributes={
                 "title": collection.title,
@@ -155,21 +164,7 @@ def _write_parts(records: Iterator[Record], collection: Collection, folder: Path
                 "history": f"cut from recordings by raceway import {collection.importer}",
             },
         )
-        rows.append(write_part(dataset, folder / part_name(len(rows))))
-    return rows
-
-
-def _finish(collection: Collection, rows: list[PartRow], log: _Log, directory: Path) -> None:
-    finish_corpus(
-        directory,
-        rows,
-        publication=Publication().dated(),
-        importer=collection.importer,
-        basis=collection.facts,
-        recordings=log.recordings.total(),
-        skipped=tuple(log.skipped),
-        warnings=tuple(log.warnings),
-    )
+        corpus.write(dataset)
 
 
 def _nothing_usable(importer: str, skipped: list[str]) -> str:

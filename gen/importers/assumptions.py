@@ -6,7 +6,8 @@ where each fact comes from.
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from gen.importers.entry import bearing_of, sensors
+from gen.importers.mapping_keys import Reading
+from gen.importers.mapping_values import bearing_of
 from gen.importers.paths import groups_in
 from gen.importers.section import Section
 from gen.physics.bearing import orders
@@ -28,14 +29,13 @@ def assumptions(sections: Sequence[Section], fs: float) -> tuple[str, ...]:
 
 
 def _of_section(section: Section, fs: float) -> Iterator[str]:
-    entry = next(section.examples())
-    for sensor in sensors(entry, ""):
+    for sensor in section.sensors():
         yield f"Unit{f' of channel {sensor.name}' if sensor.name else ''}: {sensor.scale}"
-    bearing = bearing_of(entry)
-    if "bearing" in section.from_path:
+    given = section.keys.bearing
+    if given is None:
         yield "Bearing: named in the path, geometry from the catalogue"
     else:
-        source = "from the catalogue" if isinstance(entry.bearing, str) else "as given"
+        bearing, source = bearing_of(given), "from the catalogue" if isinstance(given, str) else "as given"
         bpfo, bpfi, bsf = (getattr(orders(bearing), name) for name in ("bpfo", "bpfi", "bsf"))
         yield (
             f"Bearing: {bearing.designation}, geometry {source}: {bearing.n_balls} balls of "
@@ -49,25 +49,28 @@ def _of_section(section: Section, fs: float) -> Iterator[str]:
 
 
 def _source(section: Section, key: str) -> str:
-    """Where a key comes from, in words."""
+    """Where a fact comes from, in words."""
+    form = getattr(section.keys, key)
+    times = f", times {form.times:g}" if isinstance(form, Reading) and form.times != 1 else ""
     if key in section.in_file:
-        reading = section.in_file[key]
-        return f"variable {reading.variable} of each file" + (
-            "" if reading.times == 1 else f", times {reading.times:g}"
-        )
-    if key in section.tables:
-        return f"from the path, {_table(section.tables[key])}"
+        return f"variable {form.variable} of each file{times}"
     if key in section.from_path:
-        times = section.readings[key].times if key in section.readings else 1.0
-        return f"from the path, {section.pattern.text}" + ("" if times == 1 else f", times {times:g}")
-    value = section.given.get(key)
-    if value is None:
+        return (
+            f"from the path, {_table(form)}"
+            if isinstance(form, dict)
+            else f"from the path, {section.pattern.text}{times}"
+        )
+    if form is None:
         return "not known"
-    return f"{value} with the texts of the path" if groups_in(str(value)) else f"given as {value}"
+    return f"{form} with the texts of the path" if groups_in(str(form)) else f"given as {_shown(form)}"
 
 
 def _table(table: Mapping[str, object]) -> str:
-    return _listed([f"{text} is {value}" for text, value in table.items()], _MOST_TEXTS)
+    return _listed([f"{text} is {_shown(value)}" for text, value in table.items()], _MOST_TEXTS)
+
+
+def _shown(value: object) -> str:
+    return f"{value:.10g}" if isinstance(value, float) else str(value)
 
 
 def _listed(items: Sequence[str], most: int) -> str:

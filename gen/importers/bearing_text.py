@@ -6,9 +6,10 @@ from typing import Any
 from pydantic import ValidationError
 
 from gen.errors import CorpusError
-from gen.importers.entry import Geometry, bearing_of_geometry
+from gen.importers.mapping_values import Geometry, bearing_of
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE
+from gen.sentences import sentences
 
 
 def bearing_from_text(text: str) -> Bearing:
@@ -41,12 +42,6 @@ def bearing_from_text(text: str) -> Bearing:
                 f"bearing: {part.strip()!r} is not of the form key=number; write it like {example}."
             ) from None
     try:
-        return bearing_of_geometry(Geometry.model_validate(values))
+        return bearing_of(Geometry.model_validate(values))
     except ValidationError as error:
-        first = max(error.errors(), key=lambda one: one["type"] == "extra_forbidden")  # it causes a missing key
-        key = ".".join(map(str, first["loc"])) or "geometry"
-        complaint = {
-            "missing": "is missing",
-            "extra_forbidden": f"is no key; the keys are {', '.join(Geometry.model_fields)}",
-        }.get(first["type"], first["msg"].removeprefix("Value error, ").removeprefix("Input "))
-        raise CorpusError(f"bearing: {key} {complaint}; write it like {example}.") from None
+        raise CorpusError(f"bearing: {' '.join(sentences(error, Geometry))} Write it like {example}.") from None

@@ -140,7 +140,7 @@ def import_cwru(
         elif number in found:
             skipped.append(f"{name}: is recording {number} again, which {found[number].source} holds; skipped.")
         elif number in wanted:
-            found[number] = Candidate(path, name, partial(_read, path, wanted[number]))
+            found[number] = Candidate(name, partial(_read, path, wanted[number]))
     return import_recordings(
         _COLLECTION,
         [found[number] for number in sorted(found)],

@@ -1,17 +1,17 @@
-"""Columns of numbers in text and NumPy files.
+"""Numbers in text, NumPy and WAV files, and the one place where an error of a library becomes a sentence.
 
 Every error becomes an :class:`UnusableError` with a reason and without the name of the file: the caller adds the name.
 """
 
 import codecs
-import io
 import os
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Iterator
+from contextlib import contextmanager
 from itertools import islice
 from pathlib import Path
-from typing import Any, BinaryIO, TextIO, TypeVar
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,10 +20,9 @@ from gen.limits import check_limit
 from gen.plain_files import open_plain
 
 FloatArray = NDArray[np.floating]
-Value = TypeVar("Value")
 
 _HEAD_LINES = 100
-_LONGEST_LINE = 2_000_000  # characters; a whole recording can be on one line
+_START = 2_000_000  # bytes that tell the encoding
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
 _NO_NUMBER = re.compile(r"[^\d\s.,;eE+-]")
 
@@ -43,36 +42,21 @@ def read_text(path: Path, column: int | str | None = None, delimiter: str | None
     UnusableError
         If the file is not such a text, or does not have the column.
     """
-    with open_plain(path) as stream:
-        check_limit("file_bytes", os.fstat(stream.fileno()).st_size, "is", UnusableError)
-        _check_lines(stream)
-        encoding = _encoding(stream)
-        text = io.TextIOWrapper(stream, encoding=encoding, errors="replace")
-        head = [line.rstrip("\r\n").lstrip("#") for line in _head(text)]
-    separator = delimiter or next((mark for mark in "\t;," if any(mark in line for line in head)), None)
-    _check_commas(head, separator)
-    lines = [[field.strip() for field in line.split(separator)] for line in head]
-    index, first = _locate(lines, column)
-
-    def load() -> NDArray[np.float64]:
+    with guarded(path, "delimited text"):
+        encoding = _encoding(path)
+        with path.open(encoding=encoding, errors="replace") as text:
+            head = [line.rstrip("\r\n").lstrip("#") for line in islice(text, _HEAD_LINES)]
+        separator = delimiter or next((mark for mark in "\t;," if any(mark in line for line in head)), None)
+        _check_commas(head, separator)
+        lines = [[field.strip() for field in line.split(separator)] for line in head]
+        index, first = _locate(lines, column)
         return np.loadtxt(path, delimiter=separator, skiprows=first, usecols=index, ndmin=1, encoding=encoding)
 
-    return guarded("delimited text", load)
 
-
-def _check_lines(stream: BinaryIO) -> None:
-    """Refuse a text with a very long line: splitting it takes ten times its length in memory."""
-    while block := stream.read(_LONGEST_LINE):
-        if len(block) == _LONGEST_LINE and b"\n" not in block and b"\r" not in block:
-            message = f"has a line of more than {_LONGEST_LINE} characters"
-            raise UnusableError(message)
-    stream.seek(0)
-
-
-def _encoding(stream: BinaryIO) -> str:
+def _encoding(path: Path) -> str:
     """Encoding of a text by its beginning: UTF-16 has a mark, and what is no UTF-8 is read as Latin-1."""
-    start = stream.read(_LONGEST_LINE)
-    stream.seek(0)
+    with path.open("rb") as stream:
+        start = stream.read(_START)
     if start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return "utf-16"
     try:
@@ -94,16 +78,6 @@ def _check_commas(head: list[str], separator: str | None) -> None:
         raise UnusableError("has numbers with decimal commas; save it with decimal points")
 
 
-def _head(text: TextIO) -> list[str]:
-    """First lines of a text, which can contain the header."""
-    head: list[str] = []
-    for line in islice(text, _HEAD_LINES):
-        head.append(line)
-        if sum(map(len, head)) > _LONGEST_LINE:
-            break
-    return head
-
-
 def read_numpy(path: Path) -> NDArray[Any]:
     """Array in a NumPy ``.npy`` file; pickled objects are refused.
 
@@ -112,10 +86,28 @@ def read_numpy(path: Path) -> NDArray[Any]:
     UnusableError
         If the file is not a NumPy file.
     """
-    with open_plain(path) as stream:
-        check_limit("file_bytes", os.fstat(stream.fileno()).st_size, "is", UnusableError)
-    # a memory map compares the size in the header with the file before anything is allocated
-    return guarded("NumPy", lambda: np.array(np.lib.format.open_memmap(path, mode="r")))
+    with guarded(path, "NumPy"):
+        # a memory map compares the size in the header with the file before anything is allocated
+        return np.array(np.lib.format.open_memmap(path, mode="r"))
+
+
+def read_wav(path: Path) -> tuple[NDArray[Any], float, float]:
+    """Samples of a WAV file as stored, shape (time, channel), their full scale (1 for floating point), and the sample rate [Hz].
+
+    Raises
+    ------
+    UnusableError
+        If the file is truncated or damaged, is not a WAV file, or is compressed.
+    """
+    from scipy.io import wavfile
+
+    with guarded(path, "WAV"):
+        warnings.filterwarnings("error", "Reached EOF prematurely")
+        rate, samples = wavfile.read(path)
+        if samples.dtype.kind == "f":
+            return samples, 1.0, float(rate)
+        full_scale = 2.0 ** (8 * samples.itemsize - 1)
+        return samples if samples.dtype.kind == "i" else samples.astype(np.int16) - 128, full_scale, float(rate)
 
 
 def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
@@ -147,18 +139,41 @@ def one_column(values: NDArray[Any], column: int | None = None) -> FloatArray:
     return columns[chosen].astype(np.float64, copy=False)
 
 
-def guarded(kind: str, read: Callable[[], Value]) -> Value:
-    """Result of ``read``; every error becomes an :class:`UnusableError`."""
+@contextmanager
+def guarded(path: Path, kind: str) -> Iterator[None]:
+    """Check the size of a file before a library reads it, and turn each of the library's errors into an :class:`UnusableError`.
+
+    Raises
+    ------
+    UnusableError
+        If the file is empty or above the limit ``file_bytes``, or the library fails.
+    OSError
+        If the file is missing, not readable, or a folder, a pipe or a device.
+    MemoryError
+        If its values do not fit in memory.
+    """
+    with open_plain(path) as stream:
+        size = os.fstat(stream.fileno()).st_size
+    if size == 0:
+        raise UnusableError("is empty (0 bytes); copy it again")
+    check_limit("file_bytes", size, "is", UnusableError)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
-            return read()
-    except UnusableError:
+            yield
+    except (UnusableError, MemoryError):
         raise
-    except Exception as error:  # zlib, h5py and NumPy raise a dozen unrelated types on damaged bytes
+    except Exception as error:  # SciPy, h5py and NumPy raise a dozen unrelated types on damaged bytes
         reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-        message = f"is not a readable {kind} file ({reason})"
+        message = f"is truncated, damaged or not a {kind} file ({reason})"
         raise UnusableError(message) from error
+
+
+def reason_of(error: OSError | MemoryError) -> str:
+    """Reason why a file could not be read, and advice."""
+    if isinstance(error, MemoryError):
+        return "holds more values than fit in memory; cut it into shorter files"
+    return f"could not be read ({error.strerror or error}); check the path"
 
 
 def _locate(lines: list[list[str]], column: int | str | None) -> tuple[int | None, int]:

@@ -4,7 +4,8 @@
 """
 
 import math
-from collections.abc import Hashable, Iterable, Iterator
+from collections.abc import Hashable, Iterable
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
@@ -17,15 +18,17 @@ from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.assumptions import assumptions
 from gen.importers.conversion import accelerations, doubts
-from gen.importers.entry import Entry, bearing_of, sensors
 from gen.importers.files import FloatArray, UnusableError, one_column
 from gen.importers.listing import File, listed_recordings, name_of_recording
-from gen.importers.mapping import MappingFile, read_mapping, sentence_of
+from gen.importers.mapping import MappingFile, read_mapping
+from gen.importers.mapping_keys import Facts
+from gen.importers.mapping_values import bearing_of
 from gen.importers.matlab import read_matlab
 from gen.importers.recordings import Candidate, Recording
 from gen.importers.resampling import resampled
-from gen.importers.signals import read_values, stated_rate
+from gen.importers.signals import read_values
 from gen.progress import Progress
+from gen.sentences import sentences
 from gen.units import rpm_to_hertz, to_si
 
 _NO_RATE = 10_000.0  # Hz, if no file tells a rate: each is then refused with its own reason
@@ -38,6 +41,18 @@ class _Target(NamedTuple):
 
     fs: float
     resample: bool
+
+
+class _Joined(NamedTuple):
+    """Values of each channel in the unit of the files, shape (time,), and their sample rate [Hz].
+
+    ``stated`` is the sample rate that the files state themselves; ``absolute`` tells whether the values have a unit.
+    """
+
+    values: list[FloatArray]
+    fs: float
+    stated: float | None
+    absolute: bool
 
 
 def import_generic(
@@ -74,17 +89,17 @@ def import_generic(
     mapping = read_mapping(source)
     found, skipped = listed_recordings(source, source.parent if folder is None else folder, mapping)
     fs = _common_rate(source, mapping, found)
-    target = _Target(fs, resample=mapping.resample is not None)
-    rigs = _numbered(files[0].entry.rig for files in found)
-    specimens = _numbered((files[0].entry.rig, files[0].entry.specimen) for files in found)
+    target = _Target(fs, resample=mapping.resample_hz is not None)
+    rigs = _numbered(files[0].facts.rig for files in found)
+    specimens = _numbered((files[0].facts.rig, files[0].facts.specimen) for files in found)
     candidates = []
     for number, files in enumerate(found):
-        entry = files[0].entry
-        places = number, rigs[entry.rig], specimens[entry.rig, entry.specimen]
+        facts = files[0].facts
+        places = number, rigs[facts.rig], specimens[facts.rig, facts.specimen]
         read = partial(_read, files, target, *places)
-        candidates.append(Candidate(files[0].path, name_of_recording(files), read))
+        candidates.append(Candidate(name_of_recording(files), read))
     collection = Collection(
-        "generic", mapping.title, mapping.origin, fs, mapping.channels, facts=assumptions(mapping.sections, fs)
+        "generic", mapping.title, mapping.origin, fs, mapping.channel_names, facts=assumptions(mapping.sections, fs)
     )
     return import_recordings(collection, candidates, output, window=window, skipped=skipped, progress=progress)
 
@@ -102,35 +117,22 @@ def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File
     CorpusError
         If the mapping gives different rates and asks for none.
     """
-    if mapping.resample is not None:
-        return mapping.resample
-    given = list(_given_rates(mapping, recordings))
-    for place, rate in given:
-        if rate != given[0][1]:
+    if mapping.resample_hz is not None:
+        return mapping.resample_hz
+    given = [(file.facts.sample_rate_hz, file.name) for file, *_ in recordings if file.facts.sample_rate_hz is not None]
+    for rate, name in given:
+        if rate != given[0][0]:
             message = (
-                f"{source}: {place} is at {rate:g} Hz and {given[0][0]} at {given[0][1]:g} Hz; a corpus has one sample rate: "
+                f"{source}: {name} is at {rate:g} Hz and {given[0][1]} at {given[0][0]:g} Hz; a corpus has one sample rate: "
                 f"give resample_hz at the top, or make a corpus of each."
             )
             raise CorpusError(message)
     if given:
-        return given[0][1]
-    for file, *_ in recordings:
-        try:
-            return _measured(file).get("sample_rate_hz") or stated_rate(file.path) or _NO_RATE
-        except (UnusableError, OSError):
-            continue
+        return given[0][0]
+    for files in recordings:
+        with suppress(UnusableError, OSError, MemoryError):
+            return _joined(files).fs
     return _NO_RATE
-
-
-def _given_rates(mapping: MappingFile, recordings: list[tuple[File, ...]]) -> Iterator[tuple[str, float]]:
-    """Sample rates in the mapping and in the paths of files, with the places where they are given."""
-    for section in mapping.sections:
-        rate = next(section.examples()).sample_rate_hz
-        if rate is not None and "sample_rate_hz" in section.given:
-            yield f"files[{section.position}] ({section.pattern.text})", rate
-    for file, *_ in recordings:
-        if file.entry.sample_rate_hz is not None and "sample_rate_hz" in file.section.from_path:
-            yield file.name, file.entry.sample_rate_hz
 
 
 def _measured(file: File) -> dict[str, float]:
@@ -153,11 +155,10 @@ def _measured(file: File) -> dict[str, float]:
 
 
 def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, specimen: int) -> Recording:
-    entry = _entry_of(files[0])
-    values, rate, absolute = _joined(files)
+    values, rate, stated, absolute = _joined(files)
     warnings: list[str] = []
     signals: list[FloatArray] = []
-    for sensor, column in zip(sensors(entry, ""), values, strict=True):
+    for sensor, column in zip(files[0].section.sensors(), values, strict=True):
         signals.append(accelerations(column, sensor.scale))
         told = doubts(column, signals[-1], sensor.scale, absolute=absolute)
         warnings += [f"channel {sensor.name}: {doubt}" if sensor.name else doubt for doubt in told]
@@ -166,7 +167,6 @@ def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, speci
         message = f"has channels of {sizes} samples; give channels of one length"
         raise UnusableError(message)
     signal = np.stack(signals)
-    stated = stated_rate(files[0].path) if entry.sample_rate_hz is not None else None
     if stated not in (None, rate):
         warnings.append(f"states a sample rate of {stated:g} Hz; the given {rate:g} Hz are used")
     if rate != target.fs:
@@ -175,56 +175,57 @@ def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, speci
             raise UnusableError(message)
         signal, sentence = resampled(signal, rate, target.fs)
         warnings.append(sentence)
-    return _recording(entry, signal, number, rig, specimen)._replace(warnings=tuple(warnings))
+    return _recording(_facts(files[0]), signal, number, rig, specimen)._replace(warnings=tuple(warnings))
 
 
-def _joined(files: tuple[File, ...]) -> tuple[list[FloatArray], float, bool]:
-    """Values of each channel in the unit of the files, shape (time,), their sample rate [Hz], and whether they have a unit."""
+def _joined(files: tuple[File, ...]) -> _Joined:
     parts: list[list[FloatArray]] = []
     rates: set[float] = set()
     speeds: list[float] = []
+    stated: float | None = None
     absolute = True
     for file in files:
-        entry = _entry_of(file)
-        found = [read_values(file.path, sensor.place) for sensor in sensors(entry, "")]
-        rate = entry.sample_rate_hz or found[0].fs
+        facts = _facts(file)
+        found = [read_values(file.path, sensor.place) for sensor in file.section.sensors(file.groups)]
+        rate = facts.sample_rate_hz or found[0].fs
         if rate is None:
             raise UnusableError("states no sample rate; give sample_rate_hz")
         rates.add(rate)
-        speeds.append(entry.shaft_rpm)
+        speeds.append(facts.shaft_rpm or math.nan)
         parts.append([values.values for values in found])
         absolute = absolute and found[0].absolute
+        stated = stated or found[0].fs
     if len(rates) > 1:
         raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
     if max(speeds) > (1 + _SAME_SPEED) * min(speeds):
         message = f"is joined of files at {min(speeds):g} to {max(speeds):g} rpm; give each recording a name of its own"
         raise UnusableError(message)
-    return [np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), absolute
+    return _Joined([np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), stated, absolute)
 
 
-def _entry_of(file: File) -> Entry:
-    """Description of a file with the numbers that it holds."""
+def _facts(file: File) -> Facts:
+    """Facts of a file with the numbers that it holds."""
     if not file.section.in_file:
-        return file.entry
+        return file.facts
     try:
-        return file.section.entry(file.groups, _measured(file))
+        return file.section.facts(file.groups, _measured(file))
     except ValidationError as error:
-        raise UnusableError(sentence_of(error, "", {}, None).removesuffix(".")) from None
+        raise UnusableError(sentences(error, Facts)[0].removesuffix(".")) from None
 
 
-def _recording(entry: Entry, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:
-    unknown = 0.0 if entry.fault in ("healthy", "cage") else math.nan
+def _recording(facts: Facts, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:
+    unknown = 0.0 if facts.fault in ("healthy", "cage") else math.nan
     return Recording(
         number=number,
         rig=rig,
         specimen=specimen,
-        bearing=bearing_of(entry),
-        shaft_rate=rpm_to_hertz(entry.shaft_rpm),
-        fault=entry.fault,
+        bearing=bearing_of(facts.bearing),
+        shaft_rate=rpm_to_hertz(facts.shaft_rpm or math.nan),
+        fault=facts.fault,
         signal=signal,
-        load=math.nan if entry.load_n is None else entry.load_n,
-        n_spalls=entry.n_spalls or _SPALLS.get(entry.fault, 1),
-        width=unknown if entry.width_mm is None else to_si(entry.width_mm, "mm"),
-        depth=unknown if entry.depth_um is None else to_si(entry.depth_um, "um"),
-        angle=math.nan if entry.angle_deg is None else to_si(entry.angle_deg, "deg"),
+        load=math.nan if facts.load_n is None else facts.load_n,
+        n_spalls=facts.n_spalls or _SPALLS.get(facts.fault, 1),
+        width=unknown if facts.width_mm is None else to_si(facts.width_mm, "mm"),
+        depth=unknown if facts.depth_um is None else to_si(facts.depth_um, "um"),
+        angle=math.nan if facts.angle_deg is None else to_si(facts.angle_deg, "deg"),
     )

@@ -8,21 +8,22 @@ from typing import NamedTuple
 from pydantic import ValidationError
 
 from gen.errors import CorpusError
-from gen.importers.entry import Entry
-from gen.importers.mapping import MappingFile, sentence_of
-from gen.importers.paths import match_path
+from gen.importers.mapping import MappingFile
+from gen.importers.mapping_keys import Facts
+from gen.importers.paths import fill_in, match_path
 from gen.importers.recordings import name_of, some_files
 from gen.importers.section import Section
+from gen.sentences import sentences
 
 
 class File(NamedTuple):
-    """A file of a recording: its path, its name in messages, its section, the groups of its path, and what is known without reading it."""
+    """A file of a recording: its path, its name in messages, its section, the groups of its path, and its facts before it is read."""
 
     path: Path
     name: str
     section: Section
     groups: dict[str, str]
-    entry: Entry
+    facts: Facts
 
 
 def listed_recordings(source: Path, folder: Path, mapping: MappingFile) -> tuple[list[tuple[File, ...]], list[str]]:
@@ -38,10 +39,10 @@ def listed_recordings(source: Path, folder: Path, mapping: MappingFile) -> tuple
     skipped: list[str] = []
     recordings: dict[tuple[str, ...], list[File]] = {}
     for file in _files(source, folder, mapping, skipped):
-        entry = file.entry
-        key = (file.name,) if entry.recording is None else ("", entry.rig, entry.specimen, entry.recording)
+        facts = file.facts
+        key = (file.name,) if facts.recording is None else ("", facts.rig, facts.specimen, facts.recording)
         known = recordings.setdefault(key, [])
-        if entry.recording is None and known:
+        if facts.recording is None and known:
             skipped.append(f"{file.name}: is listed again by files[{file.section.position}]; skipped.")
             continue
         if known:
@@ -73,12 +74,16 @@ def _files(source: Path, folder: Path, mapping: MappingFile, skipped: list[str])
                 skipped.append(f"{place}: does not fit {section.pattern.text}{section.wanted()}; skipped.")
                 continue
             try:
-                entry = section.entry(groups)
+                facts = section.facts(groups)
             except ValidationError as error:
-                skipped.append(f"{place}: {sentence_of(error, '', {}, None).removesuffix('.')}; skipped.")
+                skipped.append(f"{place}: {sentences(error, Facts)[0].removesuffix('.')}; skipped.")
                 continue
-            parts = [place, *(str(part) for part in (entry.variable, entry.column) if part is not None)]
-            yield File(path, ":".join(parts), section, groups, entry)
+            variable, column = section.keys.variable, section.keys.column
+            parts = [
+                place,
+                *(str(part) for part in (variable and fill_in(variable, groups), column) if part is not None),
+            ]
+            yield File(path, ":".join(parts), section, groups, facts)
 
 
 def _matches(source: Path, folder: Path, section: Section, looked_at: int) -> list[Path]:
@@ -101,13 +106,16 @@ def _matches(source: Path, folder: Path, section: Section, looked_at: int) -> li
 
 
 def _check_alike(source: Path, first: File, other: File) -> None:
-    """Refuse to join files with different facts."""
-    different = next((key for key in Entry.model_fields if key not in ("path", "recording", "variable")
-                      and getattr(first.entry, key) != getattr(other.entry, key)), None)  # fmt: skip
+    """Refuse to join files with different facts or units."""
+    facts = [
+        {**dict(file.facts), "unit": ", ".join(str(sensor.scale) for sensor in file.section.sensors())}
+        for file in (other, first)
+    ]
+    different = next((key for key in facts[0] if facts[0][key] != facts[1][key]), None)
     if different is not None:
-        here, there = (getattr(file.entry, different) for file in (other, first))
+        here, there = (each[different] for each in facts)
         message = (
-            f"{source}: files[{other.section.position}] ({other.name}) belongs to recording {other.entry.recording} as "
+            f"{source}: files[{other.section.position}] ({other.name}) belongs to recording {other.facts.recording} as "
             f"{first.name} does, and {different} is {here} here and {there} there; give each recording a name of its own."
         )
         raise CorpusError(message)

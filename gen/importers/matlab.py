@@ -1,31 +1,28 @@
-"""One variable of a MATLAB file, level 5 or 7.3 (HDF5); damaged files are refused with a reason.
+"""One variable of a MATLAB file: levels 4 to 7 with SciPy, level 7.3, which is HDF5, with h5py.
 
 Data sets name the same variable differently in every file. So a name can have a ``*`` for any letters, and no name means the only signal
 in the file.
 """
 
-import os
+from collections.abc import Mapping
+from fnmatch import fnmatchcase
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
+import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.importers.apart import read_apart
+from gen.corpus.hdf5 import LIBRARY_LOCK, ForeignStorageError, own_dataset
 from gen.importers.files import UnusableError, guarded
-from gen.importers.level_5 import BYTE_ORDERS, HEADER, listing, names_level_5, read_level_5
-from gen.importers.level_7_3 import names_level_7_3, read_level_7_3
-from gen.plain_files import open_plain
 
-_HDF5_MAGIC = b"\x89HDF\r\n\x1a\n"
-_HDF5_OFFSET = 512  # a file of level 7.3 has a MATLAB header before the HDF5 content
 _FEWEST = 100  # values of a signal; speeds and rates have one
+_REAL = "biuf"  # kinds of NumPy types
 
 
 def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
     """Numbers, or text as an array of one string; ``"bearing.gs"`` is a field of a structure.
-
-    Values above the limit ``file_bytes``, or far larger than their storage, are refused before they are read.
 
     Parameters
     ----------
@@ -39,50 +36,102 @@ def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
     ------
     UnusableError
         If the file is truncated or damaged, is not a MATLAB file, or does not hold the variable.
+    OSError
+        If the file cannot be opened.
     """
-    with open_plain(path) as stream:
-        head = stream.read(_HDF5_OFFSET + len(_HDF5_MAGIC))
-        if _HDF5_MAGIC not in (head[: len(_HDF5_MAGIC)], head[_HDF5_OFFSET:]):
-            if head[HEADER - 2 : HEADER] not in BYTE_ORDERS:
-                raise UnusableError("is not a MATLAB file of level 5 or 7.3")
-            if variable is None or "*" in variable:
-                variable = _only(guarded("MATLAB", lambda: names_level_5(stream)), variable)
-            name = variable
-            return guarded("MATLAB", lambda: read_level_5(stream, name))
-        size = os.fstat(stream.fileno()).st_size
-    if variable is None or "*" in variable:
-        held = guarded("MATLAB 7.3", lambda: read_apart(lambda: np.array(names_level_7_3(path)), size))
-        variable = _only([(str(name), int(count)) for name, count in held], variable)
-    name = variable
-    return guarded("MATLAB 7.3", lambda: read_apart(lambda: read_level_7_3(path, name), size))
+    with guarded(path, "MATLAB"):
+        with LIBRARY_LOCK:
+            in_hdf5 = h5py.is_hdf5(path)
+        if variable is None or "*" in variable:
+            variable = _only(_sizes_in_hdf5(path) if in_hdf5 else _sizes(path), variable)
+        return _read_hdf5(path, variable) if in_hdf5 else _read(path, variable)
 
 
-def _only(held: list[tuple[str, int]], pattern: str | None) -> str:
+def _content(path: Path, only: str | None = None) -> dict[str, Any]:
+    """Variables, or one of them, and in place of structures their fields, as ``"bearing.gs"``."""
+    from scipy.io import loadmat  # loads scipy.sparse
+
+    found: dict[str, Any] = {}
+
+    def add(name: str, value: Any) -> None:
+        if isinstance(value, dict):
+            for field, inner in value.items():
+                add(f"{name}.{field}", inner)
+        else:
+            found[name] = value
+
+    for name, value in loadmat(path, variable_names=[only] if only else None, simplify_cells=True).items():
+        if not name.startswith("__"):
+            add(name, value)
+    return found
+
+
+def _read(path: Path, variable: str) -> NDArray[Any]:
+    found = _content(path, variable.split(".")[0])
+    if variable not in found:
+        message = f"holds {listing([*(found or _content(path))])}, not {variable}"
+        raise UnusableError(message)
+    if not _is_array(found[variable], _REAL + "U"):
+        message = f"holds {variable}, but neither real numbers nor text in it"
+        raise UnusableError(message)
+    return np.asarray(found[variable])
+
+
+def _is_array(value: Any, kinds: str) -> bool:
+    """Whether a value is an array of one of the kinds of NumPy types; a list is a cell with structures in it."""
+    return not isinstance(value, list) and np.asarray(value).dtype.kind in kinds
+
+
+def _sizes(path: Path) -> dict[str, int]:
+    """Numbers of values of all real arrays, by name."""
+    return {name: np.size(value) for name, value in _content(path).items() if _is_array(value, _REAL)}
+
+
+def _read_hdf5(path: Path, variable: str) -> NDArray[Any]:
+    with LIBRARY_LOCK, h5py.File(path, "r") as file:
+        try:
+            dataset = own_dataset(file, variable.replace(".", "/"))
+        except ForeignStorageError as error:
+            message = f"refers to values outside the file: {error}"
+            raise UnusableError(message) from None
+        except KeyError:
+            message = f"holds {listing([*islice(file, 6)])}, not {variable}"
+            raise UnusableError(message) from None
+        if dataset.dtype.kind not in _REAL or dataset.shape is None:
+            message = f"holds {variable}, but it is not real numbers"
+            raise UnusableError(message)
+        return np.asarray(dataset)
+
+
+def _sizes_in_hdf5(path: Path) -> dict[str, int]:
+    """As :func:`_sizes`; ``#refs#`` holds the contents of cells."""
+    found: dict[str, int] = {}
+
+    def note(name: str, node: Any) -> None:
+        if isinstance(node, h5py.Dataset) and node.dtype.kind in _REAL and not name.startswith("#"):
+            found[name.replace("/", ".")] = node.size or 0
+
+    with LIBRARY_LOCK, h5py.File(path, "r") as file:
+        file.visititems(note)
+    return found
+
+
+def _only(held: Mapping[str, int], pattern: str | None) -> str:
     """Name of the only variable that matches a pattern, or without one of the only signal."""
-    names = [name for name, count in held if (count >= _FEWEST if pattern is None else matches(name, pattern))]
+    names = [
+        name for name, count in held.items() if (count >= _FEWEST if pattern is None else fnmatchcase(name, pattern))
+    ]
     if len(names) == 1:
         return names[0]
     wanted = f"variable with {_FEWEST} numbers or more" if pattern is None else f"variable {pattern}"
     if not names:
-        message = f"holds {listing([name for name, _ in held])}, and no {wanted}; name one with variable"
+        message = f"holds {listing([*held])}, and no {wanted}; name one with variable"
     else:
         message = f"holds {listing(names)}, more than one {wanted}; name one with variable"
     raise UnusableError(message)
 
 
-def matches(name: str, pattern: str) -> bool:
-    """Whether a name fits a pattern, in which ``*`` stands for any letters; takes time in proportion to their lengths.
-
-    >>> [matches("X097_DE_time", pattern) for pattern in ("X*_DE_time", "X*E_time", "*", "X*_FE_time", "X097_DE_time*X")]
-    [True, True, True, False, False]
-    """
-    first, *others = pattern.split("*")
-    if not others or not name.startswith(first):
-        return name == pattern
-    place = len(first)
-    for part in others[:-1]:
-        place = name.find(part, place)
-        if place < 0:
-            return False
-        place += len(part)
-    return len(name) - place >= len(others[-1]) and name.endswith(others[-1])
+def listing(names: list[str]) -> str:
+    """First names of a list, and the number of the others."""
+    shown = ", ".join(name[:63] for name in names[:6]) or "nothing"
+    return f"{shown} and {len(names) - 6} more" if len(names) > 6 else shown

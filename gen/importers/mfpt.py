@@ -66,7 +66,7 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
         elif stem in candidates:
             skipped.append(f"{name}: is {path.stem} again, which {candidates[stem].source} holds; skipped.")
         else:
-            candidates[stem] = Candidate(path, name, partial(_read, path, fault, len(candidates)))
+            candidates[stem] = Candidate(name, partial(_read, path, fault, len(candidates)))
     return import_recordings(
         _COLLECTION,
         list(candidates.values()),

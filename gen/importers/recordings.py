@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from gen.corpus import FAULTS, SPLITS, UNKNOWN, UNKNOWN_CODE
 from gen.errors import CorpusError
-from gen.importers.files import FloatArray, UnusableError
+from gen.importers.files import FloatArray, UnusableError, reason_of
 from gen.limits import check_limit, limit
 from gen.physics.bearing import Bearing, orders
 
@@ -48,9 +48,8 @@ class Recording(NamedTuple):
 
 
 class Candidate(NamedTuple):
-    """A file that should hold a recording: its path, its name in messages, and a function that reads it."""
+    """A file that should hold a recording: its name in messages, and a function that reads it."""
 
-    path: Path
     source: str
     read: Callable[[], Recording]
 
@@ -71,13 +70,10 @@ def read_recording(candidate: Candidate, length: int, fs: float, channels: tuple
         If the file cannot be read, or its signal fails a check.
     """
     try:
-        if candidate.path.stat().st_size == 0:
-            raise UnusableError("is empty (0 bytes); copy it again")
         with np.errstate(over="ignore", invalid="ignore"):
             recording = candidate.read()
-    except OSError as error:
-        message = f"could not be read ({error.strerror or error})"
-        raise UnusableError(message) from error
+    except (OSError, MemoryError) as error:
+        raise UnusableError(reason_of(error)) from error
     signal = np.atleast_2d(recording.signal)
     for name, channel in zip(channels, signal, strict=True):
         flaw = _flaw(channel, length, fs)

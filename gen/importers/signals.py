@@ -5,9 +5,8 @@ from typing import NamedTuple
 
 from gen.errors import CorpusError
 from gen.importers.conversion import Scale, Unit, accelerations, doubts, unit_problem, volts_per_acceleration
-from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text
+from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text, read_wav, reason_of
 from gen.importers.matlab import read_matlab
-from gen.importers.wav import read_wav
 
 TEXT = (".csv", ".txt", ".tsv", ".dat")
 SUFFIXES = (".mat", ".npy", ".wav", *TEXT)
@@ -87,22 +86,17 @@ def read_signal(
         raise CorpusError(message)
     try:
         found = read_values(path, Place(variable, column, delimiter))
+        signal = accelerations(found.values, scale)
+        notes = doubts(found.values, signal, scale, absolute=found.absolute)
     except UnusableError as reason:
         message = f"{path}: {reason}."
         raise CorpusError(message) from None
-    except OSError as error:
-        message = f"{path}: could not be read ({error.strerror or error}); check the path."
+    except (OSError, MemoryError) as error:
+        message = f"{path}: {reason_of(error)}."
         raise CorpusError(message) from None
-    signal = accelerations(found.values, scale)
-    notes = doubts(found.values, signal, scale, absolute=found.absolute)
     if rate is not None and found.fs not in (None, rate):
         notes.append(f"states a sample rate of {found.fs:g} Hz; the given {rate:g} Hz are used")
     return Signal(signal, found.fs if rate is None else rate, tuple(f"{path.name}: {note}." for note in notes))
-
-
-def stated_rate(path: Path) -> float | None:
-    """Sample rate that a file states in its format [Hz]; only WAV files do."""
-    return read_wav(path).rate if path.suffix.lower() == ".wav" else None
 
 
 def read_values(path: Path, place: Place) -> Values:
@@ -115,8 +109,6 @@ def read_values(path: Path, place: Place) -> Values:
     OSError
         If the file cannot be opened.
     """
-    if path.stat().st_size == 0:
-        raise UnusableError("is empty (0 bytes); copy it again")
     suffix = path.suffix.lower()
     if suffix in TEXT:
         return Values(one_column(read_text(path, place.column, place.delimiter)), None)
@@ -131,6 +123,5 @@ def read_values(path: Path, place: Place) -> Values:
         return Values(one_column(read_numpy(path), column), None)
     if suffix == ".mat":
         return Values(one_column(read_matlab(path, place.variable), column), None)
-    sound = read_wav(path)
-    values = one_column(sound.samples, column)
-    return Values(values / sound.full_scale, sound.rate, absolute=sound.full_scale == 1)
+    samples, full_scale, fs = read_wav(path)
+    return Values(one_column(samples, column) / full_scale, fs or None, absolute=full_scale == 1)

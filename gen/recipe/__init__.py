@@ -15,14 +15,12 @@ sensor_faults faults of mount, cable, amplifier and data transfer
 changes       keys of operation and level that one fault replaces
 shares        quantities that are a share of another
 loads         loads that no bearing of the recipe can carry
-extensions    blocks of a corpus that was extended
 checks        keys that contradict each other, weights that cannot be met
 model         the recipe as a whole
 constructors  faults and distributions by calls in Python
 keywords      a recipe from keys by their own names
 text          a recipe as YAML text
 keys          every key with unit, range, default and meaning
-sentences     error sentences for broken recipes
 finding       paths and names of recipe files
 reading       a file read into the model, its hash, JSON schema
 ============= ========================================================
@@ -47,7 +45,6 @@ if TYPE_CHECKING:
         outer,
         uniform,
     )
-    from gen.recipe.extensions import Block
     from gen.recipe.faults import (
         BallFault,
         CageFault,
@@ -63,7 +60,7 @@ if TYPE_CHECKING:
     from gen.recipe.machine import CatalogueBearing
     from gen.recipe.model import Recipe
     from gen.recipe.operation import ProfileSection
-    from gen.recipe.reading import read_recipe, recipe_hash, recipe_schema
+    from gen.recipe.reading import corpus_identity, read_recipe, recipe_hash, recipe_schema
     from gen.recipe.section import Section, plain
     from gen.recipe.sensing import MAX_OVERSAMPLING, Modes, Modulation, PathSection
     from gen.recipe.shares import BALL_SPACING, FREE_ANGLE, LEAST_AXIAL_LOAD, STATIC_RATING, quantities
@@ -76,7 +73,6 @@ __all__ = [
     "MAX_OVERSAMPLING",
     "STATIC_RATING",
     "BallFault",
-    "Block",
     "CageFault",
     "CatalogueBearing",
     "CompoundFault",
@@ -94,6 +90,7 @@ __all__ = [
     "cage",
     "choice",
     "compound",
+    "corpus_identity",
     "distributed",
     "fault_class",
     "find_recipe",
@@ -123,7 +120,6 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe.constructors": (
             "ball", "cage", "choice", "compound", "distributed", "grid", "healthy", "inner", "loguniform", "normal", "outer", "uniform",
         ),
-        "gen.recipe.extensions": ("Block",),
         "gen.recipe.faults": (
             "BallFault",
             "CageFault",
@@ -144,6 +140,7 @@ __getattr__, __dir__ = lazy_names(
         "gen.recipe.model": ("Recipe",),
         "gen.recipe.operation": ("ProfileSection",),
         "gen.recipe.reading": (
+            "corpus_identity",
             "read_recipe",
             "recipe_hash",
             "recipe_schema",

@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from gen.errors import RecipeError
 from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
 from gen.recipe.section import Section, plain
-from gen.recipe.sentences import sentences
+from gen.sentences import sentences
 
 _Of = TypeVar("_Of", bound=Section)
 

@@ -4,19 +4,18 @@ Keys end in their unit; most numbers can be distributions. Each section is drawn
 Whether a recipe as a whole can be made is checked in :mod:`gen.recipe.checks`.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from itertools import pairwise
 from types import MappingProxyType
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, PrivateAttr, StrictInt, StringConstraints, ValidationError, model_validator
+from pydantic import Field, StrictInt, StringConstraints, ValidationError, model_validator
 
 from gen.corpus import Codec
 from gen.errors import RecipeError
 from gen.limits import check_limit
 from gen.recipe.checks import recipe_problem
 from gen.recipe.distributions import Number
-from gen.recipe.extensions import Block, Extension, first_block, with_blocks
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault
 from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing, MachineSection, SpecimenSection
 from gen.recipe.operation import OperationSection, Table
@@ -25,6 +24,7 @@ from gen.recipe.section import Count, Name, Section, plain
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
 from gen.recipe.sensor_faults import SensorFaultsSection
 from gen.recipe.shares import changed_operation, with_products
+from gen.sentences import sentences
 
 _NO_KEYS: Mapping[str, Any] = MappingProxyType({})
 # memory of a record beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace
@@ -135,7 +135,6 @@ class Recipe(Section):
     """Faults of mount, cable, amplifier and data transfer; none if left out."""
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
-    _extensions: tuple[Extension, ...] = PrivateAttr(())
 
     def __init__(self, data: Mapping[str, Any] = _NO_KEYS, /, **keys: Any) -> None:
         """Check a recipe given as a dict or by its keys; sections are mappings, as in YAML.
@@ -145,8 +144,6 @@ class Recipe(Section):
         RecipeError
             If there are wrong keys or values; one sentence for each of them.
         """
-        from gen.recipe.sentences import sentences  # it needs the model
-
         if not isinstance(data, Mapping) or not all(isinstance(key, str) for key in data):
             raise RecipeError("a recipe is a mapping that starts with name:, title: and corpus:; see raceway recipes.")
         try:
@@ -164,32 +161,52 @@ class Recipe(Section):
         return round(self.recording.duration_s * self.recording.sample_rate_hz)
 
     @property
-    def blocks(self) -> tuple[Block, ...]:
-        """Records that the recipe asks for, and those of each extension."""
-        corpus, whole = self.corpus, self.corpus.n_records
-        records = whole if self.records is None else min(whole, self.records)
-        first = first_block(
-            records,
-            whole,
-            per_specimen=corpus.records_of_a_specimen,
-            specimens_per_rig=corpus.specimens_per_rig,
-            per_part=corpus.records_per_part,
-            n_rungs=corpus.n_rungs,
-        )
-        return with_blocks(first, self._extensions)
-
-    def block_of(self, record: int) -> Block:
-        """Block of a record."""
-        return next(block for block in self.blocks if record < block.records.stop)
-
-    def records_of_part(self, part: int) -> range:
-        """Numbers of the records of a part."""
-        return next(block for block in self.blocks if part < block.parts.stop).records_of_part(part)
-
-    @property
     def n_records(self) -> int:
         """Number of records of the corpus."""
-        return self.blocks[-1].records.stop
+        whole = self.corpus.n_records
+        return whole if self.records is None else min(whole, self.records)
+
+    @property
+    def n_specimens(self) -> int:
+        """Number of specimens that have records."""
+        return -(-self.n_records // self.corpus.records_of_a_specimen)
+
+    @property
+    def n_rigs(self) -> int:
+        """Number of rigs that have records."""
+        return -(-self.n_specimens // self.corpus.specimens_per_rig)
+
+    @property
+    def n_parts(self) -> int:
+        """Number of parts of the corpus."""
+        return -(-self.n_records // self.corpus.records_per_part)
+
+    def specimen_of(self, record: int) -> int:
+        """Number of the specimen of a record."""
+        return record // self.corpus.records_of_a_specimen
+
+    def rig_of(self, specimen: int) -> int:
+        """Number of the rig of a specimen."""
+        return specimen // self.corpus.specimens_per_rig
+
+    def records_of(self, specimen: int) -> range:
+        """Numbers of the records of a specimen; the last specimen may have fewer than the others."""
+        return self._some_records(specimen, self.corpus.records_of_a_specimen)
+
+    def records_of_part(self, part: int) -> range:
+        """Numbers of the records of a part; the last part may have fewer than the others."""
+        return self._some_records(part, self.corpus.records_per_part)
+
+    def _some_records(self, place: int, size: int) -> range:
+        return range(place * size, min((place + 1) * size, self.n_records))
+
+    def item_of(self, record: int) -> int:
+        """Number of the quasi-random point of a record of a healthy specimen, and of its combination of grids.
+
+        The first records of all groups of ``n_rungs`` records come first, then the second ones, and so on.
+        """
+        group, place = divmod(record, self.corpus.n_rungs)
+        return place * (self.corpus.n_records // self.corpus.n_rungs) + group
 
     def operation_of(self, entry: int) -> OperationSection:
         """Operating conditions of the records of one entry of ``faults``."""
@@ -203,11 +220,6 @@ class Recipe(Section):
             if entry.operation is not None:
                 found[f"faults[{number}].operation"] = with_products(self, self.operation_of(number))
         return found
-
-    @property
-    def n_parts(self) -> int:
-        """Number of parts of the corpus."""
-        return self.blocks[-1].parts.stop
 
     @model_validator(mode="after")
     def _within_limits(self) -> Self:
@@ -259,18 +271,3 @@ class Recipe(Section):
         if problem is not None:
             raise ValueError(problem)
         return self
-
-    def extended(self, extensions: Iterable[Mapping[Any, int]]) -> Self:
-        """The same recipe for a corpus with further rigs or specimens; an extension is ``{"rigs": 2}`` or ``{"specimens": 2}``.
-
-        Raises
-        ------
-        RecipeError
-            If the corpus would be larger than the limits allow.
-        """
-        extended = self.model_copy()
-        extended._extensions = (*self._extensions, *(Extension(**extension) for extension in extensions))  # noqa: SLF001 - a copy of this object
-        per_rig = max(block.specimens_per_rig for block in extended.blocks)
-        check_limit("rig_specimens", per_rig, "the extension: asks for", RecipeError)
-        check_limit("records", extended.n_records, "the extended corpus has", RecipeError)
-        return extended

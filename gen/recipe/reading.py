@@ -1,5 +1,6 @@
 """Read and check a recipe file; the model compares counts and sizes with the limits."""
 
+import functools
 import hashlib
 import json
 from collections.abc import Mapping
@@ -51,6 +52,20 @@ def recipe_hash(recipe: Recipe) -> str:
         del values["corpus"]["fault_choice"]
     text = json.dumps(values, sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+@functools.lru_cache(maxsize=16)
+def corpus_identity(recipe: Recipe) -> str:
+    """First 12 digits of the SHA-256 of the values that draws depend on: with the same ones, equal numbers are the same machine."""
+    storage = {
+        "corpus": {"codec", "records_per_part"},
+        "publication": True,
+        "records": True,
+        "name": True,
+        "title": True,
+    }
+    text = json.dumps(recipe.model_dump(mode="json", exclude=storage), sort_keys=True)
+    return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 
 def recipe_schema() -> str:

@@ -32,7 +32,7 @@ def corpus(tmp_path, recordings):
         np.save(tmp_path / f"{name}.npy", signal)
         files.append(f"- {{path: {name}.npy, fault: {fault}, specimen: {specimen}}}\n")
     (tmp_path / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
-    return import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").directory
+    return import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").path
 
 
 def sound_set():
@@ -107,7 +107,7 @@ def test_two_sensors_of_one_file_are_not_two_specimens(tmp_path):
     ]
     files += [f"- {{path: two.npy, column: {n}, fault: inner, specimen: sensor{n}}}\n" for n in (0, 1)]
     (tmp_path / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
-    (sentence,) = audit_splits(import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").directory)
+    (sentence,) = audit_splits(import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus").path)
     assert "two.npy holds recordings of more than one specimen; if these are sensors of one machine" in sentence
 
 

@@ -11,8 +11,8 @@ from features.recording_speeds import (
     FOUND,
     UNCERTAINTY,
     Sums,
+    block_sums,
     other_speed,
-    part_sums,
     rates_to_use,
     recording_numbers,
     recording_speeds,
@@ -24,12 +24,9 @@ from gen.corpus import (
     SCHEMA,
     Variable,
     make_dataset,
+    new_corpus,
     open_corpus,
-    part_name,
-    part_paths,
-    write_index,
-    write_manifest,
-    write_part,
+    record_blocks,
 )
 from tests.pulses import LINES, ORDERS, pulse_train
 
@@ -58,25 +55,22 @@ def write_machines(folder, *, per_part=7, extra=(), spoiled=(), speeds=None):
             known = {"shaft_rate": label, "sample_rate": FS, "specimen": number, "recording": number, **ORDERS}
             known |= {"fault": FAULTS.index(fault.split()[0]), "true_shaft_rate": true}
             for name, column in columns.items():
-                column.append(known.get(name, f"{fault}.csv" if name in {"bearing", "source"} else 0))
+                column.append(known.get(name, f"{fault}.csv" if name in {"bearing", "source", "identity"} else 0))
             signal.append(window)
     for number in spoiled:
         signal[number] = np.zeros_like(signal[number])
-    (folder / "parts").mkdir(parents=True)
-    rows = []
-    for part, start in enumerate(range(0, len(signal), per_part)):
-        rows_of = slice(start, start + per_part)
-        dataset = make_dataset(
-            np.array(signal[rows_of], np.float32)[:, None],
-            FS,
-            ("housing",),
-            {name: column[rows_of] for name, column in columns.items()},
-            extra=extra,
-            attributes={"title": "machines", "history": ""},
-        )
-        rows.append(write_part(dataset, folder / "parts" / part_name(part)))
-    write_index(folder, rows)
-    write_manifest(folder, rows, complete=True)
+    with new_corpus(folder, title="machines") as corpus:
+        for start in range(0, len(signal), per_part):
+            rows_of = slice(start, start + per_part)
+            dataset = make_dataset(
+                np.array(signal[rows_of], np.float32)[:, None],
+                FS,
+                ("housing",),
+                {name: column[rows_of] for name, column in columns.items()},
+                extra=extra,
+                attributes={"title": "machines", "history": ""},
+            )
+            corpus.write(dataset)
     return folder
 
 
@@ -144,13 +138,13 @@ def test_the_estimate_of_a_recording_is_that_of_shaft_speed(corpus, checked):
     assert found.uncertainty == pytest.approx(checked[UNCERTAINTY].values[WINDOWS])
 
 
-def test_parts_may_come_in_any_order(corpus, checked):
+def test_blocks_of_records_may_come_in_any_order(corpus, checked):
     recording = recording_numbers(checked)
     rate = checked["shaft_rate"].values
     starts = np.arange(7, len(recording), 7)
     sums = [
-        (number, part_sums(task))
-        for number, task in enumerate(zip(part_paths(corpus), np.split(recording, starts), strict=True))
+        (number, block_sums(task))
+        for number, task in enumerate(zip(record_blocks(corpus), np.split(recording, starts), strict=True))
     ]
     assert recording_speeds(recording, rate, sums) == recording_speeds(recording, rate, reversed(sums))
 

@@ -13,20 +13,19 @@ from distributed import Client
 from features import feature_table
 from features.band import Band, band_of
 from features.indicators import GROUPS, feature_names
-from features.table import part_features
+from features.table import block_features
 from features.table_files import read_table, write_table
 from gen.corpus import (
     MISSING_COUNT,
     ROLES,
     SCHEMA,
     SIGNAL,
+    RecordBlock,
     Variable,
     make_dataset,
+    new_corpus,
     open_corpus,
-    part_name,
-    part_paths,
-    write_index,
-    write_manifest,
+    record_blocks,
     write_part,
 )
 from gen.errors import CorpusError
@@ -58,13 +57,9 @@ def part_dataset(number, rng, spoiled=None):
 
 
 def make_corpus(directory, spoiled=None, change=lambda dataset: dataset):
-    (directory / "parts").mkdir(parents=True)
-    rows = []
-    for number in range(PARTS):
-        dataset = change(part_dataset(number, np.random.default_rng(number), spoiled))
-        rows.append(write_part(dataset, directory / "parts" / part_name(number)))
-    write_index(directory, rows)
-    write_manifest(directory, rows, complete=True)
+    with new_corpus(directory, title="A corpus for a test") as corpus:
+        for number in range(PARTS):
+            corpus.write(change(part_dataset(number, np.random.default_rng(number), spoiled)))
     return directory
 
 
@@ -86,14 +81,6 @@ def test_every_record_has_a_row_of_named_finite_features(table):
     assert table.sizes["record"] == RECORDS * PARTS
     assert np.isfinite(table["features"]).all()
     assert table.attrs["records_with_missing_features"] == 0
-
-
-def test_a_corpus_whose_classes_end_at_ball_gives_the_same_features(table, tmp_path):
-    def aged(dataset):
-        dataset["fault"].attrs |= {"flag_values": np.arange(4, dtype="i1"), "flag_meanings": "healthy inner outer ball"}
-        return dataset
-
-    xr.testing.assert_equal(feature_table(make_corpus(tmp_path / "old", change=aged)), table)
 
 
 def test_all_variables_of_a_record_are_copied_with_their_attributes(corpus, table):
@@ -141,9 +128,21 @@ def test_a_missing_count_is_not_used_as_a_sample(tmp_path):
 
 
 def test_rows_are_in_the_order_of_the_corpus(corpus, table):
-    for number, path in enumerate(part_paths(corpus)):
+    for number, block in enumerate(record_blocks(corpus)):
         rows = slice(RECORDS * number, RECORDS * (number + 1))
-        np.testing.assert_array_equal(table["features"].values[rows], part_features(path))
+        np.testing.assert_array_equal(table["features"].values[rows], block_features(block))
+
+
+def test_a_single_file_has_the_table_of_a_folder(tmp_path, table):
+    xr.testing.assert_equal(feature_table(make_corpus(tmp_path / "c.nc")), table)
+
+
+def test_a_single_file_is_worked_on_block_by_block(tmp_path, table, monkeypatch):
+    monkeypatch.setattr("gen.corpus.blocks._BLOCK_RECORDS", 4)
+    done = []
+    found = feature_table(make_corpus(tmp_path / "c.nc"), progress=lambda *counts: done.append(counts))
+    xr.testing.assert_equal(found, table)
+    assert done == [(1, 4), (2, 4), (3, 4), (4, 4)]
 
 
 def test_groups_are_chosen_by_name(corpus, table):
@@ -179,10 +178,9 @@ def test_memory_beside_the_table_does_not_grow_with_the_parts(tmp_path):
     peaks = []
     for parts in (2, 12):
         folder = tmp_path / f"{parts}"
-        (folder / "parts").mkdir(parents=True)
-        rows = [write_part(dataset, folder / "parts" / part_name(number)) for number in range(parts)]
-        write_index(folder, rows)
-        write_manifest(folder, rows, complete=True)
+        with new_corpus(folder, title="many") as corpus:
+            for _ in range(parts):
+                corpus.write(dataset)
         feature_table(folder)
         tracemalloc.start()
         held = feature_table(folder).nbytes
@@ -206,23 +204,23 @@ def test_features_do_not_change_when_labels_latents_and_provenance_are_shuffled(
 
 
 def test_features_do_not_need_labels_latents_or_provenance(tmp_path, corpus):
-    path = part_paths(corpus)[0]
-    with xr.open_dataset(path, decode_times=False) as part:
+    block = record_blocks(corpus)[0]
+    with xr.open_dataset(block.file, decode_times=False) as part:
         hidden = [name for name, known in part.variables.items() if known.attrs.get("role") in ROLES[1:]]
         bare = part.drop_vars(hidden).load()
-    write_part(bare, tmp_path / "part-00000.nc")
-    np.testing.assert_array_equal(part_features(tmp_path / "part-00000.nc"), part_features(path))
+    write_part(bare, tmp_path / "bare.nc")
+    np.testing.assert_array_equal(block_features(block._replace(file=tmp_path / "bare.nc")), block_features(block))
 
 
 def test_each_record_of_a_part_is_evaluated_at_its_own_sample_rate(tmp_path, corpus):
-    path = part_paths(corpus)[0]
-    with xr.open_dataset(path, decode_times=False) as part:
+    block = record_blocks(corpus)[0]
+    with xr.open_dataset(block.file, decode_times=False) as part:
         mixed = part.load()
-    whole = part_features(path)
+    whole = block_features(block)
     mixed["sample_rate"][3] = 2 * FS
     mixed["sample_rate"][4] = np.nan
-    write_part(mixed, tmp_path / "part-00000.nc")
-    values = part_features(tmp_path / "part-00000.nc")
+    write_part(mixed, tmp_path / "mixed.nc")
+    values = block_features(block._replace(file=tmp_path / "mixed.nc"))
     np.testing.assert_array_equal(values[:3], whole[:3])
     assert not np.allclose(values[3], whole[3])
     assert np.isnan(values[4]).all()
@@ -309,8 +307,8 @@ def test_a_file_without_a_feature_table_is_refused_by_name(tmp_path, corpus):
         read_table(tmp_path / "text.nc")
     with pytest.raises(CorpusError, match=r"missing\.nc: not a readable netCDF file"):
         read_table(tmp_path / "missing.nc")
-    with pytest.raises(CorpusError, match=r"corpus\.nc: contains no features"):
-        read_table(corpus / "corpus.nc")
+    with pytest.raises(CorpusError, match=r"index\.nc: contains no features"):
+        read_table(corpus / "index.nc")
 
 
 @pytest.mark.parametrize("channel", [-1, 2])
@@ -320,7 +318,7 @@ def test_a_channel_that_does_not_exist_is_refused(corpus, channel):
 
 
 def test_a_corpus_that_does_not_exist_is_refused(tmp_path):
-    with pytest.raises(CorpusError, match="no such folder"):
+    with pytest.raises(CorpusError, match="no such folder or file"):
         feature_table(tmp_path / "nowhere")
 
 
@@ -334,8 +332,8 @@ def test_a_part_that_cannot_be_read_is_named_in_a_sentence(tmp_path, damage):
         part.write_bytes(part.read_bytes()[:5000])
     elif damage == "no netCDF":
         part.write_bytes(b"not a corpus")
-    with pytest.raises(CorpusError, match=re.escape(f"{part}: not a readable netCDF-4 part")):
-        part_features(part)
+    with pytest.raises(CorpusError, match=re.escape(f"{part}: not a readable file of a corpus")):
+        block_features(RecordBlock(part, 0, 2))
 
 
 def test_a_channel_can_be_given_by_its_name(corpus):

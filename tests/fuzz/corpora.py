@@ -1,4 +1,7 @@
-"""Corpora whose files are changed by someone who knows the format: the manifest names the changed files, so that their hashes agree."""
+"""Corpora whose files are changed by someone who knows the format: a folder, and a single file.
+
+Most of the time the changed netCDF files end with their checksum, and manifest and index name the parts as they are now.
+"""
 
 import hashlib
 import io
@@ -12,12 +15,14 @@ from pathlib import Path
 import h5py
 import numpy as np
 
-from features.table import part_features
-from gen.corpus import SIGNAL, open_corpus, validate_corpus
+from features.table import feature_table
+from gen.corpus import SIGNAL, data_card, open_corpus, validate_corpus
 from gen.errors import RacewayError
+from raceway.console.summary import describe
 from tests.corpora import write_corpus
 
-INDEX, MANIFEST = "corpus.nc", "manifest.json"
+INDEX, MANIFEST, SINGLE = "index.nc", "manifest.json", "c.nc"
+LINE_BYTES = 73  # of the checksum
 ODD = (
     None,
     True,
@@ -39,26 +44,33 @@ ODD = (
 
 
 def seeds(folder):
-    """Archives of two small corpora."""
+    """Archives of small corpora of both forms."""
     paths = []
     for kind in ("counts", "float32"):
-        write_corpus(folder / kind, (2, 2), kind=kind)
-        paths.append(Path(shutil.make_archive(str(folder / f"{kind}-corpus"), "zip", folder / kind)))
+        for name in ("c", SINGLE):
+            place = folder / f"{kind}-{name}"
+            write_corpus(place / name, (2, 2), kind=kind)
+            root = place / name if name == "c" else place
+            paths.append(Path(shutil.make_archive(str(folder / f"{kind}-{name}-corpus"), "zip", root)))
     return paths
 
 
 def mutate(content, rng):
-    """Change one or two files of an archived corpus; most of the time the manifest then names them as they are."""
+    """Change one or two files of an archived corpus; most of the time their checksums are then right."""
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         files = {name: archive.read(name) for name in archive.namelist() if not name.endswith("/")}
+    sealed = rng.random() < 0.9
     for _ in range(rng.integers(1, 3)):
-        name = str(rng.choice(sorted(files)))
+        name = str(rng.choice(sorted(set(files) - {"README.md"})))
         if name == MANIFEST:
             files[name] = _other_manifest(files[name], rng)
+        elif not name.endswith(".nc"):
+            files[name] = rng.choice([_flipped, _cut])(files[name], rng)
         else:
-            files[name] = rng.choice([_flipped, _cut, _edited, _edited, _edited])(files[name], rng)
-    if rng.random() < 0.9:
-        files[MANIFEST] = _sealed(files)
+            changed = rng.choice([_flipped, _cut, _edited, _edited, _edited])(files[name][:-LINE_BYTES], rng)
+            files[name] = _with_line(changed) if sealed else changed + files[name][-LINE_BYTES:]
+    if sealed and MANIFEST in files:
+        _seal(files)
     out = io.BytesIO()
     with zipfile.ZipFile(out, "w") as archive:
         for name, data in files.items():
@@ -67,17 +79,26 @@ def mutate(content, rng):
 
 
 def check(path):
-    """Open, validate and read the corpus, and compute features of its parts."""
+    """Validate, open and read the corpus, describe it, write its data card and compute its features: each works or says one sentence."""
     with tempfile.TemporaryDirectory() as place:
         folder = Path(place) / "c"
         with zipfile.ZipFile(path) as archive:
             archive.extractall(folder)
-        validate_corpus(folder)
-        with suppress(RacewayError):
-            with open_corpus(folder) as corpus:
-                corpus.load()
-            for part in sorted((folder / "parts").iterdir()):
-                part_features(part, ("time",))
+        corpus = folder / SINGLE if (folder / SINGLE).exists() else folder
+        problems = validate_corpus(corpus)
+        assert not any("\n" in problem for problem in problems), problems
+        for use in (_load, describe, data_card, lambda corpus: feature_table(corpus, ("time",))):
+            with suppress(RacewayError):
+                use(corpus)
+
+
+def _load(corpus):
+    with open_corpus(corpus) as opened:
+        opened.load()
+
+
+def _with_line(data):
+    return data + f"\nsha256:{hashlib.sha256(data).hexdigest()}\n".encode()
 
 
 def _flipped(data, rng):
@@ -172,7 +193,7 @@ def _values(file, name, _other, rng):
 def _other_manifest(data, rng):
     try:
         manifest = json.loads(data)
-        assert manifest.keys() >= {"parts", "index"}
+        assert "parts" in manifest
         assert all(isinstance(row, dict) and row for row in manifest["parts"])
     except (ValueError, RecursionError, AssertionError, AttributeError, TypeError):
         return data  # changed already
@@ -191,12 +212,17 @@ def _other_manifest(data, rng):
     return kinds[rng.integers(len(kinds))].encode()
 
 
-def _sealed(files):
-    """The manifest with sizes and hashes of the files as they are, as far as it can be read."""
-    try:
+def _seal(files):
+    """Let manifest and index name the parts as they are, as far as they can be read."""
+    with suppress(ValueError, KeyError, TypeError, AttributeError, RecursionError, OSError, RuntimeError):
         manifest = json.loads(files[MANIFEST])
-        for row, name in [(manifest["index"], INDEX), *((row, f"parts/{row['name']}") for row in manifest["parts"])]:
-            row |= {"bytes": len(files[name]), "sha256": hashlib.sha256(files[name]).hexdigest()}
-        return json.dumps(manifest).encode()
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        return files[MANIFEST]
+        for row in manifest["parts"]:
+            data = files[f"parts/{row['name']}"]
+            row |= {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+        hashes = "\n".join(row["sha256"] for row in manifest["parts"])
+        manifest["parts_sha256"] = hashlib.sha256(hashes.encode()).hexdigest()
+        files[MANIFEST] = json.dumps(manifest).encode()
+        stream = io.BytesIO(files[INDEX][:-LINE_BYTES])
+        with h5py.File(stream, "r+") as index:
+            index.attrs["parts_sha256"] = manifest["parts_sha256"]
+        files[INDEX] = _with_line(stream.getvalue())

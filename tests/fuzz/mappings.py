@@ -3,13 +3,15 @@
 The changes are those of :mod:`recipes`, with values that only a mapping file has.
 """
 
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
+from pydantic import ValidationError
 
 from gen.errors import RacewayError
-from gen.importers.entry import bearing_of
 from gen.importers.mapping import read_mapping
+from gen.importers.mapping_values import bearing_of
 from gen.importers.paths import match_path
 from gen.physics.bearing import orders
 from tests.fuzz import recipes
@@ -110,8 +112,12 @@ def check(path: Path) -> None:
         return
     for section in mapping.sections:
         for name in ("Data/a/N_0_1.mat", "I/30_1_x7y.wav", "a" * 255, "_" * 255, "x/" * 60):
-            match_path(section.pattern, name, section.suits())
-    for entry in (entry for section in mapping.sections for entry in section.examples()):
-        if not np.isfinite(orders(bearing_of(entry))).all():
-            message = f"orders of {entry.bearing} are not finite"
+            groups = match_path(section.pattern, name, section.suits())
+            if groups is not None:
+                with suppress(ValidationError):
+                    section.facts(groups)
+                list(section.sensors(groups))
+    for bearing in (section.keys.bearing for section in mapping.sections if section.keys.bearing is not None):
+        if not np.isfinite(orders(bearing_of(bearing))).all():
+            message = f"orders of {bearing} are not finite"
             raise ValueError(message)

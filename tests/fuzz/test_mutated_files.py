@@ -9,7 +9,7 @@ import pytest
 from tests.fuzz.__main__ import TARGETS
 from tests.paths import ROOT
 
-COUNTS = dict.fromkeys(TARGETS, 600) | {"corpora": 250}  # a corpus takes 50 ms; make fuzz tries more
+COUNTS = dict.fromkeys(TARGETS, 600) | {"corpora": 250}  # a corpus takes 50 ms; make thorough tries more
 
 
 @pytest.mark.parametrize("target", TARGETS)

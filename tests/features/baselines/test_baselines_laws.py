@@ -1,17 +1,14 @@
 """Laws of the baselines: splits without leaks, reproducible scores, and model files that are refused if damaged."""
 
 import json
-import zipfile
 from dataclasses import asdict
 from pathlib import Path
 
 import numpy as np
 import pytest
-import skops.io
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from sklearn.base import BaseEstimator
 
 from features.baselines import (
     ESTIMATORS,
@@ -321,38 +318,6 @@ def test_a_damaged_model_is_refused_in_one_sentence_or_unchanged(model_file, dat
         found, sentence = load_model(model_file), str(error)
     assert evaluate(make_table(), found) == evaluate(make_table(), model_file)
     assert not sentence or (sentence.startswith(str(path)) and "\n" not in sentence)
-
-
-class Foreign(BaseEstimator):
-    """An estimator of another project."""
-
-
-@pytest.mark.parametrize(
-    ("content", "sentence"),
-    [
-        (b"", "not a readable model"),
-        (b"\x80\x04K*.", "not a readable model"),
-        (skops.io.dumps(Foreign()), "Foreign, which no model of raceway contains"),
-        (skops.io.dumps({"raceway_model": 99}), "not a model of this version"),
-        (skops.io.dumps([1, 2]), "not a model of this version"),
-        (skops.io.dumps({"raceway_model": 4, "estimator": 3}), "not a complete model"),
-    ],
-)
-def test_a_foreign_model_is_refused(content, sentence, tmp_path):
-    path = tmp_path / "model.skops"
-    path.write_bytes(content)
-    with pytest.raises(CorpusError, match=sentence):
-        load_model(path)
-
-
-def test_a_missing_model_is_named(tmp_path):
-    with pytest.raises(CorpusError, match="no such file; give a model made with raceway train"):
-        load_model(tmp_path / "none.skops")
-
-
-def test_model_files_contain_no_pickle(model_file):
-    with zipfile.ZipFile(model_file) as archive:
-        assert all(name == "schema.json" or name.endswith(".npy") for name in archive.namelist())
 
 
 def without(table: xr.Dataset, name: str) -> xr.Dataset:

@@ -21,7 +21,7 @@ from tests.paths import REAL
 def real_table(name, importer, folder):
     if not (REAL / name).is_dir():
         pytest.skip(f"no real recordings: set RACEWAY_REAL to the folder that holds {name}")
-    return feature_table(importer(REAL / name, folder / name).directory, ("lines", "shape"))
+    return feature_table(importer(REAL / name, folder / name).path, ("lines", "shape"))
 
 
 @pytest.fixture(scope="module")

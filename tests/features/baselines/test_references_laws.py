@@ -19,7 +19,6 @@ from gen.corpus import UNKNOWN_CODE
 from gen.errors import CorpusError
 from gen.importers import import_generic
 from raceway.cli import cli
-from tests.model_files import Archive
 
 LINES = (*EVIDENCE, "raw_kurtosis")
 ORDERS = Orders(ftf=0.4, bpfo=3.58, bpfi=5.42, bsf=2.36)
@@ -232,53 +231,6 @@ def test_a_model_file_holds_both_parts(table, model, tmp_path):
     for reference in (None, table):
         found, expected = (predict(table, each, reference).probabilities for each in (read, model))
         np.testing.assert_array_equal(found, expected)
-    alone = load_model(path, relative=False)
-    assert alone.relative is None
-    np.testing.assert_array_equal(predict(table, alone).probabilities, predict(table, model).probabilities)
-
-
-def forged_seed(held: dict) -> None:
-    held["seed"]["content"] = "1"
-
-
-def forged_corpus(held: dict) -> None:
-    held["corpus"]["content"] = '"another corpus"'
-
-
-def forged_digests(held: dict) -> None:
-    held["digests"] = held["name"]
-
-
-def missing_calibration(held: dict) -> None:
-    del held["calibration"]
-
-
-@pytest.mark.parametrize(
-    ("forge", "sentence"),
-    [
-        (forged_seed, "relative: estimator.*random_state is 0 and must be 1"),
-        (forged_corpus, "relative: is not of the same estimator, seed, classes, features and corpus"),
-        (forged_digests, "relative: digests must be 64 of 64 bits"),
-        (missing_calibration, "not a complete model"),
-    ],
-)
-def test_a_forged_second_part_of_a_model_file_is_refused(model, tmp_path, forge, sentence):
-    save_model(model, tmp_path / "m.skops")
-    archive = Archive(tmp_path / "m.skops")
-    forge(archive.field("relative")["content"])
-    with pytest.raises(CorpusError, match=sentence):
-        load_model(archive.write(tmp_path / "m.skops"))
-
-
-def test_a_tree_of_the_second_part_is_checked_too(model, tmp_path):
-    save_model(model, tmp_path / "m.skops")
-    archive = Archive(tmp_path / "m.skops")
-    nodes = [held for held in archive.places("nodes") if held.get("file")][-1]  # innermost and last: a tree
-    changed = archive.array(nodes)
-    changed["left_child"][0] = 2**40
-    archive.put(nodes, changed)
-    with pytest.raises(CorpusError, match="a node with a child that is not between the node and the last"):
-        load_model(archive.write(tmp_path / "m.skops"))
 
 
 FS = 12_000
@@ -298,7 +250,7 @@ def imported(folder, *, rpm="1500", window=0.5, bearings=("6205",)):
             f"- {{path: {number}.npy, fault: {fault}, specimen: {number}, bearing: '{bearing}', shaft_rpm: {speed}}}\n"
         )
     (folder / "mapping.yaml").write_text(f"unit: g\nsample_rate_hz: {FS}\nfiles:\n{''.join(files)}")
-    return import_generic(folder / "mapping.yaml", folder / "corpus", window=window).directory
+    return import_generic(folder / "mapping.yaml", folder / "corpus", window=window).path
 
 
 def test_a_reference_recording_has_the_features_of_the_same_records_in_a_corpus(tmp_path):

@@ -52,7 +52,7 @@ def corpus(tmp_path_factory):
         np.save(folder / f"{number}.npy", signal)
         files.append(f"- {{path: {number}.npy, fault: {fault}, specimen: {number}}}\n")
     (folder / "mapping.yaml").write_text(f"{COMMON}files:\n{''.join(files)}")
-    return import_generic(folder / "mapping.yaml", folder / "corpus").directory
+    return import_generic(folder / "mapping.yaml", folder / "corpus").path
 
 
 @pytest.fixture(scope="module")

@@ -26,7 +26,7 @@ from features.report.pictures import (
     thinned,
 )
 from features.table import feature_table
-from gen.corpus import FAULTS, SCHEMA, make_dataset, open_corpus, part_name, write_index, write_manifest, write_part
+from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
 from gen.errors import CorpusError
 
 FS = 10_000.0
@@ -45,7 +45,6 @@ def signal_of(fault, shaft_rate, rng):
 
 def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, classes=4, **changed):
     rng = np.random.default_rng(0)
-    (directory / "parts").mkdir(parents=True)
     specimen = np.repeat(np.arange(specimens), records)
     count = len(specimen)
     columns = {v.name: np.array([title] * count, object) if v.dtype == "str" else np.zeros(count) for v in SCHEMA}
@@ -68,9 +67,9 @@ def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, cl
         columns | changed,
         attributes={"title": title, "source": title, "history": ""},
     )
-    rows = [write_part(dataset, directory / "parts" / part_name(0))]
-    write_index(directory, rows)
-    write_manifest(directory, rows, complete=True, recipe=title, versions={title: title}, warnings=(title,))
+    with new_corpus(directory, title=title, versions={title: title}, warnings=(title,)) as corpus:
+        corpus.facts["recipe"] = title
+        corpus.write(dataset)
     return directory
 
 

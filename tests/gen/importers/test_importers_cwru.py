@@ -233,16 +233,25 @@ def test_the_corpus_tells_what_was_skipped_and_done(source, output):
 
 DAMAGES = {
     "empty": (lambda path: path.write_bytes(b""), "is empty (0 bytes); copy it again"),
-    "truncated": (lambda path: path.write_bytes(path.read_bytes()[:50_000]), "is truncated or damaged"),
-    "cut_in_the_header": (lambda path: path.write_bytes(path.read_bytes()[:60]), "is not a MATLAB file"),
-    "text": (lambda path: path.write_text("not found\n" * 50), "is not a MATLAB file of level 5 or 7.3"),
+    "truncated": (
+        lambda path: path.write_bytes(path.read_bytes()[:50_000]),
+        "damaged or not a MATLAB file (could not read bytes)",
+    ),
+    "cut_in_the_header": (
+        lambda path: path.write_bytes(path.read_bytes()[:60]),
+        "is truncated, damaged or not a MATLAB file",
+    ),
+    "text": (
+        lambda path: path.write_text("not found\n" * 50),
+        "not a MATLAB file (Unknown mat file type",
+    ),
     "of_another_recording": (
         lambda path: scipy.io.savemat(path, {"X222_DE_time": noise(), "X222RPM": 1796}),
         "holds X222_DE_time, X222RPM, not X106_DE_time",
     ),
     "of_another_set": (
         lambda path: scipy.io.savemat(path, {"bearing": {"gs": noise(), "sr": 48828}}),
-        "holds bearing, not X106_DE_time",
+        "holds bearing.gs, bearing.sr, not X106_DE_time",
     ),
     "text_variable": (
         lambda path: scipy.io.savemat(path, {"X106_DE_time": "lost"}),
@@ -343,7 +352,7 @@ def test_an_empty_output_folder_may_be_used(source, output):
 
 def test_the_same_files_give_the_same_bytes(tmp_path, source):
     published(source, 105)
-    first, second = (import_cwru(source, tmp_path / name).directory for name in ("one", "two"))
+    first, second = (import_cwru(source, tmp_path / name).path for name in ("one", "two"))
     for path in sorted(path.relative_to(first) for path in first.rglob("*") if path.is_file()):
         assert (first / path).read_bytes() == (second / path).read_bytes(), path
 

@@ -17,7 +17,7 @@ def mapping(folder, *files):
 
 def test_a_mapping_may_name_every_fault_class(tmp_path):
     found = read_mapping(mapping(tmp_path, *(f"fault: {fault}" for fault in (*FAULTS, UNKNOWN))))
-    assert tuple(next(section.examples()).fault for section in found.sections) == (*FAULTS, UNKNOWN)
+    assert tuple(section.facts({}).fault for section in found.sections) == (*FAULTS, UNKNOWN)
 
 
 @pytest.mark.parametrize("key", ["width_mm: 1", "depth_um: 100", "angle_deg: 0", "n_spalls: 1"])
@@ -28,4 +28,4 @@ def test_a_spall_is_described_only_where_there_is_one(tmp_path, fault, key):
         with pytest.raises(CorpusError, match=f"{key.split(':')[0]} describes a spall, and fault is {fault}"):
             read_mapping(path)
     else:
-        assert next(read_mapping(path).sections[0].examples()).fault == fault
+        assert read_mapping(path).sections[0].facts({}).fault == fault

@@ -11,9 +11,9 @@ import scipy.io
 from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.errors import CorpusError
 from gen.importers import import_generic
-from gen.importers.entry import Entry, bearing_of
 from gen.importers.mapping import read_mapping
-from gen.importers.mapping_values import Geometry
+from gen.importers.mapping_keys import FileKeys
+from gen.importers.mapping_values import Geometry, bearing_of
 from gen.recipe.keys import recipe_keys
 from gen.units import unit_suffix
 from tests.paths import ROOT
@@ -25,9 +25,22 @@ COMMON = "bearing: '6205'\nunit: m/s2\nsample_rate_hz: 2000\nshaft_rpm: 1500\nfa
 def imported(tmp_path, mapping, **options):
     (tmp_path / "mapping.yaml").write_text(mapping)
     done = import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", **options)
-    assert validate_corpus(done.directory) == []
-    with open_corpus(done.directory) as corpus:
+    assert validate_corpus(done.path) == []
+    with open_corpus(done.path) as corpus:
         return done, corpus.load()
+
+
+def test_recordings_of_another_set_have_another_identity_although_their_files_have_the_same_names(tmp_path):
+    found = []
+    for folder, signal in (("one", SIGNAL), ("same", SIGNAL), ("other", -SIGNAL)):
+        (tmp_path / folder).mkdir()
+        np.savetxt(tmp_path / folder / "a.csv", signal)
+        _, corpus = imported(tmp_path / folder, COMMON + "files:\n- {path: a.csv}\n", window=0.5)
+        found.append(corpus["identity"].values.tolist())
+    one, same, other = found
+    assert one == same
+    assert not set(one) & set(other)
+    assert {text.split("/", 1)[1] for text in one + other} == {"0/0/0/-1"}
 
 
 def refusal(tmp_path, mapping):
@@ -139,7 +152,7 @@ UNUSABLE = {
     "missing.npy": (None, "no file beside mapping.yaml matches"),
     "empty.csv": (lambda path: path.write_bytes(b""), "is empty"),
     "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no line of numbers among its first 2"),
-    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is not a readable delimited text file"),
+    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is truncated, damaged or not a delimited text file"),
     "nan.csv": (
         lambda path: path.write_text("1\nnan\n" * 2000),
         "has 2000 samples of 4000 that are not finite",
@@ -147,9 +160,9 @@ UNUSABLE = {
     "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "has 2 columns and none is chosen"),
     "objects.npy": (
         lambda path: np.save(path, np.array([{}]), allow_pickle=True),
-        "is not a readable NumPy file",
+        "is truncated, damaged or not a NumPy file",
     ),
-    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is not a readable NumPy file"),
+    "cut.npy": (lambda path: path.write_bytes(b"\x93NUMPY\x01\x00"), "is truncated, damaged or not a NumPy file"),
     "notes.doc": (lambda path: path.write_bytes(b"RIFF"), "is of no known type; known are .mat, .npy, .wav"),
     "two.mat": (
         lambda path: scipy.io.savemat(path, {"x": SIGNAL, "y": SIGNAL, "rpm": 5}),
@@ -157,7 +170,7 @@ UNUSABLE = {
     ),
     "broken_7_3.mat": (
         lambda path: (write_matlab_7_3(path), path.write_bytes(path.read_bytes()[:900])),
-        "is not a readable MATLAB 7.3 file",
+        "is truncated, damaged or not a MATLAB file",
     ),
 }
 
@@ -184,50 +197,56 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
         tmp_path,
         COMMON + "variable: x\nfiles: [{path: good.npy, variable: null}, {path: half.mat}, {path: whole.mat}]\n",
     )
-    assert "half.mat:x: is not a readable MATLAB 7.3 file" in done.skipped[0]
+    assert "half.mat:x: is truncated, damaged or not a MATLAB file" in done.skipped[0]
     assert done.skipped[1] == "whole.mat:x: holds vibration, not x; skipped."
 
 
 REFUSED = {
-    "no_files": (COMMON, "mapping.yaml: files is missing; give it there."),
-    "files_empty": (COMMON + "files: []", "files: [] is not allowed; list should have at least 1 item"),
+    "no_files": (COMMON, "mapping.yaml: files: is missing; give it."),
+    "files_empty": (COMMON + "files: []", "files: is empty; give at least one."),
     "not_yaml": ("files: [", "mapping.yaml: line 1: is not valid YAML ("),
     "twice": ("unit: g\nunit: g\nfiles: [{path: a}]", "line 2: is not valid YAML (the key unit occurs twice)"),
-    "a_list": ("- 1\n- 2", "mapping.yaml: holds no keys"),
+    "a_list": ("- 1\n- 2", "mapping.yaml: a mapping file has the key files, a list of sections"),
     "missing_key": (
         "bearing: '6205'\nunit: g\nfiles: [{path: a.npy, sample_rate_hz: 9, shaft_rpm: 9, specimen: A}]",
-        "files[0].fault is missing; give it there, or at the top for all files.",
+        "files[0].fault: is missing; give it there, or at the top for all files.",
     ),
     "typo": (
         COMMON + "files: [{path: a.npy, shaft_rmp: 5}]",
-        "files[0].shaft_rmp is not a key here; did you mean shaft_rpm?",
+        "files[0].shaft_rmp: no such key; did you mean shaft_rpm?",
     ),
     "renamed": (
         COMMON + "files: [{path: a.npy, fault: outer, depth_mm: 0.02}]",
-        "files[0].depth_mm is not a key here; give depth_um, in micrometres.",
+        "files[0].depth_mm: no such key; did you mean depth_um?",
     ),
     "typo_at_the_top": (
         COMMON + "lod_n: 5\nfiles: [{path: a.npy}]",
-        "mapping.yaml: lod_n is not a key here; did you mean load_n?",
+        "mapping.yaml: lod_n: no such key; did you mean load_n?",
     ),
-    "column": (COMMON + "files: [{path: a.npy, column: [1]}]", "files[0].column: [1] is not allowed"),
-    "bearing_list": (COMMON + "files: [{path: a.npy, bearing: [1]}]", "files[0].bearing: [1] is not allowed"),
+    "column": (
+        COMMON + "files: [{path: a.npy, column: [1]}]",
+        "files[0].column: is not a column; give its number, 0 to 999999,",
+    ),
+    "bearing_list": (
+        COMMON + "files: [{path: a.npy, bearing: [1]}]",
+        "files[0].bearing: this is not allowed here; it must be text",
+    ),
     "fault": (
         COMMON + "files: [{path: a.npy, fault: gear}]",
-        "files[0].fault: 'gear' is not allowed; input should be 'healthy'",
+        "files[0].fault: 'gear' is not allowed here; it must be 'healthy'",
     ),
     "speed": (
         COMMON + "files: [{path: a.npy, shaft_rpm: 0}]",
-        "files[0].shaft_rpm: 0 is not allowed; input should be greater than or equal to 0.001",
+        "files[0].shaft_rpm: 0 is not allowed here; it must be greater than or equal to 0.001.",
     ),
     "not_a_number": (COMMON + "files: [{path: a.npy, load_n: .nan}]", "files[0].load_n: nan is not allowed"),
     "bearing": (
         COMMON + "files: [{path: a.npy, bearing: 6295}]",
-        "files[0]: bearing 6295 is not in the catalogue (",
+        "files[0].bearing: 6295 is not in the catalogue (",
     ),
     "geometry": (
         COMMON + "files: [{path: a.npy, bearing: {n_balls: 8, pitch_diameter_mm: 40}}]",
-        "files[0].bearing.ball_diameter_mm is missing",
+        "files[0].bearing.ball_diameter_mm: is missing; give it.",
     ),
     "balls": (
         COMMON + "files: [{path: a.npy, bearing: {n_balls: 20, pitch_diameter_mm: 40, ball_diameter_mm: 8}}]",
@@ -236,10 +255,6 @@ REFUSED = {
     "healthy_spall": (
         COMMON + "files: [{path: a.npy, fault: healthy, width_mm: 1}]",
         "files[0]: width_mm describes a spall, and fault is healthy",
-    ),
-    "rates": (
-        COMMON + "files: [{path: a.npy}, {path: b.npy, sample_rate_hz: 4000}]",
-        "(a.npy) at 2000 Hz; a corpus has one sample rate: give resample_hz at the top, or make a corpus of each.",
     ),
     "absolute": (
         COMMON + "files: [{path: /etc/passwd}]",
@@ -270,34 +285,43 @@ REFUSED = {
     ),
     "long_title": (
         COMMON + f"title: {'t' * 6000}\nfiles: [{{path: a}}]",
-        "title: 'tttttttttttt...ttttttttttttt' is not allowed;",
+        "title: 6000 characters are too many; give at most 5000.",
     ),
     "spalls": (
         COMMON + "n_spalls: 40000\nfiles: [{path: a}]",
-        "n_spalls: 40000 is not allowed; input should be less than or equal to",
+        "n_spalls: 40000 is not allowed here; it must be less than or equal to 1000.",
     ),
     "rate_of_1e308": (
         COMMON + "files: [{path: a, sample_rate_hz: 1e308}]",
-        "files[0].sample_rate_hz: 1e+308 is not allowed;",
+        "files[0].sample_rate_hz: 1e+308 is not allowed here;",
     ),
     "rate_of_1e_300": (
         COMMON + "files: [{path: a, sample_rate_hz: 1e-300}]",
-        "files[0].sample_rate_hz: 1e-300 is not allowed;",
+        "files[0].sample_rate_hz: 1e-300 is not allowed here;",
     ),
-    "speed_of_1e_300": (COMMON + "files: [{path: a, shaft_rpm: 1e-300}]", "files[0].shaft_rpm: 1e-300 is not allowed;"),
+    "speed_of_1e_300": (
+        COMMON + "files: [{path: a, shaft_rpm: 1e-300}]",
+        "files[0].shaft_rpm: 1e-300 is not allowed here;",
+    ),
     "column_beyond": (
         COMMON + "files: [{path: a, column: 99999999999999999999}]",
-        "files[0].column: is not in 0 to 999999.",
+        "files[0].column: is not a column; give its number, 0 to 999999,",
     ),
-    "column_below": (COMMON + "files: [{path: a, column: -1}]", "files[0].column: is not in 0 to 999999."),
-    "delimiter_of_two": (COMMON + "files: [{path: a, delimiter: ';;'}]", "files[0].delimiter: ';;' is not allowed;"),
+    "column_below": (
+        COMMON + "files: [{path: a, column: -1}]",
+        "files[0].column: is not a column; give its number, 0 to 999999,",
+    ),
+    "delimiter_of_two": (
+        COMMON + "files: [{path: a, delimiter: ';;'}]",
+        "files[0].delimiter: 2 characters are too many; give at most 1.",
+    ),
     "delimiter_of_numbers": (
         COMMON + "files: [{path: a, delimiter: '5'}]",
         "files[0].delimiter: '5' cannot separate columns; give one character such as",
     ),
     "tiny_balls": (
         COMMON + "files: [{path: a, bearing: {n_balls: 9, pitch_diameter_mm: 40, ball_diameter_mm: 1e-308}}]",
-        "files[0].bearing.ball_diameter_mm: 1e-308 is not allowed;",
+        "files[0].bearing.ball_diameter_mm: 1e-308 is not allowed here;",
     ),
     "nothing_usable": (
         COMMON + "files: [{path: a.npy}]",
@@ -311,6 +335,24 @@ def test_a_mapping_that_cannot_be_meant_is_refused_with_a_sentence(tmp_path, map
     assert sentence in refusal(tmp_path, mapping)
 
 
+def test_recordings_at_different_rates_are_refused(tmp_path):
+    for name in "ab":
+        np.save(tmp_path / f"{name}.npy", SIGNAL)
+    sentence = "b.npy is at 4000 Hz and a.npy at 2000 Hz; a corpus has one sample rate: give resample_hz at the top, or"
+    assert sentence in refusal(tmp_path, COMMON + "files: [{path: a.npy}, {path: b.npy, sample_rate_hz: 4000}]")
+
+
+def test_every_wrong_key_of_a_mapping_has_a_sentence_of_its_own(tmp_path):
+    (tmp_path / "mapping.yaml").write_text(COMMON + "unti: g\nfiles: [{path: a.npy, load_n: -1}, {pat: b.npy}]")
+    with pytest.raises(CorpusError) as refused:
+        read_mapping(tmp_path / "mapping.yaml")
+    assert [line.removeprefix(f"{tmp_path / 'mapping.yaml'}: ") for line in str(refused.value).split("\n")] == [
+        "files[0].load_n: -1 is not allowed here; it must be greater than or equal to 0.",
+        "files[1].pat: no such key; did you mean path?",
+        "unti: no such key; did you mean unit?",
+    ]
+
+
 @pytest.mark.parametrize(
     ("window", "sentence"),
     [
@@ -321,6 +363,7 @@ def test_a_mapping_that_cannot_be_meant_is_refused_with_a_sentence(tmp_path, map
     ],
 )
 def test_a_window_that_cannot_be_meant_is_refused(tmp_path, window, sentence):
+    np.save(tmp_path / "a.npy", SIGNAL)
     (tmp_path / "mapping.yaml").write_text(COMMON + "files: [{path: a.npy}]")
     with pytest.raises(CorpusError, match=re.escape(sentence)):
         import_generic(tmp_path / "mapping.yaml", tmp_path / "corpus", window=window)
@@ -344,14 +387,14 @@ def test_the_mapping_in_the_documentation_is_one(tmp_path):
     example, paths, channels = re.findall(r"```yaml\n(.*?)```", page, flags=re.DOTALL)
     (tmp_path / "mapping.yaml").write_text(example, encoding="utf-8")
     mapping = read_mapping(tmp_path / "mapping.yaml")
-    entries = [next(section.examples()) for section in mapping.sections]
-    assert [entry.fault for entry in entries] == ["healthy", "outer", "ball"]
-    assert [bearing_of(entry).designation for entry in entries] == ["6205", "6205", "L8"]
+    facts = [section.facts({}) for section in mapping.sections]
+    assert [found.fault for found in facts] == ["healthy", "outer", "ball"]
+    assert [bearing_of(found.bearing).designation for found in facts] == ["6205", "6205", "L8"]
     (tmp_path / "mapping.yaml").write_text(paths, encoding="utf-8")
     (section,) = read_mapping(tmp_path / "mapping.yaml").sections
-    assert section.entry({"fault": "O", "shaft_rpm": "1200"}).recording == "O 1200"
+    assert section.facts({"fault": "O", "shaft_rpm": "1200"}).recording == "O 1200"
     (tmp_path / "mapping.yaml").write_text(f"{COMMON}{channels}files: [{{path: a.csv}}]", encoding="utf-8")
-    assert read_mapping(tmp_path / "mapping.yaml").channels == ("drive end", "fan end")
+    assert read_mapping(tmp_path / "mapping.yaml").channel_names == ("drive end", "fan end")
 
 
 def test_a_folder_in_place_of_a_mapping_file_is_refused_with_what_to_give(tmp_path):
@@ -364,7 +407,7 @@ def test_a_folder_in_place_of_a_mapping_file_is_refused_with_what_to_give(tmp_pa
 
 def test_mapping_files_and_recipes_spell_a_quantity_alike():
     in_recipes = {key.key.rpartition(".")[2] for key in recipe_keys()}
-    keys = {*Entry.model_fields, *Geometry.model_fields}
+    keys = {*FileKeys.model_fields, *Geometry.model_fields}
     quantities = {key for key in keys if unit_suffix(key) or key.startswith("n_")}
     assert quantities > {"shaft_rpm", "depth_um", "n_spalls", "ball_diameter_mm"}
     assert quantities - in_recipes == {"sensitivity_mv_per_m_s2"}

@@ -88,7 +88,7 @@ def test_foreign_damaged_and_repeated_files_are_named(tmp_path):
     assert "was sampled at 44100 Hz, which is not a multiple of 48828 Hz" in told["OuterRaceFault_1.mat"]
     assert "not one column of real numbers" in told["OuterRaceFault_2.mat"]
     assert "holds X097_DE_time, not bearing" in told["baseline_1.mat"]
-    assert "holds a structure of sr, not gs" in told["baseline_2.mat"]
+    assert "holds bearing.sr, not bearing.gs" in told["baseline_2.mat"]
 
 
 def test_a_set_of_foreign_files_is_refused(tmp_path):

@@ -7,12 +7,10 @@ import shutil
 
 import numpy as np
 import pytest
-import scipy.io
 import scipy.signal
 
 from gen.corpus import open_corpus, validate_corpus
 from gen.importers import import_cwru, import_mfpt
-from gen.importers.matlab import read_matlab
 from tests.paths import REAL
 
 
@@ -26,14 +24,14 @@ def folder_of(name):
 @pytest.fixture(scope="module")
 def cwru(tmp_path_factory):
     done = import_cwru(folder_of("cwru"), tmp_path_factory.mktemp("real") / "cwru")
-    with open_corpus(done.directory) as corpus:
+    with open_corpus(done.path) as corpus:
         return done, corpus.load()
 
 
 @pytest.fixture(scope="module")
 def mfpt(tmp_path_factory):
     done = import_mfpt(folder_of("mfpt"), tmp_path_factory.mktemp("real") / "mfpt")
-    with open_corpus(done.directory) as corpus:
+    with open_corpus(done.path) as corpus:
         return done, corpus.load()
 
 
@@ -54,7 +52,7 @@ def envelope_line(corpus, recording, order):
 def test_the_cwru_copies_give_64_recordings_of_16_bearings(cwru):
     done, corpus = cwru
     assert (done.recordings, done.skipped) == (64, ())
-    assert validate_corpus(done.directory) == []
+    assert validate_corpus(done.path) == []
     assert len(set(corpus.specimen.values.tolist())) == 16
     assert (
         len({(number, fault) for number, fault in zip(corpus.recording.values, corpus.fault.values, strict=True)}) == 64
@@ -65,7 +63,7 @@ def test_the_cwru_copies_give_64_recordings_of_16_bearings(cwru):
 
 def test_the_wang_subset_of_the_cwru_copies_is_40_recordings_of_10_bearings(tmp_path):
     done = import_cwru(folder_of("cwru"), tmp_path / "wang", subset="wang")
-    with open_corpus(done.directory) as corpus:
+    with open_corpus(done.path) as corpus:
         assert (done.recordings, done.records, len(set(corpus.specimen.values.tolist()))) == (40, 790, 10)
 
 
@@ -95,7 +93,7 @@ def test_the_fault_lines_of_clear_cwru_recordings_are_at_the_nominal_orders(cwru
 def test_the_mfpt_copies_give_14_recordings_whose_lines_are_a_little_below_nominal(mfpt):
     done, corpus = mfpt
     assert (done.recordings, done.records, done.skipped) == (14, 84, ())
-    assert validate_corpus(done.directory) == []
+    assert validate_corpus(done.path) == []
     assert sorted(set((corpus["load"].values / 4.4482216).round().tolist())) == [
         0,
         25,
@@ -112,30 +110,18 @@ def test_the_mfpt_copies_give_14_recordings_whose_lines_are_a_little_below_nomin
     assert height > 30
 
 
-@pytest.mark.parametrize("name", ["cwru", "mfpt"])
-def test_every_real_file_reads_as_scipy_reads_it(name):
-    for path in sorted(folder_of(name).rglob("*.mat")):
-        for variable, value in scipy.io.loadmat(path).items():
-            if variable.startswith("__"):
-                continue
-            if value.dtype.names is None:
-                np.testing.assert_array_equal(read_matlab(path, variable), value, str(path))
-            else:
-                np.testing.assert_array_equal(read_matlab(path, f"{variable}.gs"), value["gs"].item(), str(path))
-
-
 def test_damaged_copies_of_real_files_are_named_and_the_rest_is_imported(tmp_path):
     inner = folder_of("cwru") / "12k_drive_end" / "IR" / "007"
     source = tmp_path / "set"
     shutil.copytree(inner, source)
     whole = (source / "105_0.mat").read_bytes()
-    (source / "105_0.mat").write_bytes(whole[: len(whole) // 2])
+    (source / "105_0.mat").write_bytes(whole[: len(whole) // 4])
     (source / "106_1.mat").write_bytes(b"")
     shutil.copy(inner / "108_3.mat", source / "107_2.mat")
     done = import_cwru(source, tmp_path / "corpus")
     told = dict(sentence.split(": ", 1) for sentence in done.skipped)
     assert done.recordings == 1
     assert set(told) == {"105_0.mat", "106_1.mat", "107_2.mat"}
-    assert told["105_0.mat"].startswith("is truncated or damaged")
+    assert told["105_0.mat"].startswith("is truncated, damaged or not a MATLAB file")
     assert told["107_2.mat"].startswith("holds X108_DE_time")
-    assert validate_corpus(done.directory) == []
+    assert validate_corpus(done.path) == []

@@ -1,4 +1,4 @@
-"""Error sentences for broken recipes: the place, the value found, and what is allowed or what to do."""
+"""Error sentences for broken recipes and mapping files: the place, the value found, and what is allowed or what to do."""
 
 import difflib
 import functools
@@ -9,7 +9,7 @@ from pydantic import BaseModel, ValidationError
 
 _MOST_SENTENCES = 20
 _LONGEST_KEY = 60  # characters shown
-_RENAMED = {"pitch_mm": "pitch_diameter_mm", "ball_mm": "ball_diameter_mm", "spalls": "n_spalls"}
+_FORMS = ("[key]", "[one]", "[table]", "[reading]", "[name]", "[geometry]")  # steps of a location that are no keys
 
 
 def sentences(error: ValidationError, model: type[BaseModel]) -> list[str]:
@@ -33,8 +33,6 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
     match kind:
         case "extra_forbidden":
             guess, allowed = _guess(item["loc"], model), ", ".join(_siblings(item["loc"], model))
-            if guess and guess == _RENAMED.get(str(item["loc"][-1])):
-                return f"{place}: no such key; it is called {guess} now."
             return f"{place}: no such key; " + (f"did you mean {guess}?" if guess else f"allowed are {allowed}.")
         case "invalid_key":
             section = _place(item["loc"][:-1], model)
@@ -60,6 +58,10 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
                 return None
             found = f"{size} is too few" if size else "is empty"
             return f"{place}: {found}; give at least {'one' if least == 1 else least}."
+        case "string_too_short":
+            return f"{place}: is empty; give a text."
+        case "string_too_long":
+            return f"{place}: {len(str(value))} characters are too many; give at most {context['max_length']}."
         case "too_long":
             return f"{place}: {len(item['input'])} is too many; give at most {context['max_length']}."
         case _:
@@ -73,6 +75,8 @@ _ALLOWED = {
     "float_type": "a number",
     "string_type": "text, in quotes if it is a number",
     "string_pattern_mismatch": "1 to 64 letters, digits, dots, dashes or underscores",
+    "int_parsing": "a whole number",
+    "float_parsing": "a number",
     "tuple_type": "a list",
     "model_type": "a section with keys of its own",
     "model_attributes_type": "a section with keys of its own",
@@ -95,7 +99,7 @@ def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
     for step in location:
         if isinstance(step, int):
             place += f"[{step}]"
-        elif node.knows(step) or (step != "[key]" and not node.models) or step not in _branches():
+        elif node.knows(step) or (step not in _FORMS and (not node.models or step not in _branches())):
             shown = step if step.isprintable() and len(step) <= _LONGEST_KEY else reprlib.repr(step)
             place += f".{shown}" if place else shown
             node = node.into(step)
@@ -104,12 +108,12 @@ def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
 
 @functools.cache
 def _branches() -> set[str]:
-    """Steps of a location that are no keys: the value of ``kind`` of every section and distribution, and ``[key]`` of a mapping."""
+    """Values of ``kind`` of every section and distribution, which are steps of a location, and no keys."""
     models: list[type[BaseModel]] = [BaseModel]
     for model in models:  # the list grows
         models += model.__subclasses__()
     kinds = [model.model_fields["kind"].annotation for model in models[1:] if "kind" in model.model_fields]
-    return {"[key]", *(value for kind in kinds for value in get_args(kind))}
+    return {value for kind in kinds for value in get_args(kind)}
 
 
 class _Cursor:
@@ -154,9 +158,6 @@ def _siblings(location: tuple[int | str, ...], model: type[BaseModel]) -> list[s
 
 
 def _guess(location: tuple[int | str, ...], model: type[BaseModel]) -> str | None:
-    """New name of the last key of ``location`` if it was renamed, else the most similar allowed key, if any."""
-    key, allowed = str(location[-1]), _siblings(location, model)
-    if _RENAMED.get(key) in allowed:
-        return _RENAMED[key]
-    near = difflib.get_close_matches(key, allowed, 1)
+    """Allowed key that is most similar to the last key of ``location``, if any."""
+    near = difflib.get_close_matches(str(location[-1]), _siblings(location, model), 1)
     return near[0] if near else None
