@@ -6,21 +6,22 @@ operating conditions of a class do not depend on what can be seen in them. All r
 another part, so that every part finds the same fault.
 """
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.measurement.measure import LEVEL_TRIES, Measured, measure
+from gen.measurement.measure import Measured, measure
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, draw_scenarios, with_level
+from gen.scenarios import Scenario, common_settings, draw_scenarios, simulation_errors, with_level
 from gen.simulation.batches import Integration, integrate_all
 from gen.simulation.hits import felt_places
 from gen.simulation.simulate import Response, Run, response_of, runs_of
 from gen.simulation.timeline import timeline
 
+LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
 FAULT_TRIES = 12  # faults drawn for a specimen until one can be seen in all of its records
 
 
@@ -58,9 +59,8 @@ class Families:
 
     def numbers(self, of: range) -> range:
         """Numbers of the records of all families that some records belong to."""
-        block, size = self.recipe.block_of(of.start), self.size
-        first, stop = block.records.start, block.records.stop
-        return range(first + (of.start - first) // size * size, min(first - (first - of.stop) // size * size, stop))
+        size = self.size
+        return range(of.start // size * size, min(-(-of.stop // size) * size, self.recipe.n_records))
 
     def drawn(self, numbers: range) -> list[Family]:
         """Families with the given numbers of records, which are those of whole families."""
@@ -69,8 +69,7 @@ class Families:
 
     def judged(self, families: list[Family]) -> tuple[Records, list[Family]]:
         """Records of integrated families, and the families again whose fault is drawn again."""
-        tries = LEVEL_TRIES if self._redraws else 1
-        made = made_of([run for family in families for run in family.runs], self.recipe, tries)
+        made = made_of([run for family in families for run in family.runs], self._other_levels)
         if not self._redraws:
             return made, []
         unseen = _unseen_places(made)
@@ -91,10 +90,15 @@ class Families:
                 )
         return made, self._cut(self._with_hits(self._redrawn(again)), twins)
 
+    def _other_levels(self, scenario: Scenario) -> Iterator[Scenario]:
+        """The same record with its further levels, one after the other."""
+        tries = LEVEL_TRIES if self._redraws and self.recipe.level.kind == "snr" else 1
+        return (with_level(scenario, self.recipe, level_try) for level_try in range(1, tries))
+
     def _cut(self, scenarios: list[Scenario], twins: dict[int, Integration]) -> list[Family]:
         """Families of scenarios, of which some twins are known."""
         families: dict[tuple[int, int], Family] = {}
-        for scenario, run in zip(scenarios, runs_of(scenarios, self.recipe, twins), strict=True):
+        for scenario, run in zip(scenarios, runs_of(scenarios, twins) if scenarios else [], strict=True):
             group = 0 if self._redraws else scenario.record.number // self.size
             family = families.setdefault((scenario.specimen.number, group), Family([], []))
             family.scenarios.append(scenario)
@@ -106,8 +110,7 @@ class Families:
         found = []
         for number in specimens:
             self._tries[number] = self._tries.get(number, 0) + 1
-            block = next(block for block in self.recipe.blocks if number < block.specimens.stop)
-            records = block.records_of(number)
+            records = self.recipe.records_of(number)
             found += draw_scenarios(self.recipe, records.start, records.stop, fault_tries=self._tries)
         return found
 
@@ -128,26 +131,19 @@ class Families:
         return list(found.values())
 
 
-def made_again(recipe: Recipe, number: int, fault_try: int, level_try: int) -> Records:
-    """Make one record again, with the fault and the level that were taken when it was made first."""
-    n_rungs = recipe.corpus.n_rungs
-    first, tries = number // n_rungs * n_rungs, {recipe.block_of(number).specimen_of(number): fault_try}
-    group = draw_scenarios(recipe, first, first + n_rungs, fault_tries=tries)
-    made = made_from([with_level(scenario, recipe, level_try) for scenario in group], recipe)
-    return picked([(made, number - first)])
-
-
-def made_from(scenarios: list[Scenario], recipe: Recipe) -> Records:
+def made_from(scenarios: list[Scenario]) -> Records:
     """Records of scenarios as they are; nothing is drawn again."""
-    runs = runs_of(scenarios, recipe)
-    integrate_all((one for run in runs for one in (run.own, run.twin) if one is not None), timeline(recipe))
-    return made_of(runs, recipe, 1)
+    with simulation_errors():
+        runs = runs_of(scenarios)
+        wanted = (one for run in runs for one in (run.own, run.twin) if one is not None)
+        integrate_all(wanted, timeline(common_settings(scenarios)))
+        return made_of(runs)
 
 
-def made_of(runs: list[Run], recipe: Recipe, level_tries: int) -> Records:
-    """Records of scenarios that have been integrated."""
-    response, scenarios = response_of(runs, recipe), [run.scenario for run in runs]
-    return Records(response, measure(response.acceleration, scenarios, recipe, response.twins, level_tries=level_tries))
+def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: ()) -> Records:
+    """Records of scenarios that have been integrated; ``other_levels`` as for :func:`gen.measurement.measure.measure`."""
+    response, scenarios = response_of(runs), [run.scenario for run in runs]
+    return Records(response, measure(response.acceleration, scenarios, response.twins, other_levels=other_levels))
 
 
 def picked(rows: list[tuple[Records, int]]) -> Records:

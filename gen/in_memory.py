@@ -1,7 +1,7 @@
 """Records made in memory, as one xarray Dataset: from keys, or from scenarios made by hand.
 
-The Dataset has the variables of a corpus and carries its recipe, so that :func:`gen.write_corpus` makes a corpus of it. Records are drawn,
-simulated and measured as :func:`gen.generate` does it, so the same recipe gives the same records either way.
+The Dataset has the variables of a corpus, so that :func:`gen.write_corpus` makes a corpus of it. Records are drawn, simulated and measured
+as :func:`gen.generate` does it, so the same recipe gives the same records either way.
 """
 
 import json
@@ -16,13 +16,12 @@ from gen.corpus import DRAWS
 from gen.errors import CorpusError, RecipeError, SimulationError
 from gen.families import made_from
 from gen.making import Crew, MadePart, made_parts
-from gen.part_task import dataset_of, part_attributes
+from gen.part_task import dataset_of, library_versions, part_attributes
 from gen.recipe import Recipe, plain, recipe_for
 from gen.recipe.keywords import FaultLike
-from gen.scenarios import Scenario, check_fits, read_scenario, scenario_texts
+from gen.scenarios import Rig, Scenario, check_scenario, read_scenario, scenario_texts
 
-RECIPE, SCENARIOS = "recipe", "scenarios"  # attributes of a Dataset of records
-GIVEN = "given"  # value of the attribute SCENARIOS for scenarios that were not drawn from the recipe
+RECIPE = "recipe_json"  # attribute of a Dataset of all records of a recipe
 
 
 def record(fault: FaultLike | None = None, **keys: Any) -> xr.Dataset:
@@ -99,42 +98,30 @@ def records(
     return _made(recipe_for(fault, n, **keys), workers)
 
 
-def simulate_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> xr.Dataset:
-    """Records of scenarios made by hand, such as drawn ones changed with :func:`dataclasses.replace`.
+def simulate_scenarios(scenarios: Sequence[Scenario]) -> xr.Dataset:
+    """Records of scenarios, such as drawn ones changed with :func:`dataclasses.replace`.
 
     Parameters
     ----------
     scenarios : sequence of Scenario
         From :func:`gen.draw_scenarios`, :func:`gen.scenarios_of` or :func:`gen.stored_scenario`, changed or not. Random processes such as
-        noise follow from the numbers of rig, specimen and record, so scenarios with the same numbers have the same noise.
-    recipe : Recipe
-        Gives sample rate, duration, channels, converter and kind of level; its distributions are not drawn from.
+        noise follow from the numbers of rig, specimen and record, so scenarios with the same numbers have the same noise. A measured
+        scenario of a pair or ladder keeps its ``record.gains``; without them, the largest severity sets the level.
 
     Returns
     -------
     Dataset
-        As from :func:`gen.records`; :func:`gen.write_corpus` and :func:`gen.replay` take each record from its own scenario.
+        As from :func:`gen.records`, without a recipe; each record has its scenario.
 
     Raises
     ------
     RecipeError
-        If scenarios do not fit the recipe or each other.
+        If values of a scenario do not fit each other, or scenarios do not fit each other.
     SimulationError
-        If no record can be simulated.
+        If scenarios have different settings, or no record can be simulated.
     """
-    scenarios = checked_scenarios(scenarios, recipe)
-    rungs: dict[int, int] = {}
-    for place, one in enumerate(scenarios):
-        if one.record.pair >= 0 and one.record.rung <= rungs.get(one.record.pair, -1):
-            raise RecipeError(
-                f"scenarios[{place}]: rung {one.record.rung} of pair {one.record.pair} does not rise; sort them, each once."
-            )
-        rungs[one.record.pair] = one.record.rung  # the last, with the largest severity, sets the level of the pair
-    dataset, failures = dataset_of(made_from(scenarios, recipe), recipe)
-    dataset.attrs["history"] = dataset.attrs["history"].replace(
-        "from recipe", "from given scenarios, with the settings of recipe"
-    )
-    return _decoded([dataset], recipe, failures, {SCENARIOS: GIVEN})
+    made, failures = dataset_of(made_from(_checked(scenarios)))
+    return _decoded([made], failures, {"versions": json.dumps(library_versions())})
 
 
 def recipe_of(dataset: xr.Dataset) -> Recipe:
@@ -151,7 +138,7 @@ def recipe_of(dataset: xr.Dataset) -> Recipe:
         )
     if RECIPE not in dataset.attrs:
         raise CorpusError(
-            f"the Dataset has no attribute {RECIPE}; give one from gen.record, gen.records or gen.simulate_scenarios, with its attributes."
+            f"the Dataset has no attribute {RECIPE}; give one from gen.record or gen.records, with its attributes."
         )
     try:
         return Recipe(**json.loads(dataset.attrs[RECIPE]))
@@ -176,81 +163,61 @@ def scenarios_of(dataset: xr.Dataset) -> list[Scenario]:
     return [read_scenario(str(text)) for text in np.atleast_1d(dataset[DRAWS].values)]
 
 
-def checked_scenarios(scenarios: Sequence[Scenario], recipe: Recipe) -> list[Scenario]:
-    """Scenarios as they are stored; RecipeError if one does not fit the recipe or another scenario."""
-    if not isinstance(recipe, Recipe):
-        raise RecipeError(f"recipe: {type(recipe).__name__} given; give a gen.Recipe, such as gen.read_recipe makes.")
+def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
+    """Scenarios as they are stored; RecipeError if one cannot be simulated, or does not fit another."""
     if not isinstance(scenarios, Sequence) or isinstance(scenarios, str | bytes):
         raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
-    rigs: dict[int, tuple[int, Any]] = {}
+    rigs: dict[int, tuple[int, Rig]] = {}
+    rungs: dict[int, int] = {}
     found = []
-    for place, scenario in enumerate(scenarios):
+    for place, given in enumerate(scenarios):
         try:
-            found.append(read_scenario(scenario_texts([scenario])[0]))
+            scenario = read_scenario(scenario_texts([given])[0])
+            check_scenario(scenario)
+        except RecipeError as error:
+            raise RecipeError(f"scenarios[{place}]: {error}") from None
         except (CorpusError, TypeError, AttributeError) as error:
             reason = str(error).removeprefix("stored scenario: ").partition("; ")[0]
             raise RecipeError(
                 f"scenarios[{place}]: is no scenario ({reason}); change drawn ones with dataclasses.replace, in finite numbers and text."
             ) from None
-        problem = _problem(found[-1], recipe)
-        for spall in found[-1].specimen.spalls:
-            check_fits(spall, found[-1].specimen.bearing, found[-1].specimen.number)
-        first, rig = rigs.setdefault(scenario.rig.number, (place, found[-1].rig))
-        if not problem and rig != found[-1].rig:
-            problem = f"rig {rig.number} is not that of scenarios[{first}]; give another machine another number"
-        if problem:
-            raise RecipeError(f"scenarios[{place}]: {problem}.")
-    if not found:
-        raise RecipeError("scenarios: there are none; give at least one.")
+        first, rig = rigs.setdefault(scenario.rig.number, (place, scenario.rig))
+        if rig != scenario.rig:
+            raise RecipeError(
+                f"scenarios[{place}]: rig {rig.number} is not that of scenarios[{first}]; give another machine another number."
+            )
+        record = scenario.record
+        if record.pair >= 0 and record.gains is None:
+            if record.rung <= rungs.get(record.pair, -1):
+                raise RecipeError(
+                    f"scenarios[{place}]: rung {record.rung} of pair {record.pair} does not rise; sort them, each once."
+                )
+            rungs[record.pair] = record.rung  # the last, with the largest severity, sets the level of the pair
+        found.append(scenario)
     return found
-
-
-def _problem(scenario: Scenario, recipe: Recipe) -> str | None:
-    """Reason why a scenario does not fit the recipe, and what to do; None if it does."""
-    channels, levelled = len(recipe.recording.channels), recipe.level.kind == "snr"
-    if scenario.seed != recipe.seed:
-        return f"seed {scenario.seed} is not that of the recipe, {recipe.seed}; give them the same seed"
-    if len(scenario.rig.channels) != channels or len(scenario.rig.own_paths) != channels:
-        return f"rig.channels and rig.own_paths need one entry for each of {channels} recording.channels of the recipe"
-    if (scenario.record.snr is not None) != levelled or (scenario.record.rms is not None) != levelled:
-        return (
-            f"record.snr and record.rms must be {'given' if levelled else 'None'} with level.kind: {recipe.level.kind}"
-        )
-    if scenario.record.pair >= 0 and not 0 <= scenario.record.rung < recipe.corpus.n_rungs > 1:
-        return "record.pair needs corpus.rungs in the recipe, and record.rung a place in it; or set both to -1"
-    specimen = scenario.specimen
-    if not 0 <= specimen.entry < len(recipe.faults):
-        return f"specimen.entry {specimen.entry} is no place in faults of the recipe, which has {len(recipe.faults)}"
-    parts = specimen.damaged_parts
-    label = "compound" if len(parts) > 1 else (parts or ["healthy"])[0]
-    if specimen.fault != label:
-        return f"specimen.fault is {specimen.fault}, and the damage of the specimen is {label}; change one of the two"
-    if any(spall.width <= 0 or spall.depth <= 0 for spall in specimen.spalls):
-        return "specimen.spalls: width and depth of a spall must be above 0; leave out a spall that is not there"
-    return None
 
 
 def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     """Records of a recipe, made in parts as those of a corpus."""
 
     def finished(made: MadePart) -> tuple[int, xr.Dataset, tuple[str, ...]]:
-        return made.place, *dataset_of(made.records, recipe, made.step_error)
+        return made.place, *dataset_of(made.records, made.step_error)
 
     size, stop = recipe.corpus.records_per_part, recipe.n_records
     numbers = [range(first, min(first + size, stop)) for first in range(0, stop, size)]
     parts = sorted(made_parts(recipe, numbers, finished, crew=Crew(workers)), key=lambda part: part[0])
-    return _decoded([part for _, part, _ in parts], recipe, [text for *_, texts in parts for text in texts], {})
+    failures = [text for *_, texts in parts for text in texts]
+    attributes = part_attributes(recipe, failures) | {RECIPE: json.dumps(plain(recipe))}
+    return _decoded([part for _, part, _ in parts], failures, attributes)
 
 
-def _decoded(
-    parts: list[xr.Dataset], recipe: Recipe, failures: Sequence[str], attributes: dict[str, str]
-) -> xr.Dataset:
-    """Records of all parts in m s-2, with their recipe."""
+def _decoded(parts: list[xr.Dataset], failures: Sequence[str], attributes: dict[str, str]) -> xr.Dataset:
+    """Records of all parts in m s-2."""
     dataset = parts[0] if len(parts) == 1 else xr.concat(parts, "record", data_vars="minimal", coords="minimal")
     if not dataset.sizes["record"]:
         raise SimulationError(failures[0])
     decoded = xr.decode_cf(dataset, decode_times=False).load()
-    decoded.attrs |= {**part_attributes(recipe, failures), RECIPE: json.dumps(plain(recipe)), **attributes}
+    decoded.attrs |= attributes
     if failures:
         left_out = f"{len(failures)} of {len(failures) + dataset.sizes['record']} records are left out"
         warnings.warn(f"{left_out}; the first: {failures[0]}", stacklevel=4)

@@ -16,11 +16,11 @@ from typing import Generic, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.checking import has_checks, step_changes, step_checks
 from gen.families import Families, Family, Records, picked
 from gen.recipe import Recipe
+from gen.scenarios import settings_of
 from gen.simulation.batches import Integration, Waiting, integrate_together
-from gen.simulation.simulate import step_changes, step_checks
-from gen.simulation.steps import has_checks
 from gen.simulation.timeline import timeline
 from gen.workers import stream
 
@@ -50,7 +50,7 @@ class MadePart(NamedTuple):
     """Of the part among those that are made."""
     records: Records
     step_error: NDArray[np.float64]
-    """As from :func:`gen.simulation.simulate.step_errors`."""
+    """As from :func:`gen.checking.step_errors`."""
 
 
 Result = TypeVar("Result")
@@ -199,7 +199,7 @@ class _Making(Generic[Result]):
 
     def _integrate(self, taken: list[tuple[Integration, _Pending]], _report: Report) -> Iterable[Result]:
         """Integrate one batch."""
-        integrate_together([one for one, _ in taken], timeline(self._recipe))
+        integrate_together([one for one, _ in taken], timeline(settings_of(self._recipe)))
         with self._change:
             for _, pending in taken:
                 pending.left -= 1

@@ -11,16 +11,17 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from gen.checking import checked_places
 from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.errors import SimulationError
 from gen.pace import measured_pace
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.batches import Group, filled_lanes, group_of
 from gen.simulation.outline import outlined_inputs
 from gen.simulation.simulate import integrations
-from gen.simulation.steps import checked_places, steps_per_sample
+from gen.simulation.steps import steps_per_sample
 from gen.simulation.timeline import timeline
 
 MOST_DRAWN = 5000  # records, about 2 s; from a larger corpus whole parts are drawn, spread evenly over it
@@ -89,14 +90,14 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
     groups = [_groups(part, checked, failures) for part in parts]
     if len(failures) == n_drawn:
         raise SimulationError(failures[0])
-    recording, (block,) = checked.recording, checked.blocks
+    recording = checked.recording
     seconds = _seconds_per_record(list(zip(parts, groups, strict=True)), checked)
     return Plan(
         recipe=checked.name,
         title=checked.title,
         seed=checked.seed,
-        rigs=len(block.rigs),
-        specimens=len(block.specimens),
+        rigs=checked.n_rigs,
+        specimens=checked.n_specimens,
         records=checked.n_records,
         parts=checked.n_parts,
         sample_rate=recording.sample_rate_hz,
@@ -132,14 +133,14 @@ def _counts(parts: list[list[Scenario]], groups: list[Groups], scale: float) -> 
 
 def _seconds_per_record(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> float | None:
     """Time to simulate, measure and write a record, by a sample of the group with the most steps [s]; None if not measured."""
-    samples = timeline(recipe).integrated
+    samples = timeline(settings_of(recipe)).integrated
     candidates = (
         (group.steps * len(places), group.steps, scenarios, places)
         for scenarios, groups in parts
         for group, places in groups.items()
     )
     _, steps, scenarios, places = max(candidates, key=lambda candidate: candidate[0])
-    pace = measured_pace([scenarios[place] for place in places[:LANES]], recipe, samples * steps)
+    pace = measured_pace([scenarios[place] for place in places[:LANES]], recipe.corpus.codec, samples * steps)
     if pace is None:
         return None
     lane_steps = samples * _lane_steps(parts, recipe)
@@ -151,7 +152,7 @@ def _lane_steps(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> i
     needed: Counter[Group] = Counter()
     for scenarios, groups in parts:
         for group, places in groups.items():
-            needed[group] += integrations((scenarios[place] for place in places), recipe)
+            needed[group] += integrations(scenarios[place] for place in places)
         of_place = {place: group for group, places in groups.items() for place in places}
         in_order = {place: of_place[place] for place in sorted(of_place)}
         for place in checked_places(scenarios, recipe, in_order):
@@ -179,11 +180,11 @@ def most_drawn(recipe: Recipe) -> int:
 def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> Groups:
     """Records of a part by group; the sentence of each record that cannot be simulated goes to ``failures``."""
     groups: Groups = defaultdict(list)
-    inputs, impossible = outlined_inputs(scenarios, timeline(recipe))
+    inputs, impossible = outlined_inputs(scenarios, timeline(settings_of(recipe)))
     failures += impossible.values()
     for place, (given, scenario) in enumerate(zip(inputs, scenarios, strict=True)):
         if given is not None:
-            groups[group_of(given, steps_per_sample(given, scenario.record.number, recipe))].append(place)
+            groups[group_of(given, steps_per_sample(given, scenario.record.number, scenario.settings))].append(place)
     return groups
 
 

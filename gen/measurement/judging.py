@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import ifft, rfft
 
-from gen.measurement.levels import Gains
+from gen.scenarios import Gains
 
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
@@ -124,7 +124,7 @@ def _within(cycles: Sequence[list[int]], band: tuple[int, int]) -> list[list[int
 
 def parts_seen(bands: Bands, gains: Gains) -> NDArray[np.bool_]:
     """Whether the line of each damaged part stands out of the record in some band of some channel, shape (part,)."""
-    b, n = gains
+    b, n = gains.bearing, gains.background
     whole = b * b * bands.bearing + 2 * b * n * bands.cross + n * n * bands.background
     return np.any(b * b * bands.lines > bands.thresholds * whole, axis=(1, 2))
 

@@ -4,30 +4,24 @@ The products are exact: parts that are correlated over a short record neither ra
 """
 
 import math
-from typing import NamedTuple
 
 from gen.measurement.mixing import Products
 from gen.physics.elementary import decibels
-from gen.scenarios import Scenario
+from gen.scenarios import Gains, Scenario
 
 SILENCE = 1e-30  # m s-2; a smaller rms counts as no signal
 
 
-class Gains(NamedTuple):
-    """Factors of bearing and background [1]."""
-
-    bearing: float
-    background: float
-
-
 def gains_of(scenario: Scenario, products: Products) -> Gains:
-    """Gains that give a record its drawn level.
+    """Gains that a record has already, or that give it its drawn level.
 
     With ``level.kind: snr``, the drawn ratio is that of the fault (d) over all else, which is the healthy bearing (h) and the background
     (n): with the bearing ``q`` times as strong as the background, ``q^2 dd = r^2 (q^2 hh + 2 q hn + nn)``. A record without a fault, or
     of which the fault's own part is not known, has the ratio of the bearing over the background.
     """
     rig, record = scenario.rig, scenario.record
+    if record.gains is not None:
+        return record.gains
     if record.snr is None or record.rms is None:
         return Gains(rig.gain, rig.gain * rig.background_rms)
     square = 10 ** (record.snr / 10)
@@ -54,7 +48,7 @@ def _ratio_of_fault(products: Products, square: float, nn: float) -> float:
 
 def mean_square(products: Products, gains: Gains, *, fault: bool = True) -> float:
     """Mean square of a record, with or without what the fault adds [m2 s-4]."""
-    b, n = gains
+    b, n = gains.bearing, gains.background
     rest = b * b * products.hh + 2 * b * n * products.hn + n * n * products.nn
     if not fault:
         return rest

@@ -7,8 +7,9 @@ it is in single precision. Its error is 1e-7 of the largest value of a record: a
 """
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +21,6 @@ from gen.measurement.background import NO_SIGNAL, impulses_of, lines_of, noise_o
 from gen.measurement.gear import gear_in_channels
 from gen.measurement.judging import Judge, Parts, judges_of
 from gen.measurement.levels import (
-    Gains,
     bearing_over_background,
     fault_over_rest,
     gains_of,
@@ -28,9 +28,8 @@ from gen.measurement.levels import (
 )
 from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
-from gen.measurement.sensor_faults import SensorFlags, compile_rattle, disturbed
-from gen.recipe import Recipe
-from gen.scenarios import Purpose, Scenario, with_level
+from gen.measurement.sensor_faults import SensorFlags, disturbed
+from gen.scenarios import Gains, Purpose, Scenario, common_settings
 from gen.simulation.shaft import shaft_angles
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import Timeline, timeline
@@ -38,7 +37,6 @@ from gen.simulation.timeline import Timeline, timeline
 FloatArray = NDArray[np.floating]
 Float32Array = NDArray[np.float32]
 LARGEST_COUNT = 32767
-LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
 SIGNIFICANT_RISE = 1.25  # of the rms by a fault without lines: ISO 20816-1:2016, criterion II
 _ROWS = 8  # records times channels per pass: transforms run side by side, and their arrays fit the second-level cache
 
@@ -64,7 +62,7 @@ class Measured:
     detectable: NDArray[np.int8]
     """1 if the fault can be seen in the record, 0 if not or if there is none, ``UNJUDGED`` if it was not judged, shape (record,)."""
     scenarios: list[Scenario]
-    """The scenarios as measured: with the level that was taken, if several were tried."""
+    """The scenarios as measured: with the level that was taken if several were tried, and with the gains of records in groups."""
     sensor_flags: list[SensorFlags]
     """Sensor faults in each record, shape (record,)."""
 
@@ -72,10 +70,9 @@ class Measured:
 def measure(
     acceleration: Float32Array,
     scenarios: list[Scenario],
-    recipe: Recipe,
     twins: Twins | None = None,
     *,
-    level_tries: int = 1,
+    other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: (),
 ) -> Measured:
     """Turn accelerations of the bodies into records.
 
@@ -84,22 +81,20 @@ def measure(
     acceleration : array, shape (record, channel, time)
         Acceleration that each channel measures, from the lead ahead of the record on [m s-2].
     scenarios : list of Scenario
-        The scenarios that were simulated, in the same order.
-    recipe : Recipe
-        Gives sample rate, level and converter.
+        The scenarios that were simulated, in the same order; of each group, the last one has the largest severity.
     twins : Twins, optional
         The same records without their faults, which tell what the faults add.
-    level_tries : int
-        Number of levels that may be drawn for a record until its fault can be seen.
+    other_levels : callable
+        Gives the same record with other levels, one after the other, until its fault can be seen.
     """
-    recording, axis = recipe.recording, timeline(recipe)
-    shape = len(scenarios), len(recording.channels), axis.record
+    settings = common_settings(scenarios)
+    axis = timeline(settings)
+    shape = len(scenarios), len(settings.channels), axis.record
     rigs = {scenario.rig.number: scenario.rig for scenario in scenarios}
-    of_rig = {number: rig_filters(rig, axis.returned, axis.fs, recipe.seed) for number, rig in rigs.items()}
-    converter = recording.converter
+    of_rig = {number: rig_filters(rig, axis.returned, axis.fs, settings.seed) for number, rig in rigs.items()}
     # of the stored scale factor, which is in single precision
     counts_per_unit = (
-        None if converter.kind == "float32" else 1 / float(np.float32(converter.full_scale_m_s2 / LARGEST_COUNT))
+        None if settings.full_scale is None else 1 / float(np.float32(settings.full_scale / LARGEST_COUNT))
     )
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, taken, flags = np.zeros(shape[0], np.int32), list(scenarios), [SensorFlags()] * shape[0]
@@ -115,9 +110,13 @@ def measure(
         filters = [of_rig[scenario.rig.number] for scenario in scenarios[some]]
         parts = _parts(acceleration[some], scenarios[some], filters, axis, twins, first)
         for row, (part, judge) in reversed(list(enumerate(zip(parts, _judges(parts), strict=True), first))):
-            pair = scenarios[row].record.pair
-            found = _levelled(part, judge, scenarios[row], recipe, rounding, level_tries, levels.get(pair))
-            if pair >= 0 and part.is_finite:
+            scenario = scenarios[row]
+            pair = scenario.record.pair
+            if pair in levels:
+                scenario = _with_level_of(levels[pair], scenario)
+            found = _levelled(part, judge, scenario, rounding, other_levels)
+            if pair >= 0 and scenario.record.snr is not None and part.is_finite:
+                found = found._replace(scenario=_with_level_of(found, found.scenario))
                 levels.setdefault(pair, found)
             mixed, flags[row] = disturbed(_mixed(part, found.gains), found.scenario, axis.fs)
             if counts_per_unit is not None:
@@ -163,12 +162,10 @@ class Levelled(NamedTuple):
     detectable: int
 
 
-def compile_mixing(scenario: Scenario, recipe: Recipe) -> None:
+def compile_mixing(scenario: Scenario) -> None:
     """Compile the mixing of records, or fetch it from numba's cache on disk."""
-    silence = np.zeros((1, len(recipe.recording.channels), timeline(recipe).returned), np.float32)
-    measure(silence, [scenario], recipe)
-    if recipe.sensor_faults.loose_mount is not None:
-        compile_rattle()
+    settings = scenario.settings
+    measure(np.zeros((1, len(settings.channels), timeline(settings).returned), np.float32), [scenario])
 
 
 def _parts(
@@ -248,25 +245,24 @@ def _judges(parts: Sequence[Part]) -> list[Judge | None]:
     return [next(judges) if is_wanted else None for is_wanted in wanted]
 
 
+def _with_level_of(levelled: Levelled, scenario: Scenario) -> Scenario:
+    """A scenario with the level of another record of its group, so that all that differs is the fault."""
+    of = levelled.scenario.record
+    record = replace(scenario.record, snr=of.snr, rms=of.rms, level_try=of.level_try, gains=levelled.gains)
+    return replace(scenario, record=record)
+
+
 def _levelled(
     part: Part,
     judge: Judge | None,
     scenario: Scenario,
-    recipe: Recipe,
     rounding: float,
-    tries: int,
-    of_group: Levelled | None,
+    other_levels: Callable[[Scenario], Iterable[Scenario]],
 ) -> Levelled:
-    """Level of a record: the drawn one, or if its fault cannot be seen the first of some more draws at which it can.
-
-    A record of a group has the gains ``of_group``, those of its largest severity, so that all that differs is the fault.
-    """
-    if of_group is not None:
-        taken = with_level(scenario, recipe, of_group.scenario.record.level_try)
-        return Levelled(taken, of_group.gains, *_seen(part, judge, taken, of_group.gains, rounding))
+    """Level of a record: the drawn one, or if its fault cannot be seen the first of some others at which it can."""
     found = []
-    for attempt in range(tries if recipe.level.kind == "snr" and part.fault.size else 1):
-        tried = with_level(scenario, recipe, attempt) if attempt else scenario
+    known = scenario.record.gains is not None or not part.fault.size
+    for tried in chain([scenario], () if known else other_levels(scenario)):
         gains = gains_of(tried, part.products)
         found.append(Levelled(tried, gains, *_seen(part, judge, tried, gains, rounding)))
         if found[-1].detectable:

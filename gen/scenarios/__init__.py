@@ -12,15 +12,18 @@ sensor_faults draw the faults of the measuring chain, and the gear of a rig
 operating     operating conditions: per rig, specimen or record, shares, changes
 records       records of a specimen, with rungs of severity
 draw          draw rigs and specimens, and with them all records
+settings      values that a recipe fixes for all of its records
+checks        check a scenario that was changed by hand, or comes from a file
 stored        write a scenario as the JSON text that a corpus stores, and read it
 ============= =================================================================
 """
 
+from gen.scenarios.checks import check_scenario, simulation_errors
 from gen.scenarios.classes import fault_of_each_specimen, first_records, first_specimens
 from gen.scenarios.draw import draw_scenarios
-from gen.scenarios.faults import check_fits
 from gen.scenarios.model import (
     Background,
+    Gains,
     Gear,
     Mode,
     Operation,
@@ -31,6 +34,7 @@ from gen.scenarios.model import (
     Rig,
     RigSensorFaults,
     Scenario,
+    Settings,
     ShaftModulation,
     Spall,
     Specimen,
@@ -39,10 +43,12 @@ from gen.scenarios.model import (
     stream,
 )
 from gen.scenarios.records import with_level
+from gen.scenarios.settings import common_settings, settings_of
 from gen.scenarios.stored import read_scenario, scenario_texts
 
 __all__ = [
     "Background",
+    "Gains",
     "Gear",
     "Mode",
     "Operation",
@@ -53,18 +59,22 @@ __all__ = [
     "Rig",
     "RigSensorFaults",
     "Scenario",
+    "Settings",
     "ShaftModulation",
     "Spall",
     "Specimen",
     "Tone",
     "Wear",
-    "check_fits",
+    "check_scenario",
+    "common_settings",
     "draw_scenarios",
     "fault_of_each_specimen",
     "first_records",
     "first_specimens",
     "read_scenario",
     "scenario_texts",
+    "settings_of",
+    "simulation_errors",
     "stream",
     "with_level",
 ]

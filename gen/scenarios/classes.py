@@ -14,7 +14,7 @@ import math
 import numpy as np
 
 from gen.corpus import FAULTS
-from gen.recipe import Block, Recipe, fault_class
+from gen.recipe import Recipe, fault_class
 from gen.scenarios.model import Purpose, stream
 
 # Irrational steps without a common small multiple, and without one with that of the split (the golden ratio).
@@ -37,27 +37,23 @@ def class_shares(recipe: Recipe) -> dict[str, float]:
     return {kind: weight / total for kind, weight in weights.items() if weight > _ROUNDING * total}
 
 
-def fault_of_each_specimen(recipe: Recipe, rig: int, block: Block | None = None) -> list[str]:
-    """Fault class of each specimen of a block in a rig, by default of the first block.
+def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
+    """Fault class of each specimen of a rig.
 
-    Over all rigs of a block the classes have their shares, whatever the number of specimens is. A rig has healthy and faulty specimens if
+    Over all rigs the classes have their shares, whatever the number of specimens is. A rig has healthy and faulty specimens if
     their expected numbers are both at least 1.
     """
-    block = recipe.blocks[0] if block is None else block
-    shares, count = class_shares(recipe), block.specimens_per_rig
-    first = block.first_specimen_of(rig)
+    shares, count = class_shares(recipe), recipe.corpus.specimens_per_rig
     if recipe.corpus.fault_choice == "in_turn":
         entries = recipe.faults
-        return [fault_class(entries[number % len(entries)]) for number in range(first, first + count)]
-    offsets = _offsets(recipe.seed, rig, block)
+        return [fault_class(entries[number % len(entries)]) for number in range(rig * count, (rig + 1) * count)]
+    offsets = _offsets(recipe.seed, rig)
     healthy = count * shares.pop("healthy", 0.0)
     n_healthy = math.floor(healthy + _ROUNDING)
     n_healthy += int(offsets[0] < healthy - n_healthy - _ROUNDING)
     faulty = _shared_out(shares, count - n_healthy, offsets[1])
     chosen = [*["healthy"] * n_healthy, *faulty]
-    # specimens that are added to a rig have a stream of their own
-    of_stream = 0 if block.adds_rigs else first
-    return [chosen[i] for i in stream(recipe.seed, rig, of_stream, 0, Purpose.CLASSES).permutation(count)]
+    return [chosen[i] for i in stream(recipe.seed, rig, 0, 0, Purpose.CLASSES).permutation(count)]
 
 
 def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
@@ -67,10 +63,9 @@ def possible_entries(recipe: Recipe, specimen: int, fault: str) -> list[int]:
     return [place for place, one in enumerate(recipe.faults) if fault_class(one) == fault]
 
 
-def _offsets(seed: int, rig: int, block: Block) -> tuple[float, float]:
-    """Offsets in [0, 1) of a rig, for its healthy and for its faulty specimens; new rigs go on with the sequences of the rigs before."""
-    first = 0 if block.adds_rigs else block.specimens.start
-    starts = stream(seed, 0, first, 1, Purpose.CLASSES).random(2)  # the classes of a rig have 0 for the record
+def _offsets(seed: int, rig: int) -> tuple[float, float]:
+    """Offsets in [0, 1) of a rig, for its healthy and for its faulty specimens."""
+    starts = stream(seed, 0, 0, 1, Purpose.CLASSES).random(2)  # the classes of a rig have 0 for the record
     return (float(starts[0]) + rig * _HEALTHY_STEP) % 1, (float(starts[1]) + rig * _FAULTY_STEP) % 1
 
 
@@ -92,10 +87,10 @@ def first_specimens(recipe: Recipe) -> dict[str, int]:
     """Number of the first specimen of each fault class in the corpus; the search stops when it has found every class."""
     n_classes = len(class_shares(recipe))
     found: dict[str, int] = {}
-    for block, rig in ((one, rig) for one in recipe.blocks for rig in one.rigs):
-        first = block.first_specimen_of(rig)
-        faults = fault_of_each_specimen(recipe, rig, block)
-        for number, fault in enumerate(faults[: block.specimens.stop - first], first):
+    for rig in range(recipe.n_rigs):
+        first = rig * recipe.corpus.specimens_per_rig
+        faults = fault_of_each_specimen(recipe, rig)
+        for number, fault in enumerate(faults[: recipe.n_specimens - first], first):
             found.setdefault(fault, number)
         if len(found) == n_classes:
             break
@@ -108,11 +103,10 @@ def first_records(recipe: Recipe) -> dict[str, int]:
     before_damage = corpus.rungs is not None and corpus.rungs[0] == 0
     found: dict[str, int] = {}
     for fault, specimen in sorted(first_specimens(recipe).items(), key=lambda item: item[1]):
-        block = next(block for block in recipe.blocks if specimen < block.specimens.stop)
-        first = block.records_of(specimen).start
+        first = recipe.records_of(specimen).start
         if before_damage and fault != "healthy":
             found.setdefault("healthy", first)
             first += 1
-        if first < block.records.stop:
+        if first < recipe.n_records:
             found.setdefault(fault, first)
     return found

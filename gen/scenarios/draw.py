@@ -19,7 +19,6 @@ from gen.errors import RecipeError
 from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import (
     FREE_ANGLE,
-    Block,
     CatalogueBearing,
     Fault,
     Modes,
@@ -65,37 +64,33 @@ def draw_scenarios(
     RecipeError
         If a drawn bearing cannot exist or a drawn spall does not fit it.
     """
-    stop = recipe.n_records if stop is None else stop
-    ranges = {block: range(max(first, block.records.start), min(stop, block.records.stop)) for block in recipe.blocks}
+    numbers = range(max(first, 0), min(recipe.n_records if stop is None else stop, recipe.n_records))
+    if not numbers:
+        return []
     tries = fault_tries or {}
-    return [one for block, numbers in ranges.items() if numbers for one in _draw_some(recipe, block, numbers, tries)]
-
-
-def _draw_some(recipe: Recipe, block: Block, numbers: range, fault_tries: Mapping[int, int]) -> list[Scenario]:
-    """Draw the scenarios of some records of a block."""
-    first_specimen, last_specimen = (block.specimen_of(number) for number in (numbers[0], numbers[-1]))
-    first_rig, last_rig = block.rig_of(first_specimen), block.rig_of(last_specimen)
+    first_specimen, last_specimen = recipe.specimen_of(numbers[0]), recipe.specimen_of(numbers[-1])
+    first_rig, last_rig = recipe.rig_of(first_specimen), recipe.rig_of(last_specimen)
     rig_draws = {
         number: Draws(stream(recipe.seed, number, 0, 0, Purpose.RIG), point, number, f"rig {number}")
         for number, point in points_of(recipe, Purpose.RIG, first_rig, last_rig + 1).items()
     }
     rigs = {number: _draw_rig(recipe, number, draws) for number, draws in rig_draws.items()}
     known = {number: known_of_rig(recipe, rig) for number, rig in rigs.items()}
-    classes = {number: fault_of_each_specimen(recipe, number, block) for number in rigs}
+    classes = {number: fault_of_each_specimen(recipe, number) for number in rigs}
     sources: dict[int, Source] = {}
     operating: dict[int, Operating] = {}
     for number, point in points_of(recipe, Purpose.SPECIMEN, first_specimen, last_specimen + 1).items():
-        rig = block.rig_of(number)
+        rig = recipe.rig_of(number)
         draws = Draws(stream(recipe.seed, rig, number, 0, Purpose.SPECIMEN), point, number, f"specimen {number}")
-        fault_try = fault_tries.get(number, 0)
-        specimen = _draw_specimen(recipe, block, rigs[rig], known[rig], number, draws, classes[rig], fault_try)
+        fault_try = tries.get(number, 0)
+        specimen = _draw_specimen(recipe, rigs[rig], known[rig], number, draws, classes[rig], fault_try)
         if specimen.entry not in operating:
             operating[specimen.entry] = operating_of(recipe, specimen.entry)
         sources[number] = source_of(
             recipe, rigs[rig], known[rig], specimen, operating[specimen.entry], rig_draws[rig], draws
         )
-    points = record_points(recipe, block, numbers)
-    return [draw_record(recipe, block, sources[block.specimen_of(number)], number, points) for number in numbers]
+    points = record_points(recipe, numbers)
+    return [draw_record(recipe, sources[recipe.specimen_of(number)], number, points) for number in numbers]
 
 
 def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
@@ -195,7 +190,7 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
     harmonics, tones = [], []
     if wanted.harmonics is not None and draws.is_present(wanted.harmonics):
         orders = range(1, round(draws.value(wanted.harmonics.count)) + 1)
-        harmonics = [Tone(order, decibel_to_ratio(draws.value(wanted.harmonics.level_db))) for order in orders]
+        harmonics = [Tone(float(order), decibel_to_ratio(draws.value(wanted.harmonics.level_db))) for order in orders]
     if wanted.tones is not None and draws.is_present(wanted.tones):
         for _ in range(round(draws.value(wanted.tones.count))):
             level = decibel_to_ratio(draws.value(wanted.tones.level_db))
@@ -220,7 +215,6 @@ def _draw_background(recipe: Recipe, draws: Draws) -> Background:
 
 def _draw_specimen(
     recipe: Recipe,
-    block: Block,
     rig: Rig,
     known: Known,
     number: int,
@@ -240,7 +234,7 @@ def _draw_specimen(
             f"specimen {number}: a contact angle of {math.degrees(bearing.contact_angle):.3g} degrees is too large for a radial bearing; "
             f"keep the angles of bearing and specimen together below {math.degrees(STEEPEST_CONTACT):.0f}."
         )
-    position = number - block.first_specimen_of(rig.number)
+    position = number % recipe.corpus.specimens_per_rig
     fault = classes[position]
     wanted, entry = possible_entries(recipe, number, fault), 0
     for attempt in sorted({0, fault_try}):
@@ -251,7 +245,7 @@ def _draw_specimen(
         # a fault that is drawn again leaves the conditions as they are
         first = recipe.faults[entry]
         wanted = [place for place in wanted if _same_conditions(recipe.faults[place], first)]
-    split = _draw_split(recipe, block, rig.number, position)
+    split = _draw_split(recipe, rig.number, position)
     specimen = Specimen(
         number, bearing, properties, fault, spalls=(), axis={}, split=split, fault_try=fault_try, entry=entry
     )
@@ -272,36 +266,21 @@ def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:
     return free_contact_angle(grooved, value("diametral_clearance_um"))
 
 
-def _draw_split(recipe: Recipe, block: Block, rig: int, position: int) -> str:
-    """Split of a specimen; if rigs are kept together, that of the rig, also for specimens that are added to it."""
-    split = recipe.corpus.split
+def _draw_split(recipe: Recipe, rig: int, position: int) -> str:
+    """Split of a specimen; if rigs are kept together, that of the rig."""
+    split, corpus = recipe.corpus.split, recipe.corpus
     if split.by == "rig":
-        u = _rig_quantile(recipe, rig)
+        # the first of two or more rigs is in the test part, if there is one
+        u = _ranks(recipe.seed, 0, corpus.rigs)[rig] / corpus.rigs if corpus.rigs > 1 else 1.0
     else:
-        first = 0 if block.adds_rigs else block.first_specimen_of(rig)
-        rank = _ranks(recipe.seed, rig, first, block.specimens_per_rig)[position]
+        rank = _ranks(recipe.seed, rig, corpus.specimens_per_rig)[position]
         # the offset by the golden ratio distributes the parts evenly over the rigs
-        u = (rank + _offset(rig if block.adds_rigs else block.specimens.start + rig)) / block.specimens_per_rig
+        u = (rank + (rig * 0.6180339887 + 0.5) % 1) / corpus.specimens_per_rig
     train, validation, test = SPLITS
     return test if u < split.test else validation if u < split.test + split.validation else train
 
 
-def _rig_quantile(recipe: Recipe, rig: int) -> float:
-    """Place of a rig in the random order of the rigs that came with it, as a number from 0 to 1."""
-    block = next(block for block in recipe.blocks if rig < block.rigs.stop)
-    start = block.rigs.start
-    if start > 0:
-        return (_ranks(recipe.seed, start, 0, len(block.rigs))[rig - start] + _offset(start)) / len(block.rigs)
-    count = recipe.corpus.rigs
-    # the first of two or more rigs is in the test part, if there is one
-    return _ranks(recipe.seed, 0, 0, count)[rig] / count if count > 1 else 1.0
-
-
-def _offset(item: int) -> float:
-    return (item * 0.6180339887 + 0.5) % 1
-
-
 @functools.lru_cache(maxsize=4)
-def _ranks(seed: int, rig: int, specimen: int, count: int) -> NDArray[np.int64]:
-    """Random order of some rigs, or of some specimens of a rig, for the split."""
-    return stream(seed, rig, specimen, 0, Purpose.SPLIT).permutation(count)
+def _ranks(seed: int, rig: int, count: int) -> NDArray[np.int64]:
+    """Random order of all rigs, or of the specimens of a rig, for the split."""
+    return stream(seed, rig, 0, 0, Purpose.SPLIT).permutation(count)

@@ -5,15 +5,19 @@ Every value is a number, a text or a tuple, in SI units, so that a corpus can st
 
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
+from pydantic import Field
 
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
+from gen.recipe import MAX_OVERSAMPLING
 
 Drawn = dict[str, float]
 """Values drawn from one recipe section, by the key without its unit."""
+Number = Annotated[int, Field(ge=0, lt=2**31)]
+"""Number of a rig, specimen or record."""
 
 
 class Purpose(IntEnum):
@@ -47,6 +51,34 @@ class Purpose(IntEnum):
     EDGES = 40
     AXIS = 41
     SLIP = 42
+
+
+@dataclass(frozen=True)
+class Settings:
+    """Values that a recipe fixes for all of its records; with them a scenario is simulated, measured and labelled without the recipe."""
+
+    recipe: str
+    """Name of the recipe."""
+    corpus: str
+    """First part of the ``identity`` of its records."""
+    seed: Annotated[int, Field(ge=0, lt=2**63)]
+    """Start of all random streams."""
+    sample_rate: Annotated[float, Field(ge=1000, le=200_000)]
+    """[Hz]."""
+    samples: Annotated[int, Field(ge=1)]
+    """Number of samples of a record."""
+    settle: Annotated[float, Field(ge=0, le=10)]
+    """Time before the record in which the response settles [s]."""
+    oversampling: Annotated[int, Field(ge=1, le=MAX_OVERSAMPLING)] | None
+    """Steps per sample; None if the stiffest mode of each record decides."""
+    channels: Annotated[tuple[str, ...], Field(min_length=1)]
+    """Name of each channel."""
+    full_scale: Annotated[float, Field(gt=0)] | None
+    """Largest acceleration of the converter [m s-2]; None without one."""
+    truth: Literal["full", "none"]
+    """``full`` if records with a fault are also simulated without it."""
+    undetected: Literal["redraw", "keep", "healthy"]
+    """``healthy`` if a record in which its fault cannot be seen is labelled healthy."""
 
 
 @dataclass(frozen=True)
@@ -211,7 +243,7 @@ class Background:
 class Rig:
     """One machine."""
 
-    number: int
+    number: Number
     bearing: Bearing
     machine: Drawn
     resonator: Drawn | None
@@ -236,7 +268,7 @@ class Rig:
 class Specimen:
     """One physical bearing."""
 
-    number: int
+    number: Number
     bearing: Bearing
     properties: Drawn
     fault: str
@@ -274,10 +306,18 @@ class Specimen:
 
 
 @dataclass(frozen=True)
+class Gains:
+    """Factors of bearing and background [1]."""
+
+    bearing: float
+    background: float
+
+
+@dataclass(frozen=True)
 class Operation:
     """Operating conditions and level of one record."""
 
-    number: int
+    number: Number
     conditions: Drawn
     snr: float | None
     """Fault over all else, or bearing over background without a fault, for ``level.kind: snr`` [dB]."""
@@ -292,6 +332,9 @@ class Operation:
     """Number of the group of records that differ in the severity of their fault alone; -1 if the record is in no group."""
     rung: int = -1
     """Place of the severity in ``corpus.rungs``; -1 if the record is in no group."""
+    gains: Gains | None = None
+    """Gains in place of those that follow from ``snr`` and ``rms``: those of the largest severity of its group. None for a record in no
+    group, and before the measurement."""
 
     @property
     def stream_number(self) -> int:
@@ -301,16 +344,16 @@ class Operation:
 
 @dataclass(frozen=True)
 class Scenario:
-    """All drawn values of one record."""
+    """All drawn values of one record, and the settings of its recipe."""
 
-    seed: int
+    settings: Settings
     rig: Rig
     specimen: Specimen
     record: Operation
 
     def rng(self, purpose: Purpose) -> np.random.Generator:
         """Random stream of this record for one purpose."""
-        return stream(self.seed, self.rig.number, self.specimen.number, self.record.stream_number, purpose)
+        return stream(self.settings.seed, self.rig.number, self.specimen.number, self.record.stream_number, purpose)
 
     def without_fault(self) -> "Scenario":
         """The same record of the same specimen before it was damaged."""

@@ -12,12 +12,13 @@ from numpy.typing import NDArray
 from gen.physics.axial import least_axial_load
 from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
-from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Block, Fault, ProfileSection, Recipe, fault_class
+from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
 from gen.scenarios.draws import Combination, Draws, Known, known_of
 from gen.scenarios.model import Operation, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of
 from gen.scenarios.sensor_faults import draw_record_sensor_faults
+from gen.scenarios.settings import settings_of
 from gen.units import percent_to_share
 
 
@@ -58,24 +59,22 @@ def source_of(
     return Source(rig, tuple(specimen.at_severity(share) for share in rungs), operating, commons, known)
 
 
-def record_points(recipe: Recipe, block: Block, numbers: range) -> dict[int, NDArray[np.float64]]:
-    """Quasi-random points of the groups of ``n_rungs`` records that hold some records of a block, by number.
+def record_points(recipe: Recipe, numbers: range) -> dict[int, NDArray[np.float64]]:
+    """Quasi-random points of the groups of ``n_rungs`` records that hold some records, by number.
 
     A faulty specimen has one point for a group. A healthy one has one for each record: those after the first of a group come after the
-    points of all groups of the block, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
+    points of all groups, so that the conditions of faulty specimens and of healthy ones cover their ranges alike.
     """
     rungs = recipe.corpus.n_rungs
     points: dict[int, NDArray[np.float64]] = {}
     first, last = numbers[0] // rungs * rungs, numbers[-1] // rungs * rungs
     for place in range(rungs):
-        points |= points_of(recipe, Purpose.RECORD, block.item_of(first + place), block.item_of(last + place) + 1)
+        points |= points_of(recipe, Purpose.RECORD, recipe.item_of(first + place), recipe.item_of(last + place) + 1)
     return points
 
 
-def draw_record(
-    recipe: Recipe, block: Block, source: Source, number: int, points: Mapping[int, NDArray[np.float64]]
-) -> Scenario:
-    """Draw one record of a specimen of a block.
+def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int, NDArray[np.float64]]) -> Scenario:
+    """Draw one record of a specimen.
 
     The records of a group have the streams of its first record, and the combination of grids and the quasi-random point of the group.
 
@@ -87,7 +86,7 @@ def draw_record(
     n_rungs = recipe.corpus.n_rungs
     group, place = divmod(number, n_rungs)
     rung = place if len(source.rungs) > 1 else -1
-    item = block.item_of(number if rung < 0 else group * n_rungs)
+    item = recipe.item_of(number if rung < 0 else group * n_rungs)
     specimen, first = source.rungs[max(rung, 0)], number - max(rung, 0)
     streams = functools.partial(stream, recipe.seed, source.rig.number, specimen.number, first)
     draws = Draws(streams(Purpose.RECORD), points[item], item, f"record {number}")
@@ -118,7 +117,7 @@ def draw_record(
         pair=pair,
         rung=rung,
     )
-    return Scenario(recipe.seed, source.rig, specimen, operation)
+    return Scenario(settings_of(recipe), source.rig, specimen, operation)
 
 
 def _draw_level(draws: Draws, recipe: Recipe, entry: Fault) -> tuple[float | None, float | None]:
@@ -144,8 +143,6 @@ def _ratio(recipe: Recipe, entry: Fault) -> Any:
 
 def with_level(scenario: Scenario, recipe: Recipe, level_try: int) -> Scenario:
     """The same record with the level of a later try; the first one is drawn with the record."""
-    if level_try == 0 or recipe.level.kind != "snr":
-        return scenario
     u = float(scenario.rng(Purpose.LEVEL).random(level_try)[-1])
     snr = _ratio(recipe, recipe.faults[scenario.specimen.entry]).draw(u)
     return replace(scenario, record=replace(scenario.record, snr=snr, level_try=level_try))

@@ -14,14 +14,14 @@ _ADVICE = "read the corpus with the version that wrote it."
 
 
 def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
-    """One JSON object for each scenario, with its seed, rig, specimen and record; :func:`read_scenario` reads it."""
-    # many records share a rig or a specimen, so each of these is encoded once
-    shared = {id(item): item for scenario in scenarios for item in (scenario.rig, scenario.specimen)}
+    """One JSON object for each scenario, with its settings, rig, specimen and record; :func:`read_scenario` reads it."""
+    # many records share settings, rig or specimen, so each of these is encoded once
+    shared = {id(item): item for one in scenarios for item in (one.settings, one.rig, one.specimen)}
     texts = {number: json.dumps(item, default=vars) for number, item in shared.items()}
     return [
-        f'{{"seed": {scenario.seed}, "rig": {texts[id(scenario.rig)]}, "specimen": {texts[id(scenario.specimen)]}, '
-        f'"record": {json.dumps(scenario.record, default=vars)}}}'
-        for scenario in scenarios
+        f'{{"settings": {texts[id(one.settings)]}, "rig": {texts[id(one.rig)]}, "specimen": {texts[id(one.specimen)]}, '
+        f'"record": {json.dumps(one.record, default=vars)}}}'
+        for one in scenarios
     ]
 
 

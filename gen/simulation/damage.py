@@ -99,7 +99,7 @@ def spall_paths(scenario: Scenario, number: int) -> tuple[FloatArray, ...]:
     """Path of the middle of a contact over a spall, shape (point,) [m]: on its race, or for a ball spall on both races."""
     specimen, spall = scenario.specimen, scenario.specimen.spalls[number]
     bearing = specimen.bearing
-    place = scenario.seed, scenario.rig.number, specimen.number, number
+    place = scenario.settings.seed, scenario.rig.number, specimen.number, number
     return _paths(spall, bearing.ball_diameter / 2, _races(bearing, spall.site), place)
 
 
@@ -141,7 +141,7 @@ def waviness_of(scenario: Scenario, fs: float) -> Waviness:
     if not is_wavy(scenario):
         return ROUND
     specimen, profile = scenario.specimen, scenario.record.speed_profile
-    place = scenario.seed, scenario.rig.number, specimen.number, 0
+    place = scenario.settings.seed, scenario.rig.number, specimen.number, 0
     rms, of_balls = specimen.properties["waviness"], specimen.properties["ball_waviness"]
     whole, at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)
     highest_rate = scenario.record.conditions["shaft"] * (1.0 if profile is None else max(profile.shares))

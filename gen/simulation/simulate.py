@@ -10,11 +10,10 @@ from numpy.typing import NDArray
 from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.layout import Batch
-from gen.recipe import Recipe
-from gen.scenarios import Scenario
+from gen.scenarios import Scenario, common_settings
 from gen.simulation.batches import Group, Integration, batches, group_of, integrate_all
 from gen.simulation.inputs import kernel_inputs, without_fault
-from gen.simulation.steps import checked_places, failure, step_phase, steps_per_sample
+from gen.simulation.steps import failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
 
@@ -64,15 +63,13 @@ class Run(NamedTuple):
     """Without the fault; None for a record without a fault, and with ``corpus.truth: none``."""
 
 
-def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int], None] = lambda _: None) -> Response:
+def simulate(scenarios: list[Scenario], *, report: Callable[[int], None] = lambda _: None) -> Response:
     """Integrate scenarios.
 
     Parameters
     ----------
     scenarios : list of Scenario
-        Records to simulate.
-    recipe : Recipe
-        Gives sample rate, duration and settling time.
+        Records to simulate; they share their settings.
     report : callable, optional
         Called after each batch with the number of records integrated so far.
 
@@ -84,45 +81,45 @@ def simulate(scenarios: list[Scenario], recipe: Recipe, *, report: Callable[[int
     Raises
     ------
     SimulationError
-        Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft.
+        Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
-    runs = runs_of(scenarios, recipe)
+    runs = runs_of(scenarios)
     wanted = [one for run in runs for one in (run.own, run.twin) if one is not None]
-    integrate_all(wanted, timeline(recipe), lambda done: report(done * len(scenarios) // len(wanted)))
-    return response_of(runs, recipe)
+    axis = timeline(common_settings(scenarios))
+    integrate_all(wanted, axis, lambda done: report(done * len(scenarios) // len(wanted)))
+    return response_of(runs)
 
 
-def runs_of(
-    scenarios: list[Scenario], recipe: Recipe, known_twins: Mapping[int, Integration] | None = None
-) -> list[Run]:
+def runs_of(scenarios: list[Scenario], known_twins: Mapping[int, Integration] | None = None) -> list[Run]:
     """Integrations that scenarios need; ``known_twins`` are records without their faults that were integrated before, by number.
 
     Raises
     ------
     SimulationError
-        If a step would be too coarse for the stiffest mode of a scenario, or for its shaft.
+        If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
-    known_twins, runs = known_twins or {}, []
-    inputs, failures = kernel_inputs(scenarios, timeline(recipe))
+    known_twins, runs, settings = known_twins or {}, [], common_settings(scenarios)
+    inputs, failures = kernel_inputs(scenarios, timeline(settings))
     for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True)):
         number = scenario.record.number
         if given is None:
             runs.append(Run(scenario, None, failures[place], None, None))
             continue
-        steps = steps_per_sample(given, number, recipe)
+        steps = steps_per_sample(given, number, settings)
         twin = known_twins.get(number)
         if twin is None:
-            healthy = _healthy_input(scenario, given, recipe)
+            healthy = _healthy_input(scenario, given)
             # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
             twin = None if healthy is None else Integration(number, healthy, group_of(healthy, steps))
         runs.append(Run(scenario, given, "", Integration(number, given, group_of(given, steps)), twin))
     return runs
 
 
-def response_of(runs: Sequence[Run], recipe: Recipe) -> Response:
+def response_of(runs: Sequence[Run]) -> Response:
     """Response and truth of scenarios that have been integrated."""
-    axis, full = timeline(recipe), recipe.corpus.truth == "full"
-    acceleration = np.empty((len(runs), len(recipe.recording.channels), axis.returned), np.float32)
+    settings = common_settings([run.scenario for run in runs])
+    axis, full = timeline(settings), settings.truth == "full"
+    acceleration = np.empty((len(runs), len(settings.channels), axis.returned), np.float32)
     healthy = np.empty_like(acceleration) if full else acceleration
     oversampling, phases, failures = np.zeros(len(runs), np.int64), np.full(len(runs), np.nan), {}
     for place, run in enumerate(runs):
@@ -135,9 +132,9 @@ def response_of(runs: Sequence[Run], recipe: Recipe) -> Response:
             sentence = failure(run.scenario.record.number, steps, diverged, phases[place])
         if sentence:
             failures[place] = sentence
-        acceleration[place] = np.nan if sentence else _motion(run.own)
+        acceleration[place] = np.nan if sentence else motion_of(run.own)
         if full:
-            healthy[place] = acceleration[place] if sentence or run.twin is None else _motion(run.twin)
+            healthy[place] = acceleration[place] if sentence or run.twin is None else motion_of(run.twin)
     truth, inputs = [truth_of(run.scenario, axis, run.given) for run in runs], [run.given for run in runs]
     twins = None
     if full:
@@ -148,64 +145,36 @@ def response_of(runs: Sequence[Run], recipe: Recipe) -> Response:
     return Response(acceleration, oversampling, phases, failures, inputs, truth, twins)
 
 
-def _motion(of: Integration | None) -> NDArray[np.float32]:
+def motion_of(of: Integration | None) -> NDArray[np.float32]:
     """Response of a record that has been integrated, shape (channel, time) [m s-2]."""
     assert of is not None and of.response is not None  # noqa: S101, PT018
     return of.response
 
 
-def integrations(scenarios: Iterable[Scenario], recipe: Recipe) -> int:
+def integrations(scenarios: Iterable[Scenario]) -> int:
     """Number of integrations that records need: one, or two for a record that is also simulated without its fault."""
-    twice = recipe.corpus.truth == "full"
-    return sum(2 if twice and scenario.specimen.fault != "healthy" else 1 for scenario in scenarios)
+    return sum(2 if _has_twin(scenario) else 1 for scenario in scenarios)
 
 
-def _healthy_input(scenario: Scenario, given: KernelInput, recipe: Recipe) -> KernelInput | None:
+def _has_twin(scenario: Scenario) -> bool:
+    return scenario.settings.truth == "full" and scenario.specimen.fault != "healthy"
+
+
+def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput | None:
     """Kernel input of a record as it was without its fault; None if it has none, and with ``corpus.truth: none``."""
     specimen = scenario.specimen
-    if recipe.corpus.truth == "none" or specimen.fault == "healthy":
+    if not _has_twin(scenario):
         return None
     if specimen.wear is not None or specimen.cage or specimen.axis.get("jumps"):
-        return without_fault(given, scenario, timeline(recipe))
+        return without_fault(given, scenario, timeline(scenario.settings))
     return given._replace(spalls=())  # spalls are the only difference
 
 
-def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -> FloatArray:
-    """Relative rms change of some records of a part when their step is halved, NaN for the others, shape (record,)."""
-    finer = step_checks(scenarios, recipe, response)
-    integrate_all(finer.values(), timeline(recipe))
-    return step_changes(finer, response, recipe)
-
-
-def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Integration]:
-    """Integrations of some records of a part at half their step, by place."""
-    usable = {place: some for place, some in enumerate(response.inputs) if some and place not in response.failures}
-    groups = {place: group_of(some, int(response.oversampling[place])) for place, some in usable.items()}
-    return {
-        place: Integration(
-            scenarios[place].record.number, usable[place], groups[place]._replace(steps=2 * groups[place].steps)
-        )
-        for place in checked_places(scenarios, recipe, groups)
-    }
-
-
-def step_changes(finer: Mapping[int, Integration], response: Response, recipe: Recipe) -> FloatArray:
-    """Relative rms change between records and the same at half the step, NaN for the other records, shape (record,)."""
-    errors, kept = np.full(len(response.oversampling), np.nan), timeline(recipe).kept
-    tried = list(finer)
-    if tried:
-        coarse, halved = response.acceleration[tried], np.stack([_motion(one) for one in finer.values()])
-        pair = coarse[..., kept] - halved[..., kept], halved[..., kept]
-        change, whole = (np.sum(some**2, axis=(1, 2), dtype=np.float64) for some in pair)
-        errors[tried] = np.sqrt(change / whole)
-    return errors
-
-
-def laid_out(scenarios: list[Scenario], recipe: Recipe) -> list[tuple[Group, Batch]]:
+def laid_out(scenarios: list[Scenario]) -> list[tuple[Group, Batch]]:
     """Scenarios in lanes, batch by batch, as :func:`simulate` integrates them; all must be possible."""
-    runs = runs_of(scenarios, recipe)
+    runs, fs = runs_of(scenarios), common_settings(scenarios).sample_rate
     every = [one for run in runs for one in (run.own, run.twin) if one is not None]
     return [
-        (group, lay_out([every[place].given for place in places], group.shape, 1 / recipe.recording.sample_rate_hz))
+        (group, lay_out([every[place].given for place in places], group.shape, 1 / fs))
         for group, places in batches({place: one.group for place, one in enumerate(every)})
     ]

@@ -1,22 +1,15 @@
-"""The step of the integration: chosen before the run from the stiffest mode, and checked after it by halving.
-
-A part of the records is integrated again at half the step; the relative change is stored with them.
-"""
+"""The step of the integration, chosen before the run from the stiffest mode, and compared with the contacts after it."""
 
 import math
-from collections import Counter
-from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
 from gen.errors import SimulationError
 from gen.physics.inputs import KernelInput
-from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
-from gen.recipe import MAX_OVERSAMPLING, Recipe
-from gen.scenarios import Scenario, first_records
-from gen.simulation.batches import Group
+from gen.recipe import MAX_OVERSAMPLING
+from gen.scenarios import Settings
 
 FloatArray = NDArray[np.float64]
 
@@ -25,18 +18,17 @@ FloatArray = NDArray[np.float64]
 FINE_STEP, COARSEST_STEP = 0.30, 1.0
 _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
-CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # every 32nd part repeats 1 % of the records of 32 parts at half the step
 
 
-def steps_per_sample(given: KernelInput, number: int, recipe: Recipe) -> int:
+def steps_per_sample(given: KernelInput, number: int, settings: Settings) -> int:
     """Steps per sample that the stiffest mode of record ``number`` needs.
 
     Raises
     ------
     SimulationError
-        If the recipe asks for too few, or the mode needs more than are allowed.
+        If the settings ask for too few, or the mode needs more than are allowed.
     """
-    fs, asked = recipe.recording.sample_rate_hz, recipe.recording.oversampling
+    fs, asked = settings.sample_rate, settings.oversampling
     _check_turn(given, number, fs)
     rate = fastest_rate(given)
     if asked is not None:
@@ -100,49 +92,3 @@ def failure(number: int, steps: int, diverged: float, phase: float) -> str | Non
             f"set recording.oversampling to {math.ceil(steps * phase / FINE_STEP)}."
         )
     return None
-
-
-def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[int, Group]) -> list[int]:
-    """Places in a part of the records whose step is to be checked; ``groups`` has the possible records by place.
-
-    These are the first record of each class, in the part where the first specimen of the class begins; in every ``CHECKED_PARTS``-th part
-    also ``CHECKED_SHARE`` of the records of so many parts; and records that fill the batches of these at no more cost.
-    """
-    begun = {scenario.record.number for scenario in scenarios}
-    new = {fault for fault, number in first_records(recipe).items() if number in begun}
-    first: dict[str, int] = {}
-    for place in groups:
-        if scenarios[place].specimen.fault in new:
-            first.setdefault(scenarios[place].specimen.fault, place)
-    span = CHECKED_PARTS * recipe.corpus.records_per_part
-    done, rest = _records_around(recipe, scenarios[0].record.number)
-    wanted = CHECKED_SHARE * min(span, rest) if done % span == 0 else 0
-    chosen = _with_full_batches(list(first.values()), groups)
-    for place in groups:
-        if len(chosen) >= wanted:
-            break
-        if place not in chosen:
-            chosen = _with_full_batches([*chosen, place], groups)
-    return chosen
-
-
-def has_checks(recipe: Recipe, numbers: range) -> bool:
-    """Whether the step of any of the records of a part may be checked, by :func:`checked_places`."""
-    done, _ = _records_around(recipe, numbers.start)
-    every = done % (CHECKED_PARTS * recipe.corpus.records_per_part) == 0
-    return every or any(number in numbers for number in first_records(recipe).values())
-
-
-def _records_around(recipe: Recipe, record: int) -> tuple[int, int]:
-    """Number of the records of the same block before a record, and of those from it on."""
-    records = recipe.block_of(record).records
-    return record - records.start, records.stop - record
-
-
-def _with_full_batches(chosen: list[int], groups: Mapping[int, Group]) -> list[int]:
-    """The chosen places, and others of their groups that fill the last batch of each group."""
-    filled = list(chosen)
-    for group, count in Counter(groups[place] for place in chosen).items():
-        others = [place for place, found in groups.items() if found == group and place not in chosen]
-        filled += others[: -count % LANES]
-    return filled

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.kernel.decimate import LAG
-from gen.recipe import Recipe
+from gen.scenarios import Settings
 
 FloatArray = NDArray[np.float64]
 
@@ -69,8 +69,7 @@ class Timeline(NamedTuple):
         return np.arange(self.returned) / self.fs - LEAD_S
 
 
-def timeline(recipe: Recipe) -> Timeline:
+def timeline(settings: Settings) -> Timeline:
     """Time axis of the records of a recipe."""
-    recording = recipe.recording
-    fs = recording.sample_rate_hz
-    return Timeline(fs, round(recording.settle_s * fs), round(LEAD_S * fs), recipe.n_samples)
+    fs = settings.sample_rate
+    return Timeline(fs, round(settings.settle * fs), round(LEAD_S * fs), settings.samples)

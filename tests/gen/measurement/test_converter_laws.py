@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from gen.corpus.schema import signal_attributes
 from gen.measurement.measure import LARGEST_COUNT, measure
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.timeline import timeline
 from tests.measuring import FLOAT, QUIET, hiss, response, silence, with_rig
 
@@ -21,7 +21,7 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
     recipe, exact = recipe_with(adc), recipe_with(FLOAT)
     scenarios = draw_scenarios(recipe, 0, 3)
     moved = response(recipe, 3, lambda time: 40 * np.sin(2 * np.pi * 313 * time))
-    counts, truth = measure(moved, scenarios, recipe), measure(moved, scenarios, exact)
+    counts, truth = measure(moved, scenarios), measure(moved, draw_scenarios(exact, 0, 3))
     assert counts.counts_per_unit == pytest.approx(LARGEST_COUNT / full_scale)
     assert counts.signal.dtype == np.int16
     assert np.abs(counts.signal.astype(int)).max() <= LARGEST_COUNT
@@ -38,7 +38,7 @@ def test_the_converter_rounds_to_the_nearest_count_and_clips_at_full_scale(recip
 def test_the_converter_rounds_in_steps_of_exactly_the_stored_scale_factor(recipe_with, full_scale):
     """The factor is in single precision, so it can differ from that of the full scale by 6e-8."""
     recipe = recipe_with(PLAIN | {"recording.converter": {"kind": "adc", "full_scale_m_s2": full_scale}})
-    found = measure(silence(recipe, 1), plain(recipe), recipe)
+    found = measure(silence(recipe, 1), plain(recipe))
     scale = signal_attributes(found.counts_per_unit)["scale_factor"]
     assert scale.dtype == np.float32
     assert found.counts_per_unit == 1 / float(scale)
@@ -53,10 +53,10 @@ def test_without_a_converter_nothing_is_rounded_or_clipped(recipe_with):
     recipe = recipe_with(FLOAT | {"path.modes": None, "path.direct": 1.0})
     scenarios = with_rig(draw_scenarios(recipe, 0, 1), background=QUIET, background_rms=0.0, gain=1.0)
     moved = response(recipe, 1, lambda time: 1e5 * np.cos(2 * np.pi * 500 * time))
-    measured = measure(moved, scenarios, recipe)
+    measured = measure(moved, scenarios)
     assert measured.counts_per_unit is None
     assert measured.clipped.tolist() == [0]
-    expected = moved[:, :, timeline(recipe).lead :]
+    expected = moved[:, :, timeline(settings_of(recipe)).lead :]
     np.testing.assert_allclose(measured.signal, expected, rtol=1e-6, atol=1e-2)
 
 
@@ -76,14 +76,14 @@ def plain(recipe, **changes):
 
 def test_a_sample_at_full_scale_is_not_clipped_and_one_count_beyond_it_is(recipe_with):
     recipe = recipe_with(PLAIN)
-    moved, start = silence(recipe, 1), timeline(recipe).lead
+    moved, start = silence(recipe, 1), timeline(settings_of(recipe)).lead
     at_full_scale = COUNT * np.array([LARGEST_COUNT, -LARGEST_COUNT])
     moved[0, 0, start : start + 2] = at_full_scale
-    found = measure(moved, plain(recipe), recipe)
+    found = measure(moved, plain(recipe))
     assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
     assert found.clipped.tolist() == [0]
     moved[0, 0, start : start + 2] = at_full_scale * (1 + 1 / LARGEST_COUNT)
-    found = measure(moved, plain(recipe), recipe)
+    found = measure(moved, plain(recipe))
     assert found.signal[0, 0, :3].tolist() == [LARGEST_COUNT, -LARGEST_COUNT, 0]
     assert found.clipped.tolist() == [2]
 
@@ -91,8 +91,8 @@ def test_a_sample_at_full_scale_is_not_clipped_and_one_count_beyond_it_is(recipe
 def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_converter(recipe_with):
     """Rounding to counts has an error of 1/sqrt(12) count, which is the only background of such a record."""
     recipe = recipe_with(PLAIN)
-    found = measure(pure_tone(recipe, 100.0), plain(recipe), recipe)
-    exact = measure(pure_tone(recipe, 100.0), plain(recipe), recipe_with(FLOAT | PLAIN)).signal[0, 0].astype(float)
+    found = measure(pure_tone(recipe, 100.0), plain(recipe))
+    exact = measure(pure_tone(recipe, 100.0), plain(recipe_with(FLOAT | PLAIN))).signal[0, 0].astype(float)
     error = found.signal[0, 0] * COUNT - exact
     assert found.snr[0] == pytest.approx(20 * np.log10(100 / np.sqrt(2) / (COUNT / np.sqrt(12))), abs=1e-3)
     assert found.snr[0] == pytest.approx(20 * np.log10(np.std(exact) / np.std(error)), abs=1.5)
@@ -101,7 +101,7 @@ def test_without_a_background_the_bearing_stands_over_the_rounding_of_the_conver
 def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_ratio(recipe_with):
     recipe = recipe_with(PLAIN)
     without, with_little, with_more = (
-        measure(pure_tone(recipe, 100.0), plain(recipe, background_rms=rms), recipe).snr[0] for rms in (0.0, 1e-6, 1.0)
+        measure(pure_tone(recipe, 100.0), plain(recipe, background_rms=rms)).snr[0] for rms in (0.0, 1e-6, 1.0)
     )
     assert without == with_little
     assert with_more == pytest.approx(20 * np.log10(100 / np.sqrt(2)), abs=0.3)
@@ -115,7 +115,7 @@ def test_a_background_below_the_rounding_of_the_converter_does_not_raise_the_rat
 def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with, amplitude, background, converter):
     """A bearing below half a count without background is stored as zeros; it was once labelled with 515 dB."""
     recipe = recipe_with(PLAIN | converter)
-    found = measure(pure_tone(recipe, amplitude), plain(recipe, background_rms=background), recipe)
+    found = measure(pure_tone(recipe, amplitude), plain(recipe, background_rms=background))
     assert np.isnan(found.snr[0])
     assert found.signal.any() == (background > 0 or (bool(converter) and amplitude > 0))
 
@@ -123,16 +123,16 @@ def test_the_ratio_is_not_a_number_where_there_is_nothing_to_compare(recipe_with
 def test_a_quiet_bearing_in_a_background_has_the_ratio_it_has(recipe_with):
     """A signal of a tenth of a count is still in the record, because the background acts as dither."""
     recipe = recipe_with(PLAIN)
-    found = measure(pure_tone(recipe, 0.1 * COUNT), plain(recipe, background_rms=1.0), recipe)
+    found = measure(pure_tone(recipe, 0.1 * COUNT), plain(recipe, background_rms=1.0))
     assert found.snr[0] == pytest.approx(20 * np.log10(0.1 * COUNT / np.sqrt(2)), abs=0.3)
 
 
 def test_a_record_that_diverged_has_no_ratio_and_leaves_its_neighbours_alone(recipe_with):
     recipe = recipe_with()
     scenarios, moved = draw_scenarios(recipe, 0, 3), hiss(recipe, 3)
-    sound = measure(moved, scenarios, recipe)
+    sound = measure(moved, scenarios)
     moved[1] = np.nan
-    found = measure(moved, scenarios, recipe)
+    found = measure(moved, scenarios)
     assert np.isnan(found.snr).tolist() == [False, True, False]
     assert not found.signal[1].any()
     np.testing.assert_array_equal(found.signal[[0, 2]], sound.signal[[0, 2]])

@@ -7,7 +7,7 @@ import pytest
 
 from gen.measurement.measure import measure
 from gen.measurement.rig import along, base_excited
-from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios
+from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios, settings_of
 from gen.simulation.shaft import shaft_angles
 from gen.simulation.timeline import timeline
 
@@ -32,14 +32,14 @@ def background_of(recipe, background, *, acceleration=0.0):
     scenarios = draw_scenarios(recipe, 0, 2)
     rig = {"background": background, "background_rms": 1.0, "gain": 1.0}
     scenarios = [replace(scenario, rig=replace(scenario.rig, **rig)) for scenario in scenarios]
-    n = timeline(recipe).returned
+    n = timeline(settings_of(recipe)).returned
     moved = np.full((2, len(recipe.recording.channels), n), acceleration, np.float32)
-    return measure(moved, scenarios, recipe).signal.astype(float), scenarios
+    return measure(moved, scenarios).signal.astype(float), scenarios
 
 
 def by_order(signal, scenario, recipe):
     """Spectrum over orders of the shaft, shape (line,), and orders of the lines [1]; along the true angle."""
-    axis = timeline(recipe)
+    axis = timeline(settings_of(recipe))
     turns = shaft_angles(scenario, axis)[axis.kept] / (2 * np.pi)
     even = np.linspace(turns[0], turns[-1], 4 * len(turns))
     resampled = np.interp(even, turns, signal) * np.hanning(len(even))
@@ -48,7 +48,7 @@ def by_order(signal, scenario, recipe):
 
 def turns_of(scenario, recipe):
     """Turns of the shaft in a record; one line of its order spectrum is one over this."""
-    axis = timeline(recipe)
+    axis = timeline(settings_of(recipe))
     return np.ptp(shaft_angles(scenario, axis)[axis.kept]) / (2 * np.pi)
 
 
@@ -82,9 +82,9 @@ def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(
         replace(one, rig=replace(one.rig, own_paths=paths, background=replace(QUIET, harmonics=(Tone(5, 1e3),))))
         for one in draw_scenarios(recipe, 0, 1)
     ]
-    silence = np.zeros((1, 2, timeline(recipe).returned), np.float32)
-    signal = measure(silence, scenarios, recipe).signal[0].astype(float)
-    axis = timeline(recipe)
+    silence = np.zeros((1, 2, timeline(settings_of(recipe)).returned), np.float32)
+    signal = measure(silence, scenarios).signal[0].astype(float)
+    axis = timeline(settings_of(recipe))
     lines = signal @ np.exp(-5j * shaft_angles(scenarios[0], axis)[axis.kept])
     assert lines[1] / lines[0] == pytest.approx(complex(0.5 + base_excited(modes, np.array([150.0]))[0]), rel=0.01)
 
@@ -92,7 +92,7 @@ def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(
 def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft(recipe_with):
     recipe = recipe_with(FLOAT | {"path.modes": None, "operation.speed_wander_percent": 1})
     signals, scenarios = background_of(recipe, replace(QUIET, knocks=Tone(3.0, 30.0)))
-    axis, of_records = timeline(recipe), []
+    axis, of_records = timeline(settings_of(recipe)), []
     for signal, scenario in zip(signals[:, 0], scenarios, strict=True):
         angles = shaft_angles(scenario, axis)[axis.kept][np.abs(signal) > 10]
         assert len(angles) == pytest.approx(3 * turns_of(scenario, recipe), abs=1)
@@ -120,8 +120,8 @@ def test_the_path_is_modulated_at_the_order_of_the_shaft(recipe_with, changes):
     scenarios = draw_scenarios(recipe, 0, 1)
     rig = {"path": Path(1.0, (), ShaftModulation(0.5, 0.0)), "background": QUIET, "background_rms": 0.0, "gain": 1.0}
     scenarios = [replace(scenarios[0], rig=replace(scenarios[0].rig, **rig))]
-    steady = np.ones((1, 1, timeline(recipe).returned), np.float32)
-    signal = measure(steady, scenarios, recipe).signal[0, 0].astype(float)
+    steady = np.ones((1, 1, timeline(settings_of(recipe)).returned), np.float32)
+    signal = measure(steady, scenarios).signal[0, 0].astype(float)
     spectrum, orders = by_order(signal - signal.mean(), scenarios[0], recipe)
     turns = turns_of(scenarios[0], recipe)
     assert nearest_line(spectrum, orders, 1) == pytest.approx(1, abs=0.5 / turns)
@@ -140,7 +140,7 @@ def test_harmonics_have_the_same_phase_to_the_shaft_in_every_record_of_a_rig(rec
 
 def at_order(signal, scenario, recipe, order):
     """Complex amplitude of a line at an order of the shaft, over the largest whole number of turns."""
-    axis = timeline(recipe)
+    axis = timeline(settings_of(recipe))
     angles = shaft_angles(scenario, axis)[axis.kept]
     whole = angles - angles[0] < 2 * np.pi * np.floor(np.ptp(angles) / (2 * np.pi))
     return 2 * np.mean(signal[whole] * np.exp(-1j * order * angles[whole]))

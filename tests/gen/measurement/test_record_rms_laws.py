@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gen.measurement.measure import measure
 from gen.recipe import Recipe, read_recipe, shipped_recipes
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 from tests.gen.conftest import small_with
@@ -36,9 +36,9 @@ def stored(measured):
     return measured.signal.astype(float) / (measured.counts_per_unit or 1.0)
 
 
-def check(acceleration, scenarios, recipe):
+def check(acceleration, scenarios):
     """Every record that is not clipped has the drawn rms, up to the rounding of the converter."""
-    measured = measure(acceleration, scenarios, recipe)
+    measured = measure(acceleration, scenarios)
     found = np.sqrt(np.mean(stored(measured) ** 2, axis=(1, 2)))
     drawn = np.array([scenario.record.rms for scenario in scenarios])
     rounding = 0.0 if measured.counts_per_unit is None else 1 / (measured.counts_per_unit * np.sqrt(12))
@@ -50,7 +50,9 @@ def check(acceleration, scenarios, recipe):
 def lines_of_the_shaft(recipe, scenarios, orders, seed):
     """Bearings that vibrate at multiples of the shaft rate alone, shape (record, channel, time) [m s-2]."""
     rng = np.random.default_rng(seed)
-    turns = np.outer([scenario.record.conditions["shaft"] for scenario in scenarios], timeline(recipe).response_times())
+    turns = np.outer(
+        [scenario.record.conditions["shaft"] for scenario in scenarios], timeline(settings_of(recipe)).response_times()
+    )
     phases = rng.uniform(0, 2 * np.pi, (len(orders), len(scenarios), len(recipe.recording.channels), 1))
     waves = (np.cos(2 * np.pi * n * turns[:, None] + phase) for n, phase in zip(orders, phases, strict=True))
     return sum(waves).astype(np.float32)
@@ -64,7 +66,7 @@ def test_a_record_has_the_drawn_rms_where_bearing_and_background_have_the_same_l
     changes = {"level": LEVEL, "recording.converter": {"kind": kind}, "recording.channels": TWO, "seed": seed % 1000}
     recipe = Recipe.model_validate(small_with(changes | LINES))
     scenarios = draw_scenarios(recipe)
-    check(lines_of_the_shaft(recipe, scenarios, orders, seed), scenarios, recipe)
+    check(lines_of_the_shaft(recipe, scenarios, orders, seed), scenarios)
 
 
 def shipped():
@@ -76,12 +78,12 @@ def shipped():
 @pytest.mark.parametrize("recipe", shipped(), ids=lambda recipe: recipe.name)
 def test_the_records_of_a_shipped_recipe_have_the_drawn_rms(recipe):
     scenarios = draw_scenarios(recipe, 0, 24)
-    check(simulate(scenarios, recipe).acceleration, scenarios, recipe)
+    check(simulate(scenarios).acceleration, scenarios)
 
 
 def test_a_record_of_noise_has_the_drawn_rms_too():
     """Independent noises correlate by chance, by the more the shorter the record."""
     recipe = Recipe.model_validate(small_with({"level": LEVEL, "recording.converter": {"kind": "float32"}}))
     scenarios = draw_scenarios(recipe)
-    shape = len(scenarios), 1, timeline(recipe).returned
-    check(np.random.default_rng(0).standard_normal(shape).astype(np.float32), scenarios, recipe)
+    shape = len(scenarios), 1, timeline(settings_of(recipe)).returned
+    check(np.random.default_rng(0).standard_normal(shape).astype(np.float32), scenarios)

@@ -134,7 +134,7 @@ def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write
     assert sum(planned.steps_per_sample.values()) == 12
     made = generate(recipe, tmp_path / "c")
     assert made.failures == tuple(f"record {number}: {reason}" for number in range(1, 24, 2))
-    with open_corpus(made.directory) as corpus:
+    with open_corpus(made.path) as corpus:
         assert corpus["recording"].values.tolist() == list(range(0, 24, 2))
         assert (corpus["operating_clearance"] < corpus["diametral_clearance"]).all()
 
@@ -149,5 +149,5 @@ def test_the_axial_load_holds_against_the_heaviest_radial_load_of_a_profile(reci
     changes = {"specimen.contact_angle_deg": 15, "operation.load_n": 300, "operation.axial_load_n": 200}
     for load_profile, held in ((None, True), (profile, False)):
         recipe = recipe_with(changes | {"operation.load_profile": load_profile})
-        failures = simulate(draw_scenarios(recipe, 0, 1), recipe).failures
+        failures = simulate(draw_scenarios(recipe, 0, 1)).failures
         assert (failures == {}) == held

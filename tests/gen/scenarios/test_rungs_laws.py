@@ -13,7 +13,7 @@ from gen.generation import generate
 from gen.measurement.measure import measure
 from gen.plan import plan
 from gen.replaying import replay, stored_scenario
-from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
+from gen.scenarios import draw_scenarios, read_scenario, scenario_texts, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
@@ -44,7 +44,7 @@ def test_the_records_of_a_group_differ_in_severity_alone(recipe_with, sampling):
         assert [one.record.rung for one in group] == [0, 1, 2, 3]
         for one in group:
             unnumbered = replace(one.record, number=last.record.number, rung=last.record.rung)
-            assert (one.seed, one.rig, unnumbered) == (last.seed, last.rig, last.record)
+            assert (one.settings, one.rig, unnumbered) == (last.settings, last.rig, last.record)
             assert one.specimen == last.specimen.at_severity(RUNGS[one.record.rung])
             for purpose in (7, 8, 12, 13):  # motion, noise, load wander, knocks
                 assert one.rng(purpose).random() == last.rng(purpose).random()
@@ -71,7 +71,7 @@ def test_a_rung_is_its_share_of_the_severity(recipe_with):
 def test_a_pair_without_its_fault_is_the_record_at_rung_0_to_the_last_bit(recipe_with):
     recipe = recipe_with({"corpus.rungs": (0, 1), "faults": MANY_HEALTHY})
     for before, after in groups_of(draw_scenarios(recipe)).values():
-        one, other = (kernel_input(item, timeline(recipe)) for item in (before, after.without_fault()))
+        one, other = (kernel_input(item, timeline(settings_of(recipe))) for item in (before, after.without_fault()))
         assert (one.machine, one.turning) == (other.machine, other.turning)
         for field in ("frequencies", "phases", "schedule"):
             np.testing.assert_array_equal(getattr(one, field), getattr(other, field))
@@ -84,7 +84,7 @@ def test_the_signals_of_a_pair_differ_by_the_fault_and_not_by_the_background(rec
     recipe = recipe_with(changes | {"recording.converter": {"kind": "float32"}})
     before, after = next(iter(groups_of(draw_scenarios(recipe)).values()))
     scenarios = [before, after, after.without_fault()]
-    signals = measure(simulate(scenarios, recipe).acceleration, scenarios, recipe).signal
+    signals = measure(simulate(scenarios).acceleration, scenarios).signal
     np.testing.assert_array_equal(signals[0], signals[2])
     assert not np.array_equal(signals[0], signals[1])
 
@@ -169,7 +169,7 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     planned = plan(path)
     made = generate(path, tmp_path / "c")
     assert (made.records, planned.records, planned.specimens, planned.parts) == (12, 12, 4, 3)
-    with open_corpus(made.directory) as corpus:
+    with open_corpus(made.path) as corpus:
         found = corpus[["fault", "pair", "rung", "specimen", "recording"]].load()
     assert found["recording"].values.tolist() == list(range(12))
     in_pair = found["pair"].values >= 0
@@ -178,11 +178,11 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     healthy = found["fault"].values == 0
     assert (healthy == (~in_pair | (found["rung"].values == 0))).all()
     assert planned.classes == {"healthy": healthy.sum(), "inner": (~healthy).sum()}
-    card = (made.directory / "README.md").read_text(encoding="utf-8")
+    card = (made.path / "README.md").read_text(encoding="utf-8")
     assert f"\n{in_pair.sum() // 3} groups of records (`pair`) differ in the severity" in card
     assert f"\n| healthy | {healthy.sum()} | " in card
     for record in (int(np.flatnonzero(in_pair)[0]), int(np.flatnonzero(in_pair)[-1])):
-        again = replay(made.directory, record)
+        again = replay(made.path, record)
         assert again.identical
-        assert stored_scenario(made.directory, record).record.rung == int(found["rung"][record])
+        assert stored_scenario(made.path, record).record.rung == int(found["rung"][record])
         xr.testing.assert_equal(again.dataset["pair"][0], found["pair"][record])

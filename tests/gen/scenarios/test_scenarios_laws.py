@@ -6,11 +6,15 @@ from itertools import product
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from gen.errors import RecipeError
-from gen.scenarios import Purpose, draw_scenarios, scenario_texts, stream
+from gen.recipe import Recipe
+from gen.scenarios import Purpose, draw_scenarios, scenario_texts, settings_of, stream
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
+from tests.gen.conftest import small_with
 
 SAMPLINGS = ("random", "sobol", "halton")
 FAULTY = ("inner", "outer", "ball")
@@ -34,6 +38,21 @@ def test_nothing_but_the_fault_knows_the_fault(recipe_with, only, sampling):
         assert one.specimen.properties == other.specimen.properties
         assert one.specimen.split == other.specimen.split
         assert one.record == other.record
+
+
+@given(*[st.integers(1, 5)] * 5, st.integers(2, 3) | st.none())
+def test_rigs_specimens_records_and_parts_are_numbered_without_gaps(rigs, per_rig, per_specimen, per_part, n, n_rungs):
+    rungs = None if n_rungs is None else [rung / n_rungs for rung in range(1, n_rungs + 1)]
+    numbers = {"rigs": rigs, "specimens_per_rig": per_rig, "records_per_specimen": per_specimen}
+    recipe = Recipe(
+        small_with({"corpus": {**numbers, "records_per_part": per_part, "rungs": rungs}, "records": n * (n_rungs or 1)})
+    )
+    every = list(range(recipe.n_records))
+    assert [number for part in range(recipe.n_parts) for number in recipe.records_of_part(part)] == every
+    assert [number for one in range(recipe.n_specimens) for number in recipe.records_of(one)] == every
+    assert all(number in recipe.records_of(recipe.specimen_of(number)) for number in every)
+    assert {recipe.rig_of(one) for one in range(recipe.n_specimens)} == set(range(recipe.n_rigs))
+    assert len({recipe.item_of(number) for number in every}) == len(every)
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
@@ -185,9 +204,12 @@ def test_a_record_without_its_fault_is_the_same_record(recipe_with):
     recipe = recipe_with()
     for scenario in draw_scenarios(recipe):
         twin = scenario.without_fault()
-        assert (twin.rig, twin.record, twin.seed) == (scenario.rig, scenario.record, scenario.seed)
+        assert (twin.rig, twin.record, twin.settings) == (scenario.rig, scenario.record, scenario.settings)
         assert (twin.specimen.fault, twin.specimen.spalls) == ("healthy", ())
-        damaged, sound = kernel_input(scenario, timeline(recipe)), kernel_input(twin, timeline(recipe))
+        damaged, sound = (
+            kernel_input(scenario, timeline(settings_of(recipe))),
+            kernel_input(twin, timeline(settings_of(recipe))),
+        )
         assert bool(damaged.spalls) == (scenario.specimen.fault != "healthy")
         assert sound.machine == damaged.machine
         assert sound.turning == damaged.turning._replace(axis_offset=0.0, axis_rms=0.0, axis_limit=0.0)

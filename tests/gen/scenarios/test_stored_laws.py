@@ -48,7 +48,10 @@ def damaged_text():
 def test_the_text_of_a_scenario_gives_the_scenario_back(name):
     scenarios = scenarios_of(name)
     assert len(scenarios) >= 16
-    assert [read_scenario(text) for text in scenario_texts(scenarios)] == scenarios
+    texts = scenario_texts(scenarios)
+    read = [read_scenario(text) for text in texts]
+    assert read == scenarios
+    assert scenario_texts(read) == texts
 
 
 @pytest.mark.parametrize("name", RECIPES)
@@ -64,7 +67,7 @@ NUMBER_LISTS = {"trace", "times", "shares"}  # series of one quantity
 def test_every_number_of_a_text_has_a_name(name):
     for text in scenario_texts(scenarios_of(name)):
         values = json.loads(text)
-        assert list(values) == ["seed", "rig", "specimen", "record"]
+        assert list(values) == ["settings", "rig", "specimen", "record"]
         for items in lists_in(values):
             assert not any(isinstance(item, list) for item in items)
             assert len({kind(item) for item in items if item is not None}) <= 1
@@ -104,9 +107,12 @@ def test_a_text_that_is_no_scenario_is_refused_with_one_sentence(text):
 CHANGES = {
     "cut short": (lambda text: text[:-1], "the whole text"),
     "something after it": (lambda text: text + "{}", "the whole text"),
-    "no seed": (lambda text: text.replace('"seed"', '"sowing"'), "seed: Field required"),
-    "a seed of text": (lambda text: text.replace('"seed": ', '"seed": "1", "x": '), "seed: Input should be"),
-    "a fraction for a seed": (lambda text: text.replace('"seed": ', '"seed": 0.5, "x": '), "seed: Input should be"),
+    "no settings": (lambda text: text.replace('"settings"', '"sowing"'), "settings: Field required"),
+    "no seed": (lambda text: text.replace('"seed"', '"sowing"'), "settings.seed: Field required"),
+    "a rate of zero": (lambda text: text.replace('"sample_rate": ', '"sample_rate": 0, "x": '), "settings.sample_rate: Input"),
+    "a negative number of a rig": (lambda text: text.replace('"rig": {"number": 0', '"rig": {"number": -1'), "rig.number: Input"),
+    "a seed of text": (lambda text: text.replace('"seed": ', '"seed": "1", "x": '), "settings.seed: Input should be"),
+    "a fraction for a seed": (lambda text: text.replace('"seed": ', '"seed": 0.5, "x": '), "settings.seed: Input should be"),
     "text for a number": (lambda text: text.replace('"depth": ', '"depth": "1e-4", "x": ', 1), "specimen.spalls.0.depth: "),
     "an unknown site": (
         lambda text: text.replace('"site": "', '"site": "roof of the ', 1),
@@ -152,7 +158,7 @@ def test_a_scenario_read_back_simulates_to_the_same_bits():
     drawn = draw_scenarios(recipe, 0, RECORDS)
     scenario = next(one for one in drawn if one.specimen.spalls)
     read = read_scenario(scenario_texts([scenario])[0])
-    one, other = simulate([scenario], recipe), simulate([read], recipe)
+    one, other = simulate([scenario]), simulate([read])
     assert not one.failures
     np.testing.assert_array_equal(one.acceleration, other.acceleration)
     assert one.truth == other.truth

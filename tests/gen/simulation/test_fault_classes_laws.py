@@ -14,7 +14,7 @@ from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import make_shape
 from gen.recipe import read_recipe
 from gen.replaying import replay
-from gen.scenarios import draw_scenarios, fault_of_each_specimen, read_scenario
+from gen.scenarios import draw_scenarios, fault_of_each_specimen, read_scenario, settings_of
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
@@ -64,7 +64,7 @@ def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
     _, scenarios = drawn
     assert whole.failures == ()
     assert {kind_of(scenario.specimen) for scenario in scenarios} == set(LABELS)
-    with open_corpus(whole.directory) as corpus:
+    with open_corpus(whole.path) as corpus:
         found = {name: corpus[name].values for name in (*KNOWN, "width", "largest_drop", "angle")}
     for place, scenario in enumerate(scenarios):
         kind = kind_of(scenario.specimen)
@@ -81,7 +81,7 @@ def test_every_class_is_labelled_by_what_is_damaged_and_how_much(whole, drawn):
 def test_the_largest_drop_is_that_over_the_widest_spall(whole, drawn):
     """A traced one 0.8 mm wide: the ball bridges its deepest points; a half sine is as deep as it says."""
     _, scenarios = drawn
-    with open_corpus(whole.directory) as corpus:
+    with open_corpus(whole.path) as corpus:
         found = corpus["largest_drop"].values
     for place, scenario in enumerate(scenarios):
         if scenario.specimen.fault == "compound":
@@ -100,8 +100,8 @@ def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_
     recipe, scenarios = drawn
     healthy = read_recipe(write_recipe(tmp_path / "h.yaml", EVERYTHING | {"faults": [{"kind": "healthy"}]}))
     for scenario, sound in zip(scenarios, draw_scenarios(healthy), strict=True):
-        twin = kernel_input(scenario.without_fault(), timeline(recipe))
-        expected = kernel_input(sound, timeline(healthy))
+        twin = kernel_input(scenario.without_fault(), timeline(settings_of(recipe)))
+        expected = kernel_input(sound, timeline(settings_of(healthy)))
         assert twin.machine == expected.machine
         assert twin.turning == expected.turning
         assert twin.spalls == ()
@@ -111,18 +111,16 @@ def test_a_twin_without_the_fault_is_what_healthy_bearings_alone_would_be(write_
 
 
 def test_the_fault_alone_tells_a_record_from_its_twin(drawn):
-    recipe, scenarios = drawn
+    _, scenarios = drawn
     some = list({kind_of(scenario.specimen): scenario for scenario in scenarios}.values())
-    damaged, sound = (
-        simulate(batch, recipe).acceleration for batch in (some, [scenario.without_fault() for scenario in some])
-    )
+    damaged, sound = (simulate(batch).acceleration for batch in (some, [scenario.without_fault() for scenario in some]))
     for scenario, one, other in zip(some, damaged, sound, strict=True):
         assert np.array_equal(one, other) == (scenario.specimen.fault == "healthy")
 
 
 def test_everything_at_once_needs_one_kernel_for_healthy_and_damaged(drawn):
     recipe, scenarios = drawn
-    shapes = {input_shape(kernel_input(scenario, timeline(recipe))) for scenario in scenarios}
+    shapes = {input_shape(kernel_input(scenario, timeline(settings_of(recipe)))) for scenario in scenarios}
     every = make_shape(
         9, 1, resonator=True, damped=True, wavy=True, spalled=True, jittered=True, forced=True, loose=True
     )
@@ -132,7 +130,9 @@ def test_everything_at_once_needs_one_kernel_for_healthy_and_damaged(drawn):
 def test_a_broken_cage_displaces_one_ball_and_knocks_and_wear_is_on_its_race_alone(drawn):
     recipe, scenarios = drawn
     for scenario in scenarios:
-        damaged, twin = (kernel_input(one, timeline(recipe)) for one in (scenario, scenario.without_fault()))
+        damaged, twin = (
+            kernel_input(one, timeline(settings_of(recipe))) for one in (scenario, scenario.without_fault())
+        )
         if scenario.specimen.cage:
             assert damaged.turning.late_by == pytest.approx(math.radians(3))
             assert damaged.turning.late_ball == 0
@@ -164,7 +164,7 @@ def test_classes_come_by_weight_and_wear_counts_as_its_site(recipe_with):
 
 
 def test_the_draws_of_every_class_are_stored_whole(whole, drawn):
-    with open_corpus(whole.directory) as corpus:
+    with open_corpus(whole.path) as corpus:
         for text, scenario in zip(corpus["draws"].values, drawn[1], strict=True):
             assert read_scenario(str(text)) == scenario
             stored = json.loads(str(text))
@@ -175,14 +175,14 @@ def test_the_draws_of_every_class_are_stored_whole(whole, drawn):
 def test_records_of_every_class_replay_bit_for_bit(whole, drawn):
     numbers = {kind_of(scenario.specimen): scenario.record.number for scenario in drawn[1]}
     for number in numbers.values():
-        assert replay(whole.directory, number).identical
+        assert replay(whole.path, number).identical
 
 
 def test_two_workers_make_the_same_corpus_of_everything(recipe_file, whole, tmp_path):
     generate(recipe_file, tmp_path / "two", workers=2)
     assert validate_corpus(tmp_path / "two") == []
-    one, two = (read_manifest(folder).parts for folder in (whole.directory, tmp_path / "two"))
+    one, two = (read_manifest(folder).parts for folder in (whole.path, tmp_path / "two"))
     assert [row.sha256 for row in one] == [row.sha256 for row in two]
-    with open_corpus(whole.directory) as corpus, open_corpus(tmp_path / "two") as other:
+    with open_corpus(whole.path) as corpus, open_corpus(tmp_path / "two") as other:
         np.testing.assert_array_equal(corpus[SIGNAL].values, other[SIGNAL].values)
         np.testing.assert_array_equal(corpus["step_error"].values, other["step_error"].values)

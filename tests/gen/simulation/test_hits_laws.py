@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.hits import felt_places, load_zone, loaded_hits
 from gen.simulation.inputs import kernel_input, kernel_inputs, without_fault
 from gen.simulation.timeline import timeline
@@ -18,7 +18,7 @@ LOADED = {"machine.load_angle_deg": -90, "operation.load_n": 300, "operation.mea
 def first_of(recipe_with, fault, **changes):
     recipe = recipe_with(LOADED | {"faults": [fault], "corpus.specimens_per_rig": 1} | changes)
     scenario = draw_scenarios(recipe, 0, 1)[0]
-    return recipe, scenario, kernel_input(scenario, timeline(recipe))
+    return recipe, scenario, kernel_input(scenario, timeline(settings_of(recipe)))
 
 
 @pytest.mark.parametrize(("clearance", "half"), [(-8, math.pi), (0, math.pi / 2)])
@@ -88,14 +88,18 @@ def test_two_spalls_are_hit_twice_as_often(recipe_with):
 def test_the_input_of_a_record_does_not_depend_on_the_others(recipe_with):
     recipe = recipe_with(EVERYTHING)
     scenarios = draw_scenarios(recipe)
-    for scenario, together in zip(scenarios, kernel_inputs(scenarios, timeline(recipe))[0], strict=True):
-        for field, other in zip(kernel_input(scenario, timeline(recipe)), together, strict=True):
+    for scenario, together in zip(scenarios, kernel_inputs(scenarios, timeline(settings_of(recipe)))[0], strict=True):
+        for field, other in zip(kernel_input(scenario, timeline(settings_of(recipe))), together, strict=True):
             np.testing.assert_equal(field, other)
 
 
 def test_a_record_without_its_fault_has_the_input_of_a_sound_record(recipe_with):
     recipe = recipe_with(EVERYTHING)
     for scenario in draw_scenarios(recipe):
-        found = without_fault(kernel_input(scenario, timeline(recipe)), scenario, timeline(recipe))
-        for field, other in zip(found, kernel_input(scenario.without_fault(), timeline(recipe)), strict=True):
+        found = without_fault(
+            kernel_input(scenario, timeline(settings_of(recipe))), scenario, timeline(settings_of(recipe))
+        )
+        for field, other in zip(
+            found, kernel_input(scenario.without_fault(), timeline(settings_of(recipe))), strict=True
+        ):
             np.testing.assert_equal(field, other)

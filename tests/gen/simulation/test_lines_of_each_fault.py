@@ -75,7 +75,7 @@ class Envelope:
 def envelopes(recipe):
     """Fault and envelope spectrum of every record of a recipe."""
     scenarios = draw_scenarios(recipe)
-    signals = measure(simulate(scenarios, recipe).acceleration, scenarios, recipe).signal[:, 0]
+    signals = measure(simulate(scenarios).acceleration, scenarios).signal[:, 0]
     return [
         (scenario.specimen.fault, Envelope(signal, scenario.record.conditions["shaft"]))
         for scenario, signal in zip(scenarios, signals, strict=True)
@@ -146,7 +146,7 @@ def test_a_wider_spall_is_louder(recipe_with):
     ladder = {"faults": [{"kind": "outer", "width_mm": widths}], "corpus.rigs": 3}
     recipe = recipe_with(STEADY | ladder)
     scenarios = draw_scenarios(recipe)
-    loudness = simulate(scenarios, recipe).acceleration.std(axis=(1, 2)).reshape(3, 4)
+    loudness = simulate(scenarios).acceleration.std(axis=(1, 2)).reshape(3, 4)
     drawn_widths = np.array([scenario.specimen.spalls[0].width for scenario in scenarios]).reshape(3, 4)
     np.testing.assert_allclose(drawn_widths, 1e-3 * np.tile(widths["values"], (3, 1)))
     assert (np.diff(np.median(loudness, axis=0)) > 0).all()

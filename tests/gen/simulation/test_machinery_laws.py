@@ -13,7 +13,7 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor
 from gen.physics.kernel.batch import input_shape
 from gen.physics.lubricant import STEEL_EXPANSION
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.machine import heaviest_ball_load
 from gen.simulation.motion import cosine_sum
@@ -37,7 +37,7 @@ def record_of(recipe_with):
 
     def made(changes):
         recipe = recipe_with(changes)
-        return kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(recipe))
+        return kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(settings_of(recipe)))
 
     return made
 
@@ -46,7 +46,7 @@ def labels(recipe):
     """Labels of a corpus whose bodies are at rest; labels do not depend on the motion."""
     scenarios = draw_scenarios(recipe)
     response = response_of(scenarios, recipe)
-    return part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response)
+    return part_dataset(measure(response.acceleration, scenarios), response)
 
 
 def test_a_hotter_inner_ring_takes_up_clearance_as_steel_expands(record_of):
@@ -137,7 +137,9 @@ def test_outer_spalls_alone_count_from_the_load_in_the_kernel_and_in_the_labels(
     }
     recipe = recipe_with(changes)
     expected = math.radians(-50 if site == "outer" else 10)
-    assert kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(recipe)).spalls[0].angle == pytest.approx(expected)
+    assert kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(settings_of(recipe))).spalls[
+        0
+    ].angle == pytest.approx(expected)
     assert labels(recipe)["angle"].values == pytest.approx(expected)
 
 
@@ -178,7 +180,7 @@ def test_the_true_rates_are_those_of_the_angles_really_turned(recipe_with, profi
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 3):
         found = truth(scenario, recipe)
-        angles = slow_motion(kernel_input(scenario, timeline(recipe)), 1 / FS, start + n).angles
+        angles = slow_motion(kernel_input(scenario, timeline(settings_of(recipe))), 1 / FS, start + n).angles
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
         assert shaft * FS / n == pytest.approx(found.true_shaft_rate, rel=2e-5)
         assert found.true_shaft_rate == pytest.approx(30 * mean, rel=0.05)

@@ -9,7 +9,7 @@ from gen.errors import SimulationError
 from gen.physics.kernel.batch import input_shape
 from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.motion import schedule_of
 from gen.simulation.outline import outlined_input
@@ -44,7 +44,7 @@ profiles = st.one_of(
 
 
 def needs(record, scenario, recipe):
-    return input_shape(record), steps_per_sample(record, scenario.record.number, recipe)
+    return input_shape(record), steps_per_sample(record, scenario.record.number, settings_of(recipe))
 
 
 @settings(deadline=None, max_examples=200)
@@ -60,7 +60,10 @@ def test_the_highest_speed_and_load_are_those_of_the_whole_schedule(recipe_with,
     changes |= {f"operation.{key}_profile": value for key, value in (("speed", speed), ("load", load)) if value}
     recipe = recipe_with(changes | {"seed": seed})
     scenario = draw_scenarios(recipe, 0, 1)[0]
-    whole, found = schedule_of(scenario, timeline(recipe)), outlined_input(scenario, timeline(recipe)).schedule
+    whole, found = (
+        schedule_of(scenario, timeline(settings_of(recipe))),
+        outlined_input(scenario, timeline(settings_of(recipe))).schedule,
+    )
     assert len(found) == min(len(whole), 1)
     if len(whole):
         np.testing.assert_allclose(found[0], whole.max(axis=0), rtol=1e-12)
@@ -74,22 +77,28 @@ def test_the_peak_of_a_wandering_load_is_found_however_sparsely_it_is_looked_at(
     monkeypatch.setattr("gen.simulation.outline.SAMPLES_PER_TURN", samples_per_turn)
     recipe = recipe_with({"operation.load_wander_percent": 50, "operation.shaft_rpm": 6000, "operation.load_n": 100})
     for scenario in draw_scenarios(recipe):
-        found = outlined_input(scenario, timeline(recipe)).schedule[0, 1]
-        assert found == pytest.approx(schedule_of(scenario, timeline(recipe))[:, 1].max(), rel=1e-12)
+        found = outlined_input(scenario, timeline(settings_of(recipe))).schedule[0, 1]
+        assert found == pytest.approx(schedule_of(scenario, timeline(settings_of(recipe)))[:, 1].max(), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", shipped_recipes())
 def test_shape_and_steps_of_shipped_recipes_are_those_of_whole_records(name):
     recipe = read_recipe(name)
     for scenario in draw_scenarios(recipe, 0, 48):
-        whole, found = kernel_input(scenario, timeline(recipe)), outlined_input(scenario, timeline(recipe))
+        whole, found = (
+            kernel_input(scenario, timeline(settings_of(recipe))),
+            outlined_input(scenario, timeline(settings_of(recipe))),
+        )
         assert needs(found, scenario, recipe) == needs(whole, scenario, recipe)
 
 
 def test_shape_and_steps_of_a_record_with_everything_are_those_of_the_whole_record(recipe_with):
     recipe = recipe_with(EVERYTHING | {"operation.load_wander_percent": 50})
     for scenario in draw_scenarios(recipe):
-        whole, found = kernel_input(scenario, timeline(recipe)), outlined_input(scenario, timeline(recipe))
+        whole, found = (
+            kernel_input(scenario, timeline(settings_of(recipe))),
+            outlined_input(scenario, timeline(settings_of(recipe))),
+        )
         assert needs(found, scenario, recipe) == needs(whole, scenario, recipe)
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from gen import CorpusError, RecipeError, draw_scenarios, generate, simulate
+from gen.scenarios import settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
 
@@ -18,10 +19,12 @@ def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe
         }
     )
     scenarios = draw_scenarios(recipe)
-    assert len({kernel_input(scenario, timeline(recipe)).waviness.races.size for scenario in scenarios}) == 2
-    together = simulate(scenarios, recipe).acceleration
+    assert (
+        len({kernel_input(scenario, timeline(settings_of(recipe))).waviness.races.size for scenario in scenarios}) == 2
+    )
+    together = simulate(scenarios).acceleration
     for place in (0, len(scenarios) - 1):
-        np.testing.assert_array_equal(simulate(scenarios[place : place + 1], recipe).acceleration[0], together[place])
+        np.testing.assert_array_equal(simulate(scenarios[place : place + 1]).acceleration[0], together[place])
 
 
 def test_a_folder_with_somebody_elses_manifest_is_left_alone(tmp_path):

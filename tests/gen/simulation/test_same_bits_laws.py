@@ -17,9 +17,9 @@ from gen import draw_scenarios, read_recipe, simulate
 from gen.measurement.measure import measure
 recipe = read_recipe(sys.argv[1])
 scenarios = draw_scenarios(recipe)
-response = simulate(scenarios, recipe)
+response = simulate(scenarios)
 assert len(response.failures) < len(scenarios) / 4
-for array in (response.acceleration, measure(response.acceleration, scenarios, recipe).signal):
+for array in (response.acceleration, measure(response.acceleration, scenarios).signal):
     print(hashlib.sha256(array.tobytes()).hexdigest())
 """
 # instructions of a processor of 2013, for numba, NumPy and its linear algebra

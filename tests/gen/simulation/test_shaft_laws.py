@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.shaft import shaft_angles
 from gen.simulation.timeline import timeline
@@ -28,7 +28,7 @@ courses = pytest.mark.parametrize("changes", COURSES.values(), ids=COURSES)
 @courses
 def test_the_angle_is_that_by_which_the_kernel_turns_the_bearing(recipe_with, changes):
     recipe = recipe_with({"recording.settle_s": 0.2} | changes)
-    axis = timeline(recipe)
+    axis = timeline(settings_of(recipe))
     for scenario in draw_scenarios(recipe, 0, 4):
         in_kernel = slow_motion(kernel_input(scenario, axis), 1 / axis.fs, axis.knots).angles[:, 0]
         in_kernel = in_kernel[axis.dropped : axis.dropped + axis.returned]
@@ -39,7 +39,7 @@ def test_the_angle_is_that_by_which_the_kernel_turns_the_bearing(recipe_with, ch
 @courses
 def test_the_turns_of_a_record_are_its_labelled_mean_rate_times_its_duration(recipe_with, changes):
     recipe = recipe_with({"recording.settle_s": 0.2} | changes)
-    axis = timeline(recipe)
+    axis = timeline(settings_of(recipe))
     for scenario in draw_scenarios(recipe, 0, 4):
         angles = shaft_angles(scenario, axis)[axis.kept]
         turns = (angles[-1] - angles[0]) / (2 * np.pi) * len(angles) / (len(angles) - 1)

@@ -7,7 +7,7 @@ import pytest
 
 from gen.errors import SimulationError
 from gen.physics.rotor import highest_angular_frequency, likely_stiffness
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
 from gen.simulation.steps import FINE_STEP, steps_per_sample
@@ -24,44 +24,44 @@ def simulated(recipe_with):
     """The small recipe, its scenarios and their responses."""
     recipe = recipe_with()
     scenarios = draw_scenarios(recipe)
-    return recipe, scenarios, simulate(scenarios, recipe)
+    return recipe, scenarios, simulate(scenarios)
 
 
 def test_every_record_of_the_small_recipe_moves_and_none_diverges(simulated):
     recipe, scenarios, response = simulated
-    assert response.acceleration.shape == (len(scenarios), 1, timeline(recipe).lead + recipe.n_samples)
+    assert response.acceleration.shape == (len(scenarios), 1, timeline(settings_of(recipe)).lead + recipe.n_samples)
     assert np.isfinite(response.acceleration).all()
     assert (response.acceleration.std(axis=2) > 1e-3).all()
     assert response.failures == {}
 
 
 def test_a_record_gives_the_same_bits_alone_among_others_and_in_any_order(simulated):
-    recipe, scenarios, together = simulated
+    _, scenarios, together = simulated
     for place in (0, 5, 13, 23):
-        alone = simulate([scenarios[place]], recipe)
+        alone = simulate([scenarios[place]])
         np.testing.assert_array_equal(alone.acceleration[0], together.acceleration[place])
-    backwards = simulate(scenarios[::-1], recipe)
+    backwards = simulate(scenarios[::-1])
     np.testing.assert_array_equal(backwards.acceleration[::-1], together.acceleration)
     np.testing.assert_array_equal(backwards.oversampling[::-1], together.oversampling)
 
 
 def test_a_record_does_not_depend_on_the_range_it_was_drawn_in(simulated):
     recipe, _, together = simulated
-    some = simulate(draw_scenarios(recipe, 9, 17), recipe)
+    some = simulate(draw_scenarios(recipe, 9, 17))
     np.testing.assert_array_equal(some.acceleration, together.acceleration[9:17])
 
 
 def test_a_batch_larger_than_the_lanes_is_the_same_records_in_two_rounds(simulated):
-    recipe, scenarios, together = simulated
-    twice = simulate(scenarios + scenarios, recipe)
+    _, scenarios, together = simulated
+    twice = simulate(scenarios + scenarios)
     np.testing.assert_array_equal(twice.acceleration[: len(scenarios)], together.acceleration)
     np.testing.assert_array_equal(twice.acceleration[len(scenarios) :], together.acceleration)
 
 
 def test_a_longer_settling_time_drops_more_and_changes_nothing_else(recipe_with):
     short, long = (recipe_with({"recording.settle_s": settle, "recording.duration_s": 0.1}) for settle in (0.06, 0.11))
-    early = simulate(draw_scenarios(short, 0, 4), short).acceleration
-    late = simulate(draw_scenarios(long, 0, 4), long).acceleration
+    early = simulate(draw_scenarios(short, 0, 4)).acceleration
+    late = simulate(draw_scenarios(long, 0, 4)).acceleration
     shift = round(0.05 * FS)
     np.testing.assert_array_equal(late[..., :-shift], early[..., shift:])
 
@@ -74,11 +74,13 @@ def test_a_response_is_the_decimated_motion_of_its_bodies_along_its_channels(rec
     ]
     recipe = recipe_with({"recording.channels": channels, "faults": [{"kind": "healthy"}], "recording.oversampling": 8})
     scenarios = draw_scenarios(recipe, 0, 3)
-    response = simulate(scenarios, recipe).acceleration
+    response = simulate(scenarios).acceleration
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     taps = decimation_taps(8)
     for trip, found in zip(
-        march_lanes([kernel_input(scenario, timeline(recipe)) for scenario in scenarios], n_knots, 8, 1 / FS),
+        march_lanes(
+            [kernel_input(scenario, timeline(settings_of(recipe))) for scenario in scenarios], n_knots, 8, 1 / FS
+        ),
         response,
         strict=True,
     ):
@@ -106,12 +108,12 @@ def test_decimation_passes_the_band_and_stops_what_would_fold_into_it(factor):
 def test_the_step_is_the_coarsest_that_is_fine_for_the_stiffest_mode(simulated):
     recipe, scenarios, response = simulated
     for scenario, factor in zip(scenarios, response.oversampling, strict=True):
-        record = kernel_input(scenario, timeline(recipe))
+        record = kernel_input(scenario, timeline(settings_of(recipe)))
         swing = float(
             highest_angular_frequency(record.machine, likely_stiffness(record.machine, record.bearing.n_balls))
         )
         assert swing / (FS * factor) <= FINE_STEP
-        assert factor == steps_per_sample(record, scenario.record.number, recipe)
+        assert factor == steps_per_sample(record, scenario.record.number, settings_of(recipe))
 
 
 def test_a_step_too_coarse_for_the_stiffest_mode_is_refused_before_it_runs(recipe_with, monkeypatch):
@@ -122,14 +124,14 @@ def test_a_step_too_coarse_for_the_stiffest_mode_is_refused_before_it_runs(recip
     recipe = recipe_with({"recording.oversampling": 1, "machine.resonator.frequency_hz": 3500})
     need = r"is too fast for a step of 83\.3 us; raise recording\.oversampling to \d+ or leave it out\.$"
     with pytest.raises(SimulationError, match=r"^record 0: its stiffest mode of \d+ Hz " + need):
-        simulate(draw_scenarios(recipe), recipe)
+        simulate(draw_scenarios(recipe))
 
 
 def test_a_machine_too_stiff_for_any_step_is_refused(recipe_with):
     recipe = recipe_with({"machine.resonator.frequency_hz": 50_000, "recording.sample_rate_hz": 8000})
     scenarios = draw_scenarios(recipe, 0, 1)
     with pytest.raises(SimulationError, match=r"needs more than 96 steps per sample at 8000 Hz; soften the machine"):
-        simulate(scenarios, recipe)
+        simulate(scenarios)
 
 
 def test_a_record_that_diverges_is_named_and_leaves_the_others_as_they_are(recipe_with, monkeypatch):
@@ -142,26 +144,26 @@ def test_a_record_that_diverges_is_named_and_leaves_the_others_as_they_are(recip
     }
     recipe = recipe_with(changes)
     scenarios = draw_scenarios(recipe)
-    response = simulate(scenarios, recipe)
+    response = simulate(scenarios)
     assert set(response.failures) == set(range(8, 16))
     for place, sentence in response.failures.items():
         assert sentence.startswith(f"record {place} diverged at t = 0.")
         assert "with 1 steps per sample; raise recording.oversampling" in sentence
     assert np.isnan(response.acceleration[8:]).all()
-    np.testing.assert_array_equal(response.acceleration[:8], simulate(scenarios[:8], recipe).acceleration)
+    np.testing.assert_array_equal(response.acceleration[:8], simulate(scenarios[:8]).acceleration)
 
 
 def test_half_the_step_gives_the_same_record_to_a_thousandth(recipe_with):
     wandering = {"operation.slip_percent": 1, "operation.jitter_deg": 0.3, "operation.speed_wander_percent": 0.2}
     coarse, fine = (recipe_with(wandering | {"recording.oversampling": steps}) for steps in (8, 16))
-    one, other = (simulate(draw_scenarios(recipe), recipe).acceleration[:, 0] for recipe in (coarse, fine))
+    one, other = (simulate(draw_scenarios(recipe)).acceleration[:, 0] for recipe in (coarse, fine))
     difference = np.sqrt(np.mean((one - other) ** 2, axis=1) / np.mean(other**2, axis=1))
     assert difference.max() < 1e-3
 
 
 def test_a_record_and_its_sound_twin_differ_by_the_fault_alone(simulated):
-    recipe, scenarios, response = simulated
-    sound = simulate([scenario.without_fault() for scenario in scenarios], recipe).acceleration
+    _, scenarios, response = simulated
+    sound = simulate([scenario.without_fault() for scenario in scenarios]).acceleration
     for place, scenario in enumerate(scenarios):
         same = np.array_equal(sound[place], response.acceleration[place])
         assert same == (scenario.specimen.fault == "healthy")
@@ -175,7 +177,7 @@ def test_the_labels_hold_the_mean_rates_at_which_shaft_and_cage_really_turned(re
     start, n = round(recipe.recording.settle_s * FS), recipe.n_samples
     for scenario in draw_scenarios(recipe, 0, 6):
         found = truth(scenario, recipe)
-        angles = slow_motion(kernel_input(scenario, timeline(recipe)), 1 / FS, start + n).angles
+        angles = slow_motion(kernel_input(scenario, timeline(settings_of(recipe))), 1 / FS, start + n).angles
         shaft, cage, _ = (angles[-1] - angles[start]) / (2 * np.pi)
         assert shaft * FS / n == pytest.approx(found.true_shaft_rate, rel=1e-4)
         # the mean of a product is not the product of the means
@@ -187,7 +189,7 @@ def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_wi
     recipe = recipe_with({"specimen.waviness_nm": 25})
     scenarios = draw_scenarios(recipe, 0, 4)
     turn = np.linspace(0, 2 * np.pi, 400, endpoint=False)
-    first, again, other = (kernel_input(scenarios[place], timeline(recipe)) for place in (0, 1, 2))
+    first, again, other = (kernel_input(scenarios[place], timeline(settings_of(recipe))) for place in (0, 1, 2))
     np.testing.assert_array_equal(first.waviness.races, again.waviness.races)
     assert not np.array_equal(first.waviness.races, other.waviness.races)
     for record in (first, other):
@@ -201,5 +203,5 @@ def test_the_waviness_of_a_race_has_the_rms_of_its_specimen_and_nothing_to_do_wi
 def test_outer_spalls_count_their_angle_from_the_load(recipe_with):
     outer = [{"kind": "outer", "width_mm": 0.5, "angle_deg": 10}]
     recipe = recipe_with({"faults": outer, "machine.load_angle_deg": -60})
-    spall = kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(recipe)).spalls[0]
+    spall = kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(settings_of(recipe))).spalls[0]
     assert spall.angle == pytest.approx(math.radians(-50))

@@ -5,15 +5,16 @@ from collections import Counter
 import numpy as np
 import pytest
 
+from gen.checking import CHECKED_PARTS, checked_places, step_errors
 from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
 from gen.errors import RecipeError, SimulationError
 from gen.generation import generate
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency
-from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens
+from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens, settings_of
 from gen.simulation.inputs import kernel_input
-from gen.simulation.simulate import simulate, step_errors
-from gen.simulation.steps import CHECKED_PARTS, COARSEST_STEP, FINE_STEP, checked_places
+from gen.simulation.simulate import simulate
+from gen.simulation.steps import COARSEST_STEP, FINE_STEP
 from gen.simulation.timeline import timeline
 from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, slow_motion
@@ -34,7 +35,7 @@ def checked(recipe_with):
     """The small recipe, its scenarios, their responses and step errors."""
     recipe = recipe_with()
     scenarios = draw_scenarios(recipe)
-    response = simulate(scenarios, recipe)
+    response = simulate(scenarios)
     return recipe, scenarios, response, step_errors(scenarios, recipe, response)
 
 
@@ -117,9 +118,9 @@ def test_the_first_specimen_of_each_class_is_the_first_one_drawn_with_it(recipe_
 def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe_with, monkeypatch):
     seen = []
 
-    def looked_at(recipe, rig, block):
+    def looked_at(recipe, rig):
         seen.append(rig)
-        return fault_of_each_specimen(recipe, rig, block)
+        return fault_of_each_specimen(recipe, rig)
 
     monkeypatch.setattr("gen.scenarios.classes.fault_of_each_specimen", looked_at)
     assert first_specimens(recipe_with({"corpus.rigs": 1000, "seed": 12345})).keys() == set(FAULTS[:4])
@@ -129,7 +130,7 @@ def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe
 def test_a_part_of_which_nothing_is_to_be_checked_is_not_run_again(recipe_with):
     recipe = recipe_with({"corpus.records_per_part": 2})
     scenarios = draw_scenarios(recipe, 10, 12)
-    response = simulate(scenarios, recipe)
+    response = simulate(scenarios)
     assert np.isnan(step_errors(scenarios, recipe, response)).all()
 
 
@@ -139,7 +140,7 @@ def test_a_coarser_step_changes_more_when_it_is_halved(recipe_with):
     for steps in (2, 4, 8):
         recipe = recipe_with({"recording.oversampling": steps})
         scenarios = draw_scenarios(recipe, 0, 8)
-        errors.append(step_errors(scenarios, recipe, simulate(scenarios, recipe)))
+        errors.append(step_errors(scenarios, recipe, simulate(scenarios)))
     tried = np.isfinite(errors[0])
     assert (errors[0] > 2 * errors[1])[tried].all()
     assert (errors[1] > 2 * errors[2])[tried].all()
@@ -155,7 +156,7 @@ def test_the_step_phase_is_that_of_the_stiffest_contacts_of_the_record(checked):
     """Contact stiffness is evaluated at every knot; it changes little between two knots."""
     recipe, scenarios, response, _ = checked
     some = [0, 3]
-    records = [kernel_input(scenarios[place], timeline(recipe)) for place in some]
+    records = [kernel_input(scenarios[place], timeline(settings_of(recipe))) for place in some]
     n_knots = round(recipe.recording.settle_s * FS) + recipe.n_samples
     for place, record in zip(some, records, strict=True):
         factor = int(response.oversampling[place])
@@ -176,20 +177,20 @@ def test_records_whose_contacts_outgrow_the_step_are_left_out_with_a_sentence(wr
     for sentence in made.failures:
         assert grown in sentence
         assert int(sentence.rstrip(".").split()[-1]) > 1 / FINE_STEP
-    assert read_manifest(made.directory).failures == made.failures
-    assert validate_corpus(made.directory) == []
-    with open_corpus(made.directory) as corpus:
+    assert read_manifest(made.path).failures == made.failures
+    assert validate_corpus(made.path) == []
+    with open_corpus(made.path) as corpus:
         assert corpus["recording"].values.tolist() == [*range(8), *range(16, 24)]
         assert (corpus["step_phase"].values < COARSEST_STEP).all()
 
 
 def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):
     recipe = recipe_with(ROUGH)
-    coarse = simulate(draw_scenarios(recipe, 8, 10), recipe)
+    coarse = simulate(draw_scenarios(recipe, 8, 10))
     assert np.isnan(coarse.acceleration).all()
     asked = [int(sentence.rstrip(".").split()[-1]) for sentence in coarse.failures.values()]
     finer = recipe_with(ROUGH | {"recording.oversampling": max(asked)})
-    response = simulate(draw_scenarios(finer, 8, 10), finer)
+    response = simulate(draw_scenarios(finer, 8, 10))
     assert response.failures == {}
     assert (response.step_phase < 1.1 * FINE_STEP).all()
 
@@ -197,7 +198,7 @@ def test_as_many_steps_as_the_sentence_asks_for_are_enough(recipe_with):
 def test_records_left_out_are_not_tried(recipe_with):
     recipe = recipe_with(ROUGH)
     scenarios = draw_scenarios(recipe, 4, 12)
-    errors = step_errors(scenarios, recipe, simulate(scenarios, recipe))
+    errors = step_errors(scenarios, recipe, simulate(scenarios))
     assert np.isfinite(errors[:4]).any()
     assert np.isnan(errors[4:]).all()
 
@@ -205,13 +206,13 @@ def test_records_left_out_are_not_tried(recipe_with):
 def test_a_shaft_that_turns_too_far_between_two_samples_is_refused(recipe_with):
     recipe = recipe_with({"operation.shaft_rpm": 9000, "recording.sample_rate_hz": 1000})
     with pytest.raises(SimulationError, match=r"^record 0: its shaft turns 54 degrees per sample; raise .* to 1347\.$"):
-        simulate(draw_scenarios(recipe, 0, 1), recipe)
+        simulate(draw_scenarios(recipe, 0, 1))
 
 
 def test_oil_too_thick_for_the_formulas_leaves_the_record_out(recipe_with):
     thick = {"contact": {"lubricant": {"viscosity_40_mm2_s": 1000}}, "operation.temperature_celsius": -20}
     recipe = recipe_with(thick)
-    failures = simulate(draw_scenarios(recipe, 0, 1), recipe).failures
+    failures = simulate(draw_scenarios(recipe, 0, 1)).failures
     assert "um is above the 10 um for which film formulas hold; take thinner or warmer oil." in failures[0]
 
 

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from gen.physics.rotor import likely_stiffness
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.steps import FINE_STEP, largest_pull, steps_per_sample
 from gen.simulation.timeline import timeline
@@ -16,7 +16,7 @@ def drawn(recipe_with):
     """A recipe, a scenario of it and its record, with no mode that is faster than that of the contacts."""
     recipe = recipe_with()
     (scenario,) = draw_scenarios(recipe, 0, 1)
-    record = kernel_input(scenario, timeline(recipe))
+    record = kernel_input(scenario, timeline(settings_of(recipe)))
     machine = record.machine._replace(sensor_mass=0.0, half_clearance=1e-6, contact_damping=0.0)
     return recipe, scenario, record._replace(machine=machine)
 
@@ -47,4 +47,4 @@ def test_the_step_resolves_the_mode_of_that_stiffness_and_is_no_finer(drawn, sha
     square += max(machine.support_stiffness_x, machine.support_stiffness_y) / machine.housing_mass
     rate = share * math.sqrt(square) / (4 * FINE_STEP)
     sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
-    assert steps_per_sample(record, scenario.record.number, sampled) == steps
+    assert steps_per_sample(record, scenario.record.number, settings_of(sampled)) == steps

@@ -47,13 +47,17 @@ def wandering_rig(rng):
 @settings(deadline=None, max_examples=3)
 @given(seeds)
 def test_a_record_with_random_processes_does_not_depend_on_the_step(seed):
-    """96 kHz compared with 384 kHz, see docs/model.md, Integration; nine of ten records agree at 192 kHz."""
+    """At 192 kHz nine of ten records are within 1e-3 of 384 kHz; halving the step from 96 kHz at least halves the typical error.
+
+    The error itself depends on how often balls meet the edges of a spall, so a bound at 96 kHz would hold for some machines only.
+    """
     rng = np.random.default_rng(seed)
     drawn = [wandering_rig(rng) for _ in range(LANES)]
     at_96, at_192, at_384 = (responses(drawn, n_steps, 0, 1200) for n_steps in (8, 16, 32))
     rms = np.sqrt(np.mean(at_384**2, axis=2))
-    assert np.median(np.sqrt(np.mean((at_96 - at_384) ** 2, axis=2)) / rms) < 1e-3
-    assert np.quantile(np.sqrt(np.mean((at_192 - at_384) ** 2, axis=2)) / rms, 0.9) < 1e-3
+    coarse, fine = (np.sqrt(np.mean((found - at_384) ** 2, axis=2)) / rms for found in (at_96, at_192))
+    assert np.median(fine / coarse) < 0.5
+    assert np.quantile(fine, 0.9) < 1e-3
 
 
 def turning(site, shaft_rate, rng, *, mean_slip=0.0, load=100.0):

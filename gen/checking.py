@@ -1,0 +1,88 @@
+"""Check of the step: some records of a corpus are integrated again at half the step, and the relative change is stored with them."""
+
+from collections import Counter
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.physics.kernel.compiling import LANES
+from gen.recipe import Recipe
+from gen.scenarios import Scenario, first_records, settings_of
+from gen.simulation.batches import Group, Integration, group_of, integrate_all
+from gen.simulation.simulate import Response, motion_of
+from gen.simulation.timeline import timeline
+
+FloatArray = NDArray[np.float64]
+
+CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # every 32nd part repeats 1 % of the records of 32 parts at half the step
+
+
+def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -> FloatArray:
+    """Relative rms change of some records of a part when their step is halved, NaN for the others, shape (record,)."""
+    finer = step_checks(scenarios, recipe, response)
+    integrate_all(finer.values(), timeline(settings_of(recipe)))
+    return step_changes(finer, response, recipe)
+
+
+def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Integration]:
+    """Integrations of some records of a part at half their step, by place."""
+    usable = {place: some for place, some in enumerate(response.inputs) if some and place not in response.failures}
+    groups = {place: group_of(some, int(response.oversampling[place])) for place, some in usable.items()}
+    return {
+        place: Integration(
+            scenarios[place].record.number, usable[place], groups[place]._replace(steps=2 * groups[place].steps)
+        )
+        for place in checked_places(scenarios, recipe, groups)
+    }
+
+
+def step_changes(finer: Mapping[int, Integration], response: Response, recipe: Recipe) -> FloatArray:
+    """Relative rms change between records and the same at half the step, NaN for the other records, shape (record,)."""
+    errors, kept = np.full(len(response.oversampling), np.nan), timeline(settings_of(recipe)).kept
+    tried = list(finer)
+    if tried:
+        coarse, halved = response.acceleration[tried], np.stack([motion_of(one) for one in finer.values()])
+        pair = coarse[..., kept] - halved[..., kept], halved[..., kept]
+        change, whole = (np.sum(some**2, axis=(1, 2), dtype=np.float64) for some in pair)
+        errors[tried] = np.sqrt(change / whole)
+    return errors
+
+
+def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[int, Group]) -> list[int]:
+    """Places in a part of the records whose step is to be checked; ``groups`` has the possible records by place.
+
+    These are the first record of each class, in the part where the first specimen of the class begins; in every ``CHECKED_PARTS``-th part
+    also ``CHECKED_SHARE`` of the records of so many parts; and records that fill the batches of these at no more cost.
+    """
+    begun = {scenario.record.number for scenario in scenarios}
+    new = {fault for fault, number in first_records(recipe).items() if number in begun}
+    first: dict[str, int] = {}
+    for place in groups:
+        if scenarios[place].specimen.fault in new:
+            first.setdefault(scenarios[place].specimen.fault, place)
+    span = CHECKED_PARTS * recipe.corpus.records_per_part
+    done = scenarios[0].record.number
+    wanted = CHECKED_SHARE * min(span, recipe.n_records - done) if done % span == 0 else 0
+    chosen = _with_full_batches(list(first.values()), groups)
+    for place in groups:
+        if len(chosen) >= wanted:
+            break
+        if place not in chosen:
+            chosen = _with_full_batches([*chosen, place], groups)
+    return chosen
+
+
+def has_checks(recipe: Recipe, numbers: range) -> bool:
+    """Whether the step of any of the records of a part may be checked, by :func:`checked_places`."""
+    every = numbers.start % (CHECKED_PARTS * recipe.corpus.records_per_part) == 0
+    return every or any(number in numbers for number in first_records(recipe).values())
+
+
+def _with_full_batches(chosen: list[int], groups: Mapping[int, Group]) -> list[int]:
+    """The chosen places, and others of their groups that fill the last batch of each group."""
+    filled = list(chosen)
+    for group, count in Counter(groups[place] for place in chosen).items():
+        others = [place for place, found in groups.items() if found == group and place not in chosen]
+        filled += others[: -count % LANES]
+    return filled

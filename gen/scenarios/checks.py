@@ -1,0 +1,61 @@
+"""Scenarios that were changed by hand or come from a file: their parts must fit each other, and values can be missing or absurd."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from gen.errors import RecipeError, SimulationError
+from gen.limits import check_limit
+from gen.physics.extent import MAX_BALLS
+from gen.scenarios.faults import check_fits
+from gen.scenarios.model import Scenario
+
+
+def check_scenario(scenario: Scenario) -> None:
+    """Refuse a scenario that cannot be simulated or would get a wrong label.
+
+    Raises
+    ------
+    RecipeError
+        If its parts do not fit each other, or it asks for more memory than the limits allow.
+    """
+    settings, rig, record = scenario.settings, scenario.rig, scenario.record
+    channels = len(settings.channels)
+    samples = round(settings.settle * settings.sample_rate + settings.samples) * channels
+    check_limit("record_samples", samples, "a record of all channels, settings.settle included, has", RecipeError)
+    if len(rig.channels) != channels or len(rig.own_paths) != channels:
+        raise RecipeError(f"rig.channels and rig.own_paths need one entry for each of {channels} settings.channels.")
+    if (record.snr is None) != (record.rms is None):
+        raise RecipeError("record.snr and record.rms must both be given, or both be None.")
+    specimen = scenario.specimen
+    if not rig.bearing.n_balls == specimen.bearing.n_balls <= MAX_BALLS:
+        raise RecipeError(f"rig.bearing and specimen.bearing must have the same n_balls, {MAX_BALLS} at most.")
+    parts = specimen.damaged_parts
+    label = "compound" if len(parts) > 1 else (parts or ["healthy"])[0]
+    if specimen.fault != label:
+        raise RecipeError(
+            f"specimen.fault is {specimen.fault}, and the damage of the specimen is {label}; change one of the two."
+        )
+    for spall in specimen.spalls:
+        if spall.width <= 0 or spall.depth <= 0:
+            raise RecipeError(
+                "specimen.spalls: width and depth of a spall must be above 0; leave out a spall that is not there."
+            )
+        check_fits(spall, specimen.bearing, specimen.number)
+
+
+@contextmanager
+def simulation_errors() -> Iterator[None]:
+    """Turn what missing or absurd drawn values raise into one sentence.
+
+    Raises
+    ------
+    SimulationError
+        In place of the error of Python or NumPy.
+    """
+    try:
+        yield
+    except (ArithmeticError, LookupError, MemoryError, ValueError) as error:
+        reason = f"{type(error).__name__}: {error}"
+        raise SimulationError(
+            f"the drawn values of a scenario cannot be simulated ({reason}); keep all of them, in the ranges of recipes."
+        ) from None
