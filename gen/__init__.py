@@ -12,11 +12,13 @@ limits      how much a file from elsewhere may ask for
 units       units of recipes and mapping files, turned into SI
 cluster     independent tasks on dask
 workers     independent tasks in this thread, threads, processes or a cluster
+sources     hash of the source files that make records
 plain_files files opened only if they are no pipes or devices
 yaml_files  recipes and mapping files, read within the limits
+sentences   an error sentence for each wrong key or value of these files
 physics     pure: bearing, Hertz contact, spalls, machine, kernel
 corpus      the netCDF format: write, index, open, validate
-sharing     corpora cut, joined, packed into one file, exported
+exporting   corpora copied, joined, in the forms of other programs
 importers   real recordings into the same format
 recipe      YAML to a frozen model
 scenarios   rigs, specimens and records, fully drawn
@@ -25,12 +27,12 @@ measurement accelerations to stored counts, as a data-acquisition card gives
 labels      variables written beside each record
 pace        seconds that some records take on this machine
 families    records drawn, simulated and measured; faults that cannot be seen drawn again
+checking    some records integrated again at half their step
 making      records of several parts made together, so that batches are full
 part_task   parts labelled and written
 compilation kernels of a recipe compiled before its first record
 generation  a corpus, part by part, with dask
-replaying   any record made again, bit for bit
-extending   rigs or specimens added to a corpus
+replaying   any record made again from the scenario that it stores, bit for bit
 in_memory   records as one Dataset, from keys or from scenarios made by hand
 plan        counts, size and steps of a corpus before it is made
 pages       documentation pages written from the code
@@ -48,7 +50,7 @@ from gen.lazy import lazy_names
 
 if TYPE_CHECKING:
     from gen.corpus import Publication, open_corpus, publish, read_publication, validate_corpus
-    from gen.extending import extend
+    from gen.exporting import copy, torch_dataset
     from gen.generation import generate
     from gen.in_memory import recipe_of, record, records, scenarios_of, simulate_scenarios
     from gen.recipe import (
@@ -71,7 +73,6 @@ if TYPE_CHECKING:
     )
     from gen.replaying import replay, shaft_angles, stored_scenario
     from gen.scenarios import draw_scenarios
-    from gen.sharing import export, merge, pack, select, torch_dataset, unpack
     from gen.simulation.simulate import simulate
     from gen.writing import write_corpus
 
@@ -87,20 +88,17 @@ __all__ = [
     "cage",
     "choice",
     "compound",
+    "copy",
     "distributed",
     "draw_scenarios",
-    "export",
-    "extend",
     "generate",
     "grid",
     "healthy",
     "inner",
     "loguniform",
-    "merge",
     "normal",
     "open_corpus",
     "outer",
-    "pack",
     "publish",
     "read_publication",
     "read_recipe",
@@ -110,14 +108,12 @@ __all__ = [
     "records",
     "replay",
     "scenarios_of",
-    "select",
     "shaft_angles",
     "simulate",
     "simulate_scenarios",
     "stored_scenario",
     "torch_dataset",
     "uniform",
-    "unpack",
     "validate_corpus",
     "write_corpus",
     "write_recipe",
@@ -127,7 +123,7 @@ __getattr__, __dir__ = lazy_names(
     __name__,
     {
         "gen.corpus": ("Publication", "open_corpus", "publish", "read_publication", "validate_corpus"),
-        "gen.extending": ("extend",),
+        "gen.exporting": ("copy", "torch_dataset"),
         "gen.generation": ("generate",),
         "gen.in_memory": ("recipe_of", "record", "records", "scenarios_of", "simulate_scenarios"),
         "gen.recipe": (
@@ -136,7 +132,6 @@ __getattr__, __dir__ = lazy_names(
         ),
         "gen.replaying": ("replay", "shaft_angles", "stored_scenario"),
         "gen.scenarios": ("draw_scenarios",),
-        "gen.sharing": ("export", "merge", "pack", "select", "torch_dataset", "unpack"),
         "gen.simulation.simulate": ("simulate",),
         "gen.writing": ("write_corpus",),
     },

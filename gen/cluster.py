@@ -4,12 +4,15 @@ Two tasks per thread of the workers are submitted at a time, so that memory does
 repeats the tasks of a lost worker.
 """
 
+import asyncio
 import math
 import time
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from functools import lru_cache, partial
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 from itertools import islice
 from queue import Empty, SimpleQueue
 from typing import Any, TypeVar
@@ -17,8 +20,9 @@ from uuid import uuid4
 
 from distributed import Client, Future, KilledWorker, LocalCluster, get_worker
 from distributed import TimeoutError as DaskTimeoutError
-from distributed.comm.core import CommClosedError
+from distributed.comm.core import CommClosedError, connect
 from distributed.protocol.pickle import dumps, loads
+from distributed.security import Security
 
 from gen.errors import ClusterError
 
@@ -26,6 +30,7 @@ Item = TypeVar("Item")
 Result = TypeVar("Result")
 
 POLL_S = 2.0
+CONNECT_S = 3.0  # a scheduler that is near answers within milliseconds
 COUNT_AGAIN_S = 10.0  # the workers of a batch system start one by one
 PATIENCE_S = 60.0
 """How long a cluster may be without workers before the call ends with an error [s]."""
@@ -43,29 +48,56 @@ def local_client(workers: int | None = None, threads: int = 1) -> Iterator[Clien
 
 @contextmanager
 def client_of(scheduler: str) -> Iterator[Client]:
-    """Client of the dask scheduler at an address.
+    """Client of the dask scheduler at an address; certificates for ``tls://`` come from the configuration of dask.
 
     Raises
     ------
     ClusterError
-        If no scheduler answers there, or it has no worker within ten seconds.
+        If no scheduler answers there, it has no worker within ten seconds, or a worker lacks Raceway.
     """
-    try:
-        # the first client is not the default one: a default client without a scheduler stays, and xarray asks it for locks
-        Client(scheduler, timeout="10s", set_as_default=False).close()
-    except (OSError, ValueError, TimeoutError) as error:
-        reason = " ".join(str(error).split())
-        raise ClusterError(
-            f"scheduler {scheduler}: does not answer ({reason}); give the address that dask scheduler printed."
-        ) from None
-    with Client(scheduler) as client:
+    _check_scheduler(scheduler)
+    with Client(scheduler, timeout=f"{CONNECT_S}s") as client:
         try:
             client.wait_for_workers(1, timeout=10)
         except TimeoutError:
             raise ClusterError(
                 f"scheduler {scheduler}: has no workers; start some with dask worker {scheduler}."
             ) from None
+        _check_workers(client)
         yield client
+
+
+def _check_scheduler(address: str) -> None:
+    """Connect to a scheduler and close the connection: a client that cannot connect takes half a minute to end, and prints tracebacks."""
+
+    async def connected() -> None:
+        comm = await connect(address, timeout=CONNECT_S, **Security().get_connection_args("client"))
+        comm.abort()
+
+    try:
+        # in a thread of its own: the caller may be in an event loop, such as that of a notebook
+        with ThreadPoolExecutor(1) as thread:
+            thread.submit(asyncio.run, asyncio.wait_for(connected(), 2 * CONNECT_S)).result()
+    except TypeError:  # no certificates
+        raise ClusterError(
+            f"scheduler {address}: needs certificates; name them in the configuration of dask, "
+            "distributed.comm.tls.ca-file, client.cert and client.key."
+        ) from None
+    except Exception as error:  # noqa: BLE001 - dask takes the answer of another server for sizes and types
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise ClusterError(
+            f"scheduler {address}: does not answer ({reason}); give the address that dask scheduler printed."
+        ) from None
+
+
+def _check_workers(client: Client) -> None:
+    """ClusterError if a worker cannot import Raceway; such a worker ends with its first task."""
+    found: Any = client.run(find_spec, __name__, on_error="return")
+    for worker, spec in found.items():
+        if not isinstance(spec, ModuleSpec):
+            raise ClusterError(
+                f"{_name(client)}: its worker {worker} has no Raceway; install it there, or start the worker in an environment that has it."
+            )
 
 
 def listen(client: Client, handler: Callable[..., None]) -> str:

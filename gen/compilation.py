@@ -15,10 +15,11 @@ from typing import Any
 
 from gen.lazy import garbage_kept
 from gen.measurement.measure import compile_mixing
+from gen.measurement.sensor_faults import compile_rattle
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import Shape
 from gen.recipe import Recipe
-from gen.scenarios import Scenario, draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.kernels import is_compiled, load_kernel
 from gen.simulation.outline import outlined_inputs
 from gen.simulation.timeline import timeline
@@ -41,7 +42,9 @@ load_kernel(Shape(*((None,) * count for count in json.loads(sys.argv[1]))))
 def compile_kernels(recipe: Recipe, report: Callable[[str], None] = lambda _: None) -> None:
     """Compile the kernels of a recipe into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
     with garbage_kept():
-        compile_mixing(draw_scenarios(recipe, 0, 1)[0], recipe)
+        compile_mixing(draw_scenarios(recipe, 0, 1)[0])
+        if recipe.sensor_faults.loose_mount is not None:
+            compile_rattle()
         missing = [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
     cores = min(len(os.sched_getaffinity(0)), MOST_AT_ONCE)
     sentences = (
@@ -69,7 +72,7 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
     if recipe.corpus.truth == "full":
         scenarios = [one for scenario in scenarios for one in (scenario, scenario.without_fault())]
     # a record of which no machine is possible is left out when its part is made
-    outlines, _ = outlined_inputs(scenarios, timeline(recipe))
+    outlines, _ = outlined_inputs(scenarios, timeline(settings_of(recipe)))
     return list(dict.fromkeys(input_shape(given) for given in outlines if given is not None))
 
 

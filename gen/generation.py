@@ -1,12 +1,14 @@
 """Generate a corpus from a recipe, part by part, on one machine or many.
 
-One task draws, simulates, measures and writes one part and returns its row of the manifest. The row is appended to the journal, so that
-the same call completes an interrupted corpus: a part is kept if manifest or journal list it with the size and hash of the file; every
-other part is made again.
+One task draws, simulates, measures and writes some parts and returns their rows of the manifest. The same call completes an interrupted
+corpus: a part that is in the folder is kept if it is whole and was made from the same recipe by the same sources and libraries. The parts
+of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are there.
 """
 
+import platform
+import shutil
 import threading
-from collections.abc import Callable, Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
 from dataclasses import dataclass
 from functools import partial
@@ -15,38 +17,44 @@ from typing import TYPE_CHECKING, Any, cast
 
 from gen.compilation import compile_kernels
 from gen.corpus import (
-    EXTENSION_NAME,
-    JOURNAL_NAME,
-    Extension,
-    PartRow,
+    MANIFEST_NAME,
+    RECIPE_NAME,
     SignalCounts,
     check_name,
-    extensions_of,
+    corpus_files,
+    facts_of_parts,
     finish_corpus,
+    finish_file,
+    is_single_file,
     locked,
-    new_journal,
     part_name,
     read_manifest,
+    remove_left_behind_of,
     remove_temporary_files,
     write_durably,
     write_manifest,
+    writing,
 )
-from gen.errors import CorpusError, RecipeError
+from gen.errors import ClusterError, CorpusError, RecipeError
 from gen.making import Crew
-from gen.part_task import Outcome, library_versions, make_parts, units
+from gen.part_task import Outcome, made_by, make_parts, units
 from gen.progress import Progress
-from gen.recipe import Recipe, find_recipe, read_recipe, recipe_hash
+from gen.recipe import Recipe, find_recipe, read_recipe
+from gen.sources import sources_sha256
 from gen.workers import stream, threads_of
 
 if TYPE_CHECKING:
     from distributed import Client
+
+    from gen.corpus import Manifest
 
 
 @dataclass(frozen=True)
 class Generated:
     """Result of :func:`generate`."""
 
-    directory: Path
+    path: Path
+    """Folder or single file of the corpus."""
     records: int
     parts: int
     kept: int
@@ -59,7 +67,7 @@ class Generated:
 
 def generate(
     recipe: Path | str,
-    directory: Path | str,
+    target: Path | str,
     *,
     workers: int = 1,
     scheduler: str | None = None,
@@ -74,12 +82,13 @@ def generate(
     ----------
     recipe : path or str
         Recipe file, or name of a recipe that ships with Raceway.
-    directory : path
-        Folder of the corpus; created if it does not exist. It must be empty or hold the same corpus, unfinished or finished.
+    target : path
+        Single file of the corpus if the name ends in ``.nc``, else its folder; created if it does not exist. It may hold the same corpus,
+        unfinished or finished.
     workers : int
         Number of parts that are made at a time: 1 in this thread, some in threads of this process, more in processes on this machine.
     scheduler : str, optional
-        Address of a dask scheduler whose workers see ``directory`` under the same path; replaces ``workers``.
+        Address of a dask scheduler whose workers see the folder under the same path; replaces ``workers``.
     seed, records : int, optional
         Replace the seed and the number of records of the recipe.
     progress : callable, optional
@@ -93,155 +102,126 @@ def generate(
     RecipeError, SimulationError
         If the recipe cannot be simulated.
     CorpusError
-        If the folder holds something else, or a file cannot be written.
+        If the target holds something else, or a corpus that other sources of Raceway began, or a file cannot be written.
     ClusterError
         If the scheduler does not answer or has no workers, before anything is written; or if the cluster is lost.
     """
     checked = read_recipe(recipe, seed=seed, records=records)
-    directory = Path(directory)
-    with client_of(scheduler, workers) as client, claimed(directory):
-        extensions = _extensions(directory)
-        checked = checked.extended(extensions)
-        facts = facts_of(
-            checked, {"seed": seed, "records": records} | ({"extensions": extensions} if extensions else {})
-        )
-        known = _prepare(directory, Path(find_recipe(recipe)), facts)
-        tally = Tally(checked, progress)
-        outcomes = finished_parts(tally, directory, known, workers, client, notice)
-        return finished(directory, outcomes, facts)
-
-
-def finished_parts(
-    tally: "Tally",
-    directory: Path,
-    known: dict[str, PartRow],
-    workers: int,
-    client: "Client | None",
-    notice: Callable[[str], None],
-) -> list[Outcome]:
-    """Make the parts of a tally that are missing, with a new journal; outcomes of all of them in their order."""
-    recipe = tally.recipe
-    if client is None and len(known) < len(tally.parts):
-        compile_kernels(recipe, notice)
-    outcomes: dict[int, Outcome] = {}
-    with new_journal(directory) as append, closing(_made(tally, directory, known, workers, client)) as made:
-        for part, outcome in made:
-            outcomes[part] = outcome
-            if outcome.row.records and not outcome.kept:
-                append(outcome.row)
-            tally.note(part, len(recipe.records_of_part(part)))
-            tally.show()
-    return [outcomes[number] for number in sorted(outcomes)]
-
-
-def finished(
-    directory: Path,
-    outcomes: list[Outcome],
-    facts: dict[str, Any],
-    before: Sequence[PartRow] = (),
-    failures: Sequence[str] = (),
-) -> Generated:
-    """Write index, manifest and data card of the finished parts, and of parts ``before`` them, of which ``failures`` are left out."""
-    rows = [outcome.row for outcome in outcomes if outcome.row.records]
-    if not rows:
-        raise CorpusError(f"{directory}: no record could be simulated; {outcomes[0].failures[0]}")
-    rows = [*before, *rows]
-    failed = (*failures, *(sentence for outcome in outcomes for sentence in outcome.failures))
-    facts = facts | {"publication": facts["publication"].dated()}
-    signals = finish_corpus(directory, rows, failures=failed, **facts)
-    (directory / JOURNAL_NAME).unlink()
-    kept = sum(outcome.kept for outcome in outcomes)
-    return Generated(directory, sum(row.records for row in rows), len(rows), kept, failed, signals)
-
-
-def _extensions(directory: Path) -> tuple[Extension, ...]:
-    """Extensions of the corpus in a folder that were finished; none if it holds no corpus.
-
-    Raises
-    ------
-    CorpusError
-        If an extension is unfinished.
-    """
-    if (directory / EXTENSION_NAME).exists():
-        raise CorpusError(f"{directory}: is being extended; run the raceway extend command that began it again.")
-    if not (directory / "manifest.json").exists():
-        return ()
-    return extensions_of(read_manifest(directory))
-
-
-@contextmanager
-def claimed(directory: Path) -> Iterator[None]:
-    """Create the folder and lock it against other calls."""
-    check_name(directory)
-    if directory.exists() and not directory.is_dir():
-        raise CorpusError(f"{directory}: is a file; give a folder for the corpus.")
-    try:
-        directory.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
-    with locked(directory):
-        yield
-
-
-def _prepare(directory: Path, recipe_path: Path, facts: dict[str, Any]) -> dict[str, PartRow]:
-    """Prepare the folder, and return the rows of the parts that may be kept, by name.
-
-    The manifest is written first: it tells a corpus without any part from a folder that holds something else. It lists the parts that may
-    be kept, and the journal of an earlier call is removed.
-    """
-    known: dict[str, PartRow] = {}
-    journal = directory / JOURNAL_NAME
-    begun = (directory / "manifest.json").exists()
-    try:
-        remove_temporary_files(directory)
-        manifest = read_manifest(directory) if begun else None
-        if manifest is not None and manifest.scenarios is not None:
-            raise CorpusError(
-                f"{directory}: holds some records of a recipe, or scenarios made by hand, so it cannot be generated; choose another folder."
-            )
-        if manifest is not None and (manifest.selections or manifest.origins):
-            how = "selected from a larger corpus" if manifest.selections else "merged from several corpora"
-            raise CorpusError(f"{directory}: was {how}, so it cannot be generated; choose another folder.")
-        if manifest is not None and any((directory / "parts").glob("*.nc")):
-            if manifest.recipe_sha256 != facts["recipe_sha256"]:
-                raise CorpusError(
-                    f"{directory}: holds a corpus of another recipe, seed or size; choose another folder."
-                )
-            if manifest.versions == facts["versions"]:  # other versions may write other bytes
-                known = {row.name: row for row in manifest.parts}
-            if not facts["publication"].stored:
-                facts["publication"] = manifest.publication  # given after the corpus was made
-        elif manifest is None and any(directory.iterdir()):
-            raise CorpusError(f"{directory}: is not empty and holds no corpus; choose another folder.")
-        if not known:
-            journal.unlink(missing_ok=True)  # first: no row of other versions may stand beside the new manifest
-        write_manifest(directory, known.values(), complete=False, **facts)
-        journal.unlink(missing_ok=True)
-        write_durably(recipe_path.read_bytes(), directory / "recipe.yaml")
-        (directory / "parts").mkdir(exist_ok=True)
-    except OSError as error:
-        raise CorpusError(f"{directory}: cannot be written ({error}); choose another folder.") from None
-    return known
+    target = Path(target)
+    folder = target.with_name(f"{target.name}.parts") if is_single_file(target) else target
+    facts = facts_of(checked, {"seed": seed, "records": records})
+    if is_single_file(target) and target.exists():
+        return _finished_before(target, folder, checked, facts)
+    with client_of(scheduler, workers) as client, _claimed(folder):
+        if folder is not target:
+            remove_left_behind_of(target)
+        _prepare(folder, Path(find_recipe(recipe)), facts)
+        outcomes = _all_parts(Tally(checked, progress), folder, workers, client, notice)
+        return _finish(target, folder, outcomes, facts)
 
 
 def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
     """Fields of the manifest that say where a generated corpus comes from."""
     return {
         "title": recipe.title,
-        "recipe": recipe.name,
-        "recipe_sha256": recipe_hash(recipe),
+        **made_by(recipe),
         "overrides": overrides,
         "publication": recipe.publication,
-        "versions": library_versions(),
     }
 
 
-class Tally:
-    """Number of records that are done, of all parts or of some; it is changed by the thread that listens to the workers too."""
+def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, Any]) -> Generated:
+    """Result of a corpus in a single file that an earlier call has finished."""
+    corpus_files(file)
+    manifest = read_manifest(file)
+    _check_same(file, manifest, facts)
+    shutil.rmtree(folder, ignore_errors=True)  # a call was killed between the last two steps
+    return Generated(file, manifest.records, recipe.n_parts, recipe.n_parts, manifest.failures, manifest.signals)
 
-    def __init__(self, recipe: Recipe, progress: Progress | None, parts: range | None = None) -> None:
+
+def _all_parts(
+    tally: "Tally", folder: Path, workers: int, client: "Client | None", notice: Callable[[str], None]
+) -> list[Outcome]:
+    """Make the parts of a tally that are missing; outcomes of all of them in their order."""
+    recipe = tally.recipe
+    if client is None and not all((folder / "parts" / part_name(part)).exists() for part in tally.parts):
+        compile_kernels(recipe, notice)
+    outcomes: dict[int, Outcome] = {}
+    with closing(_made(tally, folder, workers, client)) as made:
+        for part, outcome in made:
+            outcomes[part] = outcome
+            tally.note(part, len(recipe.records_of_part(part)))
+            tally.show()
+    return [outcomes[number] for number in sorted(outcomes)]
+
+
+def _finish(target: Path, folder: Path, outcomes: list[Outcome], facts: dict[str, Any]) -> Generated:
+    """Write index, manifest and data card of the finished parts, or a single file of them."""
+    rows = [outcome.row for outcome in outcomes if outcome.row.records]
+    if not rows:
+        raise CorpusError(f"{target}: no record could be simulated; {outcomes[0].failures[0]}")
+    failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
+    facts = facts | {"publication": facts["publication"].dated(), "failures": failures}
+    whole = target == folder
+    signals = finish_corpus(folder, rows, **facts) if whole else finish_file(folder, rows, target, **facts)
+    kept = sum(outcome.kept for outcome in outcomes)
+    return Generated(target, sum(row.records for row in rows), len(rows), kept, failures, signals)
+
+
+@contextmanager
+def _claimed(folder: Path) -> Iterator[None]:
+    """Create the folder and lock it against other calls."""
+    check_name(folder)
+    if folder.exists() and not folder.is_dir():
+        raise CorpusError(f"{folder}: is a file; give a folder, or a file that ends in .nc, for the corpus.")
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder):
+        yield
+
+
+def _prepare(folder: Path, recipe_path: Path, facts: dict[str, Any]) -> None:
+    """Check what the folder holds, and write the manifest of an unfinished corpus.
+
+    The manifest is written first: it tells a corpus without any part from a folder that holds something else.
+    """
+    with writing(folder):
+        remove_temporary_files(folder)
+        if (folder / MANIFEST_NAME).exists():
+            manifest = read_manifest(folder)
+            _check_same(folder, manifest, facts)
+            if not facts["publication"].stored:
+                facts["publication"] = manifest.publication  # given after the corpus was made
+        elif any(folder.iterdir()):
+            raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
+        write_manifest(folder, facts_of_parts([], facts, complete=False))
+        write_durably(recipe_path.read_bytes(), folder / RECIPE_NAME)
+        (folder / "parts").mkdir(exist_ok=True)
+
+
+def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> None:
+    """Refuse to complete a corpus of another recipe, or one that other sources or libraries began: its records would not go together."""
+    if manifest.recipe_sha256 is None:
+        raise CorpusError(
+            f"{place}: holds a corpus that was not generated from a recipe as a whole; choose another name."
+        )
+    if manifest.recipe_sha256 != facts["recipe_sha256"]:
+        raise CorpusError(f"{place}: holds a corpus of another recipe, seed or size; choose another name.")
+    began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
+    now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
+    other = [f"{name} {began.get(name, 'none')} (now {now[name]})" for name in now if began.get(name) != now[name]]
+    if other:
+        raise CorpusError(
+            f"{place}: was begun with {', '.join(other)}, which may give other bits; complete it with these, or choose another name."
+        )
+
+
+class Tally:
+    """Number of records that are done; it is changed by the thread that listens to the workers too."""
+
+    def __init__(self, recipe: Recipe, progress: Progress | None) -> None:
         self.recipe = recipe
-        self.parts = range(recipe.n_parts) if parts is None else parts
+        self.parts = range(recipe.n_parts)
         self._progress = progress
         self._of_parts = dict.fromkeys(self.parts, 0)
         self._all = sum(len(recipe.records_of_part(part)) for part in self.parts)
@@ -277,18 +257,15 @@ def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Cl
     return cluster.client_of(scheduler)
 
 
-def _made(
-    tally: Tally, directory: Path, known: dict[str, PartRow], workers: int, client: "Client | None"
-) -> Generator[tuple[int, Outcome]]:
+def _made(tally: Tally, folder: Path, workers: int, client: "Client | None") -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
     recipe, parts = tally.recipe, tally.parts
-    numbered = {part: known[part_name(part)] for part in parts if part_name(part) in known}
     of_this_process = Crew(threads_of(workers))
     processes = workers // of_this_process.threads
     if client is None and processes == 1:
         report = tally.note_and_show if workers == 1 else tally.note
         for some in units(recipe, parts, 1):
-            yield from make_parts(recipe, some, directory, numbered, report, tally.show, of_this_process)
+            yield from make_parts(recipe, some, folder, report, tally.show, of_this_process)
         return
     from gen.cluster import local_client
 
@@ -297,19 +274,17 @@ def _made(
         if client is not None:
             threads: list[int] = list(cast("Any", client).nthreads().values())
             crew, count = Crew(1, 1 / max(threads, default=1)), max(sum(threads), 1)
-        tasks = (
-            (some, {part: numbered[part] for part in some if part in numbered}) for some in units(recipe, parts, count)
-        )
-        task = partial(_unit, recipe, directory.resolve(), crew)
-        yield from stream(task, tasks, scheduler=cluster, report=tally.note, meanwhile=tally.show)
+        task = partial(_unit, recipe, folder.resolve(), crew, sources_sha256())
+        yield from stream(task, units(recipe, parts, count), scheduler=cluster, report=tally.note, meanwhile=tally.show)
 
 
 def _unit(
-    recipe: Recipe,
-    directory: Path,
-    crew: Crew,
-    report: Callable[[int, int], None],
-    task: tuple[range, dict[int, PartRow]],
+    recipe: Recipe, folder: Path, crew: Crew, sources: str, report: Callable[[int, int], None], parts: range
 ) -> Iterator[tuple[int, Outcome]]:
-    parts, known = task
-    return make_parts(recipe, parts, directory, known, report, crew=crew)
+    """Make some parts on a worker, if it has the sources of the process that asks for them."""
+    if sources_sha256() != sources:
+        raise ClusterError(
+            f"worker {platform.node()}: has other sources of raceway ({sources_sha256()[:12]}) than this process ({sources[:12]}); install "
+            f"the same version on every worker."
+        )
+    return make_parts(recipe, parts, folder, report, crew=crew)

@@ -13,11 +13,10 @@ from typing import Any, NamedTuple
 
 from numba.core import event
 
-from gen.corpus import write_part
+from gen.corpus import Codec, write_part
 from gen.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.physics.kernel.compiling import LANES
-from gen.recipe import Recipe
 from gen.scenarios import Scenario
 from gen.simulation.batches import filled_lanes
 from gen.simulation.simulate import integrations, simulate
@@ -56,7 +55,7 @@ def _compilation_refused() -> Iterator[None]:
         yield
 
 
-def measured_pace(scenarios: list[Scenario], recipe: Recipe, steps: int) -> Pace | None:
+def measured_pace(scenarios: list[Scenario], codec: Codec, steps: int) -> Pace | None:
     """Time the records of one batch, each of ``steps`` integration steps.
 
     None if a kernel is not compiled yet, or if the batch has more than ``LARGEST_SAMPLE`` steps.
@@ -65,20 +64,20 @@ def measured_pace(scenarios: list[Scenario], recipe: Recipe, steps: int) -> Pace
         return None
     try:
         with _compilation_refused():
-            runs = [_timed(scenarios, recipe) for _ in range(REPEATS)]
+            runs = [_timed(scenarios, codec) for _ in range(REPEATS)]
     except _NotCompiledError:
         return None
     integration, rest = (min(times) for times in zip(*runs, strict=True))
-    return Pace(integration / (filled_lanes(integrations(scenarios, recipe)) * steps), rest / len(scenarios))
+    return Pace(integration / (filled_lanes(integrations(scenarios)) * steps), rest / len(scenarios))
 
 
-def _timed(scenarios: list[Scenario], recipe: Recipe) -> tuple[float, float]:
+def _timed(scenarios: list[Scenario], codec: Codec) -> tuple[float, float]:
     """Seconds of the simulation, and of measurement, labels and writing."""
     start = time.perf_counter()
-    response = simulate(scenarios, recipe)
+    response = simulate(scenarios)
     simulated = time.perf_counter()
-    measured = measure(response.acceleration, scenarios, recipe, response.twins)
+    measured = measure(response.acceleration, scenarios, response.twins)
     with tempfile.TemporaryDirectory() as folder:
-        dataset = part_dataset(measured, scenarios, recipe, response)
-        write_part(dataset, Path(folder) / "part-00000.nc", recipe.corpus.codec)
+        dataset = part_dataset(measured, response)
+        write_part(dataset, Path(folder) / "part-00000.nc", codec)
     return simulated - start, time.perf_counter() - simulated

@@ -1,7 +1,7 @@
 """A Dataset of records, as :mod:`gen.in_memory` makes it, written as a corpus.
 
-The corpus is like one that :func:`gen.generate` made: with its recipe, so that every record can be made again. What cannot be made again
-is refused: records that were changed, cut in time, or joined from several recipes.
+Each record is replayed from the scenario that it stores, so any records of one form can be written together: some of a recipe, changed by
+hand, or of several recipes. All records of one recipe give the corpus that :func:`gen.generate` makes, with its recipe.
 """
 
 import json
@@ -14,85 +14,84 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus import (
+    DRAWS,
+    IDENTITY,
     SCHEMA,
     SIGNAL,
     SIMULATED,
+    NewCorpus,
     Variable,
-    check_new_folder,
-    finish_corpus,
+    check_new_target,
     make_dataset,
-    new_corpus_folder,
-    part_name,
-    write_part,
-    write_text_durably,
+    new_corpus,
 )
-from gen.errors import CorpusError, RecipeError
+from gen.corpus.joining import new_numbers
+from gen.errors import CorpusError
 from gen.generation import facts_of
-from gen.in_memory import GIVEN, SCENARIOS, checked_scenarios, recipe_of, scenarios_of
+from gen.in_memory import RECIPE, recipe_of, scenarios_of
 from gen.measurement.measure import LARGEST_COUNT
 from gen.part_task import part_attributes
-from gen.recipe import Recipe, recipe_text
-from gen.scenarios import Scenario, draw_scenarios, with_level
+from gen.recipe import Recipe, corpus_identity, recipe_text
+from gen.scenarios import Settings
 
+_PART_RECORDS = 256
 _NOT_A_COUNT = 0.01  # largest distance of a decoded sample from a count; single precision comes within 0.004
+_ONE_FORM = ("sample_rate", "samples", "channels", "full_scale")
 
 
-def write_corpus(dataset: xr.Dataset, directory: Path | str) -> Path:
+def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     """Write records made in memory as a corpus.
 
     Parameters
     ----------
     dataset : Dataset
-        From :func:`gen.record`, :func:`gen.records` or :func:`gen.simulate_scenarios`: whole, some records of it in any order, or several
-        Datasets of the same recipe joined with :func:`xarray.concat`. Variables of shape (record,) can be added, with the attributes
-        ``long_name`` and ``role``.
-    directory : path
-        Folder of the corpus: new, or empty.
+        Records with the scenarios that they were simulated from, in any order: from :func:`gen.record`, :func:`gen.records` or
+        :func:`gen.simulate_scenarios`, whole or chosen, or several such Datasets joined with :func:`xarray.concat`. Variables of shape
+        (record,) can be added, with the attributes ``long_name`` and ``role``.
+    target : path
+        New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
 
     Returns
     -------
     Path
-        The folder. It is there as a whole or not at all.
+        The corpus. It is there as a whole or not at all.
 
     Raises
     ------
     CorpusError
-        If the folder is not empty or cannot be written; if the signal was changed or cut, a record occurs twice, or records do not come
-        from the recipe that the Dataset carries.
+        If the target exists or cannot be written; if the signal was changed or cut, a record occurs twice, or records have another
+        sample rate, length, channels or converter than others.
     """
-    directory = Path(directory).absolute()
-    check_new_folder(directory)
-    recipe = recipe_of(dataset)
-    given = dataset.attrs.get(SCENARIOS) == GIVEN
+    target = Path(target).absolute()
+    check_new_target(target)
+    if not isinstance(dataset, xr.Dataset):
+        raise CorpusError(f"{type(dataset).__name__} given in place of a Dataset; give one from gen.records.")
     rows = dataset if "record" in dataset.dims else _as_one_row(dataset)
-    _check_scenarios(rows, recipe, given)
-    failures = tuple(json.loads(rows.attrs.get("failures", "[]")))
-    whole = not given and rows.sizes["record"] + len(failures) == recipe.n_records
-    failures = failures if whole or given else ()  # those of a choice may belong to records that were not chosen
-    stored = _stored(rows, recipe)
+    stored = _stored(rows, _form_of(rows))
+    recipe = _whole_recipe(rows)
+    if recipe is None:
+        versions = json.loads(rows.attrs["versions"]) if "versions" in rows.attrs else {}
+        made_by = {"title": stored.attrs["title"], "recipe": ", ".join(_recipes(rows)), "versions": versions}
+        with new_corpus(target, **made_by) as corpus:
+            _write_parts(stored, corpus, _PART_RECORDS)
+        return target
+    failures = tuple(json.loads(rows.attrs["failures"]))
     stored.attrs |= part_attributes(recipe, failures)
-    facts = {"failures": failures} | facts_of(recipe, {"seed": None, "records": None})
-    facts["publication"] = recipe.publication.dated()
-    if not whole:
-        facts["scenarios"] = GIVEN if given else "chosen"
-    _write(stored, recipe, directory, facts)
-    return directory
+    facts = facts_of(recipe, {"seed": None, "records": None})
+    facts |= {"publication": recipe.publication.dated(), "failures": failures}
+    with new_corpus(target, codec=recipe.corpus.codec, recipe_text=recipe_text(recipe), **facts) as corpus:
+        _write_parts(stored, corpus, recipe.corpus.records_per_part)
+    return target
 
 
-def _write(stored: xr.Dataset, recipe: Recipe, directory: Path, facts: dict[str, Any]) -> None:
-    """Write all files of the corpus."""
-    size = recipe.corpus.records_per_part
-    with new_corpus_folder(directory) as folder:
-        write_text_durably(recipe_text(recipe), folder / "recipe.yaml")
-        rows = [
-            write_part(
-                stored.isel(record=slice(first, first + size)),
-                folder / "parts" / part_name(first // size),
-                recipe.corpus.codec,
-            )
-            for first in range(0, stored.sizes["record"], size)
-        ]
-        finish_corpus(folder, rows, **facts)
+def _write_parts(stored: xr.Dataset, corpus: NewCorpus, size: int) -> None:
+    for first in range(0, stored.sizes["record"], size):
+        corpus.write(stored.isel(record=slice(first, first + size)))
+
+
+def _recipes(rows: xr.Dataset) -> list[str]:
+    """Names of the recipes of the records."""
+    return list(dict.fromkeys(scenario.settings.recipe for scenario in scenarios_of(rows)))
 
 
 def _as_one_row(record: xr.Dataset) -> xr.Dataset:
@@ -106,58 +105,34 @@ def _as_one_row(record: xr.Dataset) -> xr.Dataset:
     return xr.Dataset(columns, {name: record.variables[name] for name in axes}, record.attrs)
 
 
-def _check_scenarios(rows: xr.Dataset, recipe: Recipe, given: bool) -> None:
-    """Refuse records that cannot be made again from the recipe, or from their own scenarios if these were given."""
+def _form_of(rows: xr.Dataset) -> Settings:
+    """Settings of the first record; of all others, those that fix the form of a file are the same."""
     if not rows.sizes["record"]:
         raise CorpusError("the Dataset has no record; give at least one.")
-    scenarios = scenarios_of(rows)
-    if given:
-        try:
-            checked_scenarios(scenarios, recipe)
-        except RecipeError as error:
-            raise CorpusError(f"{error} Write records of one call of gen.simulate_scenarios.") from None
-        highest = {one.record.pair: one.record.rung for one in sorted(scenarios, key=lambda one: one.record.rung)}
-        cut = next((pair for pair, rung in highest.items() if pair >= 0 and rung != recipe.corpus.n_rungs - 1), None)
-        if cut is not None:
-            raise CorpusError(f"the record with the largest severity of pair {cut} is missing; write pairs whole.")
-        return
-    numbers = [scenario.record.number for scenario in scenarios]
-    tries = {one.specimen.number: one.specimen.fault_try for one in scenarios}
-    drawn = {number: one for numbers in _runs(numbers, recipe) for number, one in _drawn(recipe, numbers, tries)}
-    levelled = [
-        with_level(drawn[n], recipe, one.record.level_try)
-        for n, one in zip(numbers, scenarios, strict=True)
-        if n in drawn
-    ]
-    if levelled != scenarios:
-        raise CorpusError(
-            "the Dataset has records that were not drawn from its recipe; write the records of each recipe on their own and join the "
-            "corpora with gen.merge."
-        )
-    twice = next((number for number, count in Counter(numbers).items() if count > 1), None)
-    if twice is not None:
-        raise CorpusError(f"record {twice} is in the Dataset twice; give it once.")
+    first, *others = (scenario.settings for scenario in scenarios_of(rows))
+    for place, settings in enumerate(others, start=1):
+        changed = next((name for name in _ONE_FORM if getattr(settings, name) != getattr(first, name)), None)
+        if changed is not None:
+            raise CorpusError(
+                f"record {place} of the Dataset has {changed} {getattr(settings, changed)}, and record 0 has {getattr(first, changed)}; "
+                "write each kind as a corpus of its own."
+            )
+    return first
 
 
-def _drawn(recipe: Recipe, numbers: range, tries: dict[int, int]) -> list[tuple[int, Scenario]]:
-    return list(zip(numbers, draw_scenarios(recipe, numbers.start, numbers.stop, fault_tries=tries), strict=True))
+def _whole_recipe(rows: xr.Dataset) -> Recipe | None:
+    """Recipe that a Dataset carries, if its records are all those of the recipe in their order; else None."""
+    if RECIPE not in rows.attrs:
+        return None
+    recipe = recipe_of(rows)
+    corpora = {str(text).partition("/")[0] for text in rows[IDENTITY].values}
+    ascending = bool((np.diff(rows["recording"].values) > 0).all())
+    count = rows.sizes["record"] + len(json.loads(rows.attrs.get("failures", "[]")))
+    whole = ascending and count == recipe.n_records and corpora == {corpus_identity(recipe)}
+    return recipe if whole else None
 
 
-def _runs(numbers: list[int], recipe: Recipe) -> list[range]:
-    """Ranges of consecutive records of a recipe.
-
-    >>> from gen import read_recipe
-    >>> _runs([5, 2, 3], read_recipe("quickstart"))
-    [range(2, 4), range(5, 6)]
-    """
-    runs: list[range] = []
-    for number in sorted({number for number in numbers if 0 <= number < recipe.n_records}):
-        first = runs.pop().start if runs and runs[-1].stop == number else number
-        runs.append(range(first, number + 1))
-    return runs
-
-
-def _stored(rows: xr.Dataset, recipe: Recipe) -> xr.Dataset:
+def _stored(rows: xr.Dataset, settings: Settings) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
     known = SCHEMA + SIMULATED
     missing = next((variable.name for variable in known if variable.name not in rows.variables), None)
@@ -175,31 +150,36 @@ def _stored(rows: xr.Dataset, recipe: Recipe) -> xr.Dataset:
         further.append(
             Variable(str(name), kind, found.attrs.get("units", "1"), found.attrs["role"], found.attrs["long_name"])
         )
-    signal, counts_per_unit = _counts(rows, recipe)
+    twice = next((text for text, count in Counter(rows[DRAWS].values.tolist()).items() if count > 1), None)
+    if twice is not None:
+        first, second, *_ = np.flatnonzero(rows[DRAWS].values == twice)
+        raise CorpusError(f"records {first} and {second} of the Dataset have the same scenario; give each record once.")
+    signal, counts_per_unit = _counts(rows, settings)
     return make_dataset(
         signal,
-        recipe.recording.sample_rate_hz,
-        tuple(channel.name for channel in recipe.recording.channels),
-        {variable.name: rows[variable.name].values for variable in (*known, *further)},
+        settings.sample_rate,
+        settings.channels,
+        {variable.name: rows[variable.name].values for variable in (*known, *further)}
+        | new_numbers([str(text) for text in rows[IDENTITY].values]),
         extra=(*SIMULATED, *sorted(further)),
         counts_per_unit=counts_per_unit,
-        attributes={key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
+        attributes={"title": f"Records of recipe {settings.recipe}"}
+        | {key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
     )
 
 
-def _counts(rows: xr.Dataset, recipe: Recipe) -> tuple[NDArray[Any], float | None]:
+def _counts(rows: xr.Dataset, settings: Settings) -> tuple[NDArray[Any], float | None]:
     """Counts of the converter, or accelerations without one, shape (record, channel, elapsed_time); and the counts per m s-2."""
-    channels = [channel.name for channel in recipe.recording.channels]
+    channels = list(settings.channels)
     signal = rows[SIGNAL].transpose("record", "channel", "elapsed_time")
-    if signal.shape[1:] != (len(channels), recipe.n_samples) or list(rows["channel"].values) != channels:
+    if signal.shape[1:] != (len(channels), settings.samples) or list(rows["channel"].values) != channels:
         raise CorpusError(
-            f"{SIGNAL} has channels {', '.join(map(str, rows['channel'].values))} and {signal.shape[2]} samples, the recipe "
-            f"{', '.join(channels)} and {recipe.n_samples}; write records with all of their channels and samples."
+            f"{SIGNAL} has channels {', '.join(map(str, rows['channel'].values))} and {signal.shape[2]} samples, the records "
+            f"{', '.join(channels)} and {settings.samples}; write records with all of their channels and samples."
         )
-    converter = recipe.recording.converter
-    if converter.kind == "float32":
+    if settings.full_scale is None:
         return np.asarray(signal.values, np.float32), None
-    counts_per_unit = LARGEST_COUNT / converter.full_scale_m_s2
+    counts_per_unit = LARGEST_COUNT / settings.full_scale
     counts = np.empty(signal.shape, np.int16)
     for place, values in enumerate(
         signal.values

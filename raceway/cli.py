@@ -13,17 +13,14 @@ import click
 from raceway.commands import (
     benchmarking,
     comparing,
+    copying,
     corpora,
-    cutting,
     diagnosing,
     doctor,
-    exporting,
-    extending,
     feature_tables,
     gallery,
     importing,
     models,
-    packing,
     publishing,
     reproduce,
 )
@@ -73,8 +70,8 @@ def cli(limits: tuple[str, ...]) -> None:
       raceway info corpus                           show its contents
       raceway benchmark corpus -o report            score classifiers without leakage
 
-    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is the folder of a corpus, or a file of
-    raceway pack. With --json a command prints one JSON object on standard output; progress and errors go to standard error.
+    RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is a corpus: a folder,
+    or one .nc file. With --json a command prints one JSON object on standard output; progress and errors go to standard error.
 
     Exit codes:
 
@@ -105,16 +102,11 @@ for command in (
     corpora.recipes,
     corpora.plan,
     corpora.generate,
-    extending.extend,
     importing.import_,
     corpora.validate,
     corpora.info,
     corpora.replay,
-    cutting.select,
-    cutting.merge,
-    packing.pack,
-    packing.unpack,
-    exporting.export,
+    copying.copy,
     feature_tables.plot,
     feature_tables.features,
     models.train,

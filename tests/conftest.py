@@ -1,10 +1,16 @@
-"""A recipe whose corpus takes one or two seconds, and that corpus."""
+"""The examples of laws, a recipe whose corpus takes one or two seconds, and that corpus."""
 
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from gen import generate
+
+# `make test` passes or fails on the same examples each time; `make thorough` tries fresh ones
+settings.register_profile("same", derandomize=True)
+settings.register_profile("fresh", print_blob=True)
+settings.load_profile("same")
 
 TINY = """\
 # Tiny: four classes on two machines, for tests.
@@ -36,4 +42,4 @@ def tiny_recipe(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture(scope="session")
 def tiny_corpus(tiny_recipe: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Folder of the corpus of ``tiny_recipe``; copy it before changing anything in it."""
-    return generate(tiny_recipe, tmp_path_factory.mktemp("tiny") / "corpus").directory
+    return generate(tiny_recipe, tmp_path_factory.mktemp("tiny") / "corpus").path

@@ -7,11 +7,9 @@ from gen.corpus import (
     SCHEMA,
     SIGNAL,
     Variable,
+    identity,
     make_dataset,
-    part_name,
-    write_index,
-    write_manifest,
-    write_part,
+    new_corpus,
 )
 
 FS = 1000.0
@@ -27,6 +25,7 @@ def columns(first, n):
     found |= dict.fromkeys(("rig", "specimen", "recording", "n_spalls"), numbers)
     texts = {"bearing": "6205", "source": "small/", "draws": "x" * 7}
     found |= {name: [text + "y" * number for number in numbers] for name, text in texts.items()}
+    found["identity"] = [identity("0123456789ab", *[number] * 3) for number in numbers]
     return found | {"fault": numbers % len(FAULTS), "split": numbers % 3, "sample_rate": np.full(n, FS)}
 
 
@@ -45,14 +44,18 @@ def dataset(first, n, *, samples=50, kind="counts", channels=("a", "b")):
     )
 
 
-def write_corpus(folder, sizes=SIZES, *, kind="counts", codec="zlib"):
-    """Write parts of random records, index and manifest; return the parts as they were before writing."""
-    (folder / "parts").mkdir(parents=True)
+def write_corpus(target, sizes=SIZES, *, kind="counts", codec="zlib"):
+    """Write parts of random records as a folder or a single file; return the parts as they were before writing."""
     starts = np.concatenate([[0], np.cumsum(sizes)])
     parts = [dataset(int(first), n, kind=kind) for first, n in zip(starts, sizes, strict=False)]
-    rows = [write_part(part, folder / "parts" / part_name(number), codec) for number, part in enumerate(parts)]
-    write_index(folder, rows)
-    write_manifest(folder, rows, complete=True)
+    return write_parts(target, parts, codec)
+
+
+def write_parts(target, parts, codec="zlib"):
+    """Write Datasets as the parts of a corpus: a folder or a single file."""
+    with new_corpus(target, codec=codec, title="A corpus") as corpus:
+        for part in parts:
+            corpus.write(part)
     return parts
 
 

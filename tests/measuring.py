@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from gen.scenarios import Background, ShaftModulation
+from gen.scenarios import Background, ShaftModulation, settings_of
 from gen.simulation.timeline import timeline
 
 FS = 12_000.0
@@ -14,7 +14,7 @@ QUIET = Background(0.0, 1e-6, (), ShaftModulation(), (), (), None, None)
 
 def response(recipe, n_records, wave):
     """``wave(time)`` as the acceleration of every record and channel, shape (record, channel, time)."""
-    n = timeline(recipe).lead + recipe.n_samples
+    n = timeline(settings_of(recipe)).lead + recipe.n_samples
     signal = np.broadcast_to(wave(np.arange(n) / FS), (n_records, len(recipe.recording.channels), n))
     return signal.copy()
 

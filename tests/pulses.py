@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gen.corpus import FAULTS, SCHEMA, make_dataset, part_name, write_index, write_manifest, write_part
+from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
 LINES = {"healthy": None, "inner": 5.4, "outer": 3.6, "ball": 4.7}
@@ -55,8 +55,6 @@ def write_pulses(
         columns,
         attributes={"title": "pulses", "history": ""},
     )
-    (folder / "parts").mkdir(parents=True)
-    rows = [write_part(dataset, folder / "parts" / part_name(0))]
-    write_index(folder, rows)
-    write_manifest(folder, rows, complete=True)
+    with new_corpus(folder, title="pulses") as corpus:
+        corpus.write(dataset)
     return folder

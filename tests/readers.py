@@ -1,6 +1,6 @@
-"""What other people's programs read of a corpus: of corpus.nc, of a part and of a packed file.
+"""What other people's programs read of a corpus: of a part, and of a corpus in one file.
 
-``python -m tests.readers`` prints the table of docs/sharing.md, for the programs that this machine has.
+``python -m tests.readers`` prints the table of docs/copying.md, for the programs that this machine has.
 """
 
 import re
@@ -16,24 +16,20 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from gen import pack
-from gen.corpus import part_name, write_index, write_manifest, write_part
-from tests.corpora import COUNTS_PER_UNIT, dataset
+from gen import copy
+from gen.corpus import part_name
+from tests.corpora import COUNTS_PER_UNIT, dataset, write_parts
 
 COUNTS = (20, 10)  # records of the parts
 EVERYTHING, NO_TEXT, NOTHING = "everything", "everything but text", "nothing: it ends with an error"
-FORMS = ("corpus.nc in its folder", "a part", "a packed file")
 
 
 def write_forms(folder):
-    """Write a corpus, and return the paths of its three forms; in a smaller one nccopy meets no chunks."""
-    (folder / "c" / "parts").mkdir(parents=True)
+    """Write a corpus, and return the paths of a part and of its copy in one file; in a smaller one nccopy meets no chunks."""
     parts = [dataset(first, n, samples=1000) for first, n in zip((0, COUNTS[0]), COUNTS, strict=True)]
-    rows = [write_part(part, folder / "c" / "parts" / part_name(number)) for number, part in enumerate(parts)]
-    write_index(folder / "c", rows)
-    write_manifest(folder / "c", rows, complete=True)
-    pack(folder / "c", folder / "packed.nc")
-    return [folder / "c" / "corpus.nc", folder / "c" / "parts" / part_name(0), folder / "packed.nc"]
+    write_parts(folder / "c", parts)
+    copy(folder / "c", folder / "c.nc")
+    return [folder / "c" / "parts" / part_name(0), folder / "c.nc"]
 
 
 def truth(records):

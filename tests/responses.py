@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from gen.scenarios import settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import Response
 from gen.simulation.timeline import timeline
@@ -10,12 +11,12 @@ from gen.simulation.truth import Truth, truth_of, with_loaded_hits
 
 def still(recipe, n_records):
     """Accelerations of bodies at rest, shape (record, channel, time) [m s-2]."""
-    return np.zeros((n_records, len(recipe.recording.channels), timeline(recipe).returned), np.float32)
+    return np.zeros((n_records, len(recipe.recording.channels), timeline(settings_of(recipe)).returned), np.float32)
 
 
 def response_of(scenarios, recipe, *, impossible=()):
     """Response of bodies at rest with the truth of every scenario; places in ``impossible`` have no machine."""
-    n, axis = len(scenarios), timeline(recipe)
+    n, axis = len(scenarios), timeline(settings_of(recipe))
     inputs = [None if n in impossible else kernel_input(scenario, axis) for n, scenario in enumerate(scenarios)]
     truth = [truth_of(scenario, axis, given) for scenario, given in zip(scenarios, inputs, strict=True)]
     return Response(still(recipe, n), np.arange(n) + 2, np.linspace(0.1, 0.3, n), {}, inputs, truth, None)
@@ -23,6 +24,6 @@ def response_of(scenarios, recipe, *, impossible=()):
 
 def truth(scenario, recipe) -> Truth:
     """Truth of a scenario."""
-    axis = timeline(recipe)
+    axis = timeline(settings_of(recipe))
     given = kernel_input(scenario, axis)
     return with_loaded_hits([truth_of(scenario, axis, given)], [given], axis)[0]

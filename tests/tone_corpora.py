@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from gen.corpus import SCHEMA, make_dataset, part_name, write_index, write_manifest, write_part
+from gen.corpus import SCHEMA, make_dataset, new_corpus
 
 FS = 4000.0
 TONES = (4.0, 9.0, 14.0, 19.0)  # orders of the classes
@@ -11,7 +11,6 @@ TONES = (4.0, 9.0, 14.0, 19.0)  # orders of the classes
 def write_corpus(folder, *, specimens=16, records=3, parts=2, noise=0.5, seed=0, **changed):
     """Write parts of 0.25 s of tone and noise, of four classes; specimen after specimen, on rigs of four specimens."""
     rng = np.random.default_rng(seed)
-    (folder / "parts").mkdir(parents=True)
     specimen = np.repeat(np.arange(specimens), records)
     count, fault = len(specimen), specimen % 4
     columns = {v.name: np.array(["made up"] * count, object) if v.dtype == "str" else np.zeros(count) for v in SCHEMA}
@@ -24,16 +23,14 @@ def write_corpus(folder, *, specimens=16, records=3, parts=2, noise=0.5, seed=0,
         "rig": specimen // 4,
         "specimen": specimen,
         "recording": np.arange(count),
+        "identity": [f"tones-{seed}/{one // 4}/{one}/{number}/-1" for number, one in enumerate(specimen)],
     } | changed
     turns = columns["shaft_rate"][:, None] * np.arange(1000) / FS
     tone = np.sin(2 * np.pi * (np.array(TONES)[fault][:, None] * turns + rng.uniform(size=(count, 1))))
     signal = (rng.uniform(0.5, 2, (count, 1)) * (tone + noise * rng.standard_normal(tone.shape))).astype(np.float32)
     attributes = {"title": "tones", "source": "made up", "history": ""}
-    rows = []
-    for number, block in enumerate(np.array_split(np.arange(count), parts)):
-        part = {name: values[block] for name, values in columns.items()}
-        dataset = make_dataset(signal[block][:, None], FS, ("housing",), part, attributes=attributes)
-        rows.append(write_part(dataset, folder / "parts" / part_name(number)))
-    write_index(folder, rows)
-    write_manifest(folder, rows, complete=True)
+    with new_corpus(folder, title="tones") as corpus:
+        for block in np.array_split(np.arange(count), parts):
+            part = {name: np.asarray(values)[block] for name, values in columns.items()}
+            corpus.write(make_dataset(signal[block][:, None], FS, ("housing",), part, attributes=attributes))
     return signal

@@ -6,7 +6,7 @@ have. No variable has a CF standard name (the table has none for vibration), so 
 
 from uuid import NAMESPACE_OID, uuid5
 
-from gen.corpus.manifest_fields import Manifest
+from gen.corpus.manifest import Manifest
 from gen.corpus.publication import Creator
 from gen.corpus.schema import FORMAT
 
@@ -23,13 +23,13 @@ _BOTH = (
 
 
 def publication_attributes(manifest: Manifest) -> dict[str, str]:
-    """Global attributes of ``corpus.nc``, of packed files and of exports, beside those of the parts.
+    """Global attributes of ``index.nc``, of single files and of exports, beside those of the parts.
 
-    They follow from the manifest alone: its ``publication``, its counts and the hashes of its parts.
+    They follow from the manifest alone: its ``publication``, its counts and the hash of its parts.
     """
     publication = manifest.publication
-    importers = manifest.importers
-    platform, instrument, made = _SIMULATED if importers == {None} else _BOTH if None in importers else _RECORDED
+    recorded = _RECORDED if manifest.recipe is None else _BOTH
+    platform, instrument, made = _SIMULATED if manifest.importer is None else recorded
     fixed = {
         "summary": f"{manifest.records} labelled records of bearing vibration, {made}, with fault class, speed, load and nominal fault "
         f"frequencies of each.",
@@ -65,7 +65,7 @@ def publication_attributes(manifest: Manifest) -> dict[str, str]:
 
 def content_id(manifest: Manifest) -> str:
     """Number (UUID) that follows from the hashes of all parts: the same records have the same, under every publication."""
-    return str(uuid5(NAMESPACE_OID, " ".join(row.sha256 for row in manifest.parts)))
+    return str(uuid5(NAMESPACE_OID, manifest.parts_sha256 or ""))
 
 
 def license_address(name: str) -> str:

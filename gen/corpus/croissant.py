@@ -1,6 +1,6 @@
 """``croissant.json``: files, fields, licence and citation of a corpus as catalogues of data sets read them, in the format Croissant 1.1.
 
-It lists the files with their SHA-256 and every variable with its type and meaning. A field names its variable in ``corpus.nc``: readers of
+It lists the files with their SHA-256 and every variable with its type and meaning. A field names a file with its variable: readers of
 Croissant find files and fields, and the files themselves are read with a netCDF reader.
 """
 
@@ -12,17 +12,24 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus.acdd import content_id, license_address, publication_attributes
-from gen.corpus.card.origin import recipe_files
+from gen.corpus.card.page import card_folder
 from gen.corpus.card.terms import bibtex
-from gen.corpus.files import write_text_durably
+from gen.corpus.files import sha256, write_text_durably
 from gen.corpus.index import open_corpus
-from gen.corpus.manifest import INDEX_NAME, Manifest, listed_file, read_manifest
+from gen.corpus.manifest import INDEX_NAME, MANIFEST_NAME, RECIPE_NAME, corpus_files, read_manifest
 from gen.corpus.publication import Publication
 from gen.corpus.schema import FAULT_NAMES, SIGNAL, SPLITS
 
 CROISSANT_NAME = "croissant.json"
 
-_NETCDF = "application/x-netcdf"
+_PARTS = {
+    "@type": "cr:FileSet",
+    "@id": "parts",
+    "name": "parts",
+    "description": "Parts of the corpus; each is complete and has some of the records.",
+    "encodingFormat": "application/x-netcdf",
+    "includes": "parts/*.nc",
+}
 _TERMS = (
     "arrayShape", "citeAs", "column", "containedIn", "equivalentProperty", "extract", "field", "fileObject", "fileProperty", "fileSet",
     "format", "includes", "isArray", "isLiveDataset", "jsonPath", "key", "md5", "parentField", "path", "recordSet", "references", "regex",
@@ -46,13 +53,17 @@ _CONTEXT = {
 """Words of the format with their addresses; its readers expect all of them in every file."""
 
 
-def write_croissant(directory: Path) -> None:
+def write_croissant(path: Path) -> None:
     """Write ``croissant.json`` of a finished corpus, whole or not at all; the same corpus gives the same bytes."""
-    text = json.dumps(croissant(directory), indent=1, ensure_ascii=False)
-    write_text_durably(text + "\n", directory / CROISSANT_NAME)
+    write_text_durably(croissant_text(path), card_folder(path) / CROISSANT_NAME)
 
 
-def croissant(directory: Path) -> dict[str, Any]:
+def croissant_text(path: Path) -> str:
+    """Text of ``croissant.json`` of a finished corpus."""
+    return json.dumps(croissant(path), indent=1, ensure_ascii=False) + "\n"
+
+
+def croissant(path: Path) -> dict[str, Any]:
     """Content of ``croissant.json`` of a finished corpus.
 
     Raises
@@ -60,9 +71,11 @@ def croissant(directory: Path) -> dict[str, Any]:
     CorpusError
         If the corpus is unfinished, or one of its files is missing or of another size than in the manifest.
     """
-    manifest = read_manifest(directory)
+    manifest = read_manifest(path)
     attributes = publication_attributes(manifest)
-    with open_corpus(directory, check="size") as corpus:
+    files = {file.relative_to(path.parent if path.is_file() else path).as_posix(): file for file in _files(path)}
+    kinds = {".nc": "application/x-netcdf", ".json": "application/json", ".yaml": "application/yaml"}
+    with open_corpus(path, check="size") as corpus:
         title = str(corpus.attrs.get("title", "Untitled corpus"))
         return {
             "@context": _CONTEXT,
@@ -76,11 +89,16 @@ def croissant(directory: Path) -> dict[str, Any]:
             "isLiveDataset": False,
             **_published(manifest.publication),
             "citeAs": bibtex(title, manifest),
-            "distribution": [*_netcdf_files(manifest), *_further_files(directory)],
+            "distribution": [
+                *(_file(name, file, kinds[file.suffix]) for name, file in files.items()),
+                *([] if path.is_file() else [_PARTS]),
+            ],
             "recordSet": [
                 _listed_values("faults", "Fault classes.", "sc:Enumeration", FAULT_NAMES),
                 _listed_values("splits", "Training, validation and test records.", "cr:Split", dict(enumerate(SPLITS))),
-                _records(corpus),
+                _records(
+                    corpus, {"fileObject": {"@id": path.name}} if path.is_file() else {"fileSet": {"@id": "parts"}}
+                ),
             ],
         }
 
@@ -107,32 +125,24 @@ def _published(publication: Publication) -> dict[str, Any]:
     return {name: value for name, value in given.items() if value}
 
 
-def _netcdf_files(manifest: Manifest) -> list[dict[str, Any]]:
-    rows = [(f"parts/{row.name}", row.bytes, row.sha256) for row in manifest.parts]
-    if manifest.index is not None:
-        rows.insert(0, (INDEX_NAME, manifest.index.bytes, manifest.index.sha256))
-    return [_file(name, size, digest, _NETCDF) for name, size, digest in rows]
+def _files(path: Path) -> list[Path]:
+    """Files of a corpus: the single file; or index, parts, manifest and recipe of a folder."""
+    files = corpus_files(path, "size")
+    if path.is_file():
+        return files
+    beside = [path / MANIFEST_NAME, path / RECIPE_NAME]
+    return [path / INDEX_NAME, *files, *(file for file in beside if file.is_file())]
 
 
-def _further_files(directory: Path) -> list[dict[str, Any]]:
-    """Manifest and recipes."""
-    found = []
-    for path in (directory / "manifest.json", *recipe_files(directory)):
-        row = listed_file(path)
-        kind = "application/json" if path.suffix == ".json" else "application/yaml"
-        found.append(_file(str(path.relative_to(directory)), row["bytes"], row["sha256"], kind))
-    return found
-
-
-def _file(name: str, size: int, digest: str, kind: str) -> dict[str, Any]:
+def _file(name: str, file: Path, kind: str) -> dict[str, Any]:
     return {
         "@type": "cr:FileObject",
         "@id": name,
         "name": name,
         "contentUrl": name,
-        "contentSize": f"{size} B",
+        "contentSize": f"{file.stat().st_size} B",
         "encodingFormat": kind,
-        "sha256": digest,
+        "sha256": sha256(file),
     }
 
 
@@ -154,7 +164,7 @@ def _listed_values(name: str, description: str, kind: str, values: Mapping[int, 
     }
 
 
-def _records(corpus: xr.Dataset) -> dict[str, Any]:
+def _records(corpus: xr.Dataset, source: Mapping[str, Any]) -> dict[str, Any]:
     """Set of the records with a field for each variable; the signal is one array of channels and samples."""
     names = [str(name) for name, variable in corpus.variables.items() if variable.dims[:1] == ("record",)]
     channels = ", ".join(str(name) for name in corpus["channel"].values)
@@ -162,12 +172,12 @@ def _records(corpus: xr.Dataset) -> dict[str, Any]:
         "@type": "cr:RecordSet",
         "@id": "records",
         "name": "records",
-        "description": f"Records of the corpus, one value of each variable of {INDEX_NAME} for each; channels of the signal: {channels}.",
-        "field": [_field(name, corpus.variables[name]) for name in names],
+        "description": f"Records of the corpus, one value of each variable for each; channels of the signal: {channels}.",
+        "field": [_field(name, corpus.variables[name], source) for name in names],
     }
 
 
-def _field(name: str, variable: xr.Variable) -> dict[str, Any]:
+def _field(name: str, variable: xr.Variable, source: Mapping[str, Any]) -> dict[str, Any]:
     attributes = variable.attrs
     unit = attributes.get("units", "1")
     meaning = str(attributes.get("long_name", name)) + (f" [{unit}]" if unit != "1" else "")
@@ -177,7 +187,7 @@ def _field(name: str, variable: xr.Variable) -> dict[str, Any]:
         "name": name,
         "description": f"{meaning} ({attributes.get('role', 'signal')})",
         "dataType": _data_type(name, variable),
-        "source": {"fileObject": {"@id": INDEX_NAME}, "extract": {"column": name}},
+        "source": {**source, "extract": {"column": name}},
     }
     if name == SIGNAL:
         field |= {"isArray": True, "arrayShape": ",".join(str(size) for size in variable.shape[1:])}

@@ -6,51 +6,49 @@ from gen.corpus.simulated import SIMULATED
 
 _FORMAT = f"""# The corpus format, version {FORMAT}
 
-A corpus is a folder:
+A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 
 | file | content |
 |---|---|
-| `corpus.nc` | all per-record variables, and the signal as an HDF5 virtual dataset over the parts: most readers see one file |
-| `parts/part-00000.nc` ... | complete netCDF-4 files of some hundred records each |
-| `manifest.json` | whether the corpus is complete; bytes and SHA-256 of `corpus.nc` and of each part; where the records come from |
-| `parts.jsonl` | while the corpus is unfinished: one line for each finished part, as in `parts` of the manifest |
-| `extension.json` | while the corpus is being extended: its manifest as it will be, with the finished new parts |
-| `recipe.yaml` | the recipe, if the corpus was simulated |
-| `recipes/` | the recipes of the corpora that were merged; `origins` of the manifest tells which records have which |
+| `parts/part-00000.nc` ... | some hundred records each; every part has the layout of a single file and can be opened as a corpus |
+| `index.nc` | the variables and attributes of the single file, for all records, without the signal |
+| `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from |
+| `recipe.yaml` | the recipe, if all records were generated from one |
 | `README.md` | the [data card](data-card.md); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
 | `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
 
-HDF5 reads a part that it cannot open as missing values, without an error: a part that is missing, or that exceeds
-the number of files a process may open. `gen.open_corpus` therefore compares every file with the manifest before it
-reads, refuses a missing or altered file, and reads the signal from the parts. `raceway validate` checks everything.
-Further checks of a corpus from strangers: [security.md](security.md).
+The data card of a single file `NAME.nc` lies in `NAME.card/`. While a single file is being generated, its parts lie in
+`NAME.nc.parts/`. An unfinished corpus lists no parts in its manifest: every whole part that lies in `parts/` counts.
 
-`corpus.nc` without its parts holds no signals, and its attribute `comment` says so. `raceway pack` makes one file of the
-whole corpus, with the variables below, without a virtual dataset, and with a SHA-256 of each record: a packed file.
+**Checksum.** Every netCDF file of a corpus ends with a line `sha256:` and the SHA-256 of all bytes before that line.
+HDF5 ignores bytes behind its own, so all readers open the file. `gen.open_corpus` compares files with their hashes
+before any library opens them, and refuses a missing or altered file. A file that another program has rewritten, such as
+a copy by `nccopy`, has no such line: open it with `gen.open_corpus(path, check="size")`. `raceway validate` checks
+everything else too. What is checked of a corpus from strangers: [security.md](security.md).
 
-ncdump, NCO, Octave, h5py, netCDF4 and xarray read `corpus.nc` in its folder, parts and packed files. R's ncdf4 and
-`nccopy` read parts and packed files, but not `corpus.nc`. CDO reads all three without their text variables. MATLAB was
-not tried. [sharing.md](sharing.md#which-programs-read-what) has the versions, and the layout of a packed file.
+ncdump, nccopy, NCO, Octave, R's ncdf4, h5py, netCDF4 and xarray read single files and parts as a whole; CDO reads them
+without text variables. MATLAB was not tried. [copying.md](copying.md) has the versions.
 
-Other fields of the manifest tell where the records come from; each is there only if it has something to tell:
+Facts about the records are fields of `manifest.json`, and global attributes of `index.nc` and of a single file, there
+as JSON where they are not text. Each is there only if it has something to tell:
 
-| field | content |
+| fact | content |
 |---|---|
-| `title`, `recipe`, `recipe_sha256` | title of the corpus, name of its recipe and hash of that |
-| `versions` | versions of Raceway and its libraries |
-| `overrides` | `seed` and `records` that replaced those of the recipe; `extensions`: rigs or specimens that were added later |
-| `scenarios` | `chosen`: the records are some of those of the recipe; `given`: their scenarios were made by hand |
+| `title`, `recipe` | title of the corpus, name of its recipe |
+| `recipe_sha256` | hash of the recipe, if all of its records are here and no others; `raceway generate` completes such a corpus |
+| `sources_sha256`, `versions` | hash of the source files of Raceway that made the records; versions of Raceway and its libraries |
+| `parts_sha256` | hash over those of the parts; a single file has that of the parts that it was made of |
+| `overrides` | `seed` and `records` that replaced those of the recipe |
+| `signals` | number of records that no analysis can use, see below |
 | `importer`, `recordings` | importer, and number of the recordings |
 | `basis`, `skipped`, `warnings` | sentences on what labels and units rest on, on skipped files, and on assumptions |
 | `failures` | a sentence for each record that could not be simulated and is left out |
-| `selections` | choices by which the records were taken from a larger corpus, with a hash of the parts of that corpus |
-| `origins` | of a merged corpus: the corpora that it was made from, each with its parts, its recipe and what was added to its numbers |
 | `publication` | licence, creators and other facts of [publication](publishing.md) |
-| `next_index` | while `raceway card` replaces `corpus.nc`: size and hash of the new one |
+| `recipe_text` | attribute only: the recipe as in `recipe.yaml` |
 
-Every file has the global attributes `Conventions`, `raceway_format`, `title`, `history` and `source`; simulated parts
-also have `recipe_sha256`, `versions` and `failures`. `corpus.nc` repeats those of the first part except `failures`, and
-adds `comment` and the attributes of [publication](publishing.md).
+Every file has the global attributes `Conventions`, `raceway_format`, `title`, `history`, `source` and `signals`;
+generated parts also have `recipe`, `recipe_sha256`, `sources_sha256`, `versions` and `failures`. `index.nc` and single
+files have all facts and the attributes of [publication](publishing.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;
@@ -59,8 +57,8 @@ is missing or not a number.
 
 The signal is `{SIGNAL} (record, channel, elapsed_time)` in m s-2: 16-bit counts with `scale_factor`, which xarray
 and netCDF4 apply when they read, or 32-bit floating point. `scale_factor` and `add_offset` are 32-bit floating point,
-and so is the signal that these readers return; divided by `scale_factor` and rounded, it gives the counts exactly. In
-older corpora both are 64-bit, and so is what readers return. Text is stored as fixed-length characters. Every other
+and so is the signal that these readers return; divided by `scale_factor` and rounded, it gives the counts exactly.
+Text is stored as fixed-length characters. Every other
 variable has one value per record, and a `role`:
 
 - `operating`: known to an analyst on site; features may use it,
@@ -78,8 +76,10 @@ Every corpus has the variables below. It can have further ones, numbers that are
 
 
 _SIMULATED = """
-A corpus that `raceway generate` made also has these; `draws` holds every drawn value of the record, by the names of
-the recipe's keys:
+Simulated records also have these; `draws` holds all that a record is simulated from: every drawn value by the names of
+the recipe's keys, and the settings that the recipe fixes. `raceway replay` makes the record again from it, in whatever
+corpus it lies. Where simulated and recorded records lie in one corpus, recorded ones have NaN, -1, `unjudged` or empty
+text there:
 
 """
 

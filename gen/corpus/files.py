@@ -1,10 +1,14 @@
-"""Files on disk: atomic writing, hashes, and refusal of anything but plain files inside the folder of a corpus.
+"""Files on disk: atomic writing, checksums, and refusal of anything but plain files inside the folder of a corpus.
 
 A file is written under a temporary name, flushed to disk and renamed, so that a killed writer leaves no partial file under the final name.
+Every netCDF file of a corpus ends with a line that holds the SHA-256 of all bytes before it. HDF5 ignores bytes behind its own, so all
+readers open the file; a changed byte is found before any library opens it.
 """
 
+import errno
 import hashlib
 import os
+import platform
 import re
 import shutil
 import tempfile
@@ -21,7 +25,15 @@ Stamp = tuple[int, int]
 
 _CLOCK_TICK = 1_000_000_000  # ns; two changes within one tick of the clock of the file system can have the same stamp
 _MOST_HASHES = 100_000
-_hashes: dict[tuple[str, Stamp], str] = {}
+_TRIAL_BYTES = 16_000_000  # more than HDF5 writes at once
+_ADVICE = dict.fromkeys(
+    (errno.ENOSPC, errno.EDQUOT, errno.EFBIG), "free some space or choose another folder"
+) | dict.fromkeys((errno.EACCES, errno.EPERM), "get permission to write there or choose another folder")
+_hashes: dict[tuple[str, Stamp, int], str] = {}
+_CHECKSUM = re.compile(rb"\nsha256:([0-9a-f]{64})\n")
+_CHECKSUM_BYTES = 73
+_HOST = re.sub(r"[^\w-]", "-", platform.node())
+_READ_BYTES = 1_000_000
 _unfinished: set[Path] = set()
 
 
@@ -33,17 +45,62 @@ def stamp(path: Path | str) -> Stamp:
 
 def sha256(path: Path) -> str:
     """SHA-256 of a file, in hexadecimal; kept in this process until the stamp of the file changes."""
-    key = (str(path.absolute()), stamp(path))
+    return _sha256(path, 0)
+
+
+def _sha256(path: Path, left_out: int) -> str:
+    """SHA-256 of all bytes of a file but the last ``left_out``."""
+    key = (str(path.absolute()), stamp(path), left_out)
     known = _hashes.get(key)
     if known is not None:
         return known
-    with path.open("rb") as stream:
-        found = hashlib.file_digest(stream, "sha256").hexdigest()
+    digest, left = hashlib.sha256(), key[1][0] - left_out
+    with path.open("rb", buffering=0) as stream:
+        while left > 0 and (block := stream.read(min(left, _READ_BYTES))):
+            digest.update(block)
+            left -= len(block)
     if stamp(path) == key[1] and time.time_ns() - key[1][1] > _CLOCK_TICK:
         if len(_hashes) >= _MOST_HASHES:
             _hashes.clear()
-        _hashes[key] = found
-    return found
+        _hashes[key] = digest.hexdigest()
+    return digest.hexdigest()
+
+
+def append_checksum(path: Path) -> str:
+    """Append the line with the SHA-256 of a file to it; returns the SHA-256 of the file with that line, in hexadecimal."""
+    with path.open("rb+") as stream:
+        digest = hashlib.file_digest(stream, "sha256")
+        line = f"\nsha256:{digest.hexdigest()}\n".encode()
+        stream.seek(0, os.SEEK_END)
+        stream.write(line)
+    digest.update(line)
+    return digest.hexdigest()
+
+
+def remove_checksum(path: Path) -> None:
+    """Cut the line with the checksum off a file that is going to be changed."""
+    os.truncate(path, path.stat().st_size - _CHECKSUM_BYTES)
+
+
+def _checksum(path: Path) -> str | None:
+    """SHA-256 in the last line of a file; None if it has no such line."""
+    with path.open("rb") as stream:
+        if stream.seek(0, os.SEEK_END) < _CHECKSUM_BYTES:
+            return None
+        stream.seek(-_CHECKSUM_BYTES, os.SEEK_END)
+        line = _CHECKSUM.fullmatch(stream.read())
+    return None if line is None else line[1].decode()
+
+
+def has_checksum(path: Path) -> bool:
+    """Whether a file ends with a line for a SHA-256."""
+    return _checksum(path) is not None
+
+
+def has_whole_bytes(path: Path) -> bool:
+    """Whether a file ends with the SHA-256 of all its other bytes."""
+    digest = _checksum(path)
+    return digest is not None and digest == _sha256(path, _CHECKSUM_BYTES)
 
 
 def forget_hashes() -> None:
@@ -85,6 +142,13 @@ def check_new_folder(path: Path) -> None:
         raise CorpusError(f"{path}: exists and is not an empty folder; give a new folder, or remove this one first.")
 
 
+def check_new_file(path: Path) -> None:
+    """Refuse a file that exists, and a name that netCDF cannot open."""
+    check_name(path)
+    if path.exists() or path.is_symlink():
+        raise CorpusError(f"{path}: exists; give a new name, or remove it first.")
+
+
 @contextmanager
 def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     """Temporary path to write to: it is flushed to disk and then replaces ``path`` in one step, or is removed if anything fails.
@@ -97,7 +161,7 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     check_name(path)
     if path.exists() and not path.is_file():
         raise CorpusError(f"{path}: exists and is not a plain file, so it cannot be replaced; choose another name.")
-    with _written(path), temporary_beside(path) as temporary:
+    with temporary_beside(path) as temporary, writing(path, temporary):
         yield temporary
         with temporary.open("rb+") as stream:
             os.fsync(stream.fileno())
@@ -116,7 +180,7 @@ def whole_folder_or_none(path: Path) -> Iterator[Path]:
     """
     check_new_folder(path)
     path = path.absolute()  # "." has no name
-    with _written(path), temporary_beside(path) as temporary:
+    with temporary_beside(path) as temporary, writing(path, temporary):
         remove_left_behind_of(path)
         temporary.mkdir(parents=True)
         yield temporary
@@ -127,27 +191,25 @@ def whole_folder_or_none(path: Path) -> Iterator[Path]:
 
 
 @contextmanager
-def new_corpus_folder(path: Path) -> Iterator[Path]:
-    """New folder of a corpus with an empty folder ``parts``, there as a whole or not at all (:func:`whole_folder_or_none`)."""
-    with whole_folder_or_none(path) as folder:
-        (folder / "parts").mkdir()
-        yield folder
-
-
-@contextmanager
-def _written(path: Path) -> Iterator[None]:
-    """CorpusError about ``path`` in place of an error of the system or of a library that writes."""
+def writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
+    """Raise CorpusError about ``path`` in place of an error of the system or of a library that writes; ``temporary`` is never named."""
+    hidden = str(temporary or path)
     try:
         yield
+    except CorpusError as error:
+        if hidden not in str(error):
+            raise
+        raise CorpusError(str(error).replace(hidden, str(path))) from error
     except (OSError, RuntimeError) as error:
-        raise CorpusError(
-            f"{path}: could not be written ({_reason(error)}); free some space or choose another folder."
-        ) from error
+        code = _error_number(error, path.parent)
+        text = os.strerror(code) if code else str(getattr(error, "strerror", None) or error).replace(hidden, str(path))
+        advice = _ADVICE.get(code, "choose another folder")
+        raise CorpusError(f"{path}: could not be written ({' '.join(text.split())}); {advice}.") from error
 
 
 def remove_left_behind_of(path: Path) -> None:
-    """Remove what killed processes have left of a file or folder; those of running processes, and of longer names, are kept."""
-    own = re.compile(rf"\.{re.escape(path.name)}\.(\d+)\.\d+\.tmp")
+    """Remove what killed processes of this machine have left of a file or folder; those of running ones, and of longer names, are kept."""
+    own = re.compile(rf"\.{re.escape(path.name)}\.{_HOST}\.(\d+)\.\d+\.tmp")
     for found in path.parent.glob(".*.tmp"):
         match = own.fullmatch(found.name)
         if match is not None and not _is_being_written(found, int(match[1])):
@@ -179,7 +241,7 @@ def _flush(path: Path) -> None:
 @contextmanager
 def temporary_beside(path: Path) -> Iterator[Path]:
     """Hidden path in the folder of ``path`` for an unfinished file or folder; it is removed at the end if it still exists."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.{threading.get_native_id()}.tmp")
+    temporary = path.with_name(f".{path.name}.{_HOST}.{os.getpid()}.{threading.get_native_id()}.tmp")
     _unfinished.add(temporary)
     try:
         yield temporary
@@ -208,7 +270,7 @@ def remove_unfinished() -> None:
 
 def remove_left_behind(directory: Path, pattern: str) -> None:
     """Remove temporary files that killed processes have left, by a pattern of names; no other process may be writing them."""
-    for temporary in directory.glob(f".{pattern}.*.*.tmp"):
+    for temporary in directory.glob(f".{pattern}.*.*.*.tmp"):
         _remove(temporary)
 
 
@@ -231,12 +293,24 @@ def write_text_durably(text: str, path: Path) -> None:
     write_durably(text.encode(), path)
 
 
-def _reason(error: OSError | RuntimeError) -> str:
-    """Why the system refused to write. HDF5 puts the error number into a text with addresses and line breaks.
+def _error_number(error: OSError | RuntimeError, folder: Path) -> int:
+    """Number of an error of the system, or 0 if it cannot be found.
 
-    >>> _reason(RuntimeError("write failed (errno = 28, error message = 'No space left on device', buf = 0x7fafb143fe10)"))
-    'No space left on device'
+    HDF5 puts the number into a text with addresses. netCDF has numbers of its own, which are negative, and does not say why HDF5 failed:
+    the reason is found by writing some megabytes to the folder.
+
+    >>> _error_number(RuntimeError("write failed (errno = 28, error message = 'No space left on device', buf = 0x7fafb143fe10)"), Path())
+    28
     """
     in_text = re.search(r"errno = (\d+)", str(error))
-    code = getattr(error, "errno", None) or (in_text and int(in_text[1]))
-    return os.strerror(code) if code else " ".join(str(error).split())
+    code = getattr(error, "errno", None) or (int(in_text[1]) if in_text else 0)
+    if code > 0 or "HDF" not in str(error):
+        return max(code, 0)
+    try:
+        with tempfile.TemporaryFile(dir=folder) as trial:
+            trial.write(bytes(_TRIAL_BYTES))
+            trial.flush()
+            os.fsync(trial.fileno())
+    except OSError as found:
+        return found.errno or 0
+    return 0

@@ -1,6 +1,6 @@
-"""The files of a finished corpus beside its parts: index, manifest and data card; and a change of its publication."""
+"""The files of a finished corpus beside its parts: index, manifest, data card; one file of all parts; a change of the publication."""
 
-import json
+import shutil
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -8,82 +8,81 @@ from typing import Any
 from gen.corpus.acdd import publication_attributes
 from gen.corpus.card.page import write_card
 from gen.corpus.croissant import CROISSANT_NAME, write_croissant
-from gen.corpus.files import remove_left_behind
-from gen.corpus.index import new_index, write_index
+from gen.corpus.files import remove_left_behind, remove_left_behind_of
+from gen.corpus.index import corpus_attributes, join_parts, rewrite_attributes, write_index
 from gen.corpus.locking import locked
 from gen.corpus.manifest import (
-    EXTENSION_NAME,
     INDEX_NAME,
     MANIFEST_NAME,
-    Manifest,
-    listed_file,
-    manifest_content,
-    part_paths,
+    RECIPE_NAME,
+    checked,
+    corpus_files,
+    facts_of_parts,
     read_manifest,
-    with_publication,
-    write_content,
+    recipe_text,
     write_manifest,
 )
 from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
-from gen.corpus.signals import SignalCounts, summed
-from gen.errors import CorpusError
+from gen.corpus.signals import SignalCounts
 
 
-def finish_corpus(
-    directory: Path, rows: Iterable[PartRow], *, publication: Publication | None = None, **facts: Any
-) -> SignalCounts:
+def finish_corpus(directory: Path, rows: Iterable[PartRow], **facts: Any) -> SignalCounts:
     """Write index, manifest and data card over finished parts; returns the counts of records that cannot be used.
 
     ``facts`` are further fields of the manifest.
     """
     rows = list(rows)
-    signals = summed(row.signals for row in rows)
-    facts["publication"] = publication or Publication()
-    write_index(directory, rows, publication_attributes(_manifest(manifest_content(rows, **facts))))
-    write_manifest(directory, rows, complete=True, **facts)
+    content = facts_of_parts(rows, facts)
+    write_index(directory, rows, corpus_attributes(content, recipe_text(directory), directory))
+    write_manifest(directory, content)
     write_card(directory)
     write_croissant(directory)
-    return signals
+    return checked(content, directory).signals
+
+
+def finish_file(directory: Path, rows: Iterable[PartRow], file: Path, **facts: Any) -> SignalCounts:
+    """Write all parts of a folder into one file, and remove the folder; returns the counts of records that cannot be used."""
+    rows = list(rows)
+    content = facts_of_parts(rows, facts)
+    join_parts(directory, rows, corpus_attributes(content, recipe_text(directory), directory), file)
+    shutil.rmtree(directory)
+    return checked(content, directory).signals
 
 
 def remove_temporary_files(directory: Path) -> None:
     """Remove temporary files that killed calls have left beside the files of a corpus; no other process may be writing into it."""
-    for name in (MANIFEST_NAME, EXTENSION_NAME, INDEX_NAME, "README.md", "recipe.yaml", CROISSANT_NAME):
+    for name in (MANIFEST_NAME, INDEX_NAME, "README.md", "card.json", RECIPE_NAME, CROISSANT_NAME):
         remove_left_behind(directory, name)
     remove_left_behind(directory / "parts", "part-*.nc")
+    remove_left_behind(directory / "pictures", "*.png")
 
 
-def publish(directory: Path | str, publication: Publication) -> None:
-    """Change licence, creators and references of a finished corpus: in its manifest, ``corpus.nc`` and data card.
+def publish(path: Path | str, publication: Publication) -> None:
+    """Change licence, creators and references of a finished corpus.
 
-    The parts stay as they are. The files are those of a corpus that was made with this publication from the start. A killed call leaves
-    a corpus that can be read, with the old or the new facts, and the same call completes it.
+    The parts stay as they are, and the other files of a folder are those of a corpus that was made with this publication from the start;
+    a single file gets other attributes. A killed call leaves a corpus that can be read, and the same call completes it.
 
     Raises
     ------
     CorpusError
         If the corpus is unfinished or altered, another call changes it, or a file cannot be written.
     """
-    directory = Path(directory)
+    path = Path(path)
+    corpus_files(path)
+    manifest = read_manifest(path)
     publication = publication.dated()
-    if directory.is_file():
-        raise CorpusError(
-            f"{directory}: is one file; unpack it with raceway unpack, publish the folder, and pack that."
-        )
-    with locked(directory):
-        part_paths(directory, "sha256")
-        rows = read_manifest(directory).parts
-        content: dict[str, Any] = json.loads((directory / "manifest.json").read_bytes())
-        content["index"] = listed_file(directory / INDEX_NAME)
-        changed = with_publication(content, publication)
-        with new_index(directory, rows, publication_attributes(_manifest(changed))) as temporary:
-            changed["index"] = listed_file(temporary)
-            write_content(directory, content | {"next_index": changed["index"]})  # until the new index is in place
-        write_content(directory, changed)
-        write_card(directory)
-        write_croissant(directory)
-
-
-def _manifest(content: dict[str, Any]) -> Manifest:
-    return Manifest.model_validate_json(json.dumps(content))
+    facts = manifest.model_dump(mode="json", by_alias=True, exclude_unset=True) | {"publication": publication}
+    if path.is_file():
+        remove_left_behind_of(path)
+        if publication == manifest.publication:
+            return
+        content = facts_of_parts([], facts) | {"records": manifest.records, "signals": manifest.signals._asdict()}
+        content |= {"parts_sha256": manifest.parts_sha256} if manifest.parts_sha256 else {}
+        old = {*facts, *publication_attributes(manifest)} - {"raceway_format"}
+        rewrite_attributes(path, old, corpus_attributes(content, recipe_text(path), path))
+        return
+    with locked(path):
+        remove_temporary_files(path)
+        finish_corpus(path, manifest.parts, **facts)

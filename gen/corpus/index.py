@@ -1,11 +1,10 @@
-"""The index ``corpus.nc`` over the parts, and the opening of a corpus.
+"""All per-record variables of a corpus in one file: ``index.nc`` of a folder without the signals, or the single file with them.
 
-``corpus.nc`` holds all per-record variables and, for the signal, an HDF5 virtual dataset over the parts, so that any netCDF-4
-reader sees one file. :func:`open_corpus` reads the variables from it, and the signal from the parts.
+Both have the facts of the manifest, the recipe and the attributes of a published corpus as global attributes.
 """
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+import shutil
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,39 +14,41 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.files import whole_or_not_at_all
+from gen.corpus.acdd import publication_attributes
+from gen.corpus.blocks import stored_columns
+from gen.corpus.codecs import CODECS
+from gen.corpus.files import append_checksum, remove_checksum, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
-from gen.corpus.manifest import INDEX_NAME, Check, part_paths, read_manifest
-from gen.corpus.packed import PACKED
+from gen.corpus.manifest import (
+    INDEX_NAME,
+    RECIPE_TEXT,
+    Check,
+    checked,
+    corpus_files,
+    facts_as_attributes,
+    read_manifest,
+)
 from gen.corpus.part import PartRow
-from gen.corpus.reading import open_records
-from gen.corpus.schema import MISSING_COUNT, SIGNAL
+from gen.corpus.reading import open_part, open_records
+from gen.corpus.schema import SIGNAL, schema_problems
+from gen.corpus.simulated import SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.errors import CorpusError
 
-_COMMENT = (
-    "This file alone holds no signals: they lie in parts/ beside it. To hand over one file, use raceway pack. "
-    f"{SIGNAL} is an HDF5 virtual dataset over the files in parts/. HDF5 reads a part that it cannot open as missing values, without an "
-    "error: a missing part, or one beyond the number of files a process may open. It also looks for parts/ in the folder that the "
-    "environment variable HDF5_VDS_PREFIX names and in the current folder. Compare the files with manifest.json first (raceway validate)."
-)
-OF_ONE_FILE = ("comment", "_NCProperties", PACKED)
-"""Global attributes about ``corpus.nc`` or a packed file itself."""
-_NO_ATTRIBUTES: Mapping[str, str] = {}
+_OF_CORPUS = ("Conventions", "raceway_format", "history", "source")
 _CHUNK_RECORDS = 256  # records whose text forms one chunk
 _COPIED_BYTES = 16_000_000  # of the variables of some parts, in memory at a time
 
 
-def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
+def open_corpus(path: Path | str, check: Check = "sha256") -> xr.Dataset:
     """Open a corpus as one dataset, which is read lazily.
 
     Parameters
     ----------
-    directory : path
-        The folder that holds ``corpus.nc``, or a packed file (:func:`gen.pack`).
+    path : path
+        Folder of a corpus, or a corpus in a single file.
     check : {"sha256", "size"}
-        Comparison of each file with the manifest before anything is read; of a packed file, of each record with its hash ("sha256") or of
-        none.
+        Comparison of each file with its hash, or with its size only, before anything is read.
 
     Returns
     -------
@@ -58,168 +59,180 @@ def open_corpus(directory: Path | str, check: Check = "sha256") -> xr.Dataset:
     Raises
     ------
     CorpusError
-        If the corpus is unfinished, or one of its files is missing, altered or outside its folder.
+        If the corpus is unfinished, one of its files is missing, altered or outside its folder, or a variable is not in the format.
     """
-    directory = Path(directory)
-    paths = part_paths(directory, check)
-    if directory.is_file():
-        return open_records(directory, [directory])
-    return open_records(directory / INDEX_NAME, paths, [row.records for row in read_manifest(directory).parts])
+    path = Path(path)
+    files = corpus_files(path, check)
+    opened = open_part(path) if path.is_file() else _open_folder(path, files)
+    for problem in schema_problems(opened, SIMULATED):
+        opened.close()
+        raise CorpusError(f"{path}: {problem}")
+    return opened
 
 
-def write_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str] = _NO_ATTRIBUTES) -> None:
-    """Write ``corpus.nc`` over the finished parts atomically; the same parts and attributes give the same bytes.
+def _open_folder(path: Path, files: Sequence[Path]) -> xr.Dataset:
+    """Records of a folder; CorpusError if its index is that of other parts."""
+    manifest = read_manifest(path)
+    opened = open_records(path / INDEX_NAME, files, [row.records for row in manifest.parts])
+    if opened.attrs.get("parts_sha256") != manifest.parts_sha256:
+        opened.close()
+        raise CorpusError(
+            f"{path / INDEX_NAME}: is the index of other parts than manifest.json lists; copy the corpus again."
+        )
+    return opened
 
-    ``attributes`` are global attributes beside those of the parts.
+
+def corpus_attributes(content: Mapping[str, Any], recipe: str | None, place: Path) -> dict[str, str]:
+    """Global attributes of ``index.nc`` and of a single file beside those of the parts, from the contents of the manifest."""
+    texts = {} if recipe is None else {RECIPE_TEXT: recipe}
+    return publication_attributes(checked(content, place)) | facts_as_attributes(content) | texts
+
+
+def write_index(directory: Path, rows: Sequence[PartRow], attributes: Mapping[str, str]) -> None:
+    """Write ``index.nc`` over the finished parts atomically; the same parts and attributes give the same bytes.
 
     Raises
     ------
     CorpusError
         If writing fails, with the reason that the system gives.
     """
-    with new_index(directory, rows, attributes):
-        pass
-
-
-@contextmanager
-def new_index(directory: Path, rows: list[PartRow], attributes: Mapping[str, str]) -> Iterator[Path]:
-    """Path of a written index that replaces ``corpus.nc`` at the end of the block."""
     with whole_or_not_at_all(directory / INDEX_NAME) as temporary:
-        with LIBRARY_LOCK:
-            texts = write_variables(directory, rows, temporary, {"comment": _COMMENT, **attributes})
-            _write_virtual_signal(directory, rows, temporary)
-            with h5py.File(temporary, "r+") as file:
-                write_unicode(file, texts)
-        yield temporary
+        _write_variables(directory, rows, temporary, attributes, signal=False)
+        append_checksum(temporary)
 
 
-def corpus_attributes(file: Path) -> dict[str, Any]:
-    """Global attributes of ``corpus.nc`` or of a packed file that belong to the corpus, whichever of the two holds it."""
-    try:
-        with LIBRARY_LOCK, netCDF4.Dataset(file) as opened:
-            return {name: opened.getncattr(name) for name in opened.ncattrs() if name not in OF_ONE_FILE}
-    except (OSError, RuntimeError, AttributeError) as error:
-        raise CorpusError(
-            f"{file}: has no readable attributes ({error}); copy the file again, or pack again."
-        ) from None
+def join_parts(directory: Path, rows: Sequence[PartRow], attributes: Mapping[str, str], file: Path) -> None:
+    """Write all parts of a folder into a single file, atomically; their compressed signals are copied as they are.
 
-
-def write_variables(directory: Path, rows: list[PartRow], path: Path, attributes: Mapping[str, str]) -> dict[str, str]:
-    """Copy all variables of the parts except the signal into a new file; ``attributes`` are global ones beside those of the parts.
-
-    Returns the global attributes with letters beyond ASCII, which are still to be written (:mod:`gen.corpus.unicode_text`).
-
-    The width of a text is that of the longest in any part. The parts are read one after the other with h5py, and copied
-    ``_COPIED_BYTES`` at a time: opening one with netCDF4 takes 4 ms, and writing the variables of each part on their own as long again.
+    Raises
+    ------
+    CorpusError
+        If writing fails, with the reason that the system gives.
     """
-    with (
-        netCDF4.Dataset(directory / "parts" / rows[0].name) as first,
-        netCDF4.Dataset(path, "w", format="NETCDF4") as index,
-    ):
-        first.set_auto_maskandscale(False)
-        first.set_auto_chartostring(False)
-        copied: dict[str, np.dtype[Any]] = {
-            name: variable.dtype
-            for name, variable in first.variables.items()
-            if name != SIGNAL and variable.dimensions[0] == "record"
-        }
-        texts = [name for name, dtype in copied.items() if dtype == "S1"]
-        lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
-        lengths |= _widths(directory, rows, texts) | {"record": sum(row.records for row in rows)}
-        whole = {name: first.getncattr(name) for name in first.ncattrs() if name != "failures"}
-        beyond_ascii = set_attributes(index, {**whole, **attributes})
-        _declare_like(first, index, lengths)
-        start = 0
-        for block in _blocks(directory, rows, copied):
-            for name, values in zip(copied, block, strict=True):
-                index[name][(slice(start, start + len(values)), *map(slice, values.shape[1:]))] = values
-            start += len(block[0])
-    return beyond_ascii
+    with whole_or_not_at_all(file) as temporary:
+        _write_variables(directory, rows, temporary, attributes, signal=True)
+        with LIBRARY_LOCK, h5py.File(temporary, "r+") as joined:
+            signal, first = joined[SIGNAL], 0
+            for row in rows:
+                with h5py.File(directory / "parts" / row.name, "r", locking=False) as part:
+                    _copy_chunks(part[SIGNAL], signal, first)
+                first += row.records
+        append_checksum(temporary)
 
 
-def _widths(directory: Path, rows: list[PartRow], texts: list[str]) -> dict[str, int]:
+def _copy_chunks(stored: Any, joined: Any, first: int) -> None:
+    """Copy compressed records behind ``first`` others."""
+    for record, channel in np.ndindex(stored.shape[:2]):
+        filters_left_out, chunk = stored.id.read_direct_chunk((record, channel, 0))
+        joined.id.write_direct_chunk((first + record, channel, 0), chunk, filters_left_out)
+
+
+def rewrite_attributes(file: Path, old: Iterable[str], new: Mapping[str, str]) -> None:
+    """Replace the ``old`` global attributes of a single file by ``new`` ones, in a copy that takes its place.
+
+    Raises
+    ------
+    CorpusError
+        If writing fails, with the reason that the system gives.
+    """
+    with whole_or_not_at_all(file) as temporary:
+        shutil.copyfile(file, temporary)
+        remove_checksum(temporary)
+        with LIBRARY_LOCK, h5py.File(temporary, "r+") as changed:
+            for name in {*old, *new} & set(changed.attrs):
+                del changed.attrs[name]
+            write_unicode(changed, new)
+        append_checksum(temporary)
+
+
+def _write_variables(
+    directory: Path, rows: Sequence[PartRow], path: Path, attributes: Mapping[str, str], *, signal: bool
+) -> None:
+    """Write the variables of the parts one after the other into a new file; the signal is only declared.
+
+    The width of a text is that of the longest in any part. The parts are read with h5py, and written ``_COPIED_BYTES`` at a time: writing
+    the variables of each part on their own takes twice as long.
+    """
+    paths = [directory / "parts" / row.name for row in rows]
+    with LIBRARY_LOCK:
+        with netCDF4.Dataset(paths[0]) as first, netCDF4.Dataset(path, "w", format="NETCDF4") as file:
+            first.set_auto_maskandscale(False)
+            first.set_auto_chartostring(False)
+            kept = {name: first.getncattr(name) for name in _OF_CORPUS if name in first.ncattrs()}
+            beyond_ascii = set_attributes(file, {**kept, **attributes})
+            lengths = {name: dimension.size for name, dimension in first.dimensions.items()}
+            lengths |= _widths(paths) | {"record": sum(row.records for row in rows)}
+            _declare_like(first, file, lengths, signal=signal)
+            start = 0
+            for block in _blocks(paths):
+                for name, values in block.items():
+                    file[name][(slice(start, start + len(values)), *map(slice, values.shape[1:]))] = values
+                start += len(block["rig"])
+        with h5py.File(path, "r+") as file:
+            write_unicode(file, beyond_ascii)
+
+
+def _widths(paths: Sequence[Path]) -> dict[str, int]:
     """Largest width of each text in the parts, by the name of its dimension."""
-    widths = dict.fromkeys(texts, 0)
-    for row in rows:
-        with h5py.File(directory / "parts" / row.name, "r", locking=False) as part:
-            for name in filter(part.__contains__, texts):
-                widths[name] = max(widths[name], h5py.h5d.open(part.id, name.encode()).shape[1])
-    return {f"{name}_length": width for name, width in widths.items()}
+    widths: dict[str, int] = {}
+    for path in paths:
+        with h5py.File(path, "r", locking=False) as part:
+            for name in filter(lambda name: name.endswith("_length"), map(str, part)):
+                dimension: Any = part[name]
+                widths[name] = max(widths.get(name, 0), dimension.shape[0])
+    return widths
 
 
-def _blocks(directory: Path, rows: list[PartRow], types: dict[str, np.dtype[Any]]) -> Iterator[list[NDArray[Any]]]:
+def _blocks(paths: Sequence[Path]) -> Iterator[dict[str, NDArray[Any]]]:
     """Values of each variable over as many consecutive parts as fill ``_COPIED_BYTES``."""
-    block: list[list[NDArray[Any]]] = []
+    block: list[dict[str, NDArray[Any]]] = []
     size = 0
-    for row in rows:
-        with h5py.File(directory / "parts" / row.name, "r", locking=False) as part:
-            block.append([_values(part, name, dtype, row.records) for name, dtype in types.items()])
-        size += sum(values.nbytes for values in block[-1])
+    for path in paths:
+        block.append(stored_columns(path))
+        size += sum(values.nbytes for values in block[-1].values())
         if size > _COPIED_BYTES:
-            yield [_joined(values) for values in zip(*block, strict=True)]
+            yield _joined(block)
             block, size = [], 0
     if block:
-        yield [_joined(values) for values in zip(*block, strict=True)]
+        yield _joined(block)
 
 
-def _values(part: h5py.File, name: str, dtype: np.dtype[Any], records: int) -> NDArray[Any]:
-    """Values of a per-record variable of a part, 0 if it has none; through the objects of h5py it takes twice as long."""
-    if name not in part:
-        return np.zeros((records, 0) if dtype == "S1" else records, dtype)
-    stored = h5py.h5d.open(part.id, name.encode())
-    values = np.empty(stored.shape, stored.dtype)
-    stored.read(h5py.h5s.ALL, h5py.h5s.ALL, values)
-    return values
-
-
-def _joined(values: tuple[NDArray[Any], ...]) -> NDArray[Any]:
+def _joined(block: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
     """Values of consecutive parts one after the other; text is filled up to the width of the widest."""
-    if values[0].ndim == 1:
-        return np.concatenate(values)
-    joined = np.zeros((sum(map(len, values)), max(value.shape[1] for value in values)), "S1")
-    start = 0
-    for value in values:
-        joined[start : start + len(value), : value.shape[1]] = value
-        start += len(value)
+    joined: dict[str, NDArray[Any]] = {}
+    for name, values in block[0].items():
+        rows = [columns[name] for columns in block]
+        if values.ndim == 1:
+            joined[name] = np.concatenate(rows)
+            continue
+        width = max(row.shape[1] for row in rows)
+        padded = [np.pad(row.view(np.uint8), ((0, 0), (0, width - row.shape[1]))) for row in rows]
+        joined[name] = np.concatenate(padded).view("S1")
     return joined
 
 
-def _declare_like(part: netCDF4.Dataset, index: netCDF4.Dataset, lengths: dict[str, int]) -> None:
+def _declare_like(part: netCDF4.Dataset, file: netCDF4.Dataset, lengths: dict[str, int], *, signal: bool) -> None:
+    """Declare the variables of a part in a file with other lengths of dimensions, and copy the axes."""
     for name, length in lengths.items():
-        index.createDimension(name, length)
+        file.createDimension(name, length)
     for name, variable in part.variables.items():
-        if name == SIGNAL:
+        if name == SIGNAL and not signal:
             continue
-        storage: dict[str, Any] = {"fill_value": False}
-        if variable.dtype == "S1" and variable.dimensions[0] == "record":  # drawn values repeat from record to record
+        attributes = {key: variable.getncattr(key) for key in variable.ncattrs()}
+        storage: dict[str, Any] = {"fill_value": attributes.pop("_FillValue", False)}
+        if name == SIGNAL:
+            filters = variable.filters()
+            codec = {"compression": "zstd"} if filters.get("zstd") else {"zlib": bool(filters["zlib"])}
+            storage |= {"chunksizes": variable.chunking(), "shuffle": bool(filters["shuffle"]), **codec}
+            storage |= {"complevel": filters["complevel"]}
+        elif name == "elapsed_time":
+            storage |= CODECS["zlib"].options
+        elif variable.dtype == "S1" and variable.dimensions[0] == "record":  # drawn values repeat from record to record
             shape = [lengths[dimension] for dimension in variable.dimensions]
             storage |= {"zlib": True, "complevel": 1, "chunksizes": (min(_CHUNK_RECORDS, shape[0]), shape[1])}
-        copy = index.createVariable(name, variable.dtype, variable.dimensions, **storage)
+        copy = file.createVariable(name, variable.dtype, variable.dimensions, **storage)
         copy.set_auto_maskandscale(False)
         copy.set_auto_chartostring(False)
-        copy.setncatts({key: variable.getncattr(key) for key in variable.ncattrs()})
+        copy.setncatts(attributes)
         if "record" not in variable.dimensions:
             copy[:] = variable[:]
-
-
-def _write_virtual_signal(directory: Path, rows: list[PartRow], path: Path) -> None:
-    with h5py.File(directory / "parts" / rows[0].name) as part:
-        model: Any = part[SIGNAL]
-        shape, dtype = model.shape, model.dtype
-        attributes = {
-            key: model.attrs[key] for key in model.attrs if key not in ("DIMENSION_LIST", "_Netcdf4Coordinates")
-        }
-    layout: Any = h5py.VirtualLayout((sum(row.records for row in rows), *shape[1:]), dtype)
-    layout.dcpl.set_obj_track_times(False)
-    first = 0
-    for row in rows:
-        source = h5py.VirtualSource(f"parts/{row.name}", SIGNAL, (row.records, *shape[1:]), dtype)
-        layout[first : first + row.records] = source
-        first += row.records
-    with h5py.File(path, "r+") as index:
-        fill = MISSING_COUNT if np.issubdtype(dtype, np.integer) else np.nan
-        signal = index.create_virtual_dataset(SIGNAL, layout, fillvalue=fill)
-        for key, value in attributes.items():
-            signal.attrs[key] = value
-        for axis, name in enumerate(("record", "channel", "elapsed_time")):
-            signal.dims[axis].attach_scale(index[name])

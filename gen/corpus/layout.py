@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.files import Stamp, stamp
-from gen.corpus.packed import PACKED
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -24,9 +23,6 @@ _HDF5_OWN = {
 _ACTED_ON = (*PACKING, "missing_value", "_Unsigned", "dtype", "calendar", "bounds", "grid_mapping")
 
 
-_chunks_of: dict[tuple[str, Stamp], int] = {}
-
-
 class Packing(NamedTuple):
     """Storage of a signal: its type, the factor from counts to m s-2, and the count that stands for a missing sample."""
 
@@ -36,7 +32,7 @@ class Packing(NamedTuple):
 
     @property
     def decoded(self) -> np.dtype[Any]:
-        """Type of the decoded signal: that of the scale factor, double in older corpora, single in new ones."""
+        """Type of the decoded signal: that of the scale factor."""
         return self.dtype if self.scale is None else self.scale.dtype
 
     def decode(self, stored: NDArray[Any], out: NDArray[Any]) -> None:
@@ -78,23 +74,10 @@ def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
     records, channels, samples = stored.shape
     check_limit("records", records, f"{stored.file.filename}: holds", CorpusError)
     check_limit("record_samples", channels * samples, f"{stored.file.filename}: a record has", CorpusError)
-    if not stored.is_virtual:
-        if PACKED not in stored.file.attrs:  # a packed file is read some records at a time
-            check_limit("part_samples", records * channels * samples, f"{stored.file.filename}: holds", CorpusError)
-        if stored.chunks != (1, 1, samples) or _n_chunks(stored) != records * channels:
-            raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
+    # every record costs a chunk: a file with fewer chunks could claim any number of records
+    if stored.chunks != (1, 1, samples) or stored.id.get_num_chunks() != records * channels:
+        raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
     return stored.shape
-
-
-def _n_chunks(stored: h5py.Dataset) -> int:
-    """Number of stored chunks. That of a packed file is kept: HDF5 counts 200,000 chunks in 0.1 s, and the file is opened for each part."""
-    if PACKED not in stored.file.attrs:
-        return stored.id.get_num_chunks()
-    key = (stored.file.filename, stamp(stored.file.filename))
-    if key not in _chunks_of:
-        _chunks_of.clear()
-        _chunks_of[key] = stored.id.get_num_chunks()
-    return _chunks_of[key]
 
 
 def is_deflated(stored: h5py.Dataset) -> bool:
@@ -117,6 +100,16 @@ def is_text(stored: h5py.Dataset, name: str, dimension: str, size: int) -> bool:
             f"{name} is of type {stored.dtype} and shape {stored.shape}, not one value for each {dimension}"
         )
     return text
+
+
+def is_utf8(rows: NDArray[Any]) -> bool:
+    """Whether each row of characters, shape (record, character), is text in UTF-8."""
+    try:
+        for row in np.ascontiguousarray(rows).view(f"S{rows.shape[-1]}").ravel() if rows.size else ():
+            row.decode()
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def plain_attributes(stored: h5py.Dataset, name: str) -> dict[str, Any]:
@@ -146,3 +139,23 @@ def _plain(value: Any, name: str) -> Any:
     if isinstance(value, str | np.integer | np.floating):
         return value
     raise ValueError(f"the attribute {name} is neither text nor numbers")
+
+
+def stored_signal(signal: xr.Variable) -> tuple[NDArray[Any], float | None]:
+    """Counts of a signal and their scale, or accelerations and None; a decoded signal is turned back into its counts."""
+    scale = packing_scale(signal)
+    if scale is None or "scale_factor" in signal.attrs:
+        return signal.values, scale
+    counts = np.rint(np.asarray(signal.values, np.float64) / scale)
+    lost = np.isnan(counts)
+    if lost.any():
+        counts[lost] = float(signal.encoding["_FillValue"])
+    return counts.astype(np.int16), scale
+
+
+def packing_scale(signal: xr.Variable) -> float | None:
+    """Factor from counts to m s-2 of a signal, decoded or not; None if it is stored in floating point."""
+    if "scale_factor" in signal.attrs:
+        return float(signal.attrs["scale_factor"])
+    counts = np.dtype(signal.encoding.get("dtype", signal.dtype)).kind == "i"
+    return float(signal.encoding["scale_factor"]) if counts else None

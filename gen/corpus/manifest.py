@@ -1,240 +1,358 @@
-"""The manifest of a corpus: its files with size and hash, and whether it is complete.
+"""The manifest of a corpus: its files with size and hash, and where its records come from.
 
-All checks start at ``manifest.json``: a part or an index with another size or hash is refused before anything is read from it. The
-manifest of an unfinished corpus is completed by the rows of the journal (:mod:`gen.corpus.journal`).
+A folder has it as ``manifest.json``; a single file has the same facts as global attributes. All checks of a folder start at
+``manifest.json``: a part with another size or hash is refused before anything is read from it.
 """
 
+import hashlib
 import json
 import os
+import re
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
 
-from gen.corpus.files import plain_file, sha256, stamp, write_text_durably
-from gen.corpus.journal import (
-    FileRow,
-    first_problem,
-    listed,
-    name_problem,
-    part_number,
-    read_journal,
-)
-from gen.corpus.manifest_fields import Manifest
-from gen.corpus.packed import is_packed, packed_contents
+from gen.corpus.blocks import RecordBlock, blocks_of
+from gen.corpus.files import has_checksum, has_whole_bytes, plain_file, sha256, write_text_durably
+from gen.corpus.open_files import file_facts
 from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
-from gen.corpus.record_checks import record_problems
 from gen.corpus.schema import FORMAT
-from gen.corpus.signals import summed
+from gen.corpus.signals import SignalCounts, summed
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
 Check = Literal["sha256", "size"]
 
-INDEX_NAME = "corpus.nc"
-MANIFEST_NAME = "manifest.json"
-EXTENSION_NAME = "extension.json"
-"""Manifest of a corpus that is being extended: as it will be, with the finished parts; the other manifest is as it was."""
+INDEX_NAME, MANIFEST_NAME, RECIPE_NAME = "index.nc", "manifest.json", "recipe.yaml"
+RECIPE_TEXT = "recipe_text"
+"""Global attribute of a single file with its recipe, as ``recipe.yaml`` of a folder."""
+
+_PART_NAME = re.compile(r"part-\d{5,9}\.nc")
+_TEXTS = ("title", "recipe", "recipe_sha256", "sources_sha256", "parts_sha256", "importer")
+"""Facts that are text; the others are stored as JSON in global attributes."""
+
+_COUNTED = ("raceway_format", "complete", "records", "signals", "publication", "parts_sha256", "parts")
+"""Facts that :func:`facts_of_parts` computes or checks."""
+
+Count = Annotated[int, Field(ge=0, lt=2**63)]
+_Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
+_Sentences = tuple[str, ...]
 
 
-def manifest_content(
-    rows: Iterable[PartRow], *, index: Path | None = None, publication: Publication | None = None, **facts: Any
-) -> dict[str, Any]:
-    """Content of ``manifest.json``; ``index`` is ``corpus.nc`` of a complete corpus."""
+class Strict(BaseModel):
+    """Checked value of the manifest: no conversion of types, no unknown field, and no change."""
+
+    model_config = ConfigDict(strict=True, frozen=True, extra="forbid")
+
+
+class _Signals(Strict):
+    clipped: Count = 0
+    dead: Count = 0
+    constant: Count = 0
+    not_finite: Count = 0
+
+
+class ListedPart(Strict):
+    """A part as it is listed in the manifest."""
+
+    name: Annotated[str, StringConstraints(pattern=r"^part-[0-9]{5,9}\.nc$")]
+    records: Count
+    bytes: Count
+    sha256: _Hash
+    signals_: Annotated[_Signals, Field(alias="signals")]
+
+    @property
+    def row(self) -> PartRow:
+        """The same row as a tuple."""
+        return PartRow(self.name, self.records, self.bytes, self.sha256, SignalCounts(**dict(self.signals_)))
+
+
+class Overrides(Strict):
+    """Seed and number of records that replaced those of the recipe."""
+
+    seed: int | None = None
+    records: int | None = None
+
+
+class Manifest(Strict):
+    """Facts of a corpus after their check; those of simulated corpora are None in imported ones, and the other way round."""
+
+    raceway_format: int
+    complete: bool = True
+    records: Count
+    signals_: Annotated[_Signals, Field(alias="signals")] = _Signals()
+    title: str | None = None
+    recipe: str | None = None
+    """Name of the recipe."""
+    recipe_sha256: str | None = None
+    """Hash of the recipe that all records, and no others, were generated from; None for a choice of them."""
+    sources_sha256: str | None = None
+    """Hash of the source files of Raceway that made the records."""
+    parts_sha256: str | None = None
+    """Hash over those of the parts; a single file keeps that of the parts that it was made of."""
+    overrides: Overrides | None = None
+    publication: Publication = Publication()
+    versions: Annotated[dict[str, str], Field(default_factory=dict)]
+    failures: _Sentences = ()
+    importer: str | None = None
+    basis: _Sentences = ()
+    """Sentences on what labels and units of recordings rest on."""
+    recordings: Count | None = None
+    skipped: _Sentences = ()
+    warnings: _Sentences = ()
+    parts_: Annotated[tuple[ListedPart, ...], Field(alias="parts")] = ()
+
+    @property
+    def parts(self) -> list[PartRow]:
+        """Rows of the parts, in the order of their records; none of a single file."""
+        return [part.row for part in self.parts_]
+
+    @property
+    def signals(self) -> SignalCounts:
+        """Counts of the records that cannot be used."""
+        return SignalCounts(**dict(self.signals_))
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        """Refuse names and counts that disagree."""
+        names = [part.name for part in self.parts_]
+        if (repeated := next((name for name, count in Counter(names).items() if count > 1), None)) is not None:
+            raise ValueError(f"it lists {repeated} more than once")
+        if names and sum(part.records for part in self.parts_) != self.records:
+            raise ValueError(f"it counts {self.records} records, its parts {sum(part.records for part in self.parts_)}")
+        if names and summed(row.signals for row in self.parts) != self.signals:
+            raise ValueError("it counts other unusable records than its parts")
+        for counts, records in ((self.signals, self.records), *((row.signals, row.records) for row in self.parts)):
+            if sum(counts) > records:
+                raise ValueError(f"it counts {sum(counts)} unusable records of {records}")
+        return self
+
+
+def facts_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complete: bool = True) -> dict[str, Any]:
+    """Contents of the manifest: counts and parts, and further ``facts`` by the names of the fields of :class:`Manifest`.
+
+    ``publication`` is a :class:`gen.corpus.Publication`; the others are values of JSON.
+    """
     rows = list(rows)
-    content = {
+    publication: Publication = facts.get("publication") or Publication()
+    known = {name: value for name, value in facts.items() if name not in _COUNTED and value is not None}
+    return {
         "raceway_format": FORMAT,
-        "complete": index is not None,
+        "complete": complete,
         "records": sum(row.records for row in rows),
         "signals": summed(row.signals for row in rows)._asdict(),
-        "index": None if index is None else listed_file(index),
-        **facts,
-        "parts": [listed(row) for row in rows],
+        **known,
+        **({"publication": publication.stored} if publication.stored else {}),
+        "parts_sha256": hashlib.sha256("\n".join(row.sha256 for row in rows).encode()).hexdigest(),
+        "parts": [row._asdict() | {"signals": row.signals._asdict()} for row in rows],
     }
-    return with_publication(content, publication or Publication())
 
 
-def with_publication(content: dict[str, Any], publication: Publication) -> dict[str, Any]:
-    """Content of ``manifest.json`` with another publication, which stands before the parts, and with one index."""
-    kept = {key: value for key, value in content.items() if key not in ("next_index", "publication", "parts")}
-    return kept | ({"publication": publication.stored} if publication.stored else {}) | {"parts": content["parts"]}
+def write_manifest(directory: Path, content: Mapping[str, Any]) -> None:
+    """Write ``manifest.json`` with the given contents."""
+    write_text_durably(json.dumps(content, indent=1) + "\n", directory / MANIFEST_NAME)
 
 
-def listed_file(path: Path) -> dict[str, Any]:
-    """Size and hash of a file as they are stored in JSON."""
-    return {"bytes": stamp(path)[0], "sha256": sha256(path)}
+def checked(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
+    """Manifest from its contents or its JSON; CorpusError, which names ``place``, if it is of another format or its counts disagree."""
+    try:
+        values: Mapping[str, Any] = json.loads(content) if isinstance(content, bytes) else content
+        _check_format(values["raceway_format"], place)
+        found = Manifest.model_validate_json(json.dumps(values))
+    except ValidationError as error:
+        reason = first_problem(error)
+    except (ValueError, KeyError, TypeError, RecursionError) as error:
+        reason = f"{type(error).__name__}: {error}"
+    else:
+        check_limit("records", found.records, f"{place}: counts", CorpusError)
+        return found
+    raise CorpusError(f"{place}: not the manifest of a corpus ({reason}); make or copy the corpus again.")
 
 
-def write_manifest(
-    directory: Path, rows: Iterable[PartRow], *, complete: bool, name: str = MANIFEST_NAME, **facts: Any
-) -> None:
-    """Write ``manifest.json``: the finished parts, whether they are all, and ``facts`` such as recipe hash and versions.
-
-    For a complete corpus the index must exist. ``publication`` is a :class:`gen.corpus.Publication`; other facts are values of JSON.
-    ``name`` is that of the file.
-    """
-    content = manifest_content(rows, index=directory / INDEX_NAME if complete else None, **facts)
-    write_content(directory, content, name)
+def _check_format(found: Any, place: Path) -> None:
+    if found != FORMAT:
+        raise CorpusError(
+            f"{place}: corpus format {found}, this version of raceway reads format {FORMAT}; make the corpus again."
+        )
 
 
-def write_content(directory: Path, content: dict[str, Any], name: str = MANIFEST_NAME) -> None:
-    """Write ``manifest.json`` with the given content."""
-    write_text_durably(json.dumps(content, indent=1) + "\n", directory / name)
+def first_problem(error: ValidationError) -> str:
+    """Place and reason of the first error."""
+    item = error.errors(include_url=False, include_input=False)[0]
+    place = ".".join(str(step) for step in item["loc"])
+    reason = item["msg"].removeprefix("Value error, ")
+    reason = reason[:1].lower() + reason[1:]
+    return f"{place}: {reason}" if place else reason
 
 
-def read_manifest(directory: Path, name: str = MANIFEST_NAME) -> Manifest:
-    """Read and check ``manifest.json`` of a folder or of a packed file, and the journal if the corpus is unfinished.
+def read_manifest(path: Path | str) -> Manifest:
+    """Read and check the manifest of a corpus: ``manifest.json`` of a folder, the attributes of a single file.
 
-    Names that lead out of the corpus are refused. ``name`` is that of the file in a folder.
+    That of an unfinished corpus lists the parts that are in its folder.
 
     Raises
     ------
     CorpusError
-        If it is missing, unreadable or of another format version, has a wrong or repeated name of a part, or its counts disagree.
+        If it is missing, unreadable or of another format version, or its names or counts are wrong.
     """
-    path = directory / name
-    if directory.is_file():
-        return _checked(_packed_manifest(directory), path)
-    if not directory.is_dir():
+    path = Path(path)
+    if path.is_file():
+        return _manifest_of_file(path)
+    if not path.is_dir():
         raise CorpusError(
-            f"{directory}: no such folder; give the folder of a corpus, the one that holds manifest.json."
+            f"{path}: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file."
         )
-    if not path.exists():
-        raise CorpusError(f"{directory}: has no manifest.json, so it is not a corpus; make one with raceway generate.")
-    plain_file(directory, path.name)
+    place = path / MANIFEST_NAME
+    if not place.exists():
+        raise CorpusError(f"{path}: has no manifest.json, so it is not a corpus; make one with raceway generate.")
+    plain_file(path, MANIFEST_NAME)
     try:
-        check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
-        content = path.read_bytes()
+        check_limit("manifest_bytes", place.stat().st_size, f"{place}:", CorpusError)
+        content = place.read_bytes()
     except OSError as error:
-        raise CorpusError(f"{path}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
-    manifest = _checked(content, path)
-    return manifest if manifest.complete else _with_journal(manifest, directory)
+        raise CorpusError(f"{place}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
+    manifest = checked(content, place)
+    if manifest.complete and not manifest.parts_:
+        raise CorpusError(f"{place}: is marked complete and lists no parts; do not trust this corpus.")
+    return manifest if manifest.complete else _with_present_parts(manifest, path)
 
 
-def _checked(content: bytes, path: Path) -> Manifest:
-    """Manifest from its JSON; CorpusError if it is of another format version or its counts disagree."""
+def _manifest_of_file(file: Path) -> Manifest:
+    """Manifest from the global attributes of a file of records."""
+    if file.name == INDEX_NAME:
+        raise CorpusError(f"{file}: is the index of a corpus and holds no signals; give its folder, {file.parent}.")
+    attributes, records = file_facts(file)
+    _check_format(attributes.get("raceway_format"), file)
+    content: dict[str, Any] = {"raceway_format": FORMAT, "records": records}
     try:
-        manifest = Manifest.model_validate_json(content)
-    except ValidationError as error:
-        raise CorpusError(
-            f"{path}: not a corpus manifest ({first_problem(error)}); generate or copy the corpus again."
-        ) from None
-    if manifest.raceway_format != FORMAT:
-        found = manifest.raceway_format
-        raise CorpusError(
-            f"{path}: corpus format {found}, this version of raceway reads format {FORMAT}; make the corpus again."
-        )
-    problem = _inconsistency(manifest)
-    if problem is not None:
-        raise CorpusError(f"{path}: {problem}; do not trust this corpus.")
-    return manifest
+        content["signals"] = json.loads(attributes["signals"])
+        for name in Manifest.model_fields.keys() & attributes.keys() - {"raceway_format"}:
+            content[name] = attributes[name] if name in _TEXTS else json.loads(attributes[name])
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        raise CorpusError(f"{file}: has unreadable facts ({type(error).__name__}: {error}); copy it again.") from None
+    return checked(content, file)
 
 
-def _packed_manifest(file: Path) -> bytes:
-    """Manifest in a packed file; CorpusError if the file is no packed file."""
-    if not is_packed(file):
-        raise CorpusError(not_a_corpus(file))
-    packed = packed_contents(file)
-    manifest = packed.files.get("manifest.json", b"")
-    listed = {part.name: part.records for part in _checked(manifest, file / "manifest.json").parts}
-    if listed != {name: part.records for name, part in packed.parts.items()}:
-        raise CorpusError(f"{file}: its manifest lists other parts than it holds; do not trust this corpus.")
-    return manifest
+def facts_as_attributes(content: Mapping[str, Any]) -> dict[str, str]:
+    """Facts of a manifest as global attributes of a file."""
+    left_out = ("raceway_format", "complete", "records", "parts")
+    return {
+        name: value if name in _TEXTS else json.dumps(value) for name, value in content.items() if name not in left_out
+    }
 
 
-def not_a_corpus(file: Path) -> str:
-    """Sentence about a file that is no packed corpus."""
-    if file.name != INDEX_NAME:
-        return f"{file}: is a file and no packed corpus; give the folder of a corpus, the one that holds manifest.json."
-    if (file.parent / "manifest.json").is_file():
-        return f"{file}: is one file of a corpus; give the folder of the corpus, {file.parent}."
-    return (
-        f"{file}: is the index of a corpus without its parts, so it holds no signals; copy the whole folder, "
-        "or make one file of it with raceway pack."
-    )
+def _with_present_parts(manifest: Manifest, directory: Path) -> Manifest:
+    """Manifest of an unfinished corpus with the whole parts in its folder, in the order of their records."""
+    found = (path for path in (directory / "parts").glob("part-*.nc") if _PART_NAME.fullmatch(path.name))
+    paths = sorted(found, key=lambda path: (len(path.name), path.name))  # part-100000 comes after part-99999
+    rows = [row for row in map(row_of, paths) if row is not None]
+    content = manifest.model_dump(mode="json", by_alias=True) | facts_of_parts(rows, {}, complete=False)
+    return checked(content, directory / MANIFEST_NAME)
 
 
-def _with_journal(manifest: Manifest, directory: Path) -> Manifest:
-    """Manifest of an unfinished corpus with the parts of its journal, in the order of their records; of a part, the last row counts."""
-    rows = {part.name: part for part in (*manifest.parts_, *read_journal(directory))}
-    parts = tuple(sorted(rows.values(), key=lambda part: part_number(part.name)))
-    records = sum(part.records for part in parts)
-    check_limit("records", records, f"{directory}: holds", CorpusError)
-    return manifest.model_copy(update={"parts_": parts, "records": records})
+def row_of(path: Path) -> PartRow | None:
+    """Row of a finished part, from its file; None if there is no whole file of this format."""
+    if path.is_symlink() or not path.is_file() or not has_whole_bytes(path):
+        return None
+    try:
+        found = _manifest_of_file(path)
+    except CorpusError:
+        return None
+    return PartRow(path.name, found.records, path.stat().st_size, sha256(path), found.signals)
 
 
-def _inconsistency(manifest: Manifest) -> str | None:
-    names = [part.name for part in manifest.parts_]
-    if (problem := next(filter(None, map(name_problem, names)), None)) is not None:
-        return problem
-    if (repeated := next((name for name, count in Counter(names).items() if count > 1), None)) is not None:
-        return f"it lists {repeated} more than once"
-    records = sum(part.records for part in manifest.parts_)
-    if manifest.records != records:
-        return f"it counts {manifest.records} records, its parts {records}"
-    if manifest.complete and (manifest.index is None or not names):
-        return "it is marked complete but has no hash of corpus.nc or no parts"
-    if manifest.origins and sum(origin.parts for origin in manifest.origins) != len(names):
-        return "its origins have another number of parts than it lists"
-    check_limit("records", records, str(names and "the corpus holds"), CorpusError)
-    return None
+def recipe_text(path: Path | str) -> str | None:
+    """Recipe of a corpus as YAML; None if it has none."""
+    path = Path(path)
+    if path.is_file():
+        return file_facts(path)[0].get(RECIPE_TEXT)
+    if not (path / RECIPE_NAME).exists():
+        return None
+    file = plain_file(path, RECIPE_NAME)
+    check_limit("yaml_bytes", file.stat().st_size, f"{file}:", CorpusError)
+    return file.read_text("utf-8", errors="replace")
 
 
-def file_problems(directory: Path, manifest: Manifest, check: Check) -> list[str]:
-    """Missing and altered files, one sentence each; the index is included if the corpus is complete. Of a packed file: damaged records."""
-    if directory.is_file():
-        return record_problems(directory) if check == "sha256" else []
-    wanted = {f"parts/{row.name}": [FileRow(bytes=row.bytes, sha256=row.sha256)] for row in manifest.parts}
-    if manifest.complete:
-        wanted[INDEX_NAME] = [row for row in (manifest.index, manifest.next_index) if row is not None]
-    judge, items = partial(_file_problem, directory, check), list(wanted.items())
+def file_problems(path: Path, manifest: Manifest, check: Check) -> list[str]:
+    """Missing and altered files of the folder of a corpus, one sentence each; none of a single file (see :func:`check_bytes`)."""
+    if path.is_file():
+        return []
+    rows: list[PartRow | None] = [*manifest.parts, *([None] if manifest.complete else [])]
     if check == "size":
-        found = [judge(item) for item in items]
+        found = [_file_problem(path, row, check) for row in rows]
     else:
-        threads = min(8, len(os.sched_getaffinity(0)))  # hashing releases the interpreter lock
-        with ThreadPoolExecutor(threads) as pool:
-            shares = pool.map(lambda first: [judge(item) for item in items[first::threads]], range(threads))
-            found = [problem for share in shares for problem in share]
+        with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)))) as pool:  # hashing releases the interpreter lock
+            found = list(pool.map(lambda row: _file_problem(path, row, check), rows, chunksize=16))
     return sorted(problem for problem in found if problem is not None)
 
 
-def _file_problem(directory: Path, check: Check, item: tuple[str, list[FileRow]]) -> str | None:
-    """Sentence about a file that is missing, or is none of those that the manifest allows under its name."""
-    name, rows = item
+def _file_problem(directory: Path, row: PartRow | None, check: Check) -> str | None:
+    """Sentence about a part that is missing or not the listed one; without a row, about the index."""
     try:
-        path = plain_file(directory, name)
+        file = plain_file(directory, INDEX_NAME if row is None else f"parts/{row.name}")
+        if row is None:
+            whole = check == "size" or has_whole_bytes(file)
+        else:
+            whole = file.stat().st_size == row.bytes and (check == "size" or sha256(file) == row.sha256)
     except CorpusError as error:
         return str(error)
-    size = path.stat().st_size
-    if any(size == row.bytes and (check == "size" or sha256(path) == row.sha256) for row in rows):
-        return None
-    return f"{path}: is altered: its size or hash differs from the manifest; copy it again, or delete it and make the corpus again."
+    except OSError as error:
+        return f"{directory}: cannot be read ({error.strerror or error}); copy it again."
+    return None if whole else _altered(file)
 
 
-def part_paths(directory: Path | str, check: Check = "sha256") -> list[Path]:
-    """Paths of all parts of a finished corpus, after a check of every file; through a packed file they lead to ranges of its records.
+def _altered(file: Path) -> str:
+    return (
+        f"{file}: is altered, cut off or rewritten by another program: its bytes do not have the hash that Raceway stored; copy it again, "
+        f"or delete it and make the corpus again."
+    )
 
-    ``check="size"`` compares sizes only, for corpora that take too long to hash. It checks no record of a packed file.
+
+def check_bytes(file: Path) -> None:
+    """Refuse a single file that has been altered, before a library opens it."""
+    try:
+        ends, whole = has_checksum(file), has_whole_bytes(file)
+    except OSError as error:
+        raise CorpusError(f"{file}: cannot be read ({error.strerror or error}); copy it again.") from None
+    if not ends:
+        raise CorpusError(
+            f"{file}: has no checksum of Raceway at its end: it is no corpus of this format, or was cut off or rewritten by another "
+            f"program; give a corpus, or copy it again."
+        )
+    if not whole:
+        raise CorpusError(_altered(file))
+
+
+def corpus_files(path: Path | str, check: Check = "sha256") -> list[Path]:
+    """Files with the signals of a finished corpus, in the order of the records: the parts of a folder, or the single file.
+
+    Every file is compared with its hash first; ``check="size"`` compares sizes only, for corpora that take too long to hash.
 
     Raises
     ------
     CorpusError
         If the corpus is unfinished, or one of its files is missing, altered or outside its folder.
     """
-    directory = Path(directory)
-    manifest = read_manifest(directory)
+    path = Path(path)
+    if path.is_file() and check == "sha256":
+        check_bytes(path)
+    manifest = read_manifest(path)
     if not manifest.complete:
-        raise CorpusError(f"{directory}: is unfinished; run the raceway generate command that began it again.")
-    problems = file_problems(directory, manifest, check)
-    if problems and (directory / EXTENSION_NAME).exists():
-        raise CorpusError(
-            f"{problems[0].split('; ')[0]}; run the raceway extend command that began an extension of it again."
-        )
+        raise CorpusError(f"{path}: is unfinished; run the raceway generate command that began it again.")
+    problems = file_problems(path, manifest, check)
     if problems:
         raise CorpusError(problems[0])
-    return [directory / "parts" / row.name for row in manifest.parts]
+    return [path] if path.is_file() else [path / "parts" / row.name for row in manifest.parts]
+
+
+def record_blocks(path: Path | str, check: Check = "sha256") -> list[RecordBlock]:
+    """All records of a finished corpus in blocks that fit the memory of a task; it raises the errors of :func:`corpus_files`."""
+    path = Path(path)
+    files, manifest = corpus_files(path, check), read_manifest(path)
+    counts = [row.records for row in manifest.parts] or [manifest.records]
+    return [block for file, records in zip(files, counts, strict=True) for block in blocks_of(file, records)]

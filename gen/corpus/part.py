@@ -1,5 +1,6 @@
-"""One part of a corpus: a complete netCDF-4 file of some hundred records, written atomically."""
+"""One file of records: a complete netCDF-4 file, written atomically, that ends with its checksum. The parts of a corpus are such files."""
 
+import json
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
@@ -12,7 +13,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.codecs import CODECS, Codec
-from gen.corpus.files import sha256, whole_or_not_at_all
+from gen.corpus.files import append_checksum, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
 from gen.corpus.signals import SignalCounts, counted, judge
@@ -44,11 +45,10 @@ def part_name(number: int) -> str:
 Chunks = Mapping[tuple[int, ...], bytes]
 
 
-def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: Chunks | None = None) -> PartRow:
-    """Write records as a part, atomically, with one chunk per record and channel.
+def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRow:
+    """Write records as a part, atomically, with one chunk per record and channel; the attribute ``signals`` counts unusable records.
 
-    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``. ``chunks`` are the deflated counts by
-    record and channel, if they are known already.
+    ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``.
 
     Raises
     ------
@@ -56,11 +56,12 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: C
         If writing fails, with the reason that the system gives.
     """
     signal = dataset[SIGNAL].values
-    if chunks is None:
-        chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
+    signals = counted(judge(signal))
+    chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
-            texts = set_attributes(file, {str(name): value for name, value in dataset.attrs.items()})
+            attributes = {str(name): value for name, value in dataset.attrs.items()}
+            texts = set_attributes(file, attributes | {"signals": json.dumps(signals._asdict())})
             for dimension, size in dataset.sizes.items():
                 file.createDimension(str(dimension), size)
             # all variables are declared before any is written: alternating takes 50 % longer
@@ -73,7 +74,8 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib", chunks: C
             with h5py.File(temporary, "r+") as file:
                 write_unicode(file, texts)
                 _write_chunks(chunks, file)
-    return PartRow(path.name, len(signal), path.stat().st_size, sha256(path), counted(judge(signal)))
+        digest = append_checksum(temporary)
+    return PartRow(path.name, len(signal), path.stat().st_size, digest, signals)
 
 
 def _declare(

@@ -1,7 +1,7 @@
 """Who made a corpus, under which licence it may be used, and how to cite it.
 
-The same facts stand in the manifest, in the attributes of ``corpus.nc``, in ``croissant.json`` and in the data card. No part depends on
-them, so that a corpus can be published under another licence without a new simulation.
+The same facts stand in the manifest, in the attributes of ``index.nc`` or of the single file, in ``croissant.json`` and in the data card.
+No part depends on them, so that a corpus can be published under another licence without a new simulation.
 """
 
 import re

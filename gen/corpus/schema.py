@@ -16,7 +16,7 @@ from gen.errors import CorpusError
 if TYPE_CHECKING:
     import xarray as xr
 
-FORMAT = 2
+FORMAT = 3
 FAULTS = ("healthy", "inner", "outer", "ball", "cage", "compound")
 UNKNOWN, UNKNOWN_CODE = "unknown", 127  # recording whose class is not known: a value of ``fault``, not a class
 FAULT_NAMES: Mapping[int, str] = {**dict(enumerate(FAULTS)), UNKNOWN_CODE: UNKNOWN}
@@ -30,6 +30,9 @@ _CONTENT_OF_ROLES = {  # words of ISO 19115-1 in the attribute coverage_content_
 }
 SIGNAL = "acceleration"
 DRAWS = "draws"  # variable of simulated corpora: all drawn values of a record, as JSON of some kilobytes
+IDENTITY = (
+    "identity"  # joined corpora get new numbers from it, so that a machine has the same number in all of their records
+)
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
 MISSING_COUNT = -32768  # value that a missing part reads as; the converter never gives it
 
@@ -76,7 +79,23 @@ SCHEMA = (
     Variable("recording", "i4", "1", "provenance", "number of the recording that the record was cut from"),
     Variable("split", "i1", "1", "provenance", "split that the record belongs to", dict(enumerate(SPLITS))),
     Variable("source", "str", "1", "provenance", "file or recipe that the record comes from, and its place there"),
+    Variable(
+        IDENTITY,
+        "str",
+        "1",
+        "provenance",
+        "corpus that numbered the record first, and its rig, specimen, recording and pair there, with slashes between",
+    ),
 )
+
+
+def identity(corpus: str, rig: int, specimen: int, recording: int, pair: int = -1) -> str:
+    """Identity of a record, which stays when joined corpora get new numbers.
+
+    >>> identity("0123456789ab", 0, 3, 7)
+    '0123456789ab/0/3/7/-1'
+    """
+    return f"{corpus}/{rig}/{specimen}/{recording}/{pair}"
 
 
 def signal_attributes(counts_per_unit: float | None) -> dict[str, Any]:
@@ -197,14 +216,14 @@ def make_dataset(
     )
 
 
-def schema_problems(dataset: "xr.Dataset") -> list[str]:
-    """Deviations of ``dataset`` from the format, one sentence each."""
+def schema_problems(dataset: "xr.Dataset", further: tuple[Variable, ...] = ()) -> list[str]:
+    """Deviations of ``dataset`` from the format, one sentence each; ``further`` are variables that a corpus may have beside ``SCHEMA``."""
     problems = [f"variable {name} is missing." for name in _missing(dataset)]
     if problems:
         return problems
     if dataset[SIGNAL].dims != SIGNAL_DIMS:
         problems.append(f"{SIGNAL} has dimensions {dataset[SIGNAL].dims}, not {SIGNAL_DIMS}.")
-    known = {variable.name: variable for variable in SCHEMA}
+    known = {variable.name: variable for variable in SCHEMA + further}
     for name, array in dataset.variables.items():
         if name in (SIGNAL, "channel", "elapsed_time"):
             continue
@@ -212,8 +231,7 @@ def schema_problems(dataset: "xr.Dataset") -> list[str]:
             problems.append(f"{name} has dimensions {array.dims}, not ('record',).")
         if array.attrs.get("role") not in ROLES or "long_name" not in array.attrs:
             problems.append(f"{name} needs a long_name and a role, one of {', '.join(ROLES)}.")
-        if name in known:
-            problems += _values_problems(known[str(name)], array)
+        problems += _values_problems(known.get(str(name)), str(name), array)
     return problems
 
 
@@ -222,13 +240,21 @@ def _missing(dataset: "xr.Dataset") -> list[str]:
     return [name for name in required if name not in dataset.variables]
 
 
-def _values_problems(variable: Variable, array: "xr.Variable") -> list[str]:
-    if variable.dtype == "str":
+def _values_problems(known: Variable | None, name: str, array: "xr.Variable") -> list[str]:
+    """Type, unit and classes of a variable other than those of the format."""
+    try:
+        flags = class_names(array.attrs)
+    except (ValueError, OverflowError):
+        return [f"{name} has flag_values that are not whole numbers."]
+    if known is None:
         return []
-    if array.dtype.kind != np.dtype(variable.dtype).kind:
-        return [f"{variable.name} is of type {array.dtype}, not {np.dtype(variable.dtype)}."]
-    if array.attrs.get("units") != variable.units:
-        return [f"{variable.name} is in {array.attrs.get('units')!r}, not {variable.units!r}."]
-    if variable.flags and not np.isin(array.values, [*variable.flags]).all():
-        return [f"{variable.name} has values other than {listed_flags(variable.flags)}."]
+    kind = "O" if known.dtype == "str" else np.dtype(known.dtype).kind
+    if array.dtype.kind != kind:
+        return [f"{name} is of type {array.dtype}, not {'text' if kind == 'O' else np.dtype(known.dtype)}."]
+    if array.attrs.get("units") != known.units:
+        return [f"{name} is in {array.attrs.get('units')!r}, not {known.units!r}."]
+    if flags != dict(known.flags):
+        return [f"{name} has the classes {listed_flags(flags) or 'none'}, not {listed_flags(known.flags) or 'none'}."]
+    if known.flags and not np.isin(array.values, [*known.flags]).all():
+        return [f"{name} has values other than {listed_flags(known.flags)}."]
     return []

@@ -3,7 +3,12 @@
 :mod:`gen.labels` fills them; ``docs/format.md`` lists them.
 """
 
-from gen.corpus.schema import DRAWS, Variable
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from gen.corpus.schema import DRAWS, UNKNOWN, Variable, class_names
 
 # 20 log10 of the ratio of two rms; CF has no unit for levels
 _SNR = "bearing over background or rounding of the converter in decibels re 1, NaN without either or in silence"
@@ -53,3 +58,17 @@ SIMULATED = (
     Variable("level_tries", "i2", "1", "provenance", "levels drawn before this one, at which the fault could not be seen"),
     Variable(DRAWS, "str", "1", "provenance", "every drawn value of the record, as JSON"),
 )  # fmt: skip
+
+
+def unknown_value(dtype: np.dtype[Any], attributes: Mapping[Any, Any]) -> Any:
+    """Value of a variable in records of a corpus that lacks it: empty text, NaN, ``unjudged`` or ``unknown`` of a class, or else -1.
+
+    >>> unknown_value(np.dtype("f8"), {}), unknown_value(np.dtype("i4"), {}), unknown_value(np.dtype("O"), {})
+    (nan, -1, '')
+    """
+    if dtype.kind == "f":
+        return np.nan
+    if dtype.kind not in "iu":
+        return ""
+    names = class_names(attributes).items()
+    return next((code for code, name in names if name in ("unjudged", UNKNOWN)), -1)

@@ -1,112 +1,137 @@
-"""Validation of a corpus: its files, the format of each part, and the agreement of ``corpus.nc`` with the parts."""
+"""Validation of a corpus: its files, the format of its variables, and the agreement of index, manifest and parts."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-import h5py
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
-from gen.corpus.files import sha256
-from gen.corpus.hdf5 import CRASHES, LIBRARY_LOCK, own_dataset, survives_opening
-from gen.corpus.index import open_corpus
-from gen.corpus.layout import PACKING
-from gen.corpus.manifest import INDEX_NAME, Manifest, file_problems, read_manifest
-from gen.corpus.part import PartRow
-from gen.corpus.reading import open_part, stored_blocks
-from gen.corpus.schema import SIGNAL, schema_problems
-from gen.corpus.signals import VERDICTS, counted, described, judge
+from gen.corpus.blocks import blocks_of, stored_blocks, stored_columns
+from gen.corpus.card.page import card_folder
+from gen.corpus.croissant import CROISSANT_NAME, croissant_text
+from gen.corpus.index import corpus_attributes, open_corpus
+from gen.corpus.layout import is_utf8
+from gen.corpus.manifest import (
+    INDEX_NAME,
+    MANIFEST_NAME,
+    Manifest,
+    check_bytes,
+    facts_of_parts,
+    file_problems,
+    read_manifest,
+    recipe_text,
+)
+from gen.corpus.open_files import file_facts
+from gen.corpus.signals import VERDICTS, SignalCounts, counted, described, judge
 from gen.errors import CorpusError
 
+_MADE_BY = ("recipe_sha256", "sources_sha256")
+"""Facts by which the parts of a generated corpus belong together; parts of a copy have none."""
 
-def validate_corpus(directory: Path | str) -> list[str]:
+
+def validate_corpus(path: Path | str) -> list[str]:
     """All problems of a corpus, one sentence each; an empty list if it has none.
 
-    Checks the manifest, the bytes of every file, the format of every part, the values of the signal, and the agreement of ``corpus.nc``
-    with the parts; of a packed file, every record in place of the files. One part at a time is held in memory.
+    Checks the bytes of every file, the manifest, the format of all variables, the values of the signal, the agreement of the index with
+    manifest and parts, and ``croissant.json``. One part at a time is held in memory.
     """
-    directory, problems = Path(directory), []
+    path = Path(path)
     try:
-        manifest = read_manifest(directory)
-        problems = file_problems(directory, manifest, "sha256")
+        if path.is_file():
+            check_bytes(path)
+        manifest = read_manifest(path)
+        problems = file_problems(path, manifest, "sha256")
         if problems or not manifest.complete:
-            return problems or [f"{directory}: is unfinished; run the raceway generate command that began it again."]
-        problems = [] if directory.is_file() else _mapping_problems(directory, manifest)
-        if problems:
-            return problems
-        with open_corpus(directory, check="size") as index:
-            first = 0
-            for row in manifest.parts:
-                path = directory / "parts" / row.name
-                with open_part(path) as part:
-                    if part.sizes["record"] != row.records:
-                        found = part.sizes["record"]
-                        return [
-                            *problems,
-                            f"{path}: {found} records, the manifest lists {row.records}; do not trust this corpus.",
-                        ]
-                    here = index.isel(record=slice(first, first + row.records))
-                    problems += [
-                        f"{path}: {text}" for text in (*_part_problems(part, here), *_signal_problems(path, row))
-                    ]
-                first += row.records
+            return problems or [f"{path}: is unfinished; run the raceway generate command that began it again."]
+        with open_corpus(path, check="size") as corpus:
+            problems = [*_facts_problems(path, manifest, corpus), *_records_problems(path, manifest)]
+        return problems + _croissant_problems(path)
     except CorpusError as error:
-        problems.append(str(error))
-    return problems
+        return [str(error)]
 
 
-def _mapping_problems(directory: Path, manifest: Manifest) -> list[str]:
-    """Problems of the virtual dataset in ``corpus.nc``, which readers other than :func:`gen.open_corpus` use."""
-    path, expected, first = directory / INDEX_NAME, [], 0
-    for row in manifest.parts:
-        expected.append((f"parts/{row.name}", SIGNAL, first, first + row.records - 1))
-        first += row.records
-    if not survives_opening(str(path), sha256(path), SIGNAL):
-        return [f"{path}: {CRASHES}."]
-    try:
-        with LIBRARY_LOCK, h5py.File(path, "r", locking=False) as index:
-            sources = own_dataset(index, SIGNAL, virtual=True).virtual_sources()
-            bounds = [source.vspace.get_select_bounds() for source in sources]
-            found = [
-                (source.file_name, source.dset_name.lstrip("/"), int(low[0]), int(high[0]))
-                for source, (low, high) in zip(sources, bounds, strict=True)
-            ]
-    except (OSError, KeyError, RuntimeError, ValueError) as error:
-        return [f"{path}: not a corpus index ({error}); make or copy the corpus again."]
-    if found == expected:
+def _facts_problems(path: Path, manifest: Manifest, corpus: xr.Dataset) -> list[str]:
+    """Facts of ``manifest.json`` and ``recipe.yaml`` that ``index.nc`` has in another form."""
+    if path.is_file():
         return []
-    wrong = min({str(item[0]) for item in set(found) ^ set(expected)}, default="the order of the parts")
-    return [f"{path}: index and manifest disagree about {wrong}; do not trust this corpus."]
+    content = manifest.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    content = facts_of_parts(manifest.parts, content | {"publication": manifest.publication})
+    wanted = corpus_attributes(content, recipe_text(path), path)
+    names = {*wanted, *(Manifest.model_fields.keys() & corpus.attrs.keys() - {"raceway_format"})}
+    wrong = sorted(name for name in names if str(corpus.attrs.get(name)) != wanted.get(name))
+    advice = "run raceway card again if a call of it was interrupted, or copy the corpus again"
+    return [f"{path}: {MANIFEST_NAME} and {INDEX_NAME} disagree about {', '.join(wrong)}; {advice}."] if wrong else []
 
 
-def _signal_problems(path: Path, row: PartRow) -> list[str]:
-    verdicts = np.concatenate([judge(block) for block in stored_blocks(path)])
+def _records_problems(path: Path, manifest: Manifest) -> list[str]:
+    """Problems of signals and texts, and of parts with other values than the index."""
+    first, problems = 0, list[str]()
+    if path.is_file():
+        for block in blocks_of(path, manifest.records):
+            problems += _text_problems(path, stored_columns(*block))
+        return problems + _signal_problems(path, manifest.signals)
+    for row in manifest.parts:
+        file = path / "parts" / row.name
+        columns = stored_columns(file)
+        index = stored_columns(path / INDEX_NAME, first, first + row.records)
+        problems += [
+            f"{file}: {name} differs from {INDEX_NAME}; make or copy the corpus again."
+            for name in _other(columns, index)
+        ]
+        problems += _text_problems(file, columns)
+        problems += [*_origin_problems(file, manifest), *_signal_problems(file, row.signals)]
+        first += row.records
+    return problems
+
+
+def _text_problems(file: Path, columns: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Variables with text that cannot be read."""
+    unreadable = [name for name, values in columns.items() if values.dtype.kind == "S" and not is_utf8(values)]
+    return [f"{file}: {name} has text that is not UTF-8; make or copy the corpus again." for name in unreadable]
+
+
+def _other(part: Mapping[str, NDArray[Any]], index: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Names of the variables of a part that are not those of the index, value for value."""
+    names = sorted(part.keys() | index.keys())
+    return [name for name in names if name not in part or name not in index or not _same(part[name], index[name])]
+
+
+def _same(part: NDArray[Any], index: NDArray[Any]) -> bool:
+    """Whether values are equal; text of a part is as wide as its longest, that of the index as wide as the longest of all."""
+    if part.dtype != index.dtype or part.ndim != index.ndim or len(part) != len(index):
+        return False
+    if part.ndim == 1:
+        return np.array_equal(part, index, equal_nan=part.dtype.kind == "f")
+    width = part.shape[1]
+    return np.array_equal(part, index[:, :width]) and not index[:, width:].view(np.uint8).any()
+
+
+def _origin_problems(file: Path, manifest: Manifest) -> list[str]:
+    """Facts by which a part was made from another recipe, or with other sources, than the manifest tells."""
+    facts, _ = file_facts(file)
+    return [
+        f"{file}: its {name} is not that of {MANIFEST_NAME}: it was made from another recipe or with other sources; make it again."
+        for name in _MADE_BY
+        if name in facts and facts[name] != getattr(manifest, name)
+    ]
+
+
+def _signal_problems(file: Path, listed: SignalCounts) -> list[str]:
+    """Samples that are not finite, and counts of unusable records other than the listed ones."""
+    verdicts = np.concatenate([judge(block) for block in stored_blocks(file)])
     lost = np.flatnonzero(verdicts == VERDICTS.index("not_finite"))
-    problems = [f"record {record} of the part has samples that are not finite." for record in lost]
-    if counted(verdicts) != row.signals:
-        problems.append(
-            f"{described(counted(verdicts))} of its records cannot be used, the manifest lists {described(row.signals)}."
-        )
+    problems = [f"{file}: record {record} of it has samples that are not finite." for record in lost]
+    if counted(verdicts) != listed:
+        found = described(counted(verdicts))
+        problems.append(f"{file}: {found} of its records cannot be used, {described(listed)} are listed.")
     return problems
 
 
-def _part_problems(part: xr.Dataset, index: xr.Dataset) -> list[str]:
-    problems = schema_problems(part)
-    if problems:
-        return problems
-    if set(part.variables) != set(index.variables) or part.sizes != index.sizes:
-        return ["corpus.nc has other variables or sizes; make or copy the corpus again."]
-    for name, variable in part.variables.items():
-        same = (
-            _same_storage(variable, index[name].variable)
-            if name == SIGNAL
-            else variable.identical(index[name].variable)
-        )
-        if not same:
-            problems.append(f"{name} differs from corpus.nc; make or copy the corpus again.")
-    return problems
-
-
-def _same_storage(part: xr.Variable, index: xr.Variable) -> bool:
-    """Whether two signals have the same attributes and packing; both read their values from the part."""
-    one, other = ([str(variable.encoding.get(key)) for key in PACKING] for variable in (part, index))
-    return part.attrs == index.attrs and one == other
+def _croissant_problems(path: Path) -> list[str]:
+    """``croissant.json`` if it is not that of the corpus."""
+    file = card_folder(path) / CROISSANT_NAME
+    if not file.is_file() or file.read_bytes() == croissant_text(path).encode():
+        return []
+    return [f"{file}: is not that of the corpus; run raceway card again."]

@@ -4,11 +4,8 @@
 module         responsibility
 ============== ================================================================
 corpora        commands that make corpora and look at them
-cutting        commands that choose records, and that join corpora
-extending      rigs or specimens added to a corpus
-packing        commands that make one file of a corpus, and back
 importing      commands that convert real recordings into the format
-exporting      a corpus in the form of another program
+copying        corpora copied, cut, joined, and in the forms of other programs
 feature_tables a picture of one record, and features of all
 models         a model trained, and scored on another corpus
 references     healthy records that the tested ones are compared with

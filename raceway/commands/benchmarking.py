@@ -15,9 +15,9 @@ from raceway.console.options import (
     Team,
     analysis_options,
     corpus_argument,
-    corpus_folder,
-    folder_option,
+    corpus_path,
     json_option,
+    pages_option,
     recipe_argument,
     speed_option,
     worker_options,
@@ -42,12 +42,12 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 
 @click.command()
 @corpus_argument
-@folder_option("OUTDIR", "Folder for report.html and results.json.")
+@pages_option("OUTDIR", "Folder for report.html and results.json.")
 @click.option(
     "--test",
     type=A_PATH,
     metavar="DIR2",
-    callback=corpus_folder,
+    callback=corpus_path,
     help="Another corpus to test on, such as real recordings.",
 )
 @click.option(

@@ -7,7 +7,7 @@ import click
 
 from raceway.commands.feature_tables import notice_of_unknown
 from raceway.console import show
-from raceway.console.options import A_PATH, corpus_folder, folder_option, json_option
+from raceway.console.options import A_PATH, corpus_path, json_option, pages_option
 from raceway.console.progress import progress
 
 if TYPE_CHECKING:
@@ -15,13 +15,13 @@ if TYPE_CHECKING:
 
 
 def _folders(context: click.Context, parameter: click.Parameter, paths: tuple[Path, ...]) -> tuple[Path | None, ...]:
-    return tuple(corpus_folder(context, parameter, path) for path in paths)
+    return tuple(corpus_path(context, parameter, path) for path in paths)
 
 
 @click.command()
-@click.argument("synthetic", metavar="SYN", type=A_PATH, callback=corpus_folder)
+@click.argument("synthetic", metavar="SYN", type=A_PATH, callback=corpus_path)
 @click.argument("real", metavar="REAL...", type=A_PATH, nargs=-1, required=True, callback=_folders)
-@folder_option("OUTDIR", "Folder for report.html and comparison.json.")
+@pages_option("OUTDIR", "Folder for report.html and comparison.json.")
 @click.option(
     "--top",
     type=click.FloatRange(min=1000.0),

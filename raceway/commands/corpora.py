@@ -14,12 +14,12 @@ from raceway.console.options import (
     cores,
     corpus_argument,
     file_option,
-    folder_option,
     json_option,
     recipe_argument,
     record_option,
     records_option,
     seed_option,
+    target_option,
     worker_options,
 )
 from raceway.console.progress import compilation_noticed, notice, progress
@@ -140,7 +140,7 @@ def _show_plan(planned: "Plan", recipe: str) -> None:
 
 @click.command()
 @recipe_argument
-@folder_option("DIR", "Folder of the corpus: new, empty, or begun by this command.")
+@target_option("The corpus: a file if the name ends in .nc, else a folder; new, or begun by this command.")
 @worker_options
 @seed_option
 @records_option
@@ -154,15 +154,17 @@ def generate(
     records: int | None,
     as_json: bool,
 ) -> int:
-    """Generate the corpus of RECIPE in DIR, or complete one.
+    """Generate the corpus of RECIPE as TARGET, or complete one.
 
-    The corpus is generated in parts. If the command is interrupted, finished parts are kept, and the same command completes the corpus.
+    The corpus is a folder, or one netCDF file if TARGET ends in .nc. It is generated in parts; those of a file NAME.nc lie in the folder
+    NAME.nc.parts until it is whole. If the command is interrupted, finished parts are kept, and the same command completes the corpus.
     The bytes of the parts do not depend on the number of workers. By default there is one worker per core, but at most four for up to
     1000 records: up to four workers are threads, which start at once; more are processes, which take seconds to start.
 
     Exits with 1 if more than 1 % of the records cannot be used, because they are clipped, all zeros or not numbers; the corpus is kept.
 
       raceway generate quickstart -o corpus
+      raceway generate quickstart -o corpus.nc
       raceway generate domain_randomised -o large --workers 8
       raceway generate my_recipe.yaml -o try --records 20 --seed 7
 
@@ -181,12 +183,12 @@ def generate(
     for failure in made.failures:
         notice(f"left out: {failure}")
     useless = complaint(made.signals, made.records)
-    if useless is not None:
-        notice(useless)
+    for sentence in filter(None, (useless, _coarse_steps(made.path))):
+        notice(sentence)
     if as_json:
         facts = {name: getattr(made, name) for name in ("records", "parts", "kept", "failures")}
         seconds = round(time.monotonic() - start, 3)
-        show.as_json({"corpus": made.directory, **facts, "signals": made.signals._asdict(), "seconds": seconds})
+        show.as_json({"corpus": made.path, **facts, "signals": made.signals._asdict(), "seconds": seconds})
     else:
         _show_generated(made)
     return DONE if useless is None else FOUND_WANTING
@@ -206,15 +208,24 @@ def _show_generated(made: "Generated") -> None:
     unusable = f"; {described(made.signals)} cannot be used" if any(made.signals) else ""
     failed = f"; {len(made.failures):,} could not be simulated and are left out" if made.failures else ""
     size = f"{show.counted(made.records, 'record')} in {show.counted(made.parts, 'part')}"
-    show.text(f"{made.directory}: {size}{kept}{failed}{unusable}.")
-    show.text(f"Next: raceway info {shlex.quote(str(made.directory))}")
+    show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")
+    show.text(f"Next: raceway info {shlex.quote(str(made.path))}")
+
+
+def _coarse_steps(corpus: Path) -> str | None:
+    """Sentence about the records whose step is too coarse."""
+    from gen.corpus import open_corpus, step_complaint
+
+    with open_corpus(corpus, check="size") as opened:
+        return step_complaint(opened)
 
 
 def _kept(corpus: Path, recipe: "Recipe") -> str:
     """Remove the unfinished files of the workers, and return a sentence about the parts that are kept."""
-    from gen.corpus import read_manifest, remove_left_behind
+    from gen.corpus import is_single_file, read_manifest, remove_left_behind
     from gen.errors import RacewayError
 
+    corpus = corpus.with_name(f"{corpus.name}.parts") if is_single_file(corpus) else corpus
     remove_left_behind(corpus / "parts", "part-*.nc")
     try:
         parts = len(read_manifest(corpus).parts)
@@ -238,9 +249,9 @@ def _default_workers(recipe: "Recipe") -> int:
 def validate(corpus: Path, as_json: bool) -> int:
     """Check every byte of the corpus in DIR.
 
-    Exits with 1 if anything is wrong. The checks cover the manifest, the hash and the format of each part, the samples, and whether
-    corpus.nc agrees with the parts. Of an imported corpus it also warns of splits that can leak: one recording under two specimens,
-    each file a specimen of its own, a class of one specimen.
+    Exits with 1 if anything is wrong. The checks cover the hash of each file, the manifest, the format, the samples, and whether
+    index.nc agrees with manifest and parts. It warns of records whose step was too coarse, and of splits of an imported corpus that can
+    leak: one recording under two specimens, each file a specimen of its own, a class of one specimen.
 
       raceway validate corpus && echo sound
     """
@@ -250,10 +261,12 @@ def validate(corpus: Path, as_json: bool) -> int:
         read_manifest(corpus)  # raises: a folder without a manifest is bad input, not a damaged corpus
     problems = validate_corpus(corpus)
     warnings: list[str] = []
+    if not problems:
+        warnings += filter(None, [_coarse_steps(corpus)])
     if not problems and read_manifest(corpus).importer is not None:
         from features.auditing import audit_splits
 
-        warnings = audit_splits(corpus)
+        warnings += audit_splits(corpus)
     for sentence in warnings:
         notice(f"warning: {sentence}")
     if as_json:
@@ -272,7 +285,7 @@ def info(corpus: Path, as_json: bool) -> None:
     """Show the contents of the corpus in DIR.
 
     Origin, state, classes with the range of their severities, operating conditions, size and versions. DIR may be generated or
-    imported, finished or not; its corpus.nc stands for the folder.
+    imported, finished or not; its index.nc stands for the folder.
 
       raceway info corpus
       raceway info corpus --json
@@ -294,8 +307,8 @@ def info(corpus: Path, as_json: bool) -> None:
 def replay(corpus: Path, record: int, output: Path | None, as_json: bool) -> int:
     """Simulate one record of DIR again and compare it.
 
-    The record is drawn and simulated from the recipe in DIR. Exits with 1 if its bits differ from those of the stored record, as they can
-    on a processor without fused multiply-add or with other versions of the libraries.
+    The record is simulated from the scenario that DIR stores with it. Exits with 1 if its bits differ from those of the stored record, as
+    they can on a processor without fused multiply-add or with other versions of the libraries.
 
       raceway replay corpus --record 17
       raceway replay corpus --record 17 -o record.nc

@@ -85,7 +85,7 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     show_default=True,
     help="Believe --rpm, check it against the lines of the recording, or replace it where they clearly tell another speed.",
 )
-@file_option("REPORT", "Page with pictures: .html.", (".html",), required=False)
+@file_option("REPORT", "Page with pictures: .html.", (".html",), kind="page", required=False)
 @json_option
 def diagnose(
     recording: Path,
@@ -131,12 +131,11 @@ def diagnose(
     }
     paths = [path for path in (recording, healthy) if path is not None]
     signals = [read_signal(path, **reading) for path in paths]
-    _import_skops()
     recorded = [
         _recorded(signal.values, _rate(path, signal.fs), rpm, known, path)
         for path, signal in zip(paths, signals, strict=True)
     ]
-    loaded, source = _model(model, relative=healthy is not None)
+    loaded, source = _model(model)
     from features.diagnosis import diagnose as run
 
     with compilation_noticed():
@@ -176,28 +175,15 @@ def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing", path: Path
     return Recorded(values, fs, rpm_to_hertz(rpm), nominal, str(path))
 
 
-def _import_skops() -> None:
-    """Import skops without its list of trusted types, which imports all of scikit-learn: a tenth of the time of a diagnosis.
-
-    Model files are read without that list: each of their types is named in `features.baselines.model_states`.
-    """
-    from sklearn import utils
-
-    listed, utils.all_estimators = utils.all_estimators, list
-    import skops.io  # noqa: F401
-
-    utils.all_estimators = listed
-
-
-def _model(path: Path | None, *, relative: bool) -> tuple[Any, Path]:
+def _model(path: Path | None) -> tuple[Any, Path]:
     """Model and its file, or the reference model."""
     if path is None:
         from raceway.studies.reference_model import load_reference_model
 
-        return load_reference_model(relative=relative)
+        return load_reference_model()
     from features.baselines.models import load_model
 
-    return load_model(path, relative=relative), path
+    return load_model(path), path
 
 
 def _facts(

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 @click.command()
 @corpus_argument
 @record_option
-@file_option("FILE", "Picture: .png, .svg or .pdf.", (".png", ".svg", ".pdf"))
+@file_option("FILE", "Picture: .png, .svg or .pdf.", (".png", ".svg", ".pdf"), kind="picture")
 @analysis_options
 def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tuple[float, float] | None) -> None:
     """Draw one record with its fault lines.
@@ -48,7 +48,7 @@ def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tup
 
 @click.command()
 @corpus_argument
-@file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"))
+@file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"), kind="feature table")
 @analysis_options
 @speed_option
 @worker_options

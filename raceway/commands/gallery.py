@@ -6,12 +6,12 @@ from pathlib import Path
 import click
 
 from raceway.console import show
-from raceway.console.options import folder_option, json_option
+from raceway.console.options import json_option, pages_option
 from raceway.console.progress import compilation_noticed
 
 
 @click.command()
-@folder_option("OUT", "Folder for index.html, its pictures, and the two small corpora they show.")
+@pages_option("OUT", "Folder for index.html, its pictures, and the two small corpora they show.")
 @json_option
 def gallery(output: Path, as_json: bool) -> None:
     """Draw one page of simulated signals.

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.console import show
-from raceway.console.options import A_PATH, folder_option, json_option
+from raceway.console.options import A_PATH, json_option, target_option
 from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from gen.importers import Import
 
 _source: Any = click.argument("source", metavar="SRC", type=A_PATH)
-_output: Any = folder_option("DIR", "Folder of the new corpus.")
+_output: Any = target_option("The new corpus: a file if the name ends in .nc, else a folder.")
 _window: Any = click.option(
     "--window", type=float, default=0.5, show_default=True, metavar="S", help="Length of a record [s]."
 )
@@ -110,9 +110,9 @@ def _run(bring: "Callable[[Any], Import]", as_json: bool) -> None:
         notice(sentence)
     if as_json:
         facts = done._asdict()
-        show.as_json({"corpus": facts.pop("directory"), **facts})
+        show.as_json({"corpus": facts.pop("path"), **facts})
         return
     show.text(
-        f"{done.directory}: {show.counted(done.records, 'record')} of {show.counted(done.recordings, 'recording')}; "
+        f"{done.path}: {show.counted(done.records, 'record')} of {show.counted(done.recordings, 'recording')}; "
         f"{show.counted(len(done.skipped), 'file')} skipped, {show.counted(len(done.warnings), 'warning')}."
     )

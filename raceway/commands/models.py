@@ -17,7 +17,7 @@ from raceway.console.options import (
     analysis_options,
     channel_option,
     corpus_argument,
-    corpus_folder,
+    corpus_path,
     file_option,
     json_option,
     speed_option,
@@ -44,7 +44,9 @@ ESTIMATORS = (
 
 @click.command()
 @click.argument("source", metavar="DIR|RECIPE")
-@file_option("MODEL", "Model file; without it the model of a RECIPE is kept for this user.", required=False)
+@file_option(
+    "MODEL", "Model file; without it the model of a RECIPE is kept for this user.", kind="model", required=False
+)
 @click.option(
     "--estimator",
     type=click.Choice(ESTIMATORS),
@@ -91,7 +93,7 @@ def train(
 
     folder = Path(source)
     from_folder = folder.is_dir() or (folder.is_file() and folder.suffix not in (".yaml", ".yml"))
-    corpus = corpus_folder(None, None, folder) if from_folder else None
+    corpus = corpus_path(None, None, folder) if from_folder else None
     team = Team(workers, scheduler)
     if corpus is None:
         if scheduler is not None:

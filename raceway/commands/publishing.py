@@ -58,16 +58,17 @@ def card(
 ) -> None:
     """Complete the data card of DIR for publication.
 
-    The card is DIR/README.md. It is made from the files of the folder, with a picture of one record of each class and of the
-    distributions (DIR/pictures). Facts that are given replace those of the corpus, also in corpus.nc and manifest.json; the others stay.
-    No part changes. Call it again after any change of the corpus.
+    The card is DIR/README.md; that of a single file NAME.nc is NAME.card/README.md. It is made from the files of the corpus, with a
+    picture of one record of each class and of the distributions (pictures). Facts that are given replace those of the corpus, also in
+    index.nc and manifest.json, or in the attributes of the single file; the others stay. No record changes. Call it again after any
+    change of the corpus, or if a call was interrupted.
 
       raceway card corpus --license CC-BY-4.0 --creator "Jane Doe <0000-0002-1825-0097>" --date 2026-03-31
       raceway card corpus --doi 10.1000/182 --references "J. Doe, Bearings, 2026"
       raceway benchmark corpus -o report
       raceway card corpus --scores report/results.json
 
-    Next: read DIR/README.md, then raceway pack or raceway export
+    Next: read DIR/README.md, then raceway copy DIR -o NAME.nc
     """
     given = {
         "license": license_,
@@ -79,13 +80,14 @@ def card(
         "date": date,
     }
     publication = _published(corpus, {name: value for name, value in given.items() if value})
+    from gen.corpus import card_folder
     from raceway.studies.card_pictures import complete_card
 
     added = complete_card(corpus, scores)
-    written = corpus / "README.md"
+    written = card_folder(corpus) / "README.md"
     rows = () if added.scores is None else added.scores.rows
     if as_json:
-        pictures = [corpus / "pictures" / picture.name for picture in added.pictures]
+        pictures = [written.parent / "pictures" / picture.name for picture in added.pictures]
         scored = {row.name: row.score for row in rows}
         show.as_json({"card": written, "pictures": pictures, "scores": scored, "publication": publication.stored})
         return
@@ -105,12 +107,8 @@ def card(
 def _published(corpus: Path, given: dict[str, Any]) -> "Publication":
     """Facts of the corpus after those that are given have replaced others."""
     from gen.corpus import publish, read_manifest, read_publication
-    from gen.errors import CorpusError
 
-    if corpus.is_file():
-        raise CorpusError(f"{corpus}: is one file, and a data card belongs to a folder; use raceway unpack first.")
     known = read_manifest(corpus).publication
     wanted = read_publication(known.stored | given)
-    if wanted != known:
-        publish(corpus, wanted)
+    publish(corpus, wanted)
     return read_manifest(corpus).publication

@@ -6,12 +6,12 @@ from pathlib import Path
 import click
 
 from raceway.console import show
-from raceway.console.options import folder_option, json_option
+from raceway.console.options import json_option, pages_option
 
 
 @click.command()
 @click.argument("paper", type=click.Choice(["ophel2025"]))
-@folder_option("OUT", "Folder for the figures and findings.json.")
+@pages_option("OUT", "Folder for the figures and findings.json.")
 @click.option("--preset", metavar="NAME", help="Run this parameter set only.")
 @click.option(
     "--change", "changes", multiple=True, metavar="CONSTANT=VALUE", help="Replace a constant, in SI units; repeatable."

@@ -53,6 +53,11 @@ def _verdict(error: BaseException) -> tuple[int, str]:
             return BAD_INPUT, str(error)
         case _ if type(error).__name__ == "KilledWorker":
             return BAD_INPUT, "several workers of the cluster died; use fewer workers, or fewer records per part."
+        case MemoryError():
+            return (
+                BAD_INPUT,
+                f"this needs more memory than there is ({error}); take a smaller file, or fewer records at a time.",
+            )
         case OSError(strerror=str() as reason):
             where = f"{error.filename}: " if error.filename else ""
             return BAD_INPUT, f"{where}{reason}; choose another place, or correct that one."

@@ -13,25 +13,17 @@ FEW_RECORDS = 2000  # their features take about as long as processes take to sta
 A_PATH = click.Path(path_type=Path)
 
 
-def corpus_folder(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
-    """Folder of a corpus, or a packed file; ``corpus.nc`` of a corpus stands for its folder, and any other file is refused."""
+def corpus_path(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
+    """Folder or single file of a corpus; ``index.nc`` stands for its folder, and a feature table is refused."""
     if path is None or not path.is_file():
         return path
-    if path.name == "corpus.nc" and (path.parent / "manifest.json").is_file():
+    if path.name == "index.nc":
         return path.parent
-    from gen.corpus.manifest import not_a_corpus  # not at the top: help needs nothing of gen
-    from gen.corpus.packed import is_packed
-    from gen.errors import CorpusError
+    if _is_table(path):
+        from gen.errors import CorpusError  # not at the top: help needs nothing of gen
 
-    if is_packed(path):
-        return path
-    for folder in path.absolute().parents[:2]:
-        if (folder / "manifest.json").is_file():
-            raise CorpusError(f"{path}: is one file of a corpus; give the folder of the corpus, {folder}.")
-    if path.name == "corpus.nc":
-        raise CorpusError(not_a_corpus(path))
-    what = "a feature table" if _is_table(path) else "a file"
-    raise CorpusError(f"{path}: is {what}; give the folder of a corpus, the one that holds manifest.json.")
+        raise CorpusError(f"{path}: is a feature table; give a corpus: a folder with manifest.json, or one .nc file.")
+    return path
 
 
 def _is_table(path: Path) -> bool:
@@ -49,7 +41,7 @@ def _is_table(path: Path) -> bool:
 
 json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 recipe_argument: Decorator = click.argument("recipe")
-corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_folder)
+corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_path)
 record_option: Decorator = click.option(
     "--record", type=int, required=True, metavar="I", help="Number of the record, from 0."
 )
@@ -173,13 +165,39 @@ speed_option: Decorator = click.option(
 )
 
 
-def folder_option(metavar: str, what: str) -> Decorator:
-    """Make the option that names the folder for the result."""
-    return click.option("-o", "--output", type=A_PATH, required=True, metavar=metavar, help=what, callback=_folder)
+def target_option(what: str) -> Decorator:
+    """Make the option that names a new corpus, which lies in no other: a file if the name ends in .nc, else a folder."""
+
+    def check(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
+        from gen.corpus import check_new_corpus  # not at the top: help needs nothing of gen
+
+        check_new_corpus(path)
+        return path
+
+    return click.option("-o", "--output", type=A_PATH, required=True, metavar="TARGET", help=what, callback=check)
 
 
-def file_option(metavar: str, what: str, suffixes: tuple[str, ...] = (), *, required: bool = True) -> Decorator:
-    """Make the option that names the file for the result, with any suffix or with one of ``suffixes``."""
+def pages_option(metavar: str, what: str) -> Decorator:
+    """Make the option that names the folder for pages and pictures, which is no corpus and lies in none."""
+
+    def check(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
+        from gen.corpus import check_result_folder
+
+        if path.exists() and not path.is_dir():
+            raise click.BadParameter(f"{path} is a file; give a folder")
+        check_result_folder(path)
+        return path
+
+    return click.option("-o", "--output", type=A_PATH, required=True, metavar=metavar, help=what, callback=check)
+
+
+def file_option(
+    metavar: str, what: str, suffixes: tuple[str, ...] = (), *, kind: str | None = None, required: bool = True
+) -> Decorator:
+    """Make the option that names the file for a result, with any suffix or with one of ``suffixes``.
+
+    Only a file of the same ``kind`` is replaced, one of `gen.corpus.outputs`; none if it is None.
+    """
 
     def check(_context: click.Context, _option: click.Parameter, path: Path | None) -> Path | None:
         if path is None:
@@ -190,12 +208,9 @@ def file_option(metavar: str, what: str, suffixes: tuple[str, ...] = (), *, requ
             raise click.BadParameter(f"{path} is a folder; give a file")
         if not path.parent.is_dir():
             raise click.BadParameter(f"there is no folder {path.parent}; create it first")
+        from gen.corpus import check_result_file  # not at the top: help needs nothing of gen
+
+        check_result_file(path, kind)
         return path
 
     return click.option("-o", "--output", type=A_PATH, required=required, metavar=metavar, help=what, callback=check)
-
-
-def _folder(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
-    if path.exists() and not path.is_dir():
-        raise click.BadParameter(f"{path} is a file; give a folder")
-    return path

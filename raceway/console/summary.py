@@ -13,7 +13,6 @@ import xarray as xr
 
 from gen.corpus import (
     DRAWS,
-    EXTENSION_NAME,
     FAULT_NAMES,
     SPLITS,
     Manifest,
@@ -24,8 +23,8 @@ from gen.corpus import (
     open_part,
     plain_file,
     read_manifest,
+    step_complaint,
 )
-from gen.corpus.manifest_fields import Choice
 from gen.corpus.visible import VARIABLES
 from raceway.console import show
 
@@ -64,20 +63,25 @@ def describe(directory: Path) -> dict[str, Any]:
     """
     manifest = read_manifest(directory)
     known = manifest.model_dump(
-        exclude={"parts_", "complete", "records", "index", "next_index", "signals"}, exclude_unset=True
+        exclude={"parts_", "complete", "records", "parts_sha256", "signals_"}, exclude_unset=True
     )
     about = {
         "corpus": directory,
         "complete": manifest.complete,
         "records": manifest.records,
-        "parts": len(manifest.parts),
+        "parts": len(manifest.parts) or int(directory.is_file()),
         "bytes": sum(path.stat().st_size for path in (directory, *directory.rglob("*")) if path.is_file()),
         "failures": [],
         "warnings": [],
         "skipped": [],
         "signals": manifest.signals._asdict(),
     }
-    return about | known | (_content(_labels(directory, manifest)) if manifest.parts else {})
+    facts = about | known
+    if manifest.records:
+        labels = _labels(directory, manifest)
+        facts |= _content(labels)
+        facts["warnings"] = [*facts["warnings"], *filter(None, [step_complaint(labels)])]
+    return facts
 
 
 def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
@@ -94,7 +98,7 @@ def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
 
 
 def _shown(records: xr.Dataset) -> xr.Dataset:
-    known = [name for name in (*_SEVERITIES, *VARIABLES) if name in records.variables]
+    known = [name for name in (*_SEVERITIES, *VARIABLES, "step_error", "oversampling") if name in records.variables]
     return records.drop_vars(DRAWS, errors="ignore")[[*_SHOWN, *known]].load()
 
 
@@ -154,21 +158,14 @@ def _range(values: np.ndarray) -> list[float] | None:
 def show_facts(facts: dict[str, Any]) -> None:
     """Print the facts of ``describe``; an unfinished corpus without a part has no contents yet."""
     overrides = {key: value for key, value in (facts.get("overrides") or {}).items() if value is not None}
-    extensions = [_shown_extension(**extension) for extension in overrides.pop("extensions", ())]
-    with_overrides = "".join([*(f", {key} {value}" for key, value in overrides.items()), *extensions])
-    origin = f"recipe {facts['recipe']}{with_overrides}" if "recipe" in facts else f"import {facts.get('importer')}"
-    if facts.get("origins"):
-        origin = "merge of " + ", ".join(of["title"] or "a corpus" for of in facts["origins"])
-    chosen = "; then ".join(
-        f"{Choice(**choice)}, of {choice['records']:,} records" for choice in facts.get("selections", ())
-    )
+    with_overrides = "".join(f", {key} {value}" for key, value in overrides.items())
+    made_by = [f"recipe {facts['recipe']}{with_overrides}"] if "recipe" in facts else []
+    made_by += [f"import {facts['importer']}"] if "importer" in facts else []
     show.text(facts.get("title", str(facts["corpus"])), "")
-    known = {"corpus": facts["corpus"], "made by": origin, "selected": chosen}
+    known = {"corpus": facts["corpus"], "made by": ", ".join(made_by)}
     if license_name := facts.get("publication", {}).get("license"):
         known["licence"] = license_name
     known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
-    if (facts["corpus"] / EXTENSION_NAME).exists():
-        known["state"] += "; an extension is unfinished, and the raceway extend command that began it completes it"
     if "classes" in facts:
         known |= _shown_content(facts)
     known["not usable"] = described(SignalCounts(**facts["signals"]))
@@ -178,11 +175,6 @@ def show_facts(facts: dict[str, Any]) -> None:
     for heading, key in (("Left out:", "failures"), ("Skipped:", "skipped"), ("Warnings:", "warnings")):
         if facts[key]:
             show.text("", heading, *(f"- {sentence}" for sentence in facts[key]))
-
-
-def _shown_extension(rigs: int = 0, specimens: int = 0) -> str:
-    added = show.counted(rigs, "rig") if rigs else f"{show.counted(specimens, 'specimen')} in every rig"
-    return f", extended by {added}"
 
 
 def _shown_content(facts: dict[str, Any]) -> dict[str, str]:

@@ -20,15 +20,23 @@ from features.faults import LOOKS
 from features.report.examples import chosen_example
 from features.report.page import quantities
 from features.report.pictures import STYLE, WIDTH, Shown, draw_content, draw_envelope_spectrum, draw_waveform, picture
-from gen.corpus import FAULT_NAMES, open_corpus, read_manifest, remove_left_behind, write_card, write_durably
+from gen.corpus import (
+    FAULT_NAMES,
+    card_folder,
+    open_corpus,
+    read_manifest,
+    remove_temporary_files,
+    write_card,
+    write_croissant,
+    write_durably,
+    writing,
+)
 from gen.corpus.card.additions import (
-    CARD_NAME,
     PICTURES,
     CardAdditions,
     CardPicture,
     CardScore,
     CardScores,
-    parts_digest,
     read_additions,
     write_additions,
 )
@@ -40,7 +48,7 @@ DPI = 110
 COLOURS = 48  # of a picture: lines, text and shades look the same, and the file has half the size
 
 
-def complete_card(directory: Path, scores: Path | None = None) -> CardAdditions:
+def complete_card(path: Path, scores: Path | None = None) -> CardAdditions:
     """Draw the pictures of a corpus, take over scores, and write its data card; returns what was added.
 
     Without ``scores``, those that the card already has are kept.
@@ -50,25 +58,22 @@ def complete_card(directory: Path, scores: Path | None = None) -> CardAdditions:
     CorpusError
         If the corpus is unfinished or altered, the scores are of another corpus, or a file cannot be written.
     """
-    manifest = read_manifest(directory)
-    for name in (CARD_NAME, "README.md"):
-        remove_left_behind(directory, name)
-    with open_corpus(directory) as corpus:
-        known = read_additions(directory, manifest)
+    manifest, folder = read_manifest(path), card_folder(path)
+    remove_temporary_files(folder)
+    with open_corpus(path) as corpus:
+        known = read_additions(folder, manifest)
         taken = known.scores if scores is None else read_scores(scores, corpus)
-        added = CardAdditions(parts=parts_digest(manifest), pictures=_write_pictures(directory, corpus), scores=taken)
-    write_additions(directory, added)
-    write_card(directory)
+        pictures = _write_pictures(folder / PICTURES, corpus)
+    added = CardAdditions(parts=manifest.parts_sha256 or "", pictures=pictures, scores=taken)
+    write_additions(folder, added)
+    write_card(path)
+    write_croissant(path)
     return added
 
 
-def _write_pictures(directory: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]:
-    folder = directory / PICTURES
-    try:
-        folder.mkdir(exist_ok=True)
-    except OSError as error:
-        raise CorpusError(f"{folder}: cannot be created ({error.strerror}); free the name or the disk.") from None
-    remove_left_behind(folder, "*.png")
+def _write_pictures(folder: Path, corpus: xr.Dataset) -> tuple[CardPicture, ...]:
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     drawn: list[CardPicture] = []
     for code in np.unique(corpus["fault"].values):
         fault = FAULT_NAMES[int(code)]

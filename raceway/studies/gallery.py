@@ -15,7 +15,7 @@ from features.indicators import Orders
 from features.report.envelopes import draw_envelopes, draw_waterfall
 from features.report.pictures import Shown, fault_lines, picture
 from gen import generate, open_corpus
-from gen.corpus import FAULTS, write_durably, write_text_durably
+from gen.corpus import FAULTS, check_result_folder, write_durably, write_text_durably, writing
 from gen.physics.profile import share_at
 from gen.scenarios import Specimen, read_scenario
 from raceway.console.progress import progress
@@ -55,7 +55,9 @@ class Section(NamedTuple):
 
 def write_gallery(output: Path) -> tuple[Path, list[Path]]:
     """Write the page, its pictures and the two corpora that they show into a folder; returns the page and the pictures."""
-    output.mkdir(parents=True, exist_ok=True)
+    check_result_folder(output)
+    with writing(output):
+        output.mkdir(parents=True, exist_ok=True)
     sections = [*_paper(output), _every_fault(output), _run_up(output), _orbits(output), _sensor_faults(output)]
     page = output / "index.html"
     write_text_durably(_PAGE.format(sections="\n".join(map(_html, sections))), page)

@@ -10,7 +10,7 @@ from scipy.signal import coherence
 from features.report.pictures import BLUE, INK, STYLE, VERMILION, WIDTH
 from gen.measurement.measure import measure
 from gen.recipe import Recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.shaft import shaft_angles
 from gen.simulation.timeline import timeline
 
@@ -41,9 +41,9 @@ CROSSED = {
 def draw_orbits() -> Figure:
     """Mean path of the acceleration at each harmonic in one turn of the shaft, and the coherence of the two channels."""
     recipe = Recipe.model_validate(CROSSED)
-    scenarios, axis = draw_scenarios(recipe), timeline(recipe)
+    scenarios, axis = draw_scenarios(recipe), timeline(settings_of(recipe))
     silence = np.zeros((1, 2, axis.returned), np.float32)
-    measured = measure(silence, scenarios, recipe)
+    measured = measure(silence, scenarios)
     signal = measured.signal[0].astype(float) / (measured.counts_per_unit or 1.0)
     angles = shaft_angles(scenarios[0], axis)[axis.kept]
     with rc_context(STYLE):

@@ -77,7 +77,7 @@ def recipe_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
             return feature_table(corpus, workers=workers, progress=report)
 
 
-def load_reference_model(*, relative: bool = True) -> tuple["Model", Path]:
+def load_reference_model() -> tuple["Model", Path]:
     """Reference model of this user and its file; it is made if there is none, or if the file is damaged.
 
     Raises
@@ -88,12 +88,12 @@ def load_reference_model(*, relative: bool = True) -> tuple["Model", Path]:
     from gen.recipe import shipped_recipes
 
     # of this installation, whatever lies in the working folder
-    model, path, _ = kept_model(shipped_recipes()[REFERENCE], relative=relative)
+    model, path, _ = kept_model(shipped_recipes()[REFERENCE])
     return model, path
 
 
 def kept_model(
-    recipe: Path | str, estimator: str = ESTIMATOR, *, relative: bool = True, team: Team = USUAL
+    recipe: Path | str, estimator: str = ESTIMATOR, *, team: Team = USUAL
 ) -> tuple["Model", Path, "Scores | None"]:
     """Kept model of a recipe, its file, and its scores if it was trained now: if there was none, or the file was damaged.
 
@@ -107,12 +107,12 @@ def kept_model(
     path, damaged = kept_path(recipe, estimator), False
     if path.is_file():
         try:
-            return load_model(path, relative=relative), path, None
+            return load_model(path), path, None
         except CorpusError as error:
             notice(f"{error} It is made again.")
             damaged = True
     _, scores = keep_model(recipe, estimator, damaged=damaged, team=team)
-    return load_model(path, relative=relative), path, scores
+    return load_model(path), path, scores
 
 
 def keep_model(
@@ -153,6 +153,7 @@ def keep_model(
         duration = f": {_HOW_LONG}" if name == REFERENCE else ""
         notice(f"training a model on the recipe {name}{duration}; it is kept as {path}.")
         model, scores = train_and_score(recipe_table(recipe, team), estimator, team)
+        path.unlink(missing_ok=True)  # what is damaged may be no model, and nothing else is replaced
         save_model(model, path)
     return path, scores
 

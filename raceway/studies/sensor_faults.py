@@ -55,7 +55,7 @@ def write_sensor_fault_pictures(output: Path) -> list[str]:
         fault: next(one for one in scenarios if one.specimen.fault == fault)
         for fault in sorted({view.bearing for view in VIEWS.values()})
     }
-    clean = {fault: _clean_record(scenario, recipe) for fault, scenario in of_bearing.items()}
+    clean = {fault: _clean_record(scenario) for fault, scenario in of_bearing.items()}
     names = []
     for name, view in VIEWS.items():
         scenario, signal = of_bearing[view.bearing], clean[view.bearing]
@@ -80,11 +80,11 @@ def _with_every_fault(recipe: Recipe) -> Recipe:
     )
 
 
-def _clean_record(scenario: Scenario, recipe: Recipe) -> FloatArray:
+def _clean_record(scenario: Scenario) -> FloatArray:
     """Record of a scenario without sensor faults and gear, shape (channel, time) [m s-2]."""
     rig = replace(scenario.rig, sensor_faults=None, background=replace(scenario.rig.background, gear=None))
     sound = replace(scenario, rig=rig, record=replace(scenario.record, sensor_faults=None))
-    measured = measure(simulate([sound], recipe).acceleration, [sound], recipe)
+    measured = measure(simulate([sound]).acceleration, [sound])
     return measured.signal[0] / (measured.counts_per_unit or 1.0)
 
 

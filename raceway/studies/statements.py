@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from features.report.pictures import picture
-from gen.corpus import write_durably, write_text_durably
+from gen.corpus import check_result_folder, write_durably, write_text_durably, writing
 from gen.errors import SimulationError
 from raceway.console.show import json_text
 from raceway.studies.experiments import experiment, worded
@@ -173,7 +173,9 @@ def reproduced(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> list[Fi
     SimulationError
         If a system leaves the finite range.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    check_result_folder(folder)
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
     found = []
     for name, preset in presets.items():
         made = run(preset)

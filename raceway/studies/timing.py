@@ -16,14 +16,14 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from features.table import part_features
-from gen.corpus import write_part
+from features.table import block_features
+from gen.corpus import RecordBlock, write_part
 from gen.errors import SimulationError
 from gen.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.physics.kernel.layout import Batch
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.batches import Group, integrate_batch
 from gen.simulation.simulate import Response, integrations, laid_out, simulate
 from gen.simulation.timeline import timeline
@@ -59,13 +59,15 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     checked = read_recipe(recipe)
     wanted = min(records or checked.corpus.records_per_part, checked.n_records)
     scenarios = draw_scenarios(checked, 0, wanted)
-    response = simulate(scenarios, checked)  # compiles the kernels that are not compiled yet
+    response = simulate(scenarios)  # compiles the kernels that are not compiled yet
     if len(response.failures) == wanted:
         raise SimulationError(response.failures[0])
     seconds = _repeated(checked, scenarios, response)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
     each = zip(scenarios, response.oversampling, strict=True)
-    steps = timeline(checked).integrated * sum(int(some) * integrations([scenario], checked) for scenario, some in each)
+    steps = timeline(settings_of(checked)).integrated * sum(
+        int(some) * integrations([scenario]) for scenario, some in each
+    )
     making = sum(stages.values()) - stages["features"]
     return Bench(
         recipe=checked.name,
@@ -95,21 +97,21 @@ def _repeated(recipe: Recipe, scenarios: list[Scenario], response: Response) -> 
         path = Path(folder) / "part-00000.nc"
         while len(seconds["features"]) < REPEATS and time.perf_counter() - start < BUDGET_S:
             timed("draw", draw_scenarios, recipe, 0, len(scenarios))
-            in_lanes = timed("lay_out", laid_out, scenarios, recipe)
+            in_lanes = timed("lay_out", laid_out, scenarios)
             timed("integrate", _integrate, in_lanes, recipe)
-            measured = timed("measure", measure, response.acceleration, scenarios, recipe, response.twins)
-            timed("write", _write, measured, scenarios, recipe, response, path)
-            timed("features", part_features, path)
+            measured = timed("measure", measure, response.acceleration, scenarios, response.twins)
+            timed("write", _write, measured, recipe, response, path)
+            timed("features", block_features, RecordBlock(path, 0, len(scenarios)))
     return seconds
 
 
 def _integrate(in_lanes: list[tuple[Group, Batch]], recipe: Recipe) -> None:
     for group, batch in in_lanes:
-        integrate_batch(group, batch, timeline(recipe))
+        integrate_batch(group, batch, timeline(settings_of(recipe)))
 
 
-def _write(measured: Any, scenarios: list[Scenario], recipe: Recipe, response: Response, path: Path) -> None:
-    write_part(part_dataset(measured, scenarios, recipe, response), path, recipe.corpus.codec)
+def _write(measured: Any, recipe: Recipe, response: Response, path: Path) -> None:
+    write_part(part_dataset(measured, response), path, recipe.corpus.codec)
 
 
 def machine() -> dict[str, Any]:

@@ -30,7 +30,7 @@ from gen.generation import generate
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
 
@@ -97,7 +97,7 @@ def test_the_lanes_of_a_whole_corpus_are_counted(few_short, tmp_path):
 
 def test_a_batch_of_three_records_has_three_lanes_at_work(brief_seed):
     recipe = read_recipe(brief_seed)
-    given = [kernel_input(scenario, timeline(recipe)) for scenario in draw_scenarios(recipe, 0, 3)]
+    given = [kernel_input(scenario, timeline(settings_of(recipe))) for scenario in draw_scenarios(recipe, 0, 3)]
     assert lanes.records_in(lay_out(given, input_shape(given[0]), 1e-4)) == 3
 
 
@@ -142,14 +142,17 @@ def test_features_are_compared_where_tsfel_is_installed_and_their_memory_does_no
 
 
 def test_opening_a_corpus_is_compared_with_opening_its_parts():
-    assert set(finite_rows(opening.rows(1, parts=3, records_per_part=2))) == {"opening size", "opening sha256"}
-
-
-def test_reading_a_corpus_is_compared_with_its_virtual_dataset():
-    found = finite_rows(reading.rows(1, parts=3, records_per_part=2, seconds_each=0.02))
-    assert set(found) == {
-        f"reading {way}" for way in ("in order", "at random", "through dask", "in processes", "hashes")
+    assert set(finite_rows(opening.rows(1, parts=3, records_per_part=2))) == {
+        "opening size",
+        "opening file",
+        "opening sha256",
     }
+
+
+def test_reading_a_corpus_is_compared_with_its_single_file():
+    found = finite_rows(reading.rows(1, parts=3, records_per_part=2, seconds_each=0.02))
+    ways = [f"reading {way}" for way in ("in order", "at random", "through dask", "in processes")]
+    assert set(found) == {*ways, *(f"{way} from a file" for way in ways), "reading hashes"}
 
 
 def test_records_for_training_are_compared_with_numpy_and_h5py():
@@ -166,7 +169,7 @@ def test_short_commands_are_compared_with_the_import_of_the_libraries_they_need(
 
 
 def test_a_record_is_the_same_from_the_index_and_from_the_parts(few_short, tmp_path):
-    corpus = generate(few_short, tmp_path / "corpus", records=12).directory
+    corpus = generate(few_short, tmp_path / "corpus", records=12).path
     assert (opening.read_record(corpus, 7) == opening.read_from_parts(corpus, 7)).all()
 
 

@@ -13,7 +13,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.decimate import decimation
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.batches import group_of, integrate_batch
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
@@ -40,7 +40,7 @@ def case(request: pytest.FixtureRequest) -> Case:
     seed["recording"].update(RECORDING)
     seed["faults"] = [{"kind": "healthy"} if request.param == "healthy" else spall]
     recipe, profile = Recipe.model_validate(seed), PROFILES[request.param]
-    given = [kernel_input(scenario, timeline(recipe)) for scenario in draw_scenarios(recipe, 0, LANES)]
+    given = [kernel_input(scenario, timeline(settings_of(recipe))) for scenario in draw_scenarios(recipe, 0, LANES)]
     made = np.stack([trip.accelerations for trip in march_lanes(given, SAMPLES, 1, 1 / FS)], axis=2)
     return Case(profile, seed_records(recipe, LANES)[profile], made[:, :4])
 
@@ -65,7 +65,7 @@ def test_a_kernel_in_c_returns_the_outputs_of_ours(source: str, steps: int, brie
     if compiler() is None:
         pytest.skip("no C compiler")
     recipe = read_recipe(brief_seed)
-    axis, filters = timeline(recipe), decimation(steps)
+    axis, filters = timeline(settings_of(recipe)), decimation(steps)
     for profile, records in seed_records(recipe, 2 * LANES).items():
         group, some = group_of(records[0], steps), records[:LANES]
         ours = integrate_batch(group, lay_out(some, group.shape, 1 / axis.fs), axis).response[:, :, : len(some)]

@@ -28,8 +28,8 @@ def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, t
     recipe.write_text(tiny_recipe.read_text().replace("records_per_part: 12", f"records_per_part: {2 + turn}"))
     alone = generate(recipe, tmp_path / "alone")
     made = generate(recipe, tmp_path / "threads", scheduler=threaded.scheduler_address)
-    assert read_manifest(made.directory).parts == read_manifest(alone.directory).parts
-    assert validate_corpus(made.directory) == []
+    assert read_manifest(made.path).parts == read_manifest(alone.path).parts
+    assert validate_corpus(made.path) == []
 
 
 def told(topic, item):

@@ -16,7 +16,7 @@ from gen.compilation import compile_kernels, needed_shapes
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.decimate import decimation
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.kernels import SharedCache, locked, signature
 from gen.simulation.outline import outlined_input
 from gen.simulation.simulate import laid_out
@@ -122,7 +122,7 @@ print(kernels.is_compiled(make_shape(9, 1)), _rattle.stats.cache_path)
 def test_the_sample_needs_every_kernel_of_a_shipped_recipe(name):
     recipe = read_recipe(name)
     every = {
-        input_shape(outlined_input(some, timeline(recipe)))
+        input_shape(outlined_input(some, timeline(settings_of(recipe))))
         for scenario in draw_scenarios(recipe, 0, 480)
         for some in [scenario, scenario.without_fault()][: 2 if recipe.corpus.truth == "full" else 1]
     }
@@ -133,7 +133,7 @@ def test_kernels_are_compiled_for_the_types_of_the_arguments_they_are_called_wit
     recipe = recipe_with(
         {"operation.speed_profile": {"kind": "run_up", "from_percent": 50, "to_percent": 120, "lasting_s": 0.1}}
     )
-    for group, batch in laid_out(draw_scenarios(recipe, 0, 8), recipe):
+    for group, batch in laid_out(draw_scenarios(recipe, 0, 8)):
         given = (group.shape, batch, 1e-5, group.steps, decimation(group.steps), 3, 5)
         assert tuple(map(numba.typeof, given)) == signature(group.shape)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from gen.corpus import FAULTS
-from gen.families import FAULT_TRIES, made_again
+from gen.families import FAULT_TRIES, made_from
 from gen.labels import part_dataset
 from gen.making import made_records
 from gen.measurement.measure import measure
@@ -29,8 +29,8 @@ TRAINING = {
 }
 
 
-def labelled(made, recipe):
-    return part_dataset(made.measured, made.measured.scenarios, recipe, made.response)
+def labelled(made):
+    return part_dataset(made.measured, made.response)
 
 
 @pytest.fixture(scope="module")
@@ -103,12 +103,11 @@ def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_rec
 
 
 def test_a_record_is_made_again_with_the_fault_and_the_level_that_it_has(redrawing):
-    recipe, whole = redrawing
+    _, whole = redrawing
     redrawn = [one for one in whole.measured.scenarios if one.specimen.fault_try or one.record.level_try]
     for scenario in redrawn[:3]:
-        number = scenario.record.number
-        again = made_again(recipe, number, scenario.specimen.fault_try, scenario.record.level_try)
-        np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[number])
+        again = made_from([scenario])
+        np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[scenario.record.number])
         assert again.measured.scenarios == [scenario]
 
 
@@ -139,8 +138,8 @@ def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, wavin
     faults = [{"kind": "inner", "width_mm": 0.5}, worn, {"kind": "cage"}]
     recipe = recipe_with({"specimen.waviness_nm": waviness, "faults": faults, "corpus.specimens_per_rig": 3})
     scenarios = draw_scenarios(recipe, 0, 6)
-    twins = simulate(scenarios, recipe).twins
-    alone = simulate([scenario.without_fault() for scenario in scenarios], recipe)
+    twins = simulate(scenarios).twins
+    alone = simulate([scenario.without_fault() for scenario in scenarios])
     assert {scenario.specimen.fault for scenario in scenarios} == {"inner", "outer", "cage"}
     np.testing.assert_array_equal(twins.acceleration, alone.acceleration)
 
@@ -180,7 +179,7 @@ def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
         twin.diverged = 100
 
     monkeypatch.setattr(simulation, "integrate_all", second_twin_diverges)
-    response = simulate(draw_scenarios(recipe, 0, 2), recipe)
+    response = simulate(draw_scenarios(recipe, 0, 2))
     assert list(response.failures) == [1]
     assert "record 1 diverged at t = 0.008333 s" in response.failures[1]
     assert np.isnan(response.acceleration[1]).all()
@@ -205,16 +204,16 @@ def hidden(recipe_with, undetected):
 
 
 def test_a_fault_that_cannot_be_seen_keeps_its_label_where_the_recipe_says_so(recipe_with):
-    recipe, made = hidden(recipe_with, "keep")
-    dataset = labelled(made, recipe)
+    _, made = hidden(recipe_with, "keep")
+    dataset = labelled(made)
     assert dataset["fault"].values.tolist() == [2, 2]
     assert dataset["detectable"].values.tolist() == [0, 0]
     assert (dataset["width"] > 0).all()
 
 
 def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(recipe_with):
-    recipe, made = hidden(recipe_with, "healthy")
-    dataset = labelled(made, recipe)
+    _, made = hidden(recipe_with, "healthy")
+    dataset = labelled(made)
     assert dataset["fault"].values.tolist() == [0, 0]
     assert dataset["n_spalls"].values.tolist() == [0, 0]
     assert (dataset["width"] == 0).all()
@@ -226,7 +225,7 @@ def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
     made = made_records(recipe, range(8))
     faults = [FAULTS.index(scenario.specimen.fault) for scenario in made.measured.scenarios]
     assert any(faults)
-    assert labelled(made, recipe)["fault"].values.tolist() == faults
+    assert labelled(made)["fault"].values.tolist() == faults
 
 
 def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):
@@ -288,10 +287,9 @@ def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with)
     for group in groups_of(made):
         levels = {(one.snr, one.level_try) for one in (made.measured.scenarios[place].record for place in group)}
         assert len(levels) == 1
-        fault_try, level_try = made.measured.scenarios[group[0]].specimen.fault_try, levels.pop()[1]
-        again = made_again(recipe, group[0], fault_try, level_try)
+        again = made_from([made.measured.scenarios[group[0]]])
         np.testing.assert_array_equal(again.measured.signal[0], made.measured.signal[group[0]])
-        tried += level_try > 0
+        tried += levels.pop()[1] > 0
     assert tried > 0
 
 
@@ -312,10 +310,10 @@ def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_
 def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_diverge(recipe_with):
     recipe = recipe_with(LADDER)
     scenarios = [one for one in draw_scenarios(recipe, 0, 18) if one.record.pair >= 0][:6]
-    response = simulate(scenarios, recipe)
+    response = simulate(scenarios)
     for damaged in (response.acceleration, response.twins.acceleration):
         damaged[2] = np.nan
-    measured = measure(response.acceleration, scenarios, recipe, response.twins)
+    measured = measure(response.acceleration, scenarios, response.twins)
     assert measured.fault_snr[1] == pytest.approx(measured.scenarios[1].record.snr, abs=0.05)
     scale = recipe.recording.converter.full_scale_m_s2 / 32767
     rms = np.sqrt(np.mean((measured.signal[1] * scale) ** 2))
@@ -330,7 +328,7 @@ def test_a_group_is_not_cut_by_a_part(ladders):
         some = made_records(recipe, range(number, number + 2))
         np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[number : number + 2])
         scenario = whole.measured.scenarios[number]
-        again = made_again(recipe, number, scenario.specimen.fault_try, scenario.record.level_try)
+        again = made_from([scenario])
         np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[number])
 
 
@@ -340,7 +338,7 @@ def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
     rungs, width = [0.25, 0.5, 0.75, 1], {"kind": "outer", "width_mm": 0.4}
     recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
     made = made_records(recipe, range(16))
-    dataset = labelled(made, recipe)
+    dataset = labelled(made)
     assert dataset["gain"].values.tolist() == [scenario.rig.gain for scenario in made.measured.scenarios]
     assert dataset["background_rms"].values == pytest.approx(0.2)
     signal = made.measured.signal.astype(float) / made.measured.counts_per_unit

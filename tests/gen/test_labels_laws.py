@@ -9,7 +9,8 @@ from gen.corpus import FAULTS, SPLITS
 from gen.labels import part_dataset, sensor_flag_columns
 from gen.measurement.measure import measure
 from gen.measurement.sensor_faults import SensorFlags
-from gen.scenarios import draw_scenarios, read_scenario
+from gen.recipe import corpus_identity
+from gen.scenarios import draw_scenarios, read_scenario, settings_of
 from gen.simulation.timeline import timeline
 from tests.responses import response_of
 
@@ -28,7 +29,7 @@ def labels(recipe, **given):
     """Labels of all records of a recipe whose bodies are at rest; labels do not depend on the motion."""
     scenarios = draw_scenarios(recipe)
     response = response_of(scenarios, recipe)
-    return part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response, **given)
+    return part_dataset(measure(response.acceleration, scenarios), response, **given)
 
 
 @pytest.fixture
@@ -168,7 +169,7 @@ def test_a_record_without_a_machine_has_no_operating_clearance(recipe_with):
     recipe = recipe_with(STEADY | {"records": 2})
     scenarios = draw_scenarios(recipe)
     response = response_of(scenarios, recipe, impossible=[0])
-    found = part_dataset(measure(response.acceleration, scenarios, recipe), scenarios, recipe, response)
+    found = part_dataset(measure(response.acceleration, scenarios), response)
     assert np.isnan(found["operating_clearance"].values).tolist() == [True, False]
 
 
@@ -184,10 +185,10 @@ def test_what_the_run_found_stands_beside_its_record(recipe_with):
 
 def test_signal_ratio_and_clipped_samples_are_those_that_were_measured(recipe_with):
     recipe = recipe_with({"records": 3, "recording.converter": {"kind": "adc", "full_scale_m_s2": 2.0}})
-    scenarios, n = draw_scenarios(recipe), timeline(recipe).lead + recipe.n_samples
+    scenarios, n = draw_scenarios(recipe), timeline(settings_of(recipe)).lead + recipe.n_samples
     hiss = 4 * np.random.default_rng(0).standard_normal((3, 1, n)).astype(np.float32)
-    measured = measure(hiss, scenarios, recipe)
-    found = part_dataset(measured, scenarios, recipe, response_of(scenarios, recipe))
+    measured = measure(hiss, scenarios)
+    found = part_dataset(measured, response_of(scenarios, recipe))
     np.testing.assert_array_equal(found["snr"].values, measured.snr)
     np.testing.assert_array_equal(found["clipped"].values, measured.clipped)
     np.testing.assert_array_equal(found["acceleration"].values, measured.signal)
@@ -207,6 +208,18 @@ def test_a_record_knows_its_place(recipe_with):
     assert [FAULTS[code] for code in found["fault"].values] == [scenario.specimen.fault for scenario in scenarios]
     for scenario, text in zip(scenarios, found["draws"].values, strict=True):
         assert read_scenario(text) == scenario
+
+
+def test_a_record_has_the_identity_that_its_numbers_have_in_every_corpus_of_the_same_draws(recipe_with):
+    found = labels(recipe_with({}))
+    corpora = {text.partition("/")[0] for text in found["identity"].values}
+    assert corpora == {
+        corpus_identity(recipe_with({"corpus.records_per_part": 5, "title": "Another title", "records": 9}))
+    }
+    assert corpora != {corpus_identity(recipe_with({"seed": 8}))}
+    numbers = [tuple(map(int, text.split("/")[1:])) for text in found["identity"].values]
+    wanted = [found[name].values.tolist() for name in ("rig", "specimen", "recording", "pair")]
+    assert numbers == list(zip(*wanted, strict=True))
 
 
 def test_a_gear_is_labelled_by_its_teeth(labels_with):

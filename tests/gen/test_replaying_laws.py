@@ -1,18 +1,32 @@
 """Laws of the scenario stored in a corpus: it is the drawn one, and a corpus without one gets a sentence."""
 
-import json
 import shutil
 
-import h5py
 import numpy as np
 import pytest
+import xarray as xr
 
-from gen import draw_scenarios, generate, open_corpus, replay, shaft_angles, stored_scenario
-from gen.corpus import sha256
+from gen import (
+    draw_scenarios,
+    generate,
+    open_corpus,
+    read_recipe,
+    replay,
+    shaft_angles,
+    stored_scenario,
+    write_corpus,
+)
+from gen.corpus import finish_corpus, part_name, write_part
 from gen.errors import CorpusError
-from gen.replaying import corpus_recipe
 from gen.simulation.motion import start_of
 from tests import corpora
+
+
+def written(records, folder):
+    """A corpus of one part whose signals are in floating point."""
+    (folder / "parts").mkdir(parents=True)
+    rows = [write_part(records, folder / "parts" / part_name(0))]
+    finish_corpus(folder, rows)
 
 
 def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for_bit(write_recipe, tmp_path):
@@ -34,28 +48,48 @@ def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for
         assert replay(tmp_path / "corpus", int(np.flatnonzero(wanted)[0])).identical
 
 
-def test_an_older_corpus_that_decodes_to_double_precision_is_replayed_bit_for_bit(tiny_corpus, tmp_path):
-    older = shutil.copytree(tiny_corpus, tmp_path / "corpus")
-    manifest = json.loads((older / "manifest.json").read_text())
-    files = [older / "corpus.nc", *sorted((older / "parts").iterdir())]
-    for path, listed in zip(files, [manifest["index"], *manifest["parts"]], strict=True):
-        with h5py.File(path, "r+") as file:
-            attributes = file["acceleration"].attrs
-            scale = 500 / 32767
-            assert attributes["scale_factor"] == pytest.approx(scale)
-            for name, value in {"scale_factor": scale, "add_offset": 0.0}.items():
-                attributes.create(name, np.float64(value))
-        listed |= {"bytes": path.stat().st_size, "sha256": sha256(path)}
-    (older / "manifest.json").write_text(json.dumps(manifest))
-    with open_corpus(older) as corpus:
-        assert corpus["acceleration"].dtype == np.float64
-    assert replay(older, 5).identical
+def test_a_rung_alone_is_replayed_bit_for_bit(write_recipe, tmp_path):
+    """The largest rung of its group, which set the level, is not in the corpus."""
+    level = {"kind": "snr", "faulty_db": 0, "healthy_db": 0}
+    faults = [{"kind": "healthy", "weight": 2}, {"kind": "inner", "width_mm": 0.5}]
+    size = {"corpus.rungs": [0, 0.5, 1], "corpus.records_per_specimen": 1, "corpus.rigs": 1}
+    changes = {"level": level, "faults": faults, **size}
+    generate(write_recipe(tmp_path / "r.yaml", changes), tmp_path / "corpus")
+    with open_corpus(tmp_path / "corpus") as corpus:
+        small = corpus.isel(record=np.isin(corpus["rung"].values, (0, 1))).load()
+    assert set(small["rung"].values) == {0, 1}
+    write_corpus(small, tmp_path / "small")
+    assert all(replay(tmp_path / "small", record).identical for record in range(small.sizes["record"]))
+
+
+def test_a_record_is_replayed_with_channels_cut_renamed_or_exchanged_and_in_floating_point(write_recipe, tmp_path):
+    channels = [{"name": "x", "body": "housing"}, {"name": "y", "body": "housing", "angle_deg": 90}]
+    recipe = write_recipe(tmp_path / "r.yaml", {"recording.channels": channels, "records": 3})
+    generate(recipe, tmp_path / "made")
+    with open_corpus(tmp_path / "made") as corpus:
+        whole = corpus.load().drop_encoding()
+    whole = whole.assign_coords(
+        elapsed_time=whole["elapsed_time"].astype(np.float64)
+    )  # in the byte order of this machine
+    copies = {
+        "whole": whole,
+        "cut": whole.isel(channel=[1]),
+        "renamed": whole.assign_coords(channel=["a", "b"]),
+        "exchanged": whole.assign_coords(channel=["y", "x"]),
+        "in other order": whole.isel(channel=[1, 0]),
+    }
+    for name, copy in copies.items():
+        written(copy, tmp_path / name)
+        again = replay(tmp_path / name, 2)
+        assert again.identical
+        assert again.dataset["channel"].values.tolist() == copy["channel"].values.tolist()
+        np.testing.assert_array_equal(xr.decode_cf(again.dataset)["acceleration"][0], copy["acceleration"][2])
 
 
 def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):
     with open_corpus(tiny_corpus) as corpus:
         numbers = corpus["recording"].values
-    drawn = draw_scenarios(corpus_recipe(tiny_corpus))
+    drawn = draw_scenarios(read_recipe(tiny_corpus / "recipe.yaml"))
     assert [stored_scenario(tiny_corpus, record) for record in range(len(numbers))] == [drawn[n] for n in numbers]
 
 
@@ -82,7 +116,7 @@ def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(corpora, "EXTRA", ())
     monkeypatch.setattr(corpora, "columns", lambda *part: {k: v for k, v in with_draws(*part).items() if k != "draws"})
     corpora.write_corpus(tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="has no variable draws, so it was not generated and stores no scenarios"):
+    with pytest.raises(CorpusError, match="record 0 was not simulated: the corpus stores no scenario of it"):
         stored_scenario(tmp_path / "corpus", 0)
 
 
@@ -96,15 +130,14 @@ def test_the_angle_of_the_shaft_turns_at_the_true_rate_of_the_record(tiny_corpus
 
 
 def test_the_angle_of_the_shaft_begins_with_the_record_after_its_settling(tiny_corpus):
-    recipe = corpus_recipe(tiny_corpus)
     for record in (0, 17):
         scenario = stored_scenario(tiny_corpus, record)
         turned = shaft_angles(tiny_corpus, record)[0] - start_of(scenario).shaft
-        settling = 2 * np.pi * scenario.record.conditions["shaft"] * recipe.recording.settle_s
+        settling = 2 * np.pi * scenario.record.conditions["shaft"] * scenario.settings.settle
         assert turned == pytest.approx(settling, rel=0.02)
 
 
 def test_a_corpus_that_was_not_generated_has_no_angle_of_the_shaft(tmp_path):
     corpora.write_corpus(tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="was not generated"):
+    with pytest.raises(CorpusError, match="record 0: stored scenario: "):
         shaft_angles(tmp_path / "corpus", 0)

@@ -151,6 +151,23 @@ def test_generate_counts_its_records_and_a_second_call_keeps_them(told, tiny_rec
     assert told("info", tmp_path / "corpus")["overrides"] == {"seed": 9, "records": 20}
 
 
+def test_a_single_file_is_generated_kept_shown_and_used_like_a_folder(run, told, tiny_recipe, tiny_corpus, tmp_path):
+    file = tmp_path / "corpus.nc"
+    made = told("generate", tiny_recipe, "-o", file)
+    assert (made["corpus"], made["records"], made["parts"], made["kept"]) == (str(file), 48, 4, 0)
+    assert told("generate", tiny_recipe, "-o", file)["kept"] == 4
+    assert [path.name for path in tmp_path.iterdir()] == ["corpus.nc"]
+    assert told("validate", file) == {"corpus": str(file), "valid": True, "problems": [], "warnings": []}
+    own = {"corpus", "bytes", "parts"}
+    one, other = (told("info", corpus) for corpus in (file, tiny_corpus))
+    assert {name: one[name] for name in one.keys() - own} == {name: other[name] for name in other.keys() - own}
+    assert "complete" in run("info", file).stdout
+    for corpus, name in ((file, "file.nc"), (tiny_corpus, "folder.nc")):
+        told("features", corpus, "-o", tmp_path / name)
+    assert read_table(tmp_path / "file.nc").equals(read_table(tmp_path / "folder.nc"))
+    assert run("plot", file, "--record", 5, "-o", tmp_path / "record.png").exit_code == 0
+
+
 def test_generate_counts_in_words_and_prints_the_next_step_after_its_result(run, tiny_recipe, tmp_path):
     corpus = tmp_path / "my corpus"
     shown = run("generate", tiny_recipe, "-o", corpus, "--records", 1, "--workers", 1).stdout
@@ -166,10 +183,10 @@ def test_a_limit_can_be_raised_for_one_command(run, tmp_path, monkeypatch):
 
 
 def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tmp_path, monkeypatch):
-    def first_diverges(runs, recipe):
+    def first_diverges(runs):
         numbers = [run.scenario.record.number for run in runs]
         failures = {place: f"record {number} diverged." for place, number in enumerate(numbers) if number % 12 == 0}
-        return replace(response_of(runs, recipe), failures=failures)
+        return replace(response_of(runs), failures=failures)
 
     monkeypatch.setattr("gen.families.response_of", first_diverges)
     result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
@@ -204,7 +221,7 @@ def test_info_shows_the_range_of_the_severities_of_each_class(run, told, tiny_co
 
 @pytest.mark.parametrize("command", ["info", "validate"])
 def test_the_index_of_a_corpus_stands_for_its_folder(run, tiny_corpus, command):
-    assert run(command, tiny_corpus / "corpus.nc").stdout == run(command, tiny_corpus).stdout
+    assert run(command, tiny_corpus / "index.nc").stdout == run(command, tiny_corpus).stdout
 
 
 def test_replay_finds_a_record_identical_and_writes_it(run, told, tiny_corpus, tmp_path):

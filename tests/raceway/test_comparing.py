@@ -43,14 +43,21 @@ def test_the_table_has_a_row_per_measure_and_names_the_page(run, sets, tmp_path)
     assert (tmp_path / "out" / "report.html").is_file()
 
 
+@pytest.mark.parametrize("window", [0.05, 0.1])
+def test_windows_too_short_for_lines_are_compared_by_the_other_measures(told, sets, tmp_path, window):
+    found = told("compare", sets / "made", sets / "first", "-o", tmp_path / "out", "--window", window)
+    assert found["auc"]["outer"]["centroid"] > 0.99
+    assert None in found["auc"]["outer"].values()
+
+
 @pytest.mark.parametrize(
     ("line", "sentence"),
     [
         ("{made} -o {new}", "Missing argument 'REAL...'"),
         ("{made} {first}", "Missing option '-o'"),
-        ("{made} {nowhere} -o {new}", "nowhere: no such folder; give the folder of a corpus"),
-        ("{nowhere} {made} -o {new}", "nowhere: no such folder; give the folder of a corpus"),
-        ("{made} {made}/manifest.json -o {new}", "is one file of a corpus; give the folder of the corpus"),
+        ("{made} {nowhere} -o {new}", "nowhere: no such folder or file; give a corpus: a folder"),
+        ("{nowhere} {made} -o {new}", "nowhere: no such folder or file; give a corpus: a folder"),
+        ("{made} {made}/manifest.json -o {new}", "manifest.json: has no checksum of Raceway at its end: it is no corpus of this format"),
         ("{cages} {second} -o {new}", "has no class that the real corpora have: healthy here, inner, outer there"),
         ("{made} {still} -o {new}", "still: no record has a shaft rate and fault orders above 0"),
         ("{made} {first} -o {new} --top 7000", "shows nothing above 6000 Hz, and records are compared up to 7000 Hz"),

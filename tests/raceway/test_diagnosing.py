@@ -39,7 +39,7 @@ LINE_ORDERS = {"inner": 5.4152, "outer": 3.5848, "ball": 4.7135}
 def corpus(folder, **values):
     recipe = folder / "recipe.yaml"
     recipe.write_text(RECIPE.format(**values), encoding="utf-8")
-    return generate(recipe, folder / "corpus").directory
+    return generate(recipe, folder / "corpus").path
 
 
 @pytest.fixture(scope="module")
@@ -232,7 +232,7 @@ def test_the_verdict_does_not_depend_on_the_unit(model, recordings, tmp_path):
         (("r.pdf", "--rate", FS), "no known type"),
         (("r.wav", "--unit", "V"), "sensitivity"),
         (("r.wav", "--bearing", "62O5"), "6205"),
-        (("r.wav", "--bearing", "n_balls=8"), "pitch_diameter_mm is missing"),
+        (("r.wav", "--bearing", "n_balls=8"), "pitch_diameter_mm: is missing"),
         (("r.wav", "--bearing", "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=x"), "key=number"),
         (("r.wav", "--bearing", "n_balls=8,pitch_diameter_mm=33.5,balls_mm=8"), "balls_mm"),
         (("r.wav", "--bearing", "n_balls=8,n_balls=9"), "n_balls is given twice"),

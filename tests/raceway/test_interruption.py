@@ -14,6 +14,7 @@ from gen import generate
 from gen.corpus import read_manifest, validate_corpus
 from gen.recipe import read_recipe
 from raceway.commands.corpora import _kept
+from tests.kills import killed
 
 N_PARTS = 12
 PATIENCE_S = 60
@@ -30,17 +31,17 @@ def recipe(tiny_recipe, tmp_path_factory):
 @pytest.fixture(scope="module")
 def whole(recipe, tmp_path_factory):
     """Bytes of the parts and of the manifest that an uninterrupted call writes."""
-    return part_bytes(generate(recipe, tmp_path_factory.mktemp("whole") / "corpus").directory)
+    return part_bytes(generate(recipe, tmp_path_factory.mktemp("whole") / "corpus").path)
 
 
 def part_bytes(folder):
-    """Bytes of the parts and of the manifest, and of a journal, which a finished corpus does not have."""
-    paths = (*(folder / "parts").iterdir(), folder / "manifest.json", *folder.glob("*.jsonl"))
+    """Bytes of the parts, the index and the manifest."""
+    paths = (*(folder / "parts").iterdir(), folder / "manifest.json", folder / "index.nc")
     return {path.name: path.read_bytes() for path in sorted(paths)}
 
 
 def listed(folder):
-    """Names of the parts in the manifest and in the journal."""
+    """Names of the whole parts."""
     if not (folder / "manifest.json").exists():
         return []
     return [row.name for row in read_manifest(folder).parts]
@@ -65,10 +66,12 @@ def a_part_begun_after(folder, finished):
     return found
 
 
-@pytest.mark.parametrize(("number", "workers"), [(signal.SIGINT, 2), (signal.SIGTERM, 1)])
-def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_path, number, workers):
-    folder = tmp_path / "corpus"
-    process = start("generate", recipe, "-o", folder, "--workers", workers)
+@pytest.mark.parametrize(
+    ("number", "workers", "name"), [(signal.SIGINT, 2, "c"), (signal.SIGTERM, 1, "c"), (signal.SIGINT, 2, "c.nc")]
+)
+def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_path, number, workers, name):
+    corpus, folder = tmp_path / name, tmp_path / ("c" if name == "c" else "c.nc.parts")
+    process = start("generate", recipe, "-o", corpus, "--workers", workers)
     wait_for(lambda: listed(folder), process)
     os.killpg(process.pid, number)
     output, errors = process.communicate(timeout=PATIENCE_S)
@@ -82,16 +85,38 @@ def test_a_signal_leaves_finished_parts_and_one_line(start, recipe, whole, tmp_p
     assert 1 <= int(said[1]) <= len(kept) < N_PARTS
     assert {name: (folder / "parts" / name).read_bytes() for name in kept}.items() <= whole.items()
     assert not list(folder.glob("**/.*"))
-    assert generate(recipe, folder).kept == len(kept)
-    assert part_bytes(folder) == whole
-    assert validate_corpus(folder) == []
+    assert generate(recipe, corpus).kept == len(kept)
+    assert not kept_open(corpus)
+    assert corpus.is_file() or part_bytes(folder) == whole
+    assert validate_corpus(corpus) == []
+
+
+def kept_open(corpus):
+    """Hidden and unfinished files beside a finished corpus."""
+    return [path for path in corpus.parent.iterdir() if path.name.startswith(".") or path.name.endswith(".parts")]
+
+
+KILLS = 6
+
+
+def test_a_single_file_killed_at_any_moment_is_there_as_a_whole_or_not_at_all(recipe, tmp_path):
+    """Between the kills nothing is removed, so that most of them meet the last steps."""
+    corpus = tmp_path / "c.nc"
+    for _ in killed(lambda: generate(recipe, corpus, records=16), moments=KILLS):
+        if corpus.exists():
+            assert validate_corpus(corpus) == []
+            whole_bytes = corpus.read_bytes()
+            corpus.unlink()
+    generate(recipe, corpus, records=16)
+    assert corpus.read_bytes() == whole_bytes
+    assert not kept_open(corpus)
 
 
 def test_the_last_sentence_counts_the_parts_after_the_files_of_killed_workers_are_removed(
     tiny_corpus, tiny_recipe, tmp_path
 ):
     folder = shutil.copytree(tiny_corpus, tmp_path / "corpus")
-    (folder / "parts" / ".part-00003.nc.4.5.tmp").write_bytes(b"half a part")
+    (folder / "parts" / ".part-00003.nc.host.4.5.tmp").write_bytes(b"half a part")
     said = _kept(folder, read_recipe(tiny_recipe))
     assert said == f"interrupted; 4 of 4 parts kept in {folder}; the same command completes the corpus."
     assert not list(folder.glob("**/.*"))
@@ -109,10 +134,8 @@ def test_a_process_killed_at_any_moment_leaves_no_half_part(start, recipe, whole
         assert process.wait(PATIENCE_S) == -signal.SIGKILL
         assert len(listed(folder)) >= begun
         finished = len(listed(folder))
-    (folder / "parts" / ".part-00009.nc.1.1.tmp").write_bytes(b"half a part")
-    (folder / ".manifest.json.1.1.tmp").write_bytes(b"half a manifest")
-    with (folder / "parts.jsonl").open("ab") as journal:
-        journal.write(b'{"name": "part-000')
+    (folder / "parts" / ".part-00009.nc.host.1.1.tmp").write_bytes(b"half a part")
+    (folder / ".manifest.json.host.1.1.tmp").write_bytes(b"half a manifest")
     made = generate(recipe, folder)
     assert made.kept == finished
     assert part_bytes(folder) == whole
@@ -189,5 +212,5 @@ def test_a_process_ends_with_the_code_of_its_command(start, tmp_path):
     assert (process.returncode, output) == (2, "")
     assert (
         errors
-        == f"{tmp_path}/nowhere: no such folder; give the folder of a corpus, the one that holds manifest.json.\n"
+        == f"{tmp_path}/nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file.\n"
     )

@@ -3,7 +3,6 @@
 They describe the parts whose hashes they were made for. On the card of a corpus whose parts have changed they are left out.
 """
 
-import hashlib
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -12,8 +11,7 @@ from pydantic import ValidationError
 
 from gen.corpus.card.markdown import plain_text, table
 from gen.corpus.files import plain_file, write_text_durably
-from gen.corpus.journal import Strict, first_problem
-from gen.corpus.manifest_fields import Manifest
+from gen.corpus.manifest import Manifest, Strict, first_problem
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -61,11 +59,6 @@ class CardAdditions(Strict):
     scores: CardScores | None = None
 
 
-def parts_digest(manifest: Manifest) -> str:
-    """SHA-256 over the hashes of all parts."""
-    return hashlib.sha256("\n".join(row.sha256 for row in manifest.parts).encode()).hexdigest()
-
-
 def read_additions(directory: Path, manifest: Manifest) -> CardAdditions:
     """Pictures and scores of the present parts; empty without ``card.json``, or if the parts have changed.
 
@@ -74,7 +67,7 @@ def read_additions(directory: Path, manifest: Manifest) -> CardAdditions:
     CorpusError
         If the file is not what ``raceway card`` writes.
     """
-    nothing = CardAdditions(parts=parts_digest(manifest))
+    nothing = CardAdditions(parts=manifest.parts_sha256 or "")
     if not (directory / CARD_NAME).exists():
         return nothing
     path = plain_file(directory, CARD_NAME)

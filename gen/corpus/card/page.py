@@ -10,21 +10,26 @@ from gen.corpus.card.ranges import ranges
 from gen.corpus.card.terms import citation, terms
 from gen.corpus.files import write_text_durably
 from gen.corpus.index import open_corpus
-from gen.corpus.manifest import read_manifest
+from gen.corpus.manifest import RECIPE_NAME, corpus_files, read_manifest, recipe_text
 
 
-def data_card(directory: Path | str) -> str:
-    """Data card of a finished corpus, made from the files in its folder: the same files give the same page.
+def card_folder(path: Path) -> Path:
+    """Folder of the data card of a corpus: its own, or for a single file ``NAME.nc`` the folder ``NAME.card`` beside it."""
+    return path.with_suffix(".card") if path.is_file() else path
+
+
+def data_card(path: Path | str) -> str:
+    """Data card of a finished corpus, made from its files: the same files give the same page.
 
     Raises
     ------
     CorpusError
         If the corpus is unfinished, or one of its files is missing or of another size than in the manifest.
     """
-    directory = Path(directory)
-    manifest = read_manifest(directory)
-    added = additions.read_additions(directory, manifest)
-    with open_corpus(directory, check="size") as corpus:
+    path = Path(path)
+    manifest = read_manifest(path)
+    added = additions.read_additions(card_folder(path), manifest)
+    with open_corpus(path, check="size") as corpus:
         title = plain_text(corpus.attrs.get("title", "Untitled corpus"))
         lines = [
             f"# {title}",
@@ -34,12 +39,12 @@ def data_card(directory: Path | str) -> str:
             *contents(corpus, manifest.signals),
             *terms(manifest.publication),
             *additions.pictures(added.pictures),
-            *opening(directory / "parts" / manifest.parts[0].name),
-            *ranges(corpus, origin.recipe_files(directory)),
+            *opening(path, corpus_files(path, "size")[0]),
+            *ranges(corpus, recipe_text(path)),
             *labels.findings(corpus),
             *additions.scores(added.scores),
             *citation(title, manifest, manifest.publication),
-            *origin.rebuilding(manifest, corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])),
+            *origin.rebuilding(corpus, manifest),
             *origin.left_out(manifest),
             *labels.meanings(corpus),
             "",
@@ -47,7 +52,9 @@ def data_card(directory: Path | str) -> str:
     return "\n".join(lines)
 
 
-def write_card(directory: Path | str) -> None:
-    """Write the data card of a finished corpus, ``README.md``, whole or not at all."""
-    directory = Path(directory)
-    write_text_durably(data_card(directory), directory / "README.md")
+def write_card(path: Path | str) -> None:
+    """Write the data card of a finished corpus, ``README.md``, whole or not at all, and beside that of a single file its recipe."""
+    path = Path(path)
+    if path.is_file() and (recipe := recipe_text(path)) is not None:
+        write_text_durably(recipe, card_folder(path) / RECIPE_NAME)
+    write_text_durably(data_card(path), card_folder(path) / "README.md")

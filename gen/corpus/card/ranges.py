@@ -7,8 +7,7 @@ quantities are taken from some records, because all of them would take long to r
 import json
 import re
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
-from pathlib import Path
+from collections.abc import Iterator, Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -25,7 +24,6 @@ IntArray = NDArray[np.intp]
 MOST_DRAWS = 256  # records whose draws are read, in runs: text is stored in blocks of 256 records, 1 ms each
 _RUN = 4
 MOST_QUANTITIES = 200  # rows of a table
-LARGEST_RECIPE = 1_000_000  # bytes that are searched for keys
 FEWEST = 12  # specimens of a class whose values are compared with those of the others
 _LARGEST = 1e300  # not infinite, and no whole number beyond the range of floats
 
@@ -42,7 +40,7 @@ _UNITS = {
 }  # fmt: skip
 """Units by the end of the place, of values without a key of their own or with another unit than that of the key: orders of the shaft."""
 
-_NOT_DRAWN = {"seed", "number", "entry", "bearing", "fault_try", "level_try", "ball"}
+_NOT_DRAWN = {"seed", "settings", "number", "entry", "bearing", "fault_try", "level_try", "ball"}
 """Numbers and copies of the catalogue among the draws."""
 
 
@@ -70,8 +68,8 @@ class Groups(NamedTuple):
     specimen: NDArray[np.integer[Any]]
 
 
-def ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> list[str]:
-    """Section with the ranges of the variables and of the drawn quantities; ``recipes`` are the files of the corpus."""
+def ranges(corpus: xr.Dataset, recipe: str | None) -> list[str]:
+    """Section with the ranges of the variables and of the drawn quantities; ``recipe`` is that of the corpus, as YAML."""
     rows, constant = variable_ranges(corpus)
     header = ("variable", "unit", "class", "least", "median", "largest")
     lines = [
@@ -83,7 +81,7 @@ def ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> list[str]:
     ]
     if constant:
         lines += ["", f"The same in all records: {', '.join(constant)}."]
-    drawn, read = drawn_ranges(corpus, recipes)
+    drawn, read = drawn_ranges(corpus, recipe)
     if drawn:
         some = "all records" if read == corpus.sizes["record"] else f"{read} records drawn at random"
         lines += [
@@ -166,7 +164,7 @@ def _extent(values: FloatArray) -> tuple[float, float, float]:
     return float(values.min()), float(np.median(values)), float(values.max())
 
 
-def drawn_ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> tuple[list[Range], int]:
+def drawn_ranges(corpus: xr.Dataset, recipe: str | None) -> tuple[list[Range], int]:
     """Ranges of the drawn quantities that vary, and the number of records they are taken from."""
     if DRAWS not in corpus:
         return [], 0
@@ -183,7 +181,7 @@ def drawn_ranges(corpus: xr.Dataset, recipes: Iterable[Path]) -> tuple[list[Rang
                 for path, value in leaves[section]:
                     found[path].append(value)
                     places[path].append(record)
-    units = _units(recipes)
+    units = _units(recipe or "")
     groups = Groups(corpus["fault"].values, corpus["specimen"].values)
     rows: list[Range] = []
     for path, numbers in found.items():
@@ -234,13 +232,10 @@ def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
         yield path, float(value)
 
 
-def _units(recipes: Iterable[Path]) -> dict[str, str]:
-    """Units of drawn values by name, from the keys of recipes: ``shaft_mass_kg`` tells that ``shaft_mass`` is in kg."""
+def _units(recipe: str) -> dict[str, str]:
+    """Units of drawn values by name, from the keys of a recipe: ``shaft_mass_kg`` tells that ``shaft_mass`` is in kg."""
     units: dict[str, str] = {}
-    for recipe in recipes:
-        with recipe.open("rb") as stream:
-            text = stream.read(LARGEST_RECIPE).decode(errors="replace")
-        for key in re.findall(r"(\w+)\s*:", text):
-            suffix = unit_suffix(key)
-            units.setdefault(key.removesuffix(f"_{suffix}"), SI_SYMBOLS[suffix] if suffix else "1")
+    for key in re.findall(r"(\w+)\s*:", recipe):
+        suffix = unit_suffix(key)
+        units.setdefault(key.removesuffix(f"_{suffix}"), SI_SYMBOLS[suffix] if suffix else "1")
     return units

@@ -13,22 +13,31 @@ from hypothesis import strategies as st
 
 from gen.corpus import FAULTS, Publication, data_card, open_corpus, publish, read_manifest, read_publication
 from gen.corpus.card import ranges
-from gen.corpus.card.additions import CardAdditions, CardPicture, parts_digest, write_additions
+from gen.corpus.card.additions import CardAdditions, CardPicture, write_additions
 from gen.corpus.card.origin import rebuilding
 from gen.corpus.card.ranges import FEWEST, Groups, quantity_ranges, some_records, variable_ranges
 from gen.corpus.card.terms import citation
-from gen.corpus.manifest_fields import Choice, Manifest, Overrides
+from gen.corpus.manifest import Manifest, Overrides
 from gen.errors import CorpusError
 from gen.units import UNITS
 from tests.tone_corpora import write_corpus
 
 
+def made_corpus(path):
+    rng = np.random.default_rng(1)
+    write_corpus(path, load=rng.uniform(100, 900, 48), depth=1e-5 * (np.repeat(np.arange(16), 3) % 4))
+    return path
+
+
 @pytest.fixture(scope="module")
 def corpus(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("card") / "corpus"
-    rng = np.random.default_rng(1)
-    write_corpus(folder, load=rng.uniform(100, 900, 48), depth=1e-5 * (np.repeat(np.arange(16), 3) % 4))
-    return folder
+    return made_corpus(tmp_path_factory.mktemp("card") / "corpus")
+
+
+@pytest.fixture(scope="module", params=["corpus", "corpus.nc"])
+def either(request, tmp_path_factory):
+    """The same corpus as a folder and as a single file."""
+    return made_corpus(tmp_path_factory.mktemp("card") / request.param)
 
 
 def blocks(card, language):
@@ -108,10 +117,17 @@ def rms_of_first(corpus):
 
 
 @pytest.mark.parametrize("place", [0, 1], ids=["raceway", "xarray alone"])
-def test_the_python_programs_of_the_card_read_the_first_record(corpus, place):
-    program = blocks(data_card(corpus), "python")[place]
-    run = subprocess.run([sys.executable, "-c", program], cwd=corpus, capture_output=True, text=True, check=True)
-    assert float(run.stdout) == pytest.approx(rms_of_first(corpus), rel=1e-5)
+def test_the_python_programs_of_the_card_read_the_first_record(either, place):
+    program = blocks(data_card(either), "python")[place]
+    where = either if either.is_dir() else either.parent
+    run = subprocess.run([sys.executable, "-c", program], cwd=where, capture_output=True, text=True, check=True)
+    assert float(run.stdout) == pytest.approx(rms_of_first(either), rel=1e-5)
+
+
+def test_both_forms_have_the_same_card_but_for_the_way_to_open_them(corpus, tmp_path):
+    one, other = (data_card(path).split("\n## ") for path in (corpus, made_corpus(tmp_path / "c.nc")))
+    assert [section.partition("\n")[0] for section in one] == [section.partition("\n")[0] for section in other]
+    assert [a.partition("\n")[0] for a, b in zip(one, other, strict=True) if a != b] == ["How to open it"]
 
 
 PROGRAMS = {
@@ -162,7 +178,7 @@ def test_licence_and_creators_are_on_the_card_and_in_the_citation(corpus, tmp_pa
 def test_no_title_or_name_breaks_the_bibtex_entry(title, name):
     name = "".join(letter for letter in name if letter.isprintable()).strip() or "N"
     publication = Publication(creators=(read_publication({"creators": [{"name": name}]}).creators[0],))
-    manifest = Manifest.model_validate({"raceway_format": 2, "complete": False, "records": 0, "parts": ()})
+    manifest = Manifest.model_validate({"raceway_format": 3, "records": 0})
     lines = citation(title.replace("`", "'").replace("\\", "/"), manifest, publication)
     entry = "\n".join(lines[lines.index("```bibtex") + 1 : -1])
     depth = 0
@@ -172,61 +188,36 @@ def test_no_title_or_name_breaks_the_bibtex_entry(title, name):
     assert depth == 0
 
 
-def made(**facts):
-    return Manifest.model_validate({"raceway_format": 2, "complete": False, "records": 0, "parts": (), **facts})
-
-
-def commands(manifest):
-    (block,) = blocks("\n".join(rebuilding(manifest, 0.5)), "sh")
+def commands(corpus, **facts):
+    manifest = Manifest.model_validate({"raceway_format": 3, "records": 0, **facts})
+    (block,) = blocks("\n".join(rebuilding(corpus, manifest)), "sh")
     return [shlex.split(line) for line in block.splitlines()]
 
 
-def test_the_commands_repeat_seed_records_extensions_and_choices():
-    overrides = Overrides.model_validate({"seed": 7, "records": 40, "extensions": ({"specimens": 2}, {"rigs": 3})})
-    where = """fault == 'inner' and load < 500 and bearing != "6205 $x" """.strip()
-    choices = (
-        Choice(records=40, parts_sha256="0", where=where),
-        Choice(records=9, parts_sha256="1", channels=("a", "b c")),
-    )
-    assert commands(made(recipe="small", overrides=overrides, selections=choices)) == [
-        ["raceway", "generate", "recipe.yaml", "--seed", "7", "--records", "40", "-o", "../again"],
-        ["raceway", "extend", "--specimens", "2", "../again"],
-        ["raceway", "extend", "--rigs", "3", "../again"],
-        ["raceway", "select", "../again", "--where", where, "-o", "../again-selected"],
-        ["raceway", "select", "../again-selected", "--channels", "a,b c", "-o", "../again-selected-selected"],
-    ]
+def test_the_command_repeats_seed_and_number_of_records(corpus):
+    generated = {"recipe": "small", "recipe_sha256": "0", "overrides": Overrides(seed=7, records=40)}
+    with open_corpus(corpus) as opened:
+        assert commands(opened, **generated) == [
+            ["raceway", "generate", "recipe.yaml", "--seed", "7", "--records", "40", "-o", "../again"]
+        ]
+        assert commands(opened, importer="cwru", recordings=3) == [
+            ["raceway", "import", "cwru", "SRC", "--window", "0.25", "-o", "../again"]
+        ]
 
 
-def test_the_commands_of_a_merged_corpus_make_each_of_its_corpora_and_merge_them():
-    origin = {"parts": 1, "added": {}, "same_machines": "x"}
-    chosen = {"records": 9, "parts_sha256": "1", "split": "train"}
-    origins = (
-        origin
-        | {"recipe": "small", "recipe_file": "recipes/00000.yaml", "overrides": {"seed": 3}, "selections": (chosen,)},
-        origin | {"importer": "cwru"},
-    )
-    chosen_again = {"records": 20, "parts_sha256": "2", "where": "load > 5"}
-    assert commands(made(origins=origins, selections=(chosen_again,))) == [
-        ["raceway", "generate", "recipes/00000.yaml", "--seed", "3", "-o", "../again-1"],
-        ["raceway", "select", "../again-1", "--split", "train", "-o", "../again-1-selected"],
-        ["raceway", "import", "cwru", "SRC", "--window", "0.5", "-o", "../again-2"],
-        ["raceway", "merge", "../again-1-selected", "../again-2", "-o", "../again"],
-        ["raceway", "select", "../again", "--where", "load > 5", "-o", "../again-selected"],
-    ]
-    unknown = made(origins=(*origins, origin))
-    assert "The folder does not say how it was made" in rebuilding(unknown, 0.5)[-1]
-
-
-def test_a_corpus_without_a_recipe_or_with_scenarios_made_by_hand_has_no_command():
-    assert "The folder does not say how it was made" in rebuilding(made(), 0.5)[-1]
-    for scenarios in ("given", "chosen"):
-        assert "`gen.write_corpus` made it" in rebuilding(made(recipe="small", scenarios=scenarios), 0.5)[-1]
+def test_a_corpus_that_no_command_makes_has_its_history_instead(corpus):
+    with open_corpus(corpus) as opened:
+        lines = rebuilding(
+            opened.assign_attrs(history="cut by hand"), Manifest(raceway_format=3, records=0, recipe="small")
+        )
+    assert "History of the corpus: cut by hand." in lines
+    assert not any("```" in line for line in lines)
 
 
 def test_pictures_and_scores_of_other_parts_are_left_out(corpus, tmp_path):
     folder = shutil.copytree(corpus, tmp_path / "copy")
     picture = CardPicture(name="record-inner.png", title="One record", caption="A caption")
-    write_additions(folder, CardAdditions(parts=parts_digest(read_manifest(folder)), pictures=(picture,)))
+    write_additions(folder, CardAdditions(parts=read_manifest(folder).parts_sha256, pictures=(picture,)))
     assert "![One record](pictures/record-inner.png)" in data_card(folder)
     write_additions(folder, CardAdditions(parts="0" * 64, pictures=(picture,)))
     assert data_card(folder) == data_card(corpus)

@@ -1,43 +1,52 @@
 """Laws of damage: every change of a stored corpus is detected, and a failed write leaves no file."""
 
-import hashlib
 import json
 import os
-import resource
 import shutil
-import signal as signals
 
-import h5py
-import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from gen.corpus import (
     SIGNAL,
+    check_new_target,
+    facts_of_parts,
+    finish_corpus,
     open_corpus,
     open_part,
     part_name,
     read_manifest,
     validate_corpus,
     write_durably,
-    write_index,
     write_manifest,
     write_part,
 )
-from gen.corpus.part import deflated
 from gen.errors import CorpusError
-from tests.corpora import SIZES, dataset, write_corpus
+from tests.corpora import SIZES, dataset, write_corpus, write_parts
+from tests.disks import full_disk
+from tests.tampering import edit_manifest, edited, seal
+
+FORMS = ("c", "c.nc")
 
 
 @pytest.fixture(scope="module")
-def corpus(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("corpus") / "c"
-    write_corpus(folder)
-    return folder
+def made(tmp_path_factory):
+    """Folder that holds the same corpus as a folder and as a single file."""
+    place = tmp_path_factory.mktemp("made")
+    for form in FORMS:
+        write_corpus(place / form)
+    return place
 
 
 @pytest.fixture
-def copied(corpus, tmp_path):
-    return shutil.copytree(corpus, tmp_path / "copy")
+def copied(made, tmp_path):
+    return shutil.copytree(made / "c", tmp_path / "copy")
+
+
+@pytest.fixture
+def file(made, tmp_path):
+    return shutil.copyfile(made / "c.nc", tmp_path / "copy.nc")
 
 
 def flip(path, place=-100):
@@ -46,58 +55,43 @@ def flip(path, place=-100):
     path.write_bytes(content)
 
 
-def rename_in_manifest(folder, name):
-    manifest = json.loads((folder / "manifest.json").read_text())
-    manifest["parts"][1]["name"] = name
-    (folder / "manifest.json").write_text(json.dumps(manifest))
+def assert_refused(corpus, sentence, problems=1):
+    """The corpus is not opened, and validation says why, in the same words."""
+    with pytest.raises(CorpusError, match=sentence) as refused:
+        open_corpus(corpus)
+    found = validate_corpus(corpus)
+    assert len(found) == problems
+    assert str(refused.value) in found
+    assert "\n" not in found[0]
 
 
-def edit_index(folder, edit):
-    with h5py.File(folder / "corpus.nc", "r+") as index:
-        edit(index)
+FILES = ("c.nc", f"c/parts/{part_name(1)}", "c/index.nc")
 
 
-def swap_sources(index, parts):
-    """Let the virtual signal refer to other parts, or to parts in another order."""
-    shape, dtype, fill = index[SIGNAL].shape, index[SIGNAL].dtype, index[SIGNAL].fillvalue
-    attributes = {key: index[SIGNAL].attrs[key] for key in ("scale_factor", "add_offset", "units", "long_name", "role")}
-    del index[SIGNAL]
-    layout = h5py.VirtualLayout(shape, dtype)
-    first = 0
-    for name, records in parts:
-        layout[first : first + records] = h5py.VirtualSource(name, SIGNAL, (records, *shape[1:]), dtype)
-        first += records
-    fresh = index.create_virtual_dataset(SIGNAL, layout, fillvalue=fill)
-    fresh.attrs.update(attributes)
-    fresh.attrs["_FillValue"] = np.int16(fill)
-    for axis, name in enumerate(("record", "channel", "elapsed_time")):
-        fresh.dims[axis].attach_scale(index[name])
-
-
-def seal(folder):
-    """Write the hash of the changed index into the manifest: damage by someone who knows the format."""
-    index = folder / "corpus.nc"
-    edit_manifest(
-        folder, index={"bytes": index.stat().st_size, "sha256": hashlib.sha256(index.read_bytes()).hexdigest()}
+@pytest.mark.parametrize("name", FILES)
+@settings(deadline=None, max_examples=60)
+@given(share=st.floats(0, 1), mask=st.integers(1, 255), how=st.sampled_from(["changed", "cut", "longer"]))
+def test_a_file_with_any_other_byte_is_refused_by_name(made, tmp_path_factory, name, share, mask, how):
+    corpus = tmp_path_factory.mktemp("bytes") / name.partition("/")[0]
+    (shutil.copytree if corpus.suffix != ".nc" else shutil.copyfile)(made / corpus.name, corpus)
+    path = corpus.parent / name
+    content = bytearray(path.read_bytes())
+    place = int(share * (len(content) - 1))
+    if how == "changed":
+        content[place] ^= mask
+    elif how == "cut":
+        del content[place:]
+    else:
+        content.insert(place, mask)
+    path.write_bytes(content)
+    assert_refused(
+        corpus, rf"{path}: (is altered, cut off or rewritten by another program: its bytes|has no checksum of Raceway)"
     )
 
 
-def edit_manifest(folder, parts=(), **changes):
-    manifest = json.loads((folder / "manifest.json").read_text()) | changes
-    for number, change in dict(parts).items():
-        manifest["parts"][number] |= change
-    (folder / "manifest.json").write_text(json.dumps(manifest))
-
-
-def other_index(folder):
-    other = folder.with_name("other")
-    write_corpus(other, SIZES[::-1])
-    shutil.copyfile(other / "corpus.nc", folder / "corpus.nc")
-
-
-def link_out(path):
-    path.rename(path.parents[1 + (path.suffix == ".nc" and path.parent.name == "parts")] / f"moved-{path.name}")
-    path.symlink_to(path.parents[1 + (path.suffix == ".nc" and path.parent.name == "parts")] / f"moved-{path.name}")
+def link_out(path, outside):
+    path.rename(outside / f"moved-{path.name}")
+    path.symlink_to(outside / f"moved-{path.name}")
 
 
 def make_pipe(path):
@@ -105,189 +99,171 @@ def make_pipe(path):
     os.mkfifo(path)
 
 
-PARTS = [(f"parts/{part_name(number)}", size) for number, size in enumerate(SIZES)]
+def other_index(folder):
+    write_corpus(folder.with_name("other"), SIZES[::-1])
+    shutil.copyfile(folder.with_name("other") / "index.nc", folder / "index.nc")
+
+
+def part(folder, number):
+    return folder / "parts" / part_name(number)
+
+
+NO_MANIFEST = r"manifest\.json: not the manifest of a corpus"
 REFUSED = {
-    "a part is missing": (lambda c: (c / "parts" / part_name(1)).unlink(), r"part-00001\.nc: is missing; copy it again"),
-    "a part is altered": (lambda c: flip(c / "parts" / part_name(1)), r"part-00001\.nc: is altered: its size or hash differs"),
-    "a part is cut short": (lambda c: os.truncate(c / "parts" / part_name(2), 500), r"part-00002\.nc: is altered"),
-    "a part is empty": (lambda c: os.truncate(c / "parts" / part_name(2), 0), r"part-00002\.nc: is altered"),
-    "a part stands for another": (
-        lambda c: shutil.copyfile(c / "parts" / part_name(0), c / "parts" / part_name(2)), r"part-00002\.nc: is altered",
-    ),
+    "a part is missing": (lambda c: part(c, 1).unlink(), r"part-00001\.nc: is missing; copy it again"),
+    "a part stands for another": (lambda c: shutil.copyfile(part(c, 0), part(c, 2)), r"part-00002\.nc: is altered"),
     "the manifest is gone": (lambda c: (c / "manifest.json").unlink(), r"has no manifest\.json, so it is not a corpus"),
-    "the manifest is no JSON": (lambda c: (c / "manifest.json").write_text("{"), r"manifest\.json: not a corpus manifest"),
-    "the manifest lists no parts": (lambda c: (c / "manifest.json").write_text("{}"), r"manifest\.json: not a corpus manifest"),
-    "a part name leads out": (lambda c: rename_in_manifest(c, "../x"), r"'\.\./x' is not the name of a part"),
-    "a part name is a path": (lambda c: rename_in_manifest(c, "/etc/passwd"), r"is not the name of a part"),
-    "a part name is no text": (lambda c: rename_in_manifest(c, 7), r"manifest\.json: not a corpus manifest \(parts\.1\.name"),
-    "the index is gone": (lambda c: (c / "corpus.nc").unlink(), r"corpus\.nc: is missing; copy it again"),
-    "the index is cut short": (lambda c: os.truncate(c / "corpus.nc", 900), r"corpus\.nc: is altered: its size or hash differs"),
-    "the index is that of another corpus": (other_index, r"corpus\.nc: is altered: its size or hash differs"),
-    "a byte of the index is flipped": (lambda c: flip(c / "corpus.nc"), r"corpus\.nc: is altered: its size or hash differs"),
+    "the manifest is no JSON": (lambda c: (c / "manifest.json").write_text("{"), NO_MANIFEST),
+    "the manifest is empty": (lambda c: (c / "manifest.json").write_text("{}"), NO_MANIFEST),
+    "the manifest lists no parts": (
+        lambda c: (c / "manifest.json").write_text('{"raceway_format": 3, "records": 0}'), "is marked complete and lists no parts",
+    ),
+    "a part name leads out": (lambda c: edit_manifest(c, {1: {"name": "../x"}}), NO_MANIFEST + r" \(parts\.1\.name"),
+    "a part name is a path": (lambda c: edit_manifest(c, {1: {"name": "/etc/passwd"}}), NO_MANIFEST + r" \(parts\.1\.name"),
+    "a part name is no text": (lambda c: edit_manifest(c, {1: {"name": 7}}), NO_MANIFEST + r" \(parts\.1\.name"),
+    "the index is gone": (lambda c: (c / "index.nc").unlink(), r"index\.nc: is missing; copy it again"),
+    "the index is that of another corpus": (other_index, r"index\.nc: is the index of other parts than manifest\.json lists"),
     "a part is a link out of the corpus": (
-        lambda c: link_out(c / "parts" / part_name(1)), r"part-00001\.nc: is a link that leads out of the corpus; replace it",
+        lambda c: link_out(part(c, 1), c.parent), r"part-00001\.nc: is a link that leads out of the corpus; replace it",
     ),
-    "the index is a link out of the corpus": (lambda c: link_out(c / "corpus.nc"), r"corpus\.nc: is a link that leads out of the corpus"),
+    "the index is a link out of the corpus": (
+        lambda c: link_out(c / "index.nc", c.parent), r"index\.nc: is a link that leads out of the corpus",
+    ),
     "the folder of the parts is a link": (
-        lambda c: link_out(c / "parts"), r"part-00000\.nc: is a link that leads out of the corpus; replace it",
+        lambda c: link_out(c / "parts", c.parent), r"part-00000\.nc: is a link that leads out of the corpus; replace it",
     ),
-    "a part is a pipe": (lambda c: make_pipe(c / "parts" / part_name(0)), r"part-00000\.nc: is not a plain file; copy it again"),
+    "a part is a pipe": (lambda c: make_pipe(part(c, 0)), r"part-00000\.nc: is not a plain file; copy it again"),
     "the manifest is a pipe": (lambda c: make_pipe(c / "manifest.json"), r"manifest\.json: is not a plain file"),
     "the manifest counts other records": (lambda c: edit_manifest(c, records=8), r"it counts 8 records, its parts 9"),
     "the manifest counts a part wrongly": (
-        lambda c: edit_manifest(c, records=10, parts={0: {"records": 4}}), r"9 records, the parts hold 10|disagree about parts",
+        lambda c: edit_manifest(c, {0: {"records": 4}}, records=10), r"index\.nc: .* shape \(9,\), not one value for each record",
     ),
     "the manifest lists a part twice": (
-        lambda c: edit_manifest(c, parts={1: {"name": part_name(0)}}), r"it lists part-00000\.nc more than once",
+        lambda c: edit_manifest(c, {1: {"name": part_name(0)}}), r"it lists part-00000\.nc more than once",
     ),
-    "the manifest has no hash of the index": (lambda c: edit_manifest(c, index=None), r"has no hash of corpus\.nc"),
-    "the manifest holds lists for objects": (lambda c: (c / "manifest.json").write_text("[[]]"), r"not a corpus manifest"),
-    "the manifest is nested without end": (
-        lambda c: (c / "manifest.json").write_text("[" * 100_000), r"not a corpus manifest",
+    "more records cannot be used than there are": (
+        lambda c: edit_manifest(c, {1: {"signals": {"dead": 121_306}}}, signals={"dead": 121_306}),
+        r"it counts 121306 unusable records of 9",
     ),
+    "more records of a part cannot be used than it has": (
+        lambda c: edit_manifest(c, {1: {"signals": {"dead": 5}}}, signals={"dead": 5}), r"it counts 5 unusable records of 4",
+    ),
+    "the sum of unusable records is another": (
+        lambda c: edit_manifest(c, signals={"dead": 1}), "it counts other unusable records than its parts",
+    ),
+    "the manifest holds lists for objects": (lambda c: (c / "manifest.json").write_text("[[]]"), NO_MANIFEST),
+    "the manifest is nested without end": (lambda c: (c / "manifest.json").write_text("[" * 100_000), NO_MANIFEST),
     "a number of the manifest has 5000 digits": (
-        lambda c: (c / "manifest.json").write_text('{"records": ' + "9" * 5000 + "}"), r"not a corpus manifest",
+        lambda c: (c / "manifest.json").write_text('{"records": ' + "9" * 5000 + "}"), NO_MANIFEST,
     ),
-    "the manifest is no UTF-8": (lambda c: (c / "manifest.json").write_bytes(b'{"title": "\xff"}'), r"not a corpus manifest"),
+    "the manifest is no UTF-8": (lambda c: (c / "manifest.json").write_bytes(b'{"title": "\xff"}'), NO_MANIFEST),
     "the manifest is huge": (lambda c: os.truncate(c / "manifest.json", 60_000_000), r"raceway --limit manifest_bytes=NUMBER"),
+    "the corpus is unfinished": (
+        lambda c: edit_manifest(c, complete=False), "is unfinished; run the raceway generate command that began it again",
+    ),
+    "the folder has the format before": (
+        lambda c: edit_manifest(c, raceway_format=2),
+        r"manifest\.json: corpus format 2, this version of raceway reads format 3; make the corpus again",
+    ),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("damage", REFUSED)
-def test_a_damaged_corpus_is_refused_with_the_file_named_and_found_by_validation(copied, damage):
+def test_a_damaged_folder_is_refused_with_the_file_named_and_found_by_validation(copied, damage):
     break_it, sentence = REFUSED[damage]
     break_it(copied)
-    with pytest.raises(CorpusError, match=sentence):
-        open_corpus(copied)
-    problems = validate_corpus(copied)
-    assert len(problems) == (3 if "parts is a link" in damage else 1)
-    assert str(copied) in problems[0]
-    with pytest.raises(CorpusError, match=sentence):
-        raise CorpusError(problems[0])
+    assert_refused(copied, sentence, problems=3 if "parts is a link" in damage else 1)
 
 
-def set_value(index, place, name, value):
-    index[name][place] = value
+def set_fact(name, value):
+    def change(path):
+        with edited(path) as found:
+            found.attrs[name] = value
+
+    return change
 
 
-def plain_signal(index):
-    attributes, values = dict(index[SIGNAL].attrs), index[SIGNAL][:]
-    del index[SIGNAL]
-    index.create_dataset(SIGNAL, data=values).attrs.update(
-        {k: v for k, v in attributes.items() if k != "DIMENSION_LIST"}
-    )
-
-
-def external_link(index):
-    del index["load"]
-    index["load"] = h5py.ExternalLink("/etc/passwd", "load")
-
-
-def external_storage(index):
-    del index["load"]
-    index.create_dataset("load", (9,), "f8", external=[("/etc/passwd", 0, 72)])
-
-
-def virtual_label(index):
-    del index["load"]
-    layout = h5py.VirtualLayout((9,), "f8")
-    layout[:] = h5py.VirtualSource("/etc/secret.nc", "load", (9,), "f8")
-    index.create_virtual_dataset("load", layout)
-
-
-FOUND = {
-    "a label differs from its part": (lambda i: set_value(i, 2, "fault", 0), "fault differs from corpus.nc"),
-    "a shaft rate differs": (lambda i: set_value(i, 2, "shaft_rate", 99.0), "shaft_rate differs from corpus.nc"),
-    "the signal is scaled otherwise": (
-        lambda i: i[SIGNAL].attrs.modify("scale_factor", 1.0), "acceleration differs from corpus.nc",
+REFUSED_FILES = {
+    "is empty": (lambda f: os.truncate(f, 0), "has no checksum of Raceway at its end"),
+    "is a text": (lambda f: f.write_text("no netCDF" * 100), "has no checksum of Raceway at its end"),
+    "has the format before": (set_fact("raceway_format", 2), "corpus format 2, this version of raceway reads format 3"),
+    "has no format": (set_fact("raceway_format", "x"), "corpus format x, this version of raceway reads format 3"),
+    "counts more useless records than it has": (
+        set_fact("signals", '{"clipped": 0, "dead": 121306, "constant": 0, "not_finite": 0}'), "it counts 121306 unusable records of 9",
     ),
-    "parts of the signal are swapped": (
-        lambda i: swap_sources(i, [PARTS[1], PARTS[0], PARTS[2]]), "index and manifest disagree about parts/part-00000.nc",
-    ),
-    "labels are permuted": (
-        lambda i: set_value(i, slice(None), "fault", i["fault"][:][::-1]), "fault differs from corpus.nc",
-    ),
-    "the signal is read from files elsewhere": (
-        lambda i: swap_sources(i, [("../secret.nc", 3), *PARTS[1:]]), "index and manifest disagree about ../secret.nc",
-    ),
-    "a part is left out of the signal": (
-        lambda i: swap_sources(i, [PARTS[0], (PARTS[1][0], 6)]), "index and manifest disagree about parts/part-00001.nc",
-    ),
-    "there is no signal": (lambda i: i.pop(SIGNAL), "not a corpus index"),
-    "the signal is a plain dataset": (plain_signal, "acceleration is not a virtual dataset"),
-    "a label is an external link": (external_link, "load is a soft or external link"),
-    "a label is stored in another file": (external_storage, "the values of load are in another file"),
-    "a label is a virtual dataset": (virtual_label, "load is a virtual dataset"),
-    "a variable of no known dimension": (lambda i: i.create_dataset("x", data=np.zeros(4)), "x is of type"),
-    "numbers with the encoding of text": (
-        lambda i: i["fault"].attrs.create("_Encoding", "utf-8"), "fault has the attribute _Encoding, which it must not have",
-    ),
-    "a label that is packed": (
-        lambda i: i["load"].attrs.create("scale_factor", 2.0), "load has the attribute scale_factor, which it must not have",
-    ),
-    "a group": (lambda i: i.create_group("x"), "x"),
+    "has counts that are none": (set_fact("signals", '{"dead": "many"}'), r"not the manifest of a corpus \(signals\.dead"),
+    "has counts that are no JSON": (set_fact("signals", "{"), r"has unreadable facts"),
+    "has facts that are nested without end": (set_fact("warnings", "[" * 10_000), "has unreadable facts"),
+    "has facts that are numbers": (set_fact("title", 7), "not the manifest of a corpus"),
+    "is marked incomplete": (set_fact("complete", "false"), "is unfinished"),
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("damage", FOUND)
-def test_validation_finds_an_index_that_does_not_say_what_its_parts_say(copied, damage):
-    break_it, sentence = FOUND[damage]
-    edit_index(copied, break_it)
-    seal(copied)
-    assert any(sentence in problem for problem in validate_corpus(copied))
+@pytest.mark.parametrize("damage", REFUSED_FILES)
+def test_a_file_that_is_none_of_the_format_is_refused(file, damage):
+    break_it, sentence = REFUSED_FILES[damage]
+    break_it(file)
+    assert_refused(file, sentence)
 
 
-@pytest.mark.parametrize(
-    ("name", "key", "value"), [(SIGNAL, "units", "g"), ("fault", "flag_meanings", "inner healthy outer ball")]
-)
-def test_validation_finds_an_index_whose_attributes_are_not_those_of_its_parts(copied, name, key, value):
-    edit_index(copied, lambda index: index[name].attrs.modify(key, value))
-    seal(copied)
-    assert any(name in problem for problem in validate_corpus(copied))
-
-
-def test_a_signal_is_not_read_by_a_scale_that_is_not_that_of_its_part(copied):
-    edit_index(copied, lambda index: index[SIGNAL].attrs.modify("scale_factor", 1.0))
-    seal(copied)
-    with (
-        open_corpus(copied) as corpus,
-        pytest.raises(CorpusError, match=r"part-00000\.nc: its signal has another shape or type than the corpus"),
-    ):
-        corpus[SIGNAL][0].load()
-
-
-CHUNKS = {
-    "no stream": (b"no zlib stream", 0),
-    "too short": (deflated(np.zeros(49, np.int16)), 0),
-    "too long": (deflated(np.zeros(5000, np.int16)), 0),
-    "cut short": (deflated(np.arange(50, dtype=np.int16))[:-4], 0),
-    "without its filters": (np.zeros(50, np.int16).tobytes(), 3),
+FACTS = {
+    "title": "Another title",
+    "publication": {"license": "MIT"},
+    "warnings": ["all is well"],
+    "versions": {"raceway": "9"},
+    "recordings": 17,
+    "parts_sha256": "0" * 64,
 }
 
 
-@pytest.mark.parametrize("chunk", CHUNKS)
-def test_a_damaged_chunk_is_refused_when_it_is_read(copied, chunk):
-    path = copied / "parts" / part_name(0)
-    content, left_out = CHUNKS[chunk]
-    with h5py.File(path, "r+") as part:
-        part[SIGNAL].id.write_direct_chunk((1, 0, 0), content, left_out)
-    with open_part(path) as part:
-        part[SIGNAL][0].load()
-        with pytest.raises(CorpusError, match=r"part-00000\.nc: damaged \(.*\); generate or copy it again"):
-            part[SIGNAL][1].load()
+@pytest.mark.parametrize("fact", FACTS)
+def test_a_changed_fact_of_the_manifest_is_found(copied, fact):
+    edit_manifest(copied, **{fact: FACTS[fact]})
+    with_problem = [problem for problem in validate_corpus(copied) if fact in problem]
+    assert with_problem or fact == "parts_sha256"
+    if fact == "parts_sha256":
+        assert_refused(copied, r"is the index of other parts than manifest\.json lists")
 
 
-def damaged_part(change):
-    """A corpus whose last part was damaged before its index and manifest were written."""
+def test_a_changed_recipe_and_a_changed_croissant_are_found(tiny_corpus, tmp_path):
+    for name, sentence in (
+        ("recipe.yaml", "manifest.json and index.nc disagree about recipe_text"),
+        ("croissant.json", "croissant.json: is not that of the corpus; run raceway card again"),
+    ):
+        folder = shutil.copytree(tiny_corpus, tmp_path / name)
+        (folder / name).write_bytes((folder / name).read_bytes().replace(b"i", b"j", 1))
+        assert any(sentence in problem for problem in validate_corpus(folder))
 
-    def make(folder):
-        (folder / "parts").mkdir(parents=True)
-        parts = [dataset(0, 3), change(dataset(3, 4))]
-        rows = [write_part(part, folder / "parts" / part_name(number)) for number, part in enumerate(parts)]
-        write_index(folder, rows)
-        write_manifest(folder, rows, complete=True)
 
-    return make
+@pytest.mark.parametrize("name", ["recipe_sha256", "sources_sha256"])
+def test_a_part_of_another_recipe_or_of_other_sources_is_found(tiny_corpus, tmp_path, name):
+    folder = shutil.copytree(tiny_corpus, tmp_path / "c")
+    with edited(part(folder, 2)) as found:
+        found.attrs[name] = "0" * 64
+    seal(folder)
+    assert any(
+        f"part-00002.nc: its {name} is not that of manifest.json" in problem for problem in validate_corpus(folder)
+    )
+
+
+@pytest.mark.parametrize("name", ["fault", "shaft_rate", "bearing"])
+@pytest.mark.parametrize("where", ["index", "part"])
+def test_validation_finds_an_index_that_differs_from_its_parts(copied, name, where):
+    with edited(copied / "index.nc" if where == "index" else part(copied, 0)) as found:
+        found[name][2] = found[name][1]
+    seal(copied)
+    assert any(f"part-00000.nc: {name} differs from index.nc" in problem for problem in validate_corpus(copied))
+
+
+def test_a_part_with_another_scale_than_the_first_is_not_read(copied):
+    with edited(part(copied, 1)) as found:
+        found[SIGNAL].attrs.modify("scale_factor", found[SIGNAL].attrs["scale_factor"] * 2)
+    seal(copied)
+    with (
+        open_corpus(copied) as corpus,
+        pytest.raises(CorpusError, match=r"part-00001\.nc: its signal has another shape or type than the corpus"),
+    ):
+        corpus[SIGNAL].load()
 
 
 def with_values(name, value):
@@ -317,49 +293,59 @@ FOUND_IN_PARTS = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("damage", FOUND_IN_PARTS)
-def test_validation_finds_a_part_that_is_not_in_the_format(tmp_path, damage):
+def test_validation_finds_records_that_are_not_in_the_format(tmp_path, damage, form):
+    """A folder is not even written: its data card cannot be made."""
     change, sentence = FOUND_IN_PARTS[damage]
-    damaged_part(change)(tmp_path / "c")
-    assert any(sentence in problem for problem in validate_corpus(tmp_path / "c"))
+    try:
+        write_parts(tmp_path / form, [change(dataset(0, 3)), change(dataset(3, 4))])
+    except CorpusError as error:
+        problems = [str(error)]
+    else:
+        problems = validate_corpus(tmp_path / form)
+    assert any(sentence in problem for problem in problems)
 
 
-def test_a_corpus_under_way_is_refused_until_it_is_complete(copied):
-    write_manifest(copied, read_manifest(copied).parts[:2], complete=False)
-    with pytest.raises(CorpusError, match="is unfinished; run the raceway generate command that began it again"):
-        open_corpus(copied)
+@pytest.mark.parametrize("form", FORMS)
+def test_counts_of_useless_records_are_those_of_the_signals(tmp_path, form):
+    dead = dataset(3, 4)
+    dead[SIGNAL].values[2] = 0
+    write_parts(tmp_path / form, [dataset(0, 3), dead])
+    assert read_manifest(tmp_path / form).signals.dead == 1
+    assert validate_corpus(tmp_path / form) == []
+    none = {"clipped": 0, "dead": 0, "constant": 0, "not_finite": 0}
+    if form == "c":
+        edit_manifest(tmp_path / form, {1: {"signals": none}}, signals=none)
+    else:
+        set_fact("signals", json.dumps(none))(tmp_path / form)
+    assert any("1 dead of its records cannot be used, none are listed" in p for p in validate_corpus(tmp_path / form))
 
 
-def test_a_corpus_of_another_format_version_is_refused(copied):
-    manifest = json.loads((copied / "manifest.json").read_text()) | {"raceway_format": 99}
-    (copied / "manifest.json").write_text(json.dumps(manifest))
-    with pytest.raises(CorpusError, match="corpus format 99, this version of raceway reads format 2"):
-        open_corpus(copied)
+def test_sizes_alone_do_not_see_what_hashes_see(copied, file):
+    flip(part(copied, 1))
+    flip(file)
+    for corpus in (copied, file):
+        open_corpus(corpus, check="size").close()
+        with pytest.raises(CorpusError, match="altered"):
+            open_corpus(corpus, check="sha256")
 
 
-def test_sizes_alone_do_not_see_what_hashes_see(copied):
-    flip(copied / "parts" / part_name(1))
-    open_corpus(copied, check="size").close()
-    with pytest.raises(CorpusError, match="altered"):
-        open_corpus(copied, check="sha256")
-
-
-@pytest.fixture
-def small_disk():
-    """Let no file grow beyond 20 kB while a test runs, as on a disk that fills up."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    handler = signals.signal(signals.SIGXFSZ, signals.SIG_IGN)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, before[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
-    signals.signal(signals.SIGXFSZ, handler)
-
-
-@pytest.mark.usefixtures("small_disk")
 def test_a_full_disk_leaves_no_half_part(tmp_path):
     large = dataset(0, 20, samples=5000)
-    with pytest.raises(CorpusError, match=r"part-00000\.nc: could not be written .* free some space"):
+    with full_disk(), pytest.raises(CorpusError, match=r"part-00000\.nc: could not be written .* free some space"):
         write_part(large, tmp_path / part_name(0), "none")
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_full_disk_leaves_no_half_corpus(tmp_path, form):
+    with (
+        full_disk(),
+        pytest.raises(CorpusError, match=rf"{form}.*: could not be written .* free some space") as refused,
+    ):
+        write_parts(tmp_path / form, [dataset(0, 20, samples=5000)])
+    assert ".tmp" not in str(refused.value)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -373,35 +359,32 @@ def test_a_pipe_or_a_folder_is_not_replaced_by_a_file(tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["pipe"]
 
 
-def test_a_full_disk_leaves_the_last_manifest_as_it_was(copied, request):
-    request.getfixturevalue("small_disk")  # after the copy
-    before = (copied / "manifest.json").read_bytes()
-    with pytest.raises(CorpusError, match=r"manifest\.json: could not be written"):
-        write_manifest(copied, read_manifest(copied).parts, complete=True, notes="x" * 30_000)
-    assert (copied / "manifest.json").read_bytes() == before
+def test_no_corpus_is_written_over_anything(copied, file):
+    for corpus in (copied, file):
+        before = {path: path.read_bytes() for path in [*corpus.rglob("*"), corpus] if path.is_file()}
+        for refuse in (check_new_target, write_corpus):
+            with pytest.raises(CorpusError, match="exists"):
+                refuse(corpus)
+        assert all(path.read_bytes() == content for path, content in before.items())
+
+
+def test_a_full_disk_leaves_the_last_manifest_and_index_as_they_were(copied):
+    rows, before = read_manifest(copied).parts, {path: path.read_bytes() for path in copied.iterdir() if path.is_file()}
+    assert len(before[copied / "index.nc"]) > 20_000
+    with full_disk():
+        with pytest.raises(CorpusError, match=r"manifest\.json: could not be written"):
+            write_manifest(copied, facts_of_parts(rows, {"title": "x" * 30_000}))
+        with pytest.raises(CorpusError, match=r"index\.nc: could not be written"):
+            finish_corpus(copied, rows)
+    assert {path: path.read_bytes() for path in copied.iterdir() if path.is_file()} == before
     assert validate_corpus(copied) == []
 
 
-def test_a_full_disk_leaves_the_last_index_as_it_was(copied, request):
-    before = (copied / "corpus.nc").read_bytes()
-    assert len(before) > 20_000
-    request.getfixturevalue("small_disk")
-    with pytest.raises(CorpusError, match=r"corpus\.nc: could not be written"):
-        write_index(copied, read_manifest(copied).parts)
-    assert (copied / "corpus.nc").read_bytes() == before
-    assert {path.name for path in copied.iterdir()} == {"corpus.nc", "manifest.json", "parts"}
-
-
-@pytest.mark.parametrize("place", range(len(b"parts/part-00001.nc.acceleration."), 96, 4))
-def test_an_index_with_a_damaged_mapping_is_refused_and_does_not_end_the_process(copied, place):
-    """Some of these bytes are ranks and versions, with which HDF5 writes beyond its arrays."""
-    path = copied / "corpus.nc"
-    whole = path.read_bytes()
-    place += whole.index(b"parts/part-00001.nc")
-    path.write_bytes(whole[:place] + b"\xff" + whole[place + 1 :])
-    seal(copied)
-    (problem,) = validate_corpus(copied)
-    with pytest.raises(CorpusError):
-        open_corpus(copied)
-    if place == whole.index(b"parts/part-00001.nc") + 65:
-        assert problem.endswith("is damaged: the HDF5 library crashes on it; make or copy the corpus again.")
+def test_a_damaged_chunk_is_refused_when_it_is_read(copied):
+    """Damage with a right checksum; the other forms of damaged chunks are in ``test_strangers_laws``."""
+    with edited(part(copied, 0)) as found:
+        found[SIGNAL].id.write_direct_chunk((1, 0, 0), b"no zlib stream", 0)
+    with open_part(part(copied, 0)) as found:
+        found[SIGNAL][0].load()
+        with pytest.raises(CorpusError, match=r"part-00000\.nc: damaged \(.*\); generate or copy it again"):
+            found[SIGNAL][1].load()

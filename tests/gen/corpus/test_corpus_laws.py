@@ -18,32 +18,35 @@ from gen.corpus import (
     FAULT_NAMES,
     SCHEMA,
     SIGNAL,
+    corpus_files,
     make_dataset,
     open_corpus,
     open_part,
     part_name,
+    read_manifest,
     validate_corpus,
-    write_index,
-    write_manifest,
     write_part,
 )
 from gen.corpus.part import deflated
 from gen.errors import CorpusError
-from tests.corpora import EXTRA, FS, columns, dataset, physical, write_corpus
+from tests.corpora import EXTRA, FS, SIZES, columns, dataset, physical, write_corpus, write_parts
 
 law = settings(deadline=None, max_examples=10)
+FORMS = ("c", "c.nc")
+"""Names of a folder and of a single file."""
 
 
-@pytest.fixture(scope="module")
-def corpus(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("corpus") / "c"
-    return folder, write_corpus(folder)
+@pytest.fixture(scope="module", params=FORMS)
+def corpus(request, tmp_path_factory):
+    path = tmp_path_factory.mktemp("corpus") / request.param
+    return path, write_corpus(path)
 
 
 @pytest.mark.parametrize("kind", ["counts", "float32"])
-def test_what_goes_into_the_parts_comes_out_of_the_corpus(tmp_path, kind):
-    parts = write_corpus(tmp_path / "c", kind=kind)
-    with open_corpus(tmp_path / "c") as found:
+@pytest.mark.parametrize("form", FORMS)
+def test_what_goes_into_the_parts_comes_out_of_the_corpus(tmp_path, form, kind):
+    parts = write_corpus(tmp_path / form, kind=kind)
+    with open_corpus(tmp_path / form) as found:
         np.testing.assert_allclose(found[SIGNAL], np.concatenate([physical(part) for part in parts]), rtol=1e-7)
         for variable in (*SCHEMA, *EXTRA):
             expected = np.concatenate([part[variable.name].values for part in parts])
@@ -51,56 +54,87 @@ def test_what_goes_into_the_parts_comes_out_of_the_corpus(tmp_path, kind):
             assert found[variable.name].attrs["role"] == variable.role
         assert found["channel"].values.tolist() == ["a", "b"]
         np.testing.assert_allclose(found["elapsed_time"], np.arange(50) / FS)
-    assert validate_corpus(tmp_path / "c") == []
+    assert validate_corpus(tmp_path / form) == []
+    assert [path.name for path in tmp_path.iterdir()] == [form]
 
 
 @law
 @given(st.lists(st.integers(1, 5), min_size=1, max_size=4), st.integers(1, 60), st.integers(1, 3), st.booleans())
-def test_any_shape_survives_the_journey(tmp_path_factory, sizes, samples, n_channels, floating):
-    folder = tmp_path_factory.mktemp("any")
-    (folder / "parts").mkdir()
-    names = tuple("abc"[:n_channels])
-    kind = "float32" if floating else "counts"
-    starts = np.concatenate([[0], np.cumsum(sizes)])
-    parts = [
-        dataset(int(first), n, samples=samples, kind=kind, channels=names)
-        for first, n in zip(starts, sizes, strict=False)
-    ]
-    rows = [write_part(part, folder / "parts" / part_name(number)) for number, part in enumerate(parts)]
-    write_index(folder, rows)
-    write_manifest(folder, rows, complete=True)
-    with open_corpus(folder) as found:
-        assert dict(found.sizes) == {"record": sum(sizes), "channel": n_channels, "elapsed_time": samples}
-        np.testing.assert_allclose(found[SIGNAL], np.concatenate([physical(part) for part in parts]), rtol=1e-7)
-    assert validate_corpus(folder) == []
+def test_any_shape_survives_the_journey_and_both_forms_hold_the_same(
+    tmp_path_factory, sizes, samples, n_channels, floating
+):
+    place = tmp_path_factory.mktemp("any")
+    shape = {"samples": samples, "kind": "float32" if floating else "counts", "channels": tuple("abc"[:n_channels])}
+    starts = np.cumsum([0, *sizes])
+    parts = [dataset(int(first), n, **shape) for first, n in zip(starts, sizes, strict=False)]
+    for form in FORMS:
+        write_parts(place / form, parts)
+        assert validate_corpus(place / form) == []
+    with open_corpus(place / "c") as folder, open_corpus(place / "c.nc") as file:
+        assert dict(file.sizes) == {"record": sum(sizes), "channel": n_channels, "elapsed_time": samples}
+        np.testing.assert_allclose(file[SIGNAL], np.concatenate([physical(part) for part in parts]), rtol=1e-7)
+        assert folder.variables.keys() == file.variables.keys()
+        assert all(folder[name].variable.identical(file[name].variable) for name in folder.variables)
+
+
+def test_every_part_is_a_corpus_of_its_own(tmp_path):
+    parts = write_corpus(tmp_path / "c")
+    with open_corpus(tmp_path / "c") as whole:
+        for number, first in enumerate(np.cumsum([0, *SIZES[:-1]])):
+            path = tmp_path / "c" / "parts" / part_name(number)
+            assert validate_corpus(path) == []
+            assert read_manifest(path).records == SIZES[number]
+            with open_corpus(path) as alone:
+                np.testing.assert_allclose(alone[SIGNAL], physical(parts[number]))
+                here = whole.isel(record=slice(first, first + SIZES[number]))
+                assert all(alone[name].variable.identical(here[name].variable) for name in whole.variables)
+
+
+def test_an_index_alone_is_refused_with_the_name_of_its_folder(tmp_path):
+    write_corpus(tmp_path / "c")
+    with pytest.raises(CorpusError, match=r"index\.nc: is the index of a corpus and holds no signals; give its folder"):
+        open_corpus(tmp_path / "c" / "index.nc")
+
+
+def test_both_forms_take_what_they_know_from_the_same_facts(tmp_path):
+    for form in FORMS:
+        write_corpus(tmp_path / form)
+    folder, file = (read_manifest(tmp_path / form) for form in FORMS)
+    assert folder.model_copy(update={"parts_": ()}) == file
+    index, single = (open_corpus(tmp_path / form).attrs for form in FORMS)
+    assert index == single
 
 
 @pytest.mark.parametrize("engine", ["netcdf4", "h5netcdf"])
-def test_both_engines_of_xarray_read_the_records_of_the_parts(corpus, engine):
-    folder, _ = corpus
-    with xr.open_dataset(folder / "corpus.nc", engine=engine, decode_times=False) as index:
-        first = 0
-        for path in sorted((folder / "parts").iterdir()):
-            with xr.open_dataset(path, engine=engine, decode_times=False) as part:
-                for record in range(part.sizes["record"]):
-                    np.testing.assert_array_equal(index[SIGNAL][first + record], part[SIGNAL][record])
-                first += part.sizes["record"]
-        assert first == index.sizes["record"]
+def test_both_engines_of_xarray_read_the_records_of_each_file(corpus, engine):
+    path, parts = corpus
+    found = [xr.open_dataset(file, engine=engine, decode_times=False) for file in corpus_files(path)]
+    with xr.concat(found, "record", data_vars="minimal", coords="minimal", compat="override", join="override") as read:
+        np.testing.assert_array_equal(read[SIGNAL], np.concatenate([physical(part) for part in parts]).astype("f4"))
+        assert read["bearing"].values.tolist() == [text for part in parts for text in part["bearing"].values]
 
 
 def test_plain_netcdf4_reads_counts_in_metres_per_second_squared(corpus):
-    folder, parts = corpus
-    with netCDF4.Dataset(folder / "corpus.nc") as index:
-        assert index[SIGNAL].units == "m s-2"
-        assert index[SIGNAL].dimensions == ("record", "channel", "elapsed_time")
-        np.testing.assert_allclose(index[SIGNAL][4], physical(parts[1])[1])
-        assert index["fault"].flag_meanings == " ".join(FAULT_NAMES.values())
+    path, parts = corpus
+    with netCDF4.Dataset(corpus_files(path)[-1]) as file:
+        assert file[SIGNAL].units == "m s-2"
+        assert file[SIGNAL].dimensions == ("record", "channel", "elapsed_time")
+        np.testing.assert_allclose(file[SIGNAL][-1], physical(parts[-1])[-1])
+        assert file["fault"].flag_meanings == " ".join(FAULT_NAMES.values())
 
 
-def test_the_lister_of_the_netcdf4_wheel_shows_dimensions_and_classes(corpus):
+def test_the_index_has_the_variables_of_all_records_and_no_signals(tmp_path):
+    parts = write_corpus(tmp_path / "c")
+    with netCDF4.Dataset(tmp_path / "c" / "index.nc") as index:
+        assert SIGNAL not in index.variables
+        np.testing.assert_array_equal(index["fault"][:], np.concatenate([part["fault"] for part in parts]))
+
+
+def test_the_lister_of_the_netcdf4_wheel_shows_dimensions_and_classes(tmp_path):
+    write_corpus(tmp_path / "c.nc")
     lister = Path(sys.executable).with_name("ncinfo")
     header, fault = (
-        subprocess.run([lister, *chosen, corpus[0] / "corpus.nc"], capture_output=True, text=True, check=True).stdout
+        subprocess.run([lister, *chosen, tmp_path / "c.nc"], capture_output=True, text=True, check=True).stdout
         for chosen in ((), ("-v", "fault"))
     )
     assert "dimensions(sizes): record(9), channel(2), elapsed_time(50)," in header
@@ -108,34 +142,28 @@ def test_the_lister_of_the_netcdf4_wheel_shows_dimensions_and_classes(corpus):
     assert f"flag_meanings: {' '.join(FAULT_NAMES.values())}\n" in fault
 
 
-@pytest.mark.skipif(shutil.which("ncdump") is None, reason="ncdump is not installed")
-def test_ncdump_lists_the_corpus(corpus):
-    header = subprocess.run(
-        ["ncdump", "-h", corpus[0] / "corpus.nc"], capture_output=True, text=True, check=True
-    ).stdout
-    assert "record = 9 ;" in header
-    assert f"short {SIGNAL}(record, channel, elapsed_time) ;" in header
-    assert f'fault:flag_meanings = "{" ".join(FAULT_NAMES.values())}" ;' in header
-
-
 def test_a_corpus_reads_alike_from_anywhere_and_after_it_was_moved(corpus, tmp_path, monkeypatch):
-    folder, parts = corpus
-    moved = shutil.copytree(folder, tmp_path / "elsewhere" / "other name")
-    for here, path in ((tmp_path, moved), (moved, Path()), (moved / "parts", Path(".."))):
+    path, parts = corpus
+    moved = tmp_path / "elsewhere" / f"other name{path.suffix}"
+    (shutil.copytree if path.is_dir() else shutil.copyfile)(path, (moved.parent.mkdir(), moved)[1])
+    places = [(tmp_path, moved), (moved.parent, Path(moved.name))]
+    for here, name in places + ([(moved, Path()), (moved / "parts", Path(".."))] if path.is_dir() else []):
         monkeypatch.chdir(here)
-        with open_corpus(path) as found:
+        with open_corpus(name) as found:
             np.testing.assert_allclose(found[SIGNAL][-1], physical(parts[-1])[-1])
 
 
 @pytest.mark.parametrize("codec", CODECS)
-def test_every_codec_gives_back_what_it_was_given(tmp_path, codec):
-    parts = write_corpus(tmp_path / "c", codec=codec)
-    with open_corpus(tmp_path / "c") as found:
+@pytest.mark.parametrize("form", FORMS)
+def test_every_codec_gives_back_what_it_was_given(tmp_path, codec, form):
+    parts = write_corpus(tmp_path / form, codec=codec)
+    with open_corpus(tmp_path / form) as found:
         np.testing.assert_allclose(found[SIGNAL], np.concatenate([physical(part) for part in parts]))
-    with netCDF4.Dataset(tmp_path / "c" / "parts" / part_name(0)) as part:
-        filters = part[SIGNAL].filters()
+    with netCDF4.Dataset(corpus_files(tmp_path / form)[0]) as file:
+        filters = file[SIGNAL].filters()
         assert {name for name in CODECS if filters.get(name)} == {codec} - {"none"}
-        assert part[SIGNAL].chunking() == [1, 1, 50]
+        assert file[SIGNAL].chunking() == [1, 1, 50]
+    assert validate_corpus(tmp_path / form) == []
 
 
 def test_the_same_records_give_the_same_bytes(tmp_path):
@@ -154,7 +182,7 @@ def test_a_missing_or_unknown_column_is_named(columns_change):
 
 def test_a_part_that_is_no_netcdf_file_is_named(tmp_path):
     (tmp_path / part_name(0)).write_text("no netCDF")
-    with pytest.raises(CorpusError, match=r"part-00000\.nc: not a readable netCDF-4 part"):
+    with pytest.raises(CorpusError, match=r"part-00000\.nc: not a readable file of a corpus"):
         open_part(tmp_path / part_name(0))
 
 

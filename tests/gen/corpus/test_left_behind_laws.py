@@ -6,7 +6,8 @@ import sys
 
 import pytest
 
-from gen.corpus import new_corpus_folder, remove_left_behind_of, temporary_beside
+from gen.corpus import new_corpus, remove_left_behind_of, temporary_beside
+from gen.corpus.files import _HOST
 from gen.errors import CorpusError
 
 
@@ -18,10 +19,11 @@ def ended():
     return process.pid
 
 
-def test_only_files_of_ended_processes_are_removed(tmp_path, ended):
-    (tmp_path / f".corpus.{ended}.1.tmp").mkdir()
-    (tmp_path / f".corpus.{os.getpid()}.1.tmp").mkdir()  # of an earlier process with the number of this one
-    kept = [f".corpus.{os.getppid()}.1.tmp", f".corpus.nc.{ended}.1.tmp", ".corpus.tmp", ".other.1.1.tmp"]
+def test_only_files_of_ended_processes_of_this_machine_are_removed(tmp_path, ended):
+    (tmp_path / f".corpus.{_HOST}.{ended}.1.tmp").mkdir()
+    (tmp_path / f".corpus.{_HOST}.{os.getpid()}.1.tmp").mkdir()  # of an earlier process with the number of this one
+    running = f".corpus.{_HOST}.{os.getppid()}.1.tmp"
+    kept = [running, f".corpus.another-host.{ended}.1.tmp", f".corpus.nc.{_HOST}.{ended}.1.tmp", ".corpus.tmp"]
     for name in kept:
         (tmp_path / name).touch()
     with temporary_beside(tmp_path / "corpus") as own:
@@ -30,7 +32,17 @@ def test_only_files_of_ended_processes_are_removed(tmp_path, ended):
         assert sorted(path.name for path in tmp_path.iterdir()) == sorted([*kept, own.name])
 
 
-def test_a_link_in_place_of_a_new_corpus_is_refused_before_the_work(tmp_path):
-    (tmp_path / "link").symlink_to(tmp_path / "nowhere")
-    with pytest.raises(CorpusError, match="exists and is not an empty folder"), new_corpus_folder(tmp_path / "link"):
+@pytest.mark.parametrize("name", ["link", "link.nc"])
+def test_a_link_in_place_of_a_new_corpus_is_refused_before_the_work(tmp_path, name):
+    (tmp_path / name).symlink_to(tmp_path / "nowhere")
+    with pytest.raises(CorpusError, match="exists"), new_corpus(tmp_path / name):
         pytest.fail("the work began")
+
+
+@pytest.mark.parametrize("name", ["c", "c.nc"])
+def test_what_a_killed_call_left_of_a_new_corpus_is_removed_by_the_next(tmp_path, ended, name):
+    hidden = f".{name}.parts" if name.endswith(".nc") else f".{name}"
+    (tmp_path / f"{hidden}.{_HOST}.{ended}.1.tmp" / "parts").mkdir(parents=True)
+    with pytest.raises(CorpusError, match="no record was written"), new_corpus(tmp_path / name):
+        pass
+    assert list(tmp_path.iterdir()) == []

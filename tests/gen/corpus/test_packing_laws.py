@@ -14,14 +14,12 @@ from gen.corpus import (
     open_part,
     part_name,
     validate_corpus,
-    write_index,
-    write_manifest,
     write_part,
 )
 from gen.corpus.schema import signal_attributes
 from gen.errors import CorpusError
 from gen.recipe.sensing import Converter
-from tests.corpora import dataset, write_corpus
+from tests.corpora import dataset, write_corpus, write_parts
 
 law = settings(deadline=None, max_examples=100)
 EVERY_COUNT = np.arange(-(2**15), 2**15).astype(np.int16)
@@ -60,30 +58,30 @@ def test_every_count_comes_back_from_single_precision_for_any_full_scale(full_sc
 
 @pytest.fixture(scope="module")
 def corpus(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("packed") / "c"
-    return folder, np.concatenate([part[SIGNAL].values for part in write_corpus(folder)])
+    path = tmp_path_factory.mktemp("packed") / "c.nc"
+    return path, np.concatenate([part[SIGNAL].values for part in write_corpus(path)])
 
 
 def test_every_reader_decodes_to_the_same_single_precision_numbers(corpus):
-    folder, counts = corpus
-    with open_corpus(folder) as opened:
+    path, counts = corpus
+    with open_corpus(path) as opened:
         signal, scale = opened[SIGNAL].load(), opened[SIGNAL].encoding["scale_factor"]
     assert (signal.dtype, signal.values.dtype, scale.dtype) == (np.float32, np.float32, np.float32)
     np.testing.assert_array_equal(signal, counts * scale)
     np.testing.assert_array_equal(np.rint(signal / scale), counts)
     for engine in ("netcdf4", "h5netcdf"):
-        with xr.open_dataset(folder / "corpus.nc", engine=engine, decode_times=False) as index:
-            assert index[SIGNAL].dtype == index[SIGNAL].values.dtype == np.float32
-            np.testing.assert_array_equal(index[SIGNAL], signal)
-    with netCDF4.Dataset(folder / "corpus.nc") as index:
-        found = index[SIGNAL][:]
+        with xr.open_dataset(path, engine=engine, decode_times=False) as file:
+            assert file[SIGNAL].dtype == file[SIGNAL].values.dtype == np.float32
+            np.testing.assert_array_equal(file[SIGNAL], signal)
+    with netCDF4.Dataset(path) as file:
+        found = file[SIGNAL][:]
         assert found.dtype == np.float32
         np.testing.assert_array_equal(found, signal)
 
 
 def test_a_decoded_corpus_stored_by_xarray_has_the_same_counts(corpus, tmp_path):
-    folder, counts = corpus
-    with open_corpus(folder) as opened:
+    path, counts = corpus
+    with open_corpus(path) as opened:
         opened[[SIGNAL]].to_netcdf(tmp_path / "again.nc")
     with netCDF4.Dataset(tmp_path / "again.nc") as again:
         again.set_auto_maskandscale(False)
@@ -91,21 +89,12 @@ def test_a_decoded_corpus_stored_by_xarray_has_the_same_counts(corpus, tmp_path)
         np.testing.assert_array_equal(again[SIGNAL][:], counts)
 
 
-def in_double_precision(part):
-    """A part as raceway wrote it before its signals decoded to single precision."""
-    attributes = part[SIGNAL].attrs
-    attributes |= {"scale_factor": 1 / 65.534, "add_offset": 0.0}
-    return part
-
-
-def test_an_older_corpus_with_packing_in_double_precision_opens_and_validates(tmp_path):
-    (tmp_path / "parts").mkdir()
-    part = in_double_precision(dataset(0, 4))
-    rows = [write_part(part, tmp_path / "parts" / part_name(0))]
-    write_index(tmp_path, rows)
-    write_manifest(tmp_path, rows, complete=True)
-    assert validate_corpus(tmp_path) == []
-    with open_corpus(tmp_path) as opened:
+def test_a_corpus_with_packing_in_double_precision_opens_and_validates(tmp_path):
+    part = dataset(0, 4)
+    part[SIGNAL].attrs |= {"scale_factor": 1 / 65.534, "add_offset": 0.0}
+    write_parts(tmp_path / "c", [part])
+    assert validate_corpus(tmp_path / "c") == []
+    with open_corpus(tmp_path / "c") as opened:
         assert opened[SIGNAL].dtype == opened[SIGNAL].values.dtype == np.float64
         np.testing.assert_array_equal(opened[SIGNAL], part[SIGNAL].values * (1 / 65.534))
 

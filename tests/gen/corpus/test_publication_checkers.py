@@ -11,10 +11,18 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from gen.corpus import open_corpus, publish, read_manifest, read_publication, sha256
+from gen.corpus import (
+    card_folder,
+    open_corpus,
+    publish,
+    read_manifest,
+    read_publication,
+    sha256,
+    validate_corpus,
+    write_croissant,
+)
 from gen.generation import generate
 from gen.importers import import_generic
-from gen.sharing import pack
 
 FACTS = {
     "license": "CC-BY-4.0",
@@ -29,9 +37,9 @@ NOT_ON_EARTH = {
     *(f"geospatial_{name}" for name in ("vertical_min", "vertical_max", "vertical_positive", "bounds_vertical_crs")),
 }
 NO_CALENDAR = {f"time_coverage_{name}" for name in ("start", "end", "duration", "resolution")}
-UNKNOWN = {"standard_name_vocabulary", "acknowledgment/acknowledgement", "project", "publisher_url"}
+UNKNOWN = {"standard_name_vocabulary", "comment", "acknowledgment/acknowledgement", "project", "publisher_url"}
 OF_THE_WHOLE = {
-    "keywords", "summary", "comment", "creator_name", "creator_url", "creator_email", "id", "institution", "license",
+    "keywords", "summary", "creator_name", "creator_url", "creator_email", "id", "institution", "license",
     "naming_authority", "processing_level", "publisher_name", "publisher_email",
 }  # fmt: skip
 MAPPING = """
@@ -46,8 +54,7 @@ files: [{path: one.npy, fault: inner, specimen: a}]
 @pytest.fixture(scope="module")
 def simulated(write_recipe, tmp_path_factory):
     folder = tmp_path_factory.mktemp("simulated")
-    generate(write_recipe(folder / "small.yaml", {"publication": FACTS}), folder / "corpus", records=8)
-    return folder / "corpus"
+    return generate(write_recipe(folder / "small.yaml", {"publication": FACTS}), folder / "corpus", records=8).path
 
 
 @pytest.fixture(scope="module")
@@ -55,20 +62,32 @@ def imported(tmp_path_factory):
     folder = tmp_path_factory.mktemp("imported")
     np.save(folder / "one.npy", np.random.default_rng(0).normal(size=3000).astype(np.float32))
     (folder / "mapping.yaml").write_text(MAPPING)
-    done = import_generic(folder / "mapping.yaml", folder / "corpus", window=0.5)
-    publish(done.directory, read_publication(FACTS))
-    return done.directory
+    return publish_import(folder, "corpus")
 
 
 @pytest.fixture(scope="module")
-def checked(simulated, imported, tmp_path_factory):
+def single(imported):
+    """The imported corpus in a single file."""
+    path = publish_import(imported.parent, "corpus.nc")
+    card_folder(path).mkdir()
+    write_croissant(path)
+    return path
+
+
+def publish_import(folder, name):
+    done = import_generic(folder / "mapping.yaml", folder / name, window=0.5)
+    publish(done.path, read_publication(FACTS))
+    return done.path
+
+
+@pytest.fixture(scope="module")
+def checked(simulated, imported, single, tmp_path_factory):
     """Messages about each file, as {file: {checker: [(heading, text)]}}.
 
     The time grows with the square of the number of variables, 3 s for those of a simulation, so that its parts are left out; the
     validation compares them with the index.
     """
-    packed = pack(imported, tmp_path_factory.mktemp("packed") / "corpus.nc").file
-    files = [simulated / "corpus.nc", imported / "corpus.nc", imported / "parts" / "part-00000.nc", packed]
+    files = [simulated / "index.nc", imported / "index.nc", imported / "parts" / "part-00000.nc", single]
     result = tmp_path_factory.mktemp("checked") / "found.json"
     checker = Path(sys.executable).with_name("compliance-checker")
     if not checker.exists():
@@ -106,28 +125,31 @@ def test_all_attributes_of_acdd_that_apply_are_there(checked):
         assert {(name, "" if name.endswith("match") else text) for name, text in found["acdd:1.3"]} == expected
 
 
-def loaded(folder):
+def loaded(corpus):
     """``croissant.json`` as mlcroissant reads it, and its complaints."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         mlcroissant = pytest.importorskip("mlcroissant", reason="mlcroissant is not installed")
-        dataset = mlcroissant.Dataset(folder / "croissant.json")
+        dataset = mlcroissant.Dataset(card_folder(corpus) / "croissant.json")
     return dataset, dataset.metadata.issues
 
 
-@pytest.mark.parametrize("origin", ["simulated", "imported"])
+@pytest.mark.parametrize("origin", ["simulated", "imported", "single"])
 def test_mlcroissant_finds_no_fault_in_a_published_corpus(origin, request):
-    folder = request.getfixturevalue(origin)
-    dataset, issues = loaded(folder)
+    path = request.getfixturevalue(origin)
+    dataset, issues = loaded(path)
     assert (set(issues.errors), set(issues.warnings)) == (set(), set())
-    files = {file.content_url: file.sha256 for file in dataset.metadata.distribution}
-    assert files.items() >= {"corpus.nc": sha256(folder / "corpus.nc")}.items()
-    assert files.keys() >= {f"parts/{row.name}" for row in read_manifest(folder).parts}
-    assert all(sha256(folder / name) == digest for name, digest in files.items())
+    files = {file.content_url: file.sha256 for file in dataset.metadata.distribution if file.id != "parts"}
+    parts = {f"parts/{row.name}" for row in read_manifest(path).parts}
+    whole = {"index.nc", "manifest.json"} | ({"recipe.yaml"} if origin == "simulated" else set())
+    assert files.keys() == ({path.name} if path.is_file() else parts | whole)
+    place = path.parent if path.is_file() else path
+    assert all(sha256(place / name) == digest for name, digest in files.items())
     fields = {field.name for group in dataset.metadata.record_sets if group.id == "records" for field in group.fields}
-    with open_corpus(folder) as corpus:
+    with open_corpus(path) as corpus:
         assert fields == {name for name, variable in corpus.variables.items() if variable.dims[:1] == ("record",)}
     assert "Jane Doe" in dataset.metadata.cite_as
+    assert validate_corpus(path) == []
 
 
 def test_without_a_publication_croissant_lacks_licence_and_date_alone(imported, tmp_path):

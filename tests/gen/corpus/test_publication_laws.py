@@ -11,23 +11,19 @@ from ruamel.yaml import YAML
 from gen.corpus import (
     Manifest,
     Publication,
+    new_corpus,
     open_corpus,
-    part_name,
     publication_attributes,
     publish,
     read_manifest,
     read_publication,
     validate_corpus,
-    write_part,
 )
-from gen.corpus.finishing import finish_corpus
-from gen.corpus.manifest import manifest_content
+from gen.corpus.manifest import facts_of_parts
 from gen.corpus.publication import checked_doi, checked_orcid
 from gen.errors import CorpusError, RecipeError
 from gen.recipe import read_recipe, recipe_hash
-from gen.sharing import pack
-from gen.sharing.unpacking import unpack
-from tests import corpora, kills, tone_corpora
+from tests import corpora, kills
 from tests.paths import ROOT
 
 FACTS = {
@@ -47,43 +43,58 @@ def _no_clock(monkeypatch):
     monkeypatch.delenv("SOURCE_DATE_EPOCH", raising=False)
 
 
-@pytest.fixture(scope="module")
-def plain(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("plain") / "corpus"
-    tone_corpora.write_corpus(folder, specimens=4, records=1)
-    finish_corpus(folder, read_manifest(folder).parts)
-    return folder
+@pytest.fixture(scope="module", params=["corpus", "corpus.nc"])
+def plain(request, tmp_path_factory):
+    path = tmp_path_factory.mktemp("plain") / request.param
+    corpora.write_corpus(path)
+    return path
 
 
 @pytest.fixture
-def folder(plain, tmp_path):
-    """A finished corpus without a publication."""
-    return shutil.copytree(plain, tmp_path / "corpus")
+def corpus(plain, tmp_path):
+    """A finished corpus without a publication: a folder or a single file."""
+    return copy(plain, tmp_path / plain.name)
 
 
-def contents(folder):
-    return {path.relative_to(folder): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+def copy(path, target):
+    return shutil.copytree(path, target) if path.is_dir() else shutil.copyfile(path, target)
 
 
-def test_a_published_corpus_has_the_files_of_one_that_was_made_with_its_publication(folder, tmp_path):
-    parts = {name: content for name, content in contents(folder).items() if name.parts[0] == "parts"}
-    made = tmp_path / "made"
-    shutil.copytree(folder, made)
-    finish_corpus(made, read_manifest(made).parts, publication=WHOLE)
-    before = contents(folder)
-    publish(folder, WHOLE)
-    assert contents(folder) == contents(made)
-    assert parts.items() <= contents(folder).items()
-    assert validate_corpus(folder) == []
-    assert read_manifest(folder).publication == WHOLE
-    publish(folder, Publication())
-    assert contents(folder) == before
+def contents(path):
+    return {file.relative_to(path): file.read_bytes() for file in (path, *path.rglob("*")) if file.is_file()}
 
 
-def test_the_facts_stand_in_the_attributes_of_the_index(folder):
-    publish(folder, WHOLE)
-    with open_corpus(folder) as corpus:
-        found = corpus.attrs
+def test_a_published_corpus_has_the_files_of_one_that_was_made_with_its_publication(corpus, tmp_path):
+    (tmp_path / "made").mkdir()
+    made, parts = tmp_path / "made" / corpus.name, [corpora.dataset(first, n) for first, n in ((0, 3), (3, 4), (7, 2))]
+    with new_corpus(made, title="A corpus", publication=WHOLE) as new:
+        for part in parts:
+            new.write(part)
+    before = contents(corpus)
+    publish(corpus, WHOLE)
+    if corpus.is_dir():
+        assert contents(corpus) == contents(made)
+    with open_corpus(corpus) as changed, open_corpus(made) as from_the_start:
+        assert changed.attrs == from_the_start.attrs
+    assert {name: before[name] for name in before if name.parts[:1] == ("parts",)}.items() <= contents(corpus).items()
+    assert validate_corpus(corpus) == []
+    assert read_manifest(corpus).publication == WHOLE
+    publish(corpus, Publication())
+    assert read_manifest(corpus).publication == Publication()
+    assert corpus.is_file() or contents(corpus) == before
+
+
+def test_no_record_changes_when_a_corpus_is_published(plain, corpus):
+    publish(corpus, WHOLE)
+    with open_corpus(plain) as before, open_corpus(corpus) as after:
+        assert before.variables.keys() == after.variables.keys()
+        assert all(before[name].variable.identical(after[name].variable) for name in before.variables)
+
+
+def test_the_facts_stand_in_the_attributes(corpus):
+    publish(corpus, WHOLE)
+    with open_corpus(corpus) as opened:
+        found = opened.attrs
     assert found["license"] == "CC-BY-4.0 (https://spdx.org/licenses/CC-BY-4.0.html)"
     assert found["creator_name"] == "Jane Doe, Zoë O'Brien"
     assert found["creator_url"] == "https://orcid.org/0000-0002-1825-0097"
@@ -93,76 +104,73 @@ def test_the_facts_stand_in_the_attributes_of_the_index(folder):
     assert found["date_created"] == "2026-03-31"
 
 
-def test_a_kill_leaves_a_corpus_that_the_same_call_completes(folder, tmp_path):
-    publish(folder, WHOLE)
-    expected = contents(folder)
-    publish(folder, Publication())
-    old = tmp_path / "old"
-    shutil.copytree(folder, old)
-    for _ in kills.killed(lambda: publish(folder, WHOLE), moments=5):
-        assert validate_corpus(folder) == []
-        assert read_manifest(folder).publication in (Publication(), WHOLE)
-        publish(folder, WHOLE)
-        found = contents(folder)
-        assert {name: found[name] for name in expected} == expected
-        shutil.rmtree(folder)
-        shutil.copytree(old, folder)
+def test_a_kill_leaves_a_corpus_that_can_be_read_and_that_the_same_call_completes(corpus, tmp_path):
+    old = copy(corpus, tmp_path / f"old{corpus.suffix}")
+    publish(corpus, WHOLE)
+    expected = contents(corpus)
+    remove(corpus)
+    copy(old, corpus)
+    for _ in kills.killed(lambda: publish(corpus, WHOLE), moments=5):
+        open_corpus(corpus).close()
+        assert read_manifest(corpus).publication in (Publication(), WHOLE)
+        found = {name: content for name, content in contents(corpus).items() if name.suffix != ".tmp"}
+        assert found in (expected, contents(old)) or validate_corpus(corpus) != []
+        publish(corpus, WHOLE)
+        assert contents(corpus) == expected
+        assert {path.name for path in tmp_path.iterdir()} == {corpus.name, old.name}
+        remove(corpus)
+        copy(old, corpus)
 
 
-@pytest.mark.parametrize("replaced", [False, True])
-def test_both_indices_are_read_while_one_replaces_the_other_and_no_third(folder, replaced):
-    """The manifest of the moment between the two renames; later the same call removes the second entry."""
-    index, path = folder / "corpus.nc", folder / "manifest.json"
-    old = index.read_bytes()
-    before = json.loads(path.read_text())
-    publish(folder, WHOLE)
-    after = json.loads(path.read_text())
-    path.write_text(json.dumps(before | {"next_index": after["index"]}))
-    if not replaced:
-        index.write_bytes(old)
-    assert validate_corpus(folder) == []
-    index.write_bytes(old[:-1] + bytes([old[-1] ^ 1]))
-    assert "altered" in validate_corpus(folder)[0]
-    index.write_bytes(old)
-    publish(folder, WHOLE)
-    assert json.loads(path.read_text()) == after
+def remove(corpus):
+    if corpus.is_dir():
+        shutil.rmtree(corpus)
+    else:
+        corpus.unlink()
 
 
-def test_a_packed_file_has_the_facts_and_gives_them_back(folder, tmp_path, monkeypatch):
-    publish(folder, WHOLE)
-    before = contents(folder)
-    pack(folder, tmp_path / "packed.nc")
-    assert read_manifest(tmp_path / "packed.nc").publication == WHOLE
-    with open_corpus(folder) as corpus, open_corpus(tmp_path / "packed.nc") as packed:
-        assert packed.attrs.items() >= {**corpus.attrs, "comment": packed.attrs["comment"]}.items()
-    monkeypatch.setenv("SOURCE_DATE_EPOCH", "0")
-    unpack(tmp_path / "packed.nc", tmp_path / "again")
-    assert contents(tmp_path / "again") == before
-    with pytest.raises(CorpusError, match="is one file; unpack it"):
-        publish(tmp_path / "packed.nc", WHOLE)
+STEPS = ("write_index", "write_manifest", "write_card", "write_croissant")
 
 
-def test_an_altered_or_unfinished_corpus_is_not_published(folder):
-    part = next((folder / "parts").iterdir())
+@pytest.mark.parametrize("step", STEPS)
+def test_a_call_that_ends_between_two_files_is_found_and_repaired(tmp_path, monkeypatch, step):
+    corpora.write_corpus(tmp_path / "c")
+
+    def killed(*_):
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patch:
+        patch.setattr(f"gen.corpus.finishing.{step}", killed)
+        with pytest.raises(KeyboardInterrupt):
+            publish(tmp_path / "c", WHOLE)
+    open_corpus(tmp_path / "c").close()
+    assert (validate_corpus(tmp_path / "c") == []) == (step == "write_index")
+    publish(tmp_path / "c", WHOLE)
+    assert validate_corpus(tmp_path / "c") == []
+    assert read_manifest(tmp_path / "c").publication == WHOLE
+
+
+def test_an_altered_corpus_is_not_published(corpus):
+    part = corpus if corpus.is_file() else next((corpus / "parts").iterdir())
     content = part.read_bytes()
-    part.write_bytes(content[:-1] + bytes([content[-1] ^ 1]))
-    before = contents(folder)
+    part.write_bytes(content[:-100] + bytes([content[-100] ^ 1]) + content[-99:])
+    before = contents(corpus)
     with pytest.raises(CorpusError, match="is altered"):
-        publish(folder, WHOLE)
-    assert contents(folder) == before
-    with pytest.raises(CorpusError, match=r"no such folder|cannot be opened"):
-        publish(folder / "nowhere", WHOLE)
+        publish(corpus, WHOLE)
+    assert contents(corpus) == before
+    with pytest.raises(CorpusError, match="no such folder or file"):
+        publish(corpus.with_name("nowhere"), WHOLE)
 
 
-def test_the_date_is_that_of_the_build_if_none_is_given(folder, monkeypatch):
+def test_the_date_is_that_of_the_build_if_none_is_given(corpus, monkeypatch):
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "1774915200")  # 2026-03-31
-    publish(folder, read_publication({}))
-    assert read_manifest(folder).publication.date == "2026-03-31"
-    publish(folder, read_publication({"date": "2020-02-29"}))
-    assert read_manifest(folder).publication.date == "2020-02-29"
+    publish(corpus, read_publication({}))
+    assert read_manifest(corpus).publication.date == "2026-03-31"
+    publish(corpus, read_publication({"date": "2020-02-29"}))
+    assert read_manifest(corpus).publication.date == "2020-02-29"
     monkeypatch.setenv("SOURCE_DATE_EPOCH", "yesterday")
     with pytest.raises(CorpusError, match=r"^SOURCE_DATE_EPOCH: 'yesterday' is not a time"):
-        publish(folder, read_publication({}))
+        publish(corpus, read_publication({}))
 
 
 def test_a_recipe_with_another_publication_has_the_same_hash(write_recipe, tmp_path):
@@ -229,16 +237,18 @@ def test_forms_of_spdx_are_taken(text):
     assert read_publication({"license": text}).license == text
 
 
-def test_a_title_beyond_ascii_is_read_back_from_index_and_parts(tmp_path):
+@pytest.mark.parametrize("form", ["c", "c.nc"])
+def test_a_title_beyond_ascii_is_read_back_from_every_file(tmp_path, form):
     """netCDF4 writes it with variable length, which no file of the format has."""
-    folder, title = tmp_path / "corpus", "Wälzlager № 1"
-    (folder / "parts").mkdir(parents=True)
-    row = write_part(corpora.dataset(0, 3).assign_attrs(title=title), folder / "parts" / part_name(0))
-    finish_corpus(folder, [row])
-    assert validate_corpus(folder) == []
-    with open_corpus(folder) as corpus, netCDF4.Dataset(folder / "corpus.nc") as index:
-        assert corpus.attrs["title"] == index.title == title
-    assert title in (folder / "README.md").read_text()
+    title = "Wälzlager № 1"
+    with new_corpus(tmp_path / form, title=title) as new:
+        new.write(corpora.dataset(0, 3).assign_attrs(title=title))
+    assert validate_corpus(tmp_path / form) == []
+    assert read_manifest(tmp_path / form).title == title
+    for file in [tmp_path / form] if form == "c.nc" else (tmp_path / form).rglob("*.nc"):
+        with netCDF4.Dataset(file) as opened:
+            assert opened.title == title
+    assert form == "c.nc" or title in (tmp_path / form / "README.md").read_text()
 
 
 def test_the_page_names_every_attribute_and_its_example_is_a_publication():
@@ -251,6 +261,6 @@ def test_the_page_names_every_attribute_and_its_example_is_a_publication():
     named = {
         name for row in table.splitlines() for name in re.findall(r"`(\w+)`", row.split("|")[1] if "|" in row else "")
     }
-    content = manifest_content([], publication=given, importer="test")
+    content = facts_of_parts([], {"publication": given, "importer": "test"})
     written = publication_attributes(Manifest.model_validate_json(json.dumps(content)))
-    assert named - {"title", "history", "source", "Conventions", "comment"} == set(written)
+    assert named - {"title", "history", "source", "Conventions"} == set(written)

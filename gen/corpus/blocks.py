@@ -1,0 +1,134 @@
+"""Stored records of a file, some at a time, read without xarray: for features, checks, copies and exports."""
+
+import math
+import zlib
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import h5py
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.corpus.layout import is_bare_dimension, is_deflated, is_text, packing_of
+from gen.corpus.open_files import close, opened, source_of
+from gen.corpus.part import inflated
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
+from gen.errors import CorpusError
+from gen.limits import check_limit
+
+_BLOCK_SAMPLES = 10_000_000
+_BLOCK_RECORDS = 256
+
+
+class RecordBlock(NamedTuple):
+    """Consecutive records of a file."""
+
+    file: Path
+    first: int
+    stop: int
+
+
+def blocks_of(path: Path, records: int) -> list[RecordBlock]:
+    """All records of a file in blocks that fit the memory of a task."""
+    starts = range(0, records, _BLOCK_RECORDS)
+    return [RecordBlock(path, first, min(first + _BLOCK_RECORDS, records)) for first in starts]
+
+
+def read_channel(
+    block: RecordBlock, channel: int, names: Sequence[str]
+) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
+    """Signal of one channel of a block in single precision, shape (record, elapsed_time) [m s-2], and columns by name.
+
+    Features use it: it reads the columns without xarray. Chunks are inflated without the lock, so that threads run in parallel.
+    """
+    source, rows = source_of(block.file), range(block.first, block.stop)
+    with opened(source) as file:
+        stored = file.signal()
+        records, _, samples = stored.shape
+        packing, deflated = packing_of(stored), is_deflated(stored)
+        read: Any = (
+            stored_chunks(stored, rows, range(channel, channel + 1))
+            if deflated
+            else stored[rows.start : rows.stop, channel]
+        )
+        columns = [_numbers(file.dataset(name), name, records, rows) for name in names]
+    if block.stop == records:
+        close([source])  # features read each file once, and an open file holds 1 MB
+    if packing.scale is None:
+        return read, columns
+    signal = np.empty((len(rows), samples), np.float32)
+    for row, counts in zip(signal, all_inflated(read, samples, source.path) if deflated else read, strict=True):
+        np.multiply(counts, np.float32(packing.scale), out=row, dtype=np.float32)
+        row[counts == packing.fill] = np.nan
+    return signal, columns
+
+
+def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
+    """Stored signal of a file in blocks of records: counts of the converter, or accelerations [m s-2]; inflated without the lock."""
+    source, first, records = source_of(path), 0, 1
+    while first < records:
+        with opened(source) as file:
+            stored = file.signal()
+            records, channels, samples = stored.shape
+            block = range(first, min(first + max(1, _BLOCK_SAMPLES // max(1, channels * samples)), records))
+            deflated = is_deflated(stored)
+            read: Any = stored_chunks(stored, block, range(channels)) if deflated else stored[block.start : block.stop]
+        if deflated:
+            values = np.empty((len(block), channels, samples), np.int16)
+            for counts, out in zip(all_inflated(read, samples, source.path), values.reshape(-1, samples), strict=True):
+                out[:] = counts
+            yield values
+        else:
+            yield read
+        first = block.stop
+    close([source])  # an open file holds 1 MB
+
+
+def stored_columns(path: Path, first: int = 0, stop: int | None = None) -> dict[str, NDArray[Any]]:
+    """Values of all per-record variables of a file by name, of all its records or of some.
+
+    They are as they are stored, text as rows of characters, and are read without xarray.
+    """
+    source, columns = source_of(path), dict[str, NDArray[Any]]()
+    with opened(source) as file:
+        for name in map(bytes.decode, file.handle.id):
+            # the dimension of a text, NAME_length, has no values
+            bare = name.endswith("_length") and is_bare_dimension(file.dataset(name))
+            if not bare and name not in (SIGNAL, *SIGNAL_DIMS):
+                columns[name] = _rows(file.dataset(name), first, stop)
+    if stop is None:
+        close([source])
+    return columns
+
+
+def _rows(stored: h5py.Dataset, first: int, stop: int | None) -> NDArray[Any]:
+    """Values of some records of a variable; through the objects of h5py it takes twice as long."""
+    records, *width = stored.id.shape
+    shape = (len(range(records)[first:stop]), *width)
+    size = math.prod(shape) * stored.id.dtype.itemsize
+    check_limit("file_bytes", size, f"{stored.file.filename}: {stored.name} has", CorpusError)
+    values, chosen = np.empty(shape, stored.id.dtype), stored.id.get_space()
+    chosen.select_hyperslab((first, *(0 for _ in width)), shape)
+    stored.id.read(h5py.h5s.create_simple(shape), chosen, values)
+    return values
+
+
+def _numbers(stored: h5py.Dataset, name: str, records: int, rows: range) -> NDArray[Any]:
+    if not is_text(stored, name, "record", records):
+        return np.asarray(stored[rows.start : rows.stop])
+    raise ValueError(f"{name} is text, not numbers")
+
+
+def stored_chunks(stored: h5py.Dataset, records: range, channels: range) -> list[tuple[int, bytes]]:
+    """Stored chunks of some records and channels, each with the mask of the filters that were left out."""
+    return [stored.id.read_direct_chunk((record, channel, 0)) for record in records for channel in channels]
+
+
+def all_inflated(chunks: Sequence[tuple[int, bytes]], samples: int, path: str) -> Iterator[NDArray[np.int16]]:
+    """Counts of each chunk; CorpusError if one is damaged."""
+    for filters_left_out, chunk in chunks:
+        try:
+            yield inflated(b"" if filters_left_out else chunk, samples)
+        except (ValueError, zlib.error) as error:
+            raise CorpusError(f"{path}: damaged ({error}); generate or copy it again.") from None

@@ -1,0 +1,95 @@
+"""Choice of records and channels of corpora, as ``--where``, ``--split`` and ``--channels`` give it."""
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gen.corpus.schema import SPLITS, class_names
+from gen.corpus.where import Column, nearest, records_where
+from gen.errors import CorpusError
+
+
+def chosen_records(
+    corpora: Sequence[xr.Dataset], where: str | None = None, split: str | None = None
+) -> list[NDArray[np.intp]]:
+    """Places of the records of each corpus that meet a condition and belong to a split, ascending; all records without either.
+
+    Parameters
+    ----------
+    corpora : sequence of Dataset
+        Opened corpora with the same variables.
+    where : str, optional
+        A condition, such as ``fault == 'inner' and shaft_rate > 20`` (:mod:`gen.corpus.where`).
+    split : {"train", "validation", "test"}, optional
+        Name of a split.
+
+    Raises
+    ------
+    CorpusError
+        If the condition cannot be read, names an unknown variable or value, or no record meets it; if the split is unknown.
+    """
+    if split is not None and split not in SPLITS:
+        raise CorpusError(f"split: there is no split {split!r}; allowed are {', '.join(SPLITS)}.")
+    found = [np.flatnonzero(_chosen(corpus, where, split)) for corpus in corpora]
+    if not any(map(len, found)):
+        asked = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
+        count = sum(corpus.sizes["record"] for corpus in corpora)
+        raise CorpusError(
+            f"{' and '.join(asked)}: none of {count} records is chosen; choose others{_extents(corpora, where)}."
+        )
+    return found
+
+
+def chosen_channels(names: Sequence[str], channels: Sequence[str] | None) -> tuple[int, ...]:
+    """Places of the channels with the given names, in the order of the corpus; all channels without names.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus has no such channel, or no name is given.
+    """
+    if channels is None:
+        return tuple(range(len(names)))
+    if isinstance(channels, str) or not channels:
+        raise CorpusError(f"channels: {channels!r} is not a list of names; allowed are {', '.join(names)}.")
+    for name in channels:
+        if name not in names:
+            raise CorpusError(f"channels: there is no channel {name!r}{nearest(name, names)}")
+    return tuple(place for place, name in enumerate(names) if name in channels)
+
+
+def channel_names(corpus: xr.Dataset) -> list[str]:
+    """Names of the channels of an opened corpus."""
+    return [str(name) for name in corpus["channel"].values]
+
+
+def per_record(corpus: xr.Dataset) -> list[str]:
+    """Names of the per-record variables of an opened corpus."""
+    return [str(name) for name, variable in corpus.variables.items() if variable.dims == ("record",)]
+
+
+def _chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDArray[np.bool_]:
+    chosen = np.ones(corpus.sizes["record"], bool)
+    if split is not None:
+        chosen &= corpus["split"].values == SPLITS.index(split)
+    if where is not None:
+        columns = {name: corpus[name] for name in per_record(corpus)}
+        chosen &= records_where(
+            where, list(columns), lambda name: Column(columns[name].values, class_names(columns[name].attrs))
+        )
+    return chosen
+
+
+def _extents(corpora: Sequence[xr.Dataset], where: str | None) -> str:
+    """Least and largest value of the measured quantities in a condition, in brackets: a unit is easily mistaken."""
+    found: list[str] = []
+    for name in dict.fromkeys(re.findall(r"[A-Za-z_]\w*", where or "")):
+        unit = str(corpora[0][name].attrs.get("units", "1")) if name in corpora[0] else "1"
+        values = np.concatenate([corpus[name].values for corpus in corpora]) if unit != "1" else np.empty(0)
+        if np.isfinite(values).any():
+            values = values[np.isfinite(values)]
+            found.append(f"{name} is {values.min():.4g} to {values.max():.4g} {unit}")
+    return f" ({', '.join(found)})" if found else ""

@@ -1,0 +1,320 @@
+"""Chosen records and channels of one or several corpora, read in blocks as if they were one corpus.
+
+``sources -> choose -> Chosen -> blocks of stored records -> a corpus, or a form of another program (gen.exporting)``
+
+Nothing of a record changes but the numbers of machines in corpora that are joined, and what was asked for: names of channels, and
+floating point in place of counts.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gen.corpus.acdd import publication_attributes
+from gen.corpus.choice import channel_names, chosen_channels, chosen_records
+from gen.corpus.index import open_corpus
+from gen.corpus.joining import check_fit, check_repeats, new_numbers, sample_digests, with_same_variables
+from gen.corpus.layout import PACKING, stored_signal
+from gen.corpus.manifest import Manifest, read_manifest, recipe_text
+from gen.corpus.publication import Publication
+from gen.corpus.schema import SIGNAL, schema_problems
+from gen.corpus.where import nearest
+from gen.errors import CorpusError
+from gen.limits import check_limit
+
+_MOST_IN_BLOCK = 1024  # records; drawn values are text of some kilobytes a record
+_SPAN = 8  # times the records of a block; variables are read with those of the records between the chosen ones
+_SAME = ("Conventions", "raceway_format")  # global attributes of every corpus
+_OF_THE_WHOLE = ("summary", "id", "naming_authority")  # facts of publication that a choice of records does not have
+_OWN_FACTS = {
+    "raceway_format",
+    "complete",
+    "records",
+    "signals",
+    "index",
+    "parts",
+    "parts_sha256",
+    "publication",
+    "title",
+}
+_FACTS_OF_THE_WHOLE = {"recipe_sha256", "overrides", "recordings"}
+
+
+class Block(NamedTuple):
+    """Some chosen records in memory."""
+
+    numbers: NDArray[np.intp]
+    """Numbers of the records: those of the corpus; of several corpora, counted through in their order."""
+    dataset: xr.Dataset
+    """The records, decoded."""
+
+    def accelerations(self) -> NDArray[np.float32]:
+        """Signal in single precision, shape (record, channel, elapsed_time) [m s-2]; a missing sample is NaN."""
+        return self.dataset[SIGNAL].values.astype(np.float32, copy=False)
+
+    def stored(self) -> xr.Dataset:
+        """Records as they are stored (:func:`gen.corpus.make_dataset`): counts with their scale, or single precision."""
+        signal = self.dataset[SIGNAL].variable
+        values, scale = stored_signal(signal)
+        packing = {name: signal.encoding[name] for name in PACKING if name in signal.encoding}
+        # h5py gives values with their byte order stated, of which netCDF4 warns
+        values = values.astype(np.float32 if scale is None else np.int16)
+        attributes = signal.attrs if scale is None else signal.attrs | packing
+        return self.dataset.assign({SIGNAL: (signal.dims, values, attributes)})
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """Chosen records and channels of one or several corpora."""
+
+    paths: tuple[Path, ...]
+    manifests: tuple[Manifest, ...]
+    corpora: tuple[xr.Dataset, ...]
+    """Opened, with the chosen channels and the same variables."""
+    records: tuple[NDArray[np.intp], ...]
+    """Numbers of the chosen records of each corpus."""
+    filled: tuple[str, ...]
+    """Variables that one of the corpora lacks."""
+    asked: str
+    """The choice and the changes, for the history; empty if the corpora are copied whole."""
+    float32: bool
+
+    @property
+    def count(self) -> int:
+        """Number of chosen records."""
+        return sum(map(len, self.records))
+
+    @property
+    def of(self) -> int:
+        """Number of all records of the corpora."""
+        return sum(corpus.sizes["record"] for corpus in self.corpora)
+
+    @property
+    def samples(self) -> int:
+        """Samples of a record and channel."""
+        return self.corpora[0].sizes["elapsed_time"]
+
+    @cached_property
+    def sample_rate(self) -> float:
+        """Sample rate [Hz]."""
+        return float(self.corpora[0]["sample_rate"].variable[:1].values[0])
+
+    @cached_property
+    def channels(self) -> list[str]:
+        """Names of the channels."""
+        return channel_names(self.corpora[0])
+
+    @property
+    def scale(self) -> float | None:
+        """Factor from stored counts to m s-2; None for floating point."""
+        scale = None if self.float32 else self.corpora[0][SIGNAL].encoding.get("scale_factor")
+        return None if scale is None else float(scale)
+
+    @property
+    def publication(self) -> Publication:
+        """Licence, creators and references if they are the same for all corpora; else none, since they cannot be joined."""
+        first, *others = (manifest.publication for manifest in self.manifests)
+        return first if all(other == first for other in others) else Publication()
+
+    @cached_property
+    def title(self) -> str:
+        """Titles of the corpora."""
+        return " + ".join(dict.fromkeys(str(corpus.attrs.get("title", "")) for corpus in self.corpora))
+
+    @cached_property
+    def own_attributes(self) -> dict[str, Any]:
+        """Global attributes of the records: history and source are those of all corpora."""
+        each = [corpus.attrs for corpus in self.corpora]
+        lines = [*dict.fromkeys(line for of in each for line in str(of.get("history", "")).splitlines()), self.asked]
+        source = "; ".join(dict.fromkeys(str(of["source"]) for of in each if "source" in of))
+        joined = {"title": self.title, "history": "\n".join(filter(None, lines)), "source": source}
+        return {name: each[0][name] for name in _SAME if name in each[0]} | {
+            name: text for name, text in joined.items() if text
+        }
+
+    @cached_property
+    def attributes(self) -> dict[str, Any]:
+        """Global attributes of the records, and licence, creators and other facts of publication that all corpora share."""
+        first, *others = map(publication_attributes, self.manifests)
+        shared = {name: text for name, text in first.items() if all(of.get(name) == text for of in others)}
+        return {
+            name: text for name, text in shared.items() if not self.asked or name not in _OF_THE_WHOLE
+        } | self.own_attributes
+
+    @property
+    def recipe(self) -> str | None:
+        """Recipe, if it is the same for all corpora."""
+        first, *others = map(recipe_text, self.paths)
+        return first if all(other == first for other in others) else None
+
+    def facts(self) -> dict[str, Any]:
+        """Fields of the manifest of a copy: those that all corpora share, and all sentences of any; of a choice, no hash of the whole."""
+        each = [manifest.model_dump(mode="json", by_alias=True, exclude_unset=True) for manifest in self.manifests]
+        left_out = _OWN_FACTS | (_FACTS_OF_THE_WHOLE if self.asked else set())
+        found: dict[str, Any] = {"title": self.title, "publication": self.publication}
+        for name in dict.fromkeys(name for facts in each for name in facts if name not in left_out):
+            values = [facts.get(name) for facts in each]
+            if any(isinstance(value, list) for value in values):
+                found[name] = list(dict.fromkeys(item for value in values for item in value or ()))
+            elif all(value == values[0] for value in values):
+                found[name] = values[0]
+        return found
+
+    def values(self, name: str) -> NDArray[Any]:
+        """Values of a per-record variable for all chosen records."""
+        pairs = zip(self.corpora, self.records, strict=True)
+        return np.concatenate([corpus[name].values[records] for corpus, records in pairs])
+
+    @cached_property
+    def _numbers(self) -> dict[str, NDArray[np.int32]]:
+        return new_numbers([str(text) for text in self.values("identity")])
+
+    @cached_property
+    def _digests(self) -> NDArray[np.bytes_]:
+        return np.zeros(self.count, "S32")
+
+    def blocks(self, most_bytes: int, places: NDArray[np.intp] | None = None) -> Iterator[Block]:
+        """Blocks of chosen records of one corpus, each with at most so many bytes in single precision, but one record at least.
+
+        ``places`` are some of the chosen records, ascending, instead of all.
+        """
+        places = np.arange(self.count) if places is None else places
+        size = self.records_in(most_bytes)
+        first, before = 0, 0
+        for corpus, records in zip(self.corpora, self.records, strict=True):
+            own = places[(places >= first) & (places < first + len(records))]
+            for start in range(0, len(own), size):
+                here = own[start : start + size]
+                dataset = _loaded(corpus, records[here - first], size * _SPAN)
+                yield Block(before + records[here - first], self._finished(dataset, here))
+            first, before = first + len(records), before + corpus.sizes["record"]
+
+    def records_in(self, most_bytes: int) -> int:
+        """Records whose signals fill so many bytes in single precision; at least 1, and not more than a block may have."""
+        each = 4 * len(self.channels) * self.samples
+        return int(np.clip(most_bytes // max(1, each), 1, _MOST_IN_BLOCK))
+
+    def check_repeats(self) -> None:
+        """CorpusError if records of two corpora, all of which have been read, have the same samples."""
+        if len(self.paths) > 1:
+            check_repeats(self._digests, list(zip(map(str, self.paths), self.records, strict=True)))
+
+    def _finished(self, dataset: xr.Dataset, places: NDArray[np.intp]) -> xr.Dataset:
+        """Records as they are copied: with new numbers, in floating point if asked, with the attributes of all."""
+        new = {name: values[places] for name, values in self._numbers.items() if name in dataset.variables}
+        changed = {name: xr.Variable("record", values, dataset[name].attrs) for name, values in new.items()}
+        signal = dataset[SIGNAL].variable
+        if self.float32:
+            changed[SIGNAL] = xr.Variable(signal.dims, signal.values.astype(np.float32), signal.attrs)
+        if len(self.paths) > 1:
+            self._digests[places] = sample_digests(signal.values)
+        return dataset.drop_attrs(deep=False).assign(changed).assign_attrs(self.own_attributes)
+
+
+@contextmanager
+def choose(
+    sources: Sequence[Path],
+    *,
+    where: str | None = None,
+    split: str | None = None,
+    channels: Sequence[str] | None = None,
+    rename: Mapping[str, str] | None = None,
+    float32: bool = False,
+) -> Iterator[Chosen]:
+    """Open corpora, choose some of their records and channels, and close them at the end.
+
+    Channels are renamed before they are chosen, and a condition applies to the numbers that each corpus has of its own.
+
+    Raises
+    ------
+    CorpusError
+        If a corpus is unfinished or altered, nothing is chosen, or the corpora do not fit together.
+    """
+    if not sources:
+        raise CorpusError("copy: no corpus is given; give one or more.")
+    with ExitStack() as stack:
+        manifests = [read_manifest(path) for path in sources]
+        opened = [stack.enter_context(_opened(path)) for path in sources]
+        opened = [
+            _with_channels(corpus, channels, path)
+            for corpus, path in zip(_renamed(opened, rename or {}), sources, strict=True)
+        ]
+        named = list(zip(map(str, sources), opened, strict=True))
+        for other in named[1:]:
+            check_fit(named[0], other, float32=float32)
+        corpora, filled = with_same_variables(named)
+        order = channel_names(corpora[0])
+        corpora = [corpus if channel_names(corpus) == order else corpus.sel(channel=order) for corpus in corpora]
+        records = chosen_records(corpora, where, split)
+        check_limit("records", sum(map(len, records)), "copy: the corpora hold", CorpusError)
+        told = {
+            "joined": f"{len(sources)} corpora" if len(sources) > 1 else None,
+            "where": where,
+            "split": split,
+            "channels": channels and ", ".join(channels),
+            "renamed": rename and ", ".join(f"{old} to {new}" for old, new in rename.items()),
+            "stored": "in floating point" if float32 else None,
+        }
+        yield Chosen(tuple(sources), tuple(manifests), tuple(corpora), tuple(records), filled, _history(told), float32)
+
+
+def _history(told: Mapping[str, str | None]) -> str:
+    """Line about a copy; empty if nothing was chosen or changed.
+
+    >>> _history({"where": "rig < 3", "split": None}), _history({"where": None})
+    ('copied by raceway copy: where rig < 3', '')
+    """
+    asked = "; ".join(f"{name} {text}" for name, text in told.items() if text)
+    return asked and f"copied by raceway copy: {' '.join(asked.split())}"
+
+
+def _opened(path: Path) -> xr.Dataset:
+    corpus = open_corpus(path)
+    if problems := schema_problems(corpus):
+        raise CorpusError(f"{path}: {problems[0].removesuffix('.')}; make or copy the corpus again.")
+    return corpus
+
+
+def _renamed(corpora: Sequence[xr.Dataset], rename: Mapping[str, str]) -> list[xr.Dataset]:
+    """Corpora in which channels have new names; CorpusError if none has a channel of an old name, or two get the same name."""
+    known = list(dict.fromkeys(name for corpus in corpora for name in channel_names(corpus)))
+    unknown = next((name for name in rename if name not in known), None)
+    if unknown is not None:
+        raise CorpusError(f"rename: there is no channel {unknown!r}{nearest(unknown, known)}")
+    found = []
+    for corpus in corpora:
+        names = [rename.get(name, name) for name in channel_names(corpus)]
+        if len(set(names)) < len(names):
+            raise CorpusError(
+                f"rename: two channels would be named {', '.join(sorted(names))}; give each its own name."
+            )
+        found.append(corpus.assign_coords(channel=("channel", np.array(names, object), corpus["channel"].attrs)))
+    return found
+
+
+def _with_channels(corpus: xr.Dataset, channels: Sequence[str] | None, path: Path) -> xr.Dataset:
+    try:
+        places = chosen_channels(channel_names(corpus), channels)
+    except CorpusError as error:
+        raise CorpusError(f"{path}: {error}") from None
+    return corpus if len(places) == corpus.sizes["channel"] else corpus.isel(channel=list(places))
+
+
+def _loaded(corpus: xr.Dataset, records: NDArray[np.intp], span: int) -> xr.Dataset:
+    """Some records of an opened corpus in memory; a variable is read with at most ``span`` records at a time."""
+    pieces = []
+    for some in np.split(records, np.flatnonzero(np.diff(records // span)) + 1):
+        run = some[-1] - some[0] + 1 == len(some)
+        wanted: Any = slice(int(some[0]), int(some[-1]) + 1) if run else some
+        pieces.append(corpus.isel(record=wanted).load())
+    if len(pieces) == 1:
+        return pieces[0]
+    whole: Any = xr.concat(pieces, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
+    return whole

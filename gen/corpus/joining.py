@@ -1,0 +1,185 @@
+"""Several corpora as if they were one: the same variables, numbers that tell machines apart, and no record twice."""
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gen.corpus.choice import channel_names, per_record
+from gen.corpus.schema import SIGNAL, class_names, listed_flags
+from gen.corpus.signals import VERDICTS, judge
+from gen.corpus.simulated import unknown_value
+from gen.errors import CorpusError
+
+NUMBERS = ("rig", "specimen", "recording", "pair")
+"""Variables that get new numbers when corpora are joined."""
+_WITHOUT_CONTENT = [VERDICTS.index(verdict) for verdict in ("dead", "constant", "not_finite")]
+
+Named = tuple[str, xr.Dataset]
+"""An opened corpus with its name for errors."""
+
+
+def check_fit(first: Named, other: Named, *, float32: bool) -> None:
+    """CorpusError unless two corpora have the same channels, sample rate and length, and the same storage if it is to be kept."""
+    (name, one), (other_name, two) = first, other
+    own, missing = (
+        [channel for channel in channel_names(corpus) if channel not in channel_names(against)]
+        for corpus, against in ((two, one), (one, two))
+    )
+    if own or missing:
+        example = f"{(own or channel_names(two))[0]}={(missing or channel_names(one))[0]}"
+        raise CorpusError(
+            f"{other_name}: has the channels {', '.join(channel_names(two))}, and {name} has {', '.join(channel_names(one))}; give "
+            f"channels of one sensor one name (--rename-channel {example}), or choose common ones (--channels)."
+        )
+    for what, describe, advice in (
+        ("sample rate", _sample_rate, "make both at one sample rate"),
+        ("record length", _length, "make both with records of one length"),
+        ("storage of the signals", _storage, "store all in floating point (--float32)"),
+    ):
+        if describe(one) != describe(two) and not (float32 and describe is _storage):
+            raise CorpusError(
+                f"{other_name}: has the {what} {describe(two)}, and {name} has {describe(one)}; {advice}."
+            )
+
+
+def _sample_rate(corpus: xr.Dataset) -> str:
+    return ", ".join(f"{rate:.17g} Hz" for rate in np.unique(corpus["sample_rate"].values))
+
+
+def _length(corpus: xr.Dataset) -> str:
+    return f"{corpus.sizes['elapsed_time']} samples"
+
+
+def _storage(corpus: xr.Dataset) -> str:
+    encoding = corpus[SIGNAL].encoding
+    return f"int16 in steps of {encoding['scale_factor']:.9g} m s-2" if "scale_factor" in encoding else "float32"
+
+
+def with_same_variables(corpora: Sequence[Named]) -> tuple[list[xr.Dataset], tuple[str, ...]]:
+    """Corpora with all per-record variables of any of them, and the names of those that one or more lack.
+
+    A corpus that lacks a variable gets :func:`gen.corpus.simulated.unknown_value` for all its records. Attributes of the signal are kept
+    if they are the same in all corpora, and channels and times are those of the first.
+
+    Raises
+    ------
+    CorpusError
+        If a variable has different types, units or class values in two of them.
+    """
+    variables: dict[str, tuple[str, xr.Variable]] = {}
+    for path, corpus in corpora:
+        for name in per_record(corpus):
+            _check_same(name, variables.setdefault(name, (path, corpus[name].variable)), (path, corpus[name].variable))
+    signals = [corpus[SIGNAL].attrs for _, corpus in corpora]
+    common = {key: value for key, value in signals[0].items() if all(of.get(key) == value for of in signals)}
+    # h5py gives an axis with its byte order stated, of which netCDF4 warns
+    time = corpora[0][1]["elapsed_time"]
+    axes = {"elapsed_time": ("elapsed_time", time.values.astype(np.float64), time.attrs)}
+    found = [_with_all(corpus, variables, common).assign_coords(axes) for _, corpus in corpora]
+    filled = tuple(name for name in variables if any(name not in corpus.variables for _, corpus in corpora))
+    return found, filled
+
+
+def _check_same(name: str, first: tuple[str, xr.Variable], other: tuple[str, xr.Variable]) -> None:
+    (path, one), (other_path, two) = first, other
+    for what, describe in (
+        ("type", lambda of: "text" if of.dtype.kind in "OSUT" else str(of.dtype.newbyteorder("="))),
+        ("unit", lambda of: of.attrs.get("units")),
+        ("values", lambda of: listed_flags(class_names(of.attrs))),
+    ):
+        if describe(one) != describe(two):
+            raise CorpusError(
+                f"{other_path}: the {what} of {name} is {describe(two)}, in {path} {describe(one)}; make both with one version of raceway."
+            )
+
+
+def _with_all(
+    corpus: xr.Dataset, variables: Mapping[str, tuple[str, xr.Variable]], signal: Mapping[str, Any]
+) -> xr.Dataset:
+    """Corpus with all variables in the order given; those that it lacks take no memory."""
+    columns = {SIGNAL: _described(corpus[SIGNAL].variable, signal)}
+    for name, (_, like) in variables.items():
+        if name in corpus.variables:
+            columns[name] = _described(corpus[name].variable, like.attrs)
+            continue
+        text = like.dtype.kind not in "iuf"
+        value = np.array(unknown_value(like.dtype, like.attrs), object if text else like.dtype.newbyteorder("="))
+        columns[name] = xr.Variable("record", np.broadcast_to(value, corpus.sizes["record"]), like.attrs)
+    texts = [name for name, column in columns.items() if column.dtype.kind not in "iuf"]
+    return corpus.drop_vars(per_record(corpus)).assign(columns).set_coords(texts)
+
+
+def _described(variable: xr.Variable, attributes: Mapping[Any, Any]) -> xr.Variable:
+    """Variable with other attributes, still unread."""
+    found = variable.copy(deep=False)
+    found.attrs = dict(attributes)
+    return found
+
+
+def new_numbers(identities: Sequence[str]) -> dict[str, NDArray[np.int32]]:
+    """Rig, specimen, recording and pair of each record, from the identities of all records that are joined.
+
+    An identity is the name of the corpus that numbered the record first, and its four numbers there. Records of one corpus have these
+    numbers; those of several are numbered anew, in the order in which each rig, specimen ... first occurs. -1 stands for none.
+
+    >>> new_numbers(["a/7/8/5/-1", "b/7/9/6/-1", "a/7/8/6/-1"])["rig"]
+    array([0, 1, 0], dtype=int32)
+
+    Raises
+    ------
+    CorpusError
+        If a text is no identity.
+    """
+    rows = [text.rsplit("/", len(NUMBERS)) for text in identities]
+    try:
+        numbers = np.array([row[1:] for row in rows]).astype(np.int32).reshape(len(rows), len(NUMBERS))
+    except (ValueError, OverflowError):
+        wrong = next((text for text in identities if text.count("/") < len(NUMBERS)), identities[0])
+        raise CorpusError(f"identity: {wrong!r} is no corpus with four numbers; make the corpus again.") from None
+    names, corpus = np.unique([row[0] for row in rows], return_inverse=True)
+    return {
+        name: values if len(names) == 1 else _dense(corpus, values)
+        for name, values in zip(NUMBERS, numbers.T, strict=True)
+    }
+
+
+def _dense(corpus: NDArray[np.intp], values: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Numbers from 0 for pairs of a corpus and a number, in the order in which each pair first occurs; -1 for a number below 0."""
+    found, given = np.full(len(values), -1, np.int32), values >= 0
+    pairs = np.stack([corpus, values], axis=1)[given]
+    _, first, inverse = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
+    found[given] = np.argsort(np.argsort(first))[inverse.reshape(-1)]
+    return found
+
+
+def sample_digests(signal: NDArray[Any]) -> NDArray[np.bytes_]:
+    """Half of the SHA-256 of the stored samples of each record, shape (record,); empty if they are constant or not numbers.
+
+    Labels do not count: two records with the same samples and different labels are no more different than two equal ones.
+    """
+    found = [hashlib.sha256(np.ascontiguousarray(record).data).hexdigest()[:32] for record in signal]
+    digests = np.array(found, "S32")
+    digests[np.isin(judge(signal), _WITHOUT_CONTENT)] = b""
+    return digests
+
+
+def check_repeats(digests: NDArray[np.bytes_], places: Sequence[tuple[str, NDArray[np.intp]]]) -> None:
+    """CorpusError if two corpora hold a record with the same samples; ``places`` are the names of the corpora and their records."""
+    names = np.array([name for name, _ in places], object)
+    owner = np.repeat(np.arange(len(places)), [len(records) for _, records in places])
+    number = np.concatenate([records for _, records in places])
+    order = np.argsort(digests, kind="stable")
+    one, other = order[:-1], order[1:]
+    same = np.flatnonzero((digests[one] == digests[other]) & (digests[one] != b"") & (owner[one] != owner[other]))
+    if same.size:
+        found = same[np.argmin(other[same])]
+        first, second = int(one[found]), int(other[found])
+        raise CorpusError(
+            f"{names[owner[second]]}: record {number[second]} has the same samples as record {number[first]} of "
+            f"{names[owner[first]]}, and a record that is there twice can be in training and test set at once; give corpora of "
+            "different seeds, or leave these records out (--where)."
+        )

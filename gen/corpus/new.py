@@ -1,0 +1,97 @@
+"""A new corpus written part by part: a folder or a single file, there as a whole or not at all."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import xarray as xr
+
+from gen.corpus.codecs import Codec
+from gen.corpus.files import (
+    check_new_file,
+    check_new_folder,
+    remove_left_behind_of,
+    temporary_beside,
+    whole_folder_or_none,
+    write_text_durably,
+    writing,
+)
+from gen.corpus.finishing import finish_corpus, finish_file
+from gen.corpus.manifest import RECIPE_NAME
+from gen.corpus.part import PartRow, part_name, write_part
+from gen.errors import CorpusError
+
+
+class NewCorpus:
+    """Corpus under way; ``facts`` are fields of its manifest, which can be completed until the end."""
+
+    def __init__(self, folder: Path, codec: Codec, facts: dict[str, Any]) -> None:
+        self.facts, self.rows = facts, list[PartRow]()
+        self._parts = folder / "parts"
+        self._codec: Codec = codec
+
+    def write(self, records: xr.Dataset) -> None:
+        """Write records in the layout of the corpus (undecoded) as the next part."""
+        self.rows.append(write_part(records, self._parts / part_name(len(self.rows)), self._codec))
+
+
+def is_single_file(target: Path) -> bool:
+    """Whether a corpus with this name is one file."""
+    return target.suffix == ".nc"
+
+
+def check_new_target(target: Path) -> None:
+    """Refuse a target that exists, before any work is done."""
+    (check_new_file if is_single_file(target) else check_new_folder)(target)
+
+
+@contextmanager
+def new_corpus(
+    target: Path | str, *, codec: Codec = "zlib", recipe_text: str | None = None, **facts: Any
+) -> Iterator[NewCorpus]:
+    """New corpus to write parts to: a single file if the name of ``target`` ends in ``.nc``, else a folder.
+
+    Parameters
+    ----------
+    target : path
+        New file, or a folder that does not exist or is empty.
+    codec : str
+        Compression of the signal.
+    recipe_text : str, optional
+        Recipe of all records, as YAML.
+    **facts
+        Fields of the manifest (:class:`gen.corpus.Manifest`).
+
+    Raises
+    ------
+    CorpusError
+        If the target exists, no part was written, or writing fails, with the reason that the system gives.
+    """
+    target = Path(target).absolute()
+    check_new_target(target)
+    if is_single_file(target):
+        parts = target.with_name(f"{target.name}.parts")
+        with temporary_beside(parts) as folder, writing(target, folder):
+            remove_left_behind_of(parts)
+            yield from _written(folder, target, codec, recipe_text, facts)
+        return
+    with whole_folder_or_none(target) as folder:
+        yield from _written(folder, None, codec, recipe_text, facts)
+
+
+def _written(
+    folder: Path, file: Path | None, codec: Codec, recipe_text: str | None, facts: dict[str, Any]
+) -> Iterator[NewCorpus]:
+    """Corpus to write parts to, finished in its folder or as a ``file`` at the end."""
+    (folder / "parts").mkdir(parents=True)
+    if recipe_text is not None:
+        write_text_durably(recipe_text, folder / RECIPE_NAME)
+    corpus = NewCorpus(folder, codec, facts)
+    yield corpus
+    if not corpus.rows:
+        raise CorpusError("no record was written, so there is no corpus; choose some records.")
+    if file is None:
+        finish_corpus(folder, corpus.rows, **corpus.facts)
+    else:
+        finish_file(folder, corpus.rows, file, **corpus.facts)

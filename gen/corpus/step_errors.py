@@ -1,0 +1,24 @@
+"""Records that change when they are integrated again at half the step: their signals follow the step, not the model."""
+
+import numpy as np
+import xarray as xr
+
+COARSE = 0.05  # relative rms change of the motion; a step of the usual fineness changes a record by some thousandths
+
+
+def step_complaint(corpus: xr.Dataset) -> str | None:
+    """Sentence with the number of records whose step is too coarse and the key to change; None if there are none.
+
+    The step of some records of a simulated corpus is checked, and of no imported one.
+    """
+    if "step_error" not in corpus.variables:
+        return None
+    error, steps = corpus["step_error"].values, corpus["oversampling"].values
+    coarse = error > COARSE
+    if not coarse.any():
+        return None
+    worst, finest = 100 * error.max(where=coarse, initial=0), steps[coarse].max()
+    return (
+        f"{coarse.sum():,} of the {np.isfinite(error).sum():,} records whose step was checked change by more than {100 * COARSE:g} % "
+        f"(up to {worst:.0f} %) at half the step; raise recording.oversampling above {finest}."
+    )

@@ -1,0 +1,125 @@
+"""Records on their way into another form: their columns, with safe names, and the page about them.
+
+Names and texts of a corpus can come from strangers. So names of columns and files are made here, from letters, digits and underscores.
+"""
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from gen.corpus.card.markdown import plain_text
+from gen.corpus.choice import per_record
+from gen.corpus.copying import Block, Chosen
+from gen.corpus.schema import DRAWS, SCHEMA, class_names
+
+_LONGEST_NAME = 60  # letters; MATLAB allows 63
+_RESERVED = ("record", "file", "place", "units", "channels")
+_TERMS = {"license": "Licence", "creator_name": "Creators", "references": "References", "metadata_link": "Published at"}
+"""Global attributes that the page repeats, with their headings."""
+
+
+class Column(NamedTuple):
+    """One per-record variable: its column, its variable in the corpus, and its description."""
+
+    name: str
+    variable: str
+    dtype: np.dtype[Any] | None
+    """None for text."""
+    units: str
+    role: str
+    meaning: str
+    flags: Mapping[int, str]
+    """Names of the values of a class variable by their codes; empty otherwise."""
+
+    def of(self, records: xr.Dataset) -> NDArray[Any]:
+        """Values in some records; the names of its classes if it is a class variable."""
+        values = records[self.variable].values
+        if not self.flags:
+            return values
+        return np.array([self.flags.get(int(code), str(code)) for code in values], object)
+
+
+@dataclass(frozen=True)
+class Export:
+    """Chosen records, and what a form needs to know about all of them."""
+
+    chosen: Chosen
+    report: Callable[[int], None]
+    """Called with the number of records of each block that is done."""
+
+    def blocks(self, most_bytes: int, places: NDArray[np.intp] | None = None) -> Iterator[Block]:
+        """Blocks of records (:meth:`gen.corpus.copying.Chosen.blocks`), each reported when the next one is asked for."""
+        for block in self.chosen.blocks(most_bytes, places):
+            yield block
+            self.report(len(block.numbers))
+
+    @cached_property
+    def channels(self) -> list[str]:
+        """Names of the channels for columns."""
+        return plain_names(self.chosen.channels)
+
+    @cached_property
+    def columns(self) -> list[Column]:
+        """Columns of the per-record variables: those of every corpus first, drawn values last."""
+        corpus = self.chosen.corpora[0]
+        schema = [variable.name for variable in SCHEMA]
+        further = [name for name in per_record(corpus) if name not in schema and name != DRAWS]
+        ordered = [name for name in (*schema, *further, DRAWS) if name in corpus.variables]
+        return [_column(corpus, *pair) for pair in zip(plain_names(ordered, _RESERVED), ordered, strict=True)]
+
+    @cached_property
+    def title(self) -> str:
+        """Title as one harmless line."""
+        return plain_text(self.chosen.title) or "Vibration records of rolling bearings"
+
+    def page(self, reading: str) -> str:
+        """README.md of a folder: the origin of the records, their size, and how to read them."""
+        chosen = self.chosen
+        signal = f"{chosen.samples / chosen.sample_rate:g} s at {chosen.sample_rate:g} Hz"
+        channels = ", ".join(map(plain_text, chosen.channels))
+        count = f"{chosen.count} of {chosen.of} records of {'a corpus' if len(chosen.paths) == 1 else f'{len(chosen.paths)} corpora'}"
+        about = f"{count}, {signal}, channels {channels}, in m s-2, copied by Raceway. `record` is their number there."
+        lines = [f"# {self.title}", "", about]
+        for name, heading in _TERMS.items():
+            text = plain_text(chosen.attributes.get(name, ""))
+            lines += ["", f"{heading}: {text}"] if text else []
+        return "\n".join([*lines, "", reading])
+
+
+def plain_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
+    """Names of letters, digits and underscores that begin with a letter, all different, also without regard to capital letters.
+
+    >>> plain_names(["width", "../x y", "=1", "Width"], taken=["record"])
+    ['width', 'x_y', 'x1', 'Width_2']
+    """
+    used, found = {name.lower() for name in taken}, []
+    for name in names:
+        plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:_LONGEST_NAME]
+        plain = plain if plain[:1].isalpha() else f"x{plain}"
+        number, tried = 1, plain
+        while tried.lower() in used:
+            number += 1
+            tried = f"{plain[: _LONGEST_NAME - 8]}_{number}"
+        used.add(tried.lower())
+        found.append(tried)
+    return found
+
+
+def _column(corpus: xr.Dataset, name: str, variable: str) -> Column:
+    found = corpus[variable].variable
+    units, role, meaning = (str(found.attrs.get(key, "")) for key in ("units", "role", "long_name"))
+    return Column(
+        name,
+        variable,
+        found.dtype if found.dtype.kind in "iuf" else None,
+        units,
+        role,
+        meaning,
+        class_names(found.attrs),
+    )

@@ -1,0 +1,177 @@
+"""Copies of corpora: ``sources -> choose -> blocks -> one function per form -> target``, which is there as a whole or not at all."""
+
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import AbstractContextManager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from gen.corpus.codecs import CODECS, Codec
+from gen.corpus.copying import choose
+from gen.corpus.files import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
+from gen.corpus.new import NewCorpus, new_corpus
+from gen.errors import CorpusError
+from gen.exporting.columns import Export
+from gen.exporting.csv_files import write_csv
+from gen.exporting.huggingface import write_huggingface
+from gen.exporting.matlab_files import write_mat
+from gen.exporting.parquet_files import write_parquet, write_parquet_file
+from gen.exporting.wav_files import write_wav
+from gen.exporting.zarr_store import write_store, write_zarr
+from gen.progress import Progress, counter
+
+_PART_BYTES = 16_000_000  # of single precision
+
+FORMS: Mapping[str, Callable[[Export, Path], str]] = {
+    "parquet": write_parquet,
+    "zarr": write_zarr,
+    "mat": write_mat,
+    "csv": write_csv,
+    "wav": write_wav,
+    "huggingface": write_huggingface,
+}
+"""Forms that are folders of files: functions that write into a folder and return its README.md."""
+SUFFIXES = (".nc", ".parquet", ".zarr")
+"""Suffixes of targets of one file, or of one store; a target without is a folder."""
+_NEEDS = {"parquet": ("pyarrow", "parquet"), "huggingface": ("pyarrow", "parquet"), "zarr": ("zarr", "zarr")}
+"""Package that a form needs, and the extra that brings it."""
+
+
+class Copied(NamedTuple):
+    """Result of :func:`copy`."""
+
+    target: Path
+    form: str
+    """``folder``, ``nc``, or the form of another program."""
+    records: int
+    of: int
+    """Number of records that were chosen from."""
+    channels: tuple[str, ...]
+    filled: tuple[str, ...]
+    """Variables that one of the sources lacks; its records have them marked as not known."""
+    files: int
+    bytes: int
+
+
+def copy(
+    sources: Path | str | Sequence[Path | str],
+    target: Path | str,
+    *,
+    where: str | None = None,
+    split: str | None = None,
+    channels: Sequence[str] | None = None,
+    rename: Mapping[str, str] | None = None,
+    codec: Codec | None = None,
+    float32: bool = False,
+    to: str | None = None,
+    progress: Progress | None = None,
+) -> Copied:
+    """Copy a corpus, some of its records or channels, or several corpora joined, as a corpus or in the form of another program.
+
+    The form follows from the suffix of the target: ``NAME.nc`` is a corpus in one file, ``NAME.parquet`` one table, ``NAME.zarr`` one
+    store, and a name without suffix the folder of a corpus. Records keep samples, labels and splits. Machines of joined corpora are
+    numbered anew, unless all records come from one corpus. Corpora are read and written in blocks, so that the memory does not grow with
+    the number of records. The same corpora give the same bytes.
+
+    Parameters
+    ----------
+    sources : path, or sequence of paths
+        Corpora: folders or single files.
+    target : path
+        The copy; it must not exist, or be an empty folder.
+    where : str, optional
+        Condition on the records, such as ``fault == 'inner' and shaft_rate > 20`` (:mod:`gen.corpus.where`).
+    split : {"train", "validation", "test"}, optional
+        Split of the records.
+    channels : sequence of str, optional
+        Names of the channels.
+    rename : mapping, optional
+        New names of channels by their old ones; ``channels`` has the new ones.
+    codec : {"zlib", "zstd", "none"}, optional
+        Compression of the signals of a corpus, ``zlib`` without. Every netCDF-4 reader knows it.
+    float32 : bool
+        Store accelerations [m s-2] in single precision in place of counts.
+    to : {"parquet", "zarr", "mat", "csv", "wav", "huggingface"}, optional
+        Form of a folder for another program.
+    progress : callable, optional
+        Called with the number of records written and of all that are chosen.
+
+    Raises
+    ------
+    CorpusError
+        If nothing is chosen, the sources do not fit together or hold the same records, one is unfinished or altered, a form needs a
+        package that is not installed, or the target exists, lies in a source or cannot be written.
+    """
+    paths = [Path(path) for path in ([sources] if isinstance(sources, str | Path) else sources)]
+    target = Path(target)
+    form = _form(target, to, codec)
+    _check_target(target, paths)
+    write = _writer(form, single=target.suffix in SUFFIXES)
+    with choose(paths, where=where, split=split, channels=channels, rename=rename, float32=float32) as chosen:
+        export = Export(chosen, counter(progress, chosen.count))
+        remove_left_behind_of(target.absolute())
+        with _place(form, target, chosen.recipe, codec or "zlib") as place:
+            write(export, place)
+            chosen.check_repeats()
+    files = [target] if target.is_file() else [path for path in target.rglob("*") if path.is_file()]
+    size = sum(path.stat().st_size for path in files)
+    return Copied(target, form, chosen.count, chosen.of, tuple(chosen.channels), chosen.filled, len(files), size)
+
+
+def _place(form: str, target: Path, recipe: str | None, codec: Codec) -> AbstractContextManager[Any]:
+    """Place to write to: a corpus under way, or a temporary path."""
+    if form in ("folder", "nc"):
+        return new_corpus(target, codec=codec, recipe_text=recipe)
+    return whole_or_not_at_all(target) if target.suffix == ".parquet" else whole_folder_or_none(target)
+
+
+def _writer(form: str, *, single: bool) -> Callable[[Export, Any], None]:
+    """Function that writes records to a place."""
+    if form in ("folder", "nc"):
+        return _write_parts
+    if single:
+        return write_parquet_file if form == "parquet" else write_store
+
+    def write(export: Export, folder: Path) -> None:
+        (folder / "README.md").write_text(FORMS[form](export, folder), encoding="utf-8")
+
+    return write
+
+
+def _write_parts(export: Export, corpus: NewCorpus) -> None:
+    corpus.facts |= export.chosen.facts()
+    for block in export.blocks(_PART_BYTES):
+        corpus.write(block.stored())
+
+
+def _form(target: Path, to: str | None, codec: str | None) -> str:
+    """Form of a target, after a check of the options."""
+    if to is not None and to not in FORMS:
+        raise CorpusError(f"to: there is no form {to!r}; allowed are {', '.join(FORMS)}.")
+    suffix = target.suffix if target.suffix in SUFFIXES else ""
+    if to is None and target.suffix[1:] in FORMS and not suffix:
+        raise CorpusError(f"{target}: {target.suffix[1:]} is a folder of files; give it by --to {target.suffix[1:]}.")
+    if suffix and to is not None:
+        raise CorpusError(f"{target}: {suffix} is one file, and --to {to} makes a folder; leave one of the two out.")
+    form = to or suffix[1:] or "folder"
+    if codec is not None and (codec not in CODECS or form not in ("folder", "nc")):
+        raise CorpusError(
+            f"codec: {codec!r} is not one of {', '.join(CODECS)} for a corpus; leave it out for other forms."
+        )
+    package, extra = _NEEDS.get(form, ("", ""))
+    if package and find_spec(package) is None:
+        raise CorpusError(f"{form}: needs {package}; pip install 'raceway[{extra}]', or choose another form.")
+    return form
+
+
+def _check_target(target: Path, sources: Sequence[Path]) -> None:
+    """Refuse a target that holds something, or that is, contains or lies in one of the sources."""
+    place = target.resolve()
+    for source in sources:
+        own = source.resolve()
+        if place == own or place in own.parents or own in place.parents:
+            raise CorpusError(f"{target}: is, contains or lies in the source {source}; give another place.")
+    if target.is_symlink() or (target.exists() and not (target.is_dir() and not any(target.iterdir()))):
+        raise CorpusError(f"{target}: exists and is not an empty folder; give a new name, or remove it first.")
+    if target.suffix in (".nc", ".parquet") and target.exists():
+        raise CorpusError(f"{target}: is a folder; give the name of a new file.")

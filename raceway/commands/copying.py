@@ -1,0 +1,119 @@
+"""Command that copies corpora: whole or in part, joined, as one file or a folder, or in a form for another program."""
+
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from raceway.console import show
+from raceway.console.options import A_PATH, choice_options, corpus_path, json_option, target_option
+from raceway.console.progress import notice, progress
+
+if TYPE_CHECKING:
+    from gen.corpus import Codec
+
+FORMS = ("parquet", "zarr", "mat", "csv", "wav", "huggingface")
+
+
+def _corpora(context: click.Context, parameter: click.Parameter, paths: tuple[Path, ...]) -> list[Path]:
+    return [folder for path in paths if (folder := corpus_path(context, parameter, path)) is not None]
+
+
+def _new_names(_context: click.Context, _option: click.Parameter, pairs: tuple[str, ...]) -> dict[str, str]:
+    """New names of channels by their old ones, from ``OLD=NEW``."""
+    names = {old: new for old, _, new in (pair.partition("=") for pair in pairs)}
+    if not all(old and new for old, new in names.items()) or len(names) < len(pairs):
+        raise click.BadParameter("give OLD=NEW, once for each channel")
+    return names
+
+
+@click.command()
+@click.argument("sources", metavar="SOURCE...", nargs=-1, required=True, type=A_PATH, callback=_corpora)
+@target_option("The copy: a new name, or an empty folder.")
+@choice_options
+@click.option(
+    "--rename-channel",
+    "rename",
+    multiple=True,
+    metavar="OLD=NEW",
+    callback=_new_names,
+    help="New name of a channel, as sources of one corpus need the same; --channels takes the new name.",
+)
+@click.option(
+    "--codec",
+    type=click.Choice(["zlib", "zstd", "none"]),
+    help="Compression of the signals of a corpus; by default zlib, which every netCDF-4 reader knows.",
+)
+@click.option("--float32", is_flag=True, help="Store accelerations in floating point in place of counts.")
+@click.option("--to", type=click.Choice(FORMS), help="Form of a folder for another program.")
+@json_option
+def copy(
+    sources: list[Path],
+    output: Path,
+    where: str | None,
+    split: str | None,
+    channels: tuple[str, ...] | None,
+    rename: dict[str, str],
+    codec: "Codec | None",
+    float32: bool,
+    to: str | None,
+    as_json: bool,
+) -> None:
+    """Copy corpora, or some of their records and channels.
+
+    The name of TARGET gives the form:
+
+      NAME            folder of a corpus
+      NAME.nc         corpus in one netCDF-4 file
+      NAME.parquet    one table: a row per record, for pandas, polars, DuckDB, Spark
+      NAME.zarr       one store, for xarray
+
+    With --to it is a folder of files for another program, with a README.md that says how to read them:
+
+      parquet      tables of up to 500 MB
+      zarr         a store
+      mat          struct arrays for MATLAB and Octave
+      csv          a table of labels, and one file per record
+      wav          a table of labels, and one sound file per record
+      huggingface  Parquet by split with a card, for datasets.load_dataset
+
+    Records keep samples, labels and splits, and simulated records can still be replayed. Several sources are joined, simulated and
+    imported ones too. They need the same sample rate, length of records and channels. Rigs, specimens, recordings and pairs are then
+    numbered anew, unless all records come from one corpus. Corpora that hold the same samples are refused, because a record in training
+    and test set makes every score too good.
+
+    A condition compares variables (raceway info) with numbers, or with names in quotes. A comparison with an unknown value (NaN) is
+    false.
+
+      raceway copy corpus -o corpus.nc
+      raceway copy corpus.nc -o fast_inner --where "fault in ('inner', 'outer') and shaft_rate > 20"
+      raceway copy corpus -o test_set --split test --channels housing
+      raceway copy simulated measured -o both --rename-channel fe=accelerometer --float32
+      raceway copy corpus -o matlab --to mat --where "not (bearing == '6205' or load <= 500)"
+
+    Next: raceway info TARGET, raceway validate TARGET
+    """
+    from gen import copy as copy_corpora
+
+    choice = {"where": where, "split": split, "channels": channels}
+    with progress("copying", "records") as report:
+        made = copy_corpora(
+            sources, output, **choice, rename=rename, codec=codec, float32=float32, to=to, progress=report
+        )
+    if made.filled:
+        notice(
+            f"variables that one of the sources lacks are marked as not known in its records: {', '.join(made.filled)}."
+        )
+    if as_json:
+        show.as_json(made._asdict())
+        return
+    size = f"{show.counted(made.files, 'file')}, {show.size(made.bytes)}"
+    channels_made = f"{show.counted(len(made.channels), 'channel')} ({', '.join(made.channels)})"
+    form = "" if made.form in ("folder", "nc") else f" as {made.form}"
+    show.text(f"{output}: {made.records:,} of {show.counted(made.of, 'record')}, {channels_made}{form} in {size}.")
+    quoted = shlex.quote(str(output))
+    if not form:
+        show.text(f"Next: raceway info {quoted}")
+    elif to is not None:
+        show.text(f"Next: read {quoted}/README.md")

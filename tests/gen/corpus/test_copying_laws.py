@@ -1,0 +1,218 @@
+"""Laws of copies: records stay as they are in every form of a corpus, and a killed call leaves the whole copy or none."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import gen
+from gen import copy, generate, open_corpus, validate_corpus
+from gen.corpus import SIGNAL, Publication, open_part, publish, read_manifest
+from gen.corpus.layout import stored_signal
+from gen.errors import CorpusError
+from tests import corpora
+from tests.kills import killed
+
+NAMES = ("copy", "copy.nc")
+
+
+@pytest.fixture
+def source(tmp_path):
+    """Folder of a corpus of nine records in parts of three, four and two."""
+    corpora.write_corpus(tmp_path / "source")
+    return tmp_path / "source"
+
+
+def contents(path, records=slice(None)):
+    """Values of all variables of some records, with the stored counts in place of accelerations."""
+    with open_corpus(path) as corpus:
+        some = corpus.isel(record=records).load()
+        signal = stored_signal(some[SIGNAL].variable)[0]
+        return {str(name): some[name].values for name in some.variables if name != SIGNAL} | {SIGNAL: signal}
+
+
+def assert_same(found, expected):
+    assert found.keys() == expected.keys()
+    for name, values in expected.items():
+        assert found[name].dtype.kind == values.dtype.kind, name
+        np.testing.assert_array_equal(found[name], values, err_msg=name)
+
+
+def tree(path):
+    """Bytes of a file, or of every file below a folder."""
+    if path.is_file():
+        return path.read_bytes()
+    return {str(file.relative_to(path)): file.read_bytes() for file in path.rglob("*") if file.is_file()}
+
+
+@pytest.mark.parametrize("name", NAMES)
+@pytest.mark.parametrize(
+    ("kind", "stored", "codec"),
+    [("counts", "zlib", None), ("counts", "zstd", "none"), ("counts", "none", "zstd"), ("float32", "zlib", "zlib")],
+)
+def test_a_whole_copy_has_every_record_bit_for_bit(tmp_path, name, kind, stored, codec):
+    corpora.write_corpus(tmp_path / "source", kind=kind, codec=stored)
+    made = copy(tmp_path / "source", tmp_path / name, codec=codec)
+    assert (made.records, made.of, made.channels, made.filled) == (9, 9, ("a", "b"), ())
+    assert made.bytes == len(b"".join([tree(tmp_path / name)] if made.files == 1 else tree(tmp_path / name).values()))
+    assert validate_corpus(tmp_path / name) == []
+    assert_same(contents(tmp_path / name), contents(tmp_path / "source"))
+
+
+def test_copying_there_and_back_gives_the_same_bytes(source, tmp_path):
+    """A folder, a single file of it, a folder of that: nothing is lost on the way, and nothing is added."""
+    publish(source, Publication(license="CC-BY-4.0", date="2026-01-02"))
+    (source / "recipe.yaml").write_text("name: small\n")
+    copy(source, tmp_path / "one")
+    copy(tmp_path / "one", tmp_path / "one.nc")
+    copy(tmp_path / "one.nc", tmp_path / "two")
+    copy(tmp_path / "two", tmp_path / "two.nc")
+    assert tree(tmp_path / "two") == tree(tmp_path / "one")
+    assert tree(tmp_path / "two.nc") == tree(tmp_path / "one.nc")
+    assert (tmp_path / "two" / "recipe.yaml").read_text() == "name: small\n"
+    assert read_manifest(tmp_path / "two.nc").publication.license == "CC-BY-4.0"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_chosen_records_keep_all_numbers_and_labels(source, tmp_path, name):
+    made = copy(source, tmp_path / name, where="fault in ('inner', 'outer', 'cage')")
+    assert (made.records, made.of) == (5, 9)
+    assert validate_corpus(tmp_path / name) == []
+    assert_same(contents(tmp_path / name), contents(source, [1, 2, 4, 7, 8]))
+
+
+def test_condition_split_and_channels_apply_together(source, tmp_path):
+    made = copy(source, tmp_path / "some", where="rig > 0", channels=["b"], split="train")
+    assert made.channels == ("b",)
+    expected = contents(source, [3, 6])
+    expected[SIGNAL], expected["channel"] = expected[SIGNAL][:, 1:], expected["channel"][1:]
+    assert_same(contents(tmp_path / "some"), expected)
+
+
+def test_a_channel_gets_a_new_name_by_which_it_is_chosen(source, tmp_path):
+    copy(source, tmp_path / "renamed", rename={"a": "housing"}, channels=["housing"])
+    found, whole = contents(tmp_path / "renamed"), contents(source)
+    assert found["channel"].tolist() == ["housing"]
+    np.testing.assert_array_equal(found[SIGNAL], whole[SIGNAL][:, :1])
+
+
+def test_floating_point_is_the_value_of_the_counts(source, tmp_path):
+    copy(source, tmp_path / "single.nc", float32=True)
+    with open_corpus(source) as whole, open_corpus(tmp_path / "single.nc") as single:
+        assert single[SIGNAL].dtype == np.float32
+        np.testing.assert_array_equal(single[SIGNAL], whole[SIGNAL].astype(np.float32))
+
+
+def test_a_missing_sample_stays_missing(tmp_path, monkeypatch):
+    usual = corpora.dataset
+
+    def with_a_gap(*part, **how):
+        made = usual(*part, **how)
+        made[SIGNAL].values[0, 0, 7] = -32768
+        return made
+
+    monkeypatch.setattr(corpora, "dataset", with_a_gap)
+    corpora.write_corpus(tmp_path / "source", (2,))
+    copy(tmp_path / "source", tmp_path / "counts")
+    copy(tmp_path / "source", tmp_path / "single", float32=True)
+    assert contents(tmp_path / "counts")[SIGNAL][0, 0, 7] == -32768
+    assert np.flatnonzero(np.isnan(contents(tmp_path / "single")[SIGNAL])).tolist() == [7]
+
+
+def test_the_history_tells_the_choice_and_the_manifest_keeps_the_publication(source, tmp_path):
+    publish(source, Publication(license="CC-BY-4.0", date="2026-01-02"))
+    copy(source, tmp_path / "one.nc", where="rig < 8", channels=["a"])
+    copy(tmp_path / "one.nc", tmp_path / "two", split="test")
+    with open_corpus(tmp_path / "two") as corpus:
+        assert corpus.attrs["history"].splitlines() == [
+            "made by a test",
+            "copied by raceway copy: where rig < 8; channels a",
+            "copied by raceway copy: split test",
+        ]
+    assert read_manifest(tmp_path / "two").publication.license == "CC-BY-4.0"
+    with open_part(tmp_path / "two" / "parts" / "part-00000.nc") as part:  # terms can change, and parts cannot
+        assert not {"license", "comment"} & set(part.attrs)
+
+
+def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path, monkeypatch):
+    corpora.write_corpus(tmp_path / "source", (1,) * 40)
+    monkeypatch.setattr("gen.corpus.copying._SPAN", 2)
+    monkeypatch.setattr("gen.corpus.copying._MOST_IN_BLOCK", 3)
+    copy(tmp_path / "source", tmp_path / "some", where="rig in (0, 1, 20, 39)")
+    assert_same(contents(tmp_path / "some"), contents(tmp_path / "source", [0, 1, 20, 39]))
+    assert [row.records for row in read_manifest(tmp_path / "some").parts] == [3, 1]
+
+
+@pytest.mark.parametrize(
+    ("choice", "sentence"),
+    [
+        ({"where": "rig > 100"}, "none of 9 records is chosen; choose others."),
+        ({"where": "shaft_rate > 1e6"}, r"choose others \(shaft_rate is [0-9.]+ to [0-9.]+ Hz\)"),
+        ({"where": "falt == 1"}, "there is no variable falt; the nearest is fault"),
+        ({"split": "tets"}, "there is no split 'tets'"),
+        ({"channels": ["c"]}, "source: channels: there is no channel 'c'"),
+        ({"rename": {"c": "d"}}, "rename: there is no channel 'c'; allowed are a, b."),
+        ({"rename": {"a": "b"}}, "rename: two channels would be named b, b; give each its own name."),
+        ({"codec": "lz4"}, "codec: 'lz4' is not one of zlib, zstd, none"),
+        ({"to": "csv", "codec": "zstd"}, "leave it out for other forms"),
+    ],
+    ids=str,
+)
+def test_a_choice_of_nothing_is_refused_and_leaves_nothing(source, tmp_path, choice, sentence):
+    with pytest.raises(CorpusError, match=sentence):
+        copy(source, tmp_path / "out", **choice)
+    assert [path.name for path in tmp_path.iterdir()] == ["source"]
+
+
+@pytest.mark.parametrize("target", ["source", "source/parts/x.nc", "source/inner", ".", "again/../source"])
+def test_a_copy_never_lies_in_its_source_nor_the_other_way_round(source, tmp_path, target):
+    before = tree(source)
+    with pytest.raises(CorpusError, match="is, contains or lies in the source"):
+        copy(source, tmp_path / target)
+    assert tree(source) == before
+
+
+@pytest.mark.parametrize("target", ["there.nc", "there.parquet", "there", "table.nc"])
+def test_nothing_is_overwritten(source, tmp_path, target):
+    (tmp_path / "there").mkdir()
+    (tmp_path / "table.nc").mkdir()
+    for name in ("there.nc", "there.parquet", "there/note"):
+        (tmp_path / name).write_text("mine")
+    with pytest.raises(
+        CorpusError, match=r"exists and is not an empty folder|is a folder; give the name of a new file"
+    ):
+        copy(source, tmp_path / target)
+    assert (tmp_path / "there.nc").read_text() == (tmp_path / "there/note").read_text() == "mine"
+
+
+def test_an_altered_corpus_is_not_copied(source, tmp_path):
+    part = source / "parts" / "part-00001.nc"
+    part.write_bytes(part.read_bytes()[:-1] + b"\x01")
+    with pytest.raises(CorpusError, match=r"part-00001\.nc: is altered"):
+        copy(source, tmp_path / "out")
+
+
+def test_a_choice_is_not_completed_by_generate(tiny_corpus, tiny_recipe, tmp_path):
+    copy(tiny_corpus, tmp_path / "some", where="specimen < 3")
+    before = tree(tmp_path / "some")
+    with pytest.raises(CorpusError):
+        generate(tiny_recipe, tmp_path / "some")
+    assert tree(tmp_path / "some") == before
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_copied_records_are_replayed(tiny_corpus, tmp_path, name):
+    made = copy(tiny_corpus, tmp_path / name, where="fault != 'healthy' and rig == 1", split="train")
+    assert all(gen.replay(tmp_path / name, record).identical for record in range(0, made.records, 4))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_killed_copy_leaves_the_whole_corpus_or_none(source, tmp_path, name):
+    output, whole = tmp_path / name, None
+    for _ in killed(lambda: copy(source, output, where="rig != 4", float32=True), moments=5):
+        if output.exists():
+            whole = whole or tree(output)
+            assert tree(output) == whole
+            output.unlink() if output.is_file() else shutil.rmtree(output)
+    copy(source, output, where="rig != 4", float32=True)
+    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["source", name])

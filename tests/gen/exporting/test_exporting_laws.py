@@ -1,0 +1,392 @@
+"""Laws of copies in other forms: the own reader of each form finds the signals, the labels and the units of the corpus."""
+
+import csv
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+import scipy.io
+import xarray as xr
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.io import wavfile
+
+import gen
+from gen.corpus import SIGNAL, Publication, copying, new_corpus, open_corpus, publish, stored_signal
+from gen.errors import CorpusError
+from gen.exporting import FORMS, matlab_files, parquet_files
+from gen.exporting.columns import plain_names
+from gen.exporting.tables import cell_text
+from tests.corpora import COUNTS_PER_UNIT, FS, dataset, write_corpus, write_parts
+from tests.kills import killed
+
+KINDS = ("counts", "float32")
+
+
+@pytest.fixture(scope="module", params=KINDS)
+def corpus(request, tmp_path_factory):
+    folder = tmp_path_factory.mktemp(request.param) / "corpus"
+    write_corpus(folder, kind=request.param)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def counts(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("for_kills") / "corpus"
+    write_corpus(folder)
+    return folder
+
+
+def opened(folder):
+    with open_corpus(folder) as corpus:
+        return corpus.load()
+
+
+def stored(corpus):
+    """Acceleration in single precision, shape (record, channel, elapsed_time)."""
+    return corpus[SIGNAL].values.astype(np.float32)
+
+
+def fault_names(corpus):
+    return np.array(corpus["fault"].attrs["flag_meanings"].split())[corpus["fault"].values].tolist()
+
+
+def tree(folder):
+    """Content of every file below a folder, by its path in it."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def rows(path):
+    with path.open(encoding="utf-8", newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def lines_on_reading(folder):
+    """The indented lines of README.md: how to read the files, from within their folder."""
+    page = (folder / "README.md").read_text(encoding="utf-8").rpartition("---\n")[2]
+    return "\n".join(line[4:] for line in page.splitlines() if line.startswith("    "))
+
+
+def test_parquet_gives_back_every_record_with_units(corpus, tmp_path):
+    made = gen.copy(corpus, tmp_path / "out", to="parquet")
+    assert (made.records, made.channels) == (9, ("a", "b"))
+    table, expected = pq.read_table(tmp_path / "out/data"), opened(corpus)
+    for place, name in enumerate("ab"):
+        found = np.stack(table[f"acceleration_{name}"].to_numpy())
+        np.testing.assert_array_equal(found, stored(expected)[:, place])
+    np.testing.assert_array_equal(table["width"].to_numpy(), expected["width"].values)
+    assert table["fault"].to_pylist() == fault_names(expected)
+    assert table["draws"].to_pylist() == expected["draws"].values.tolist()
+    assert table.schema.field("width").metadata[b"units"] == b"m"
+    assert table.schema.field("acceleration_a").metadata[b"units"] == b"m s-2"
+    assert table.schema.metadata[b"title"] == b"A corpus"
+    assert b"comment" not in table.schema.metadata  # it is about corpus.nc
+
+
+def test_matlab_files_give_back_every_record_with_units(corpus, tmp_path, monkeypatch):
+    monkeypatch.setattr(matlab_files, "FILE_BYTES", 4 * 2 * 50 * 4)  # four records
+    gen.copy(corpus, tmp_path / "out", to="mat")
+    expected, labels = opened(corpus), rows(tmp_path / "out/labels.csv")
+    files = {path.name: scipy.io.loadmat(path) for path in (tmp_path / "out").glob("*.mat")}
+    assert [files[name]["records"].shape for name in sorted(files)] == [(1, 4), (1, 4), (1, 1)]
+    for number, row in enumerate(labels):
+        found = files[row["file"]]["records"][0, int(row["place"]) - 1]
+        np.testing.assert_array_equal(found["acceleration"].T, stored(expected)[number])
+        assert found["acceleration"].dtype == np.float32
+        assert found["fault"][0] == fault_names(expected)[number]
+        assert found["width"][0, 0] == expected["width"].values[number]
+        assert found["record"][0, 0] == number
+    about = files["records-00000.mat"]
+    assert about["units"]["width"][0, 0][0] == "m"
+    assert [name[0] for name in about["channels"][0]] == ["a", "b"]
+    assert about["sample_rate"][0, 0] == FS
+
+
+@pytest.mark.skipif(shutil.which("octave-cli") is None, reason="Octave is not installed")
+def test_octave_opens_the_struct_array(corpus, tmp_path):
+    gen.copy(corpus, tmp_path / "out", to="mat")
+    expected = opened(corpus)
+    code = (
+        "load('records-00000.mat'); inner = records(strcmp({records.fault}, 'inner')); "
+        "printf('%d %d %s %s %s\\n', size(records), class(records(1).width), units.width, channels{2}); "
+        "printf('%.9g\\n', [inner.width], double(records(3).acceleration(:, 2)));"
+    )
+    run = subprocess.run(
+        ["octave-cli", "--norc", "--eval", code], cwd=tmp_path / "out", capture_output=True, text=True, check=False
+    )
+    first, *numbers = run.stdout.split("\n")
+    assert first == "1 9 double m b", run.stderr
+    found = np.array(numbers[:-1], float)
+    inner = expected["width"].values[np.array(fault_names(expected)) == "inner"]
+    np.testing.assert_allclose(found, np.concatenate([inner, stored(expected)[2, 1]]), rtol=1e-8)
+
+
+def test_csv_gives_back_every_bit_of_single_precision(corpus, tmp_path):
+    gen.copy(corpus, tmp_path / "out", to="csv")
+    expected, labels = opened(corpus), rows(tmp_path / "out/labels.csv")
+    assert [row["fault"] for row in labels] == fault_names(expected)
+    assert [float(row["width"]) for row in labels] == expected["width"].values.tolist()
+    for number, row in enumerate(labels):
+        lines = (tmp_path / "out" / row["file"]).read_text().splitlines()
+        assert lines[0] == "elapsed_time_s,a_m_s2,b_m_s2"
+        time, *signal = np.loadtxt(lines[1:], delimiter=",").T
+        np.testing.assert_array_equal(np.array(signal, np.float32), stored(expected)[number])
+        np.testing.assert_allclose(time, np.arange(50) / FS)
+    units = {row["name"]: row["units"] for row in rows(tmp_path / "out/variables.csv")}
+    assert units["width"] == "m"
+    assert set(units) == set(labels[0]) - {"record", "file"}
+
+
+def test_wav_holds_the_stored_numbers_and_their_scale(corpus, tmp_path):
+    gen.copy(corpus, tmp_path / "out", to="wav")
+    expected, labels = opened(corpus), rows(tmp_path / "out/labels.csv")
+    for number, row in enumerate(labels):
+        rate, found = wavfile.read(tmp_path / "out" / row["file"])
+        assert rate == FS
+        np.testing.assert_allclose(found.T * float(row["m_s2_per_unit"]), stored(expected)[number], rtol=1e-6)
+    if float(labels[0]["m_s2_per_unit"]) != 1:
+        whole = np.rint(expected[SIGNAL].values[-1] * COUNTS_PER_UNIT)
+        assert found.dtype == np.int16
+        np.testing.assert_array_equal(found.T, whole)
+
+
+def test_xarray_opens_the_zarr_store_as_the_corpus(corpus, tmp_path):
+    gen.copy(corpus, tmp_path / "out", to="zarr")
+    expected = opened(corpus)
+    with xr.open_zarr(tmp_path / "out/corpus.zarr") as found:
+        assert {"title", "history", "id", "Conventions"} <= set(found.attrs)
+        assert found.attrs.items() <= expected.attrs.items()
+        expected.attrs = found.attrs
+        xr.testing.assert_identical(found.drop_vars(SIGNAL).load(), expected.drop_vars(SIGNAL))
+        assert found[SIGNAL].attrs == expected[SIGNAL].attrs
+        np.testing.assert_allclose(found[SIGNAL].values, expected[SIGNAL].values, rtol=2e-7)
+    with xr.open_zarr(tmp_path / "out/corpus.zarr", mask_and_scale=False) as found:
+        np.testing.assert_array_equal(found[SIGNAL].values, stored_signal(expected[SIGNAL].variable)[0])
+
+
+@pytest.mark.parametrize(
+    ("to", "name"), [("parquet", "signal"), ("csv", "signal"), ("wav", "acceleration"), ("zarr", "signal")]
+)
+def test_the_lines_on_the_page_of_a_copy_read_it(counts, tmp_path, monkeypatch, to, name):
+    if to in ("parquet", "csv", "wav"):
+        pytest.importorskip("pandas")
+    gen.copy(counts, tmp_path / "out", to=to)
+    monkeypatch.chdir(tmp_path / "out")
+    found = {}
+    exec(lines_on_reading(tmp_path / "out"), found)  # noqa: S102 - our own page
+    read, expected = np.asarray(found[name]), stored(opened(counts))
+    wanted = {
+        "parquet": expected[:, 0],
+        "csv": np.column_stack([np.arange(50) / FS, *expected[0]]),
+        "wav": expected[0].T,
+        "zarr": expected[0, 0],
+    }
+    np.testing.assert_allclose(read, wanted[to], rtol=1e-6)
+
+
+def test_the_zarr_store_of_many_blocks_is_that_of_one(counts, tmp_path, monkeypatch):
+    gen.copy(counts, tmp_path / "one", to="zarr")
+    monkeypatch.setattr(copying, "_MOST_IN_BLOCK", 2)
+    gen.copy(counts, tmp_path / "many", to="zarr")
+    with xr.open_zarr(tmp_path / "one/corpus.zarr") as one, xr.open_zarr(tmp_path / "many/corpus.zarr") as many:
+        xr.testing.assert_identical(one.load(), many.load())
+
+
+def test_hugging_face_loads_the_folder_without_a_network(counts, tmp_path, monkeypatch):
+    monkeypatch.setenv("HF_HUB_OFFLINE", "1")
+    monkeypatch.setattr(parquet_files, "FILE_BYTES", 4 * 2 * 50 * 2)  # two records
+    gen.copy(counts, tmp_path / "out", to="huggingface")
+    assert (tmp_path / "out/data/train-00001-of-00002.parquet").is_file()
+    code = (
+        f"{lines_on_reading(tmp_path / 'out')}\nimport json; part = records['test']; one = part.with_format('numpy')[:]\n"
+        "print(json.dumps([{name: len(part) for name, part in records.items()}, name, "
+        "part.features['fault'].int2str(one['fault'].tolist()), signal.tolist(), one['acceleration_b'].tolist()]))"
+    )
+    environment = os.environ | {"HF_HOME": str(tmp_path / "cache"), "HF_DATASETS_DISABLE_PROGRESS_BARS": "1"}
+    pytest.importorskip("datasets")
+    run = subprocess.run(
+        [sys.executable, "-c", code], cwd=tmp_path / "out", env=environment, capture_output=True, text=True, check=False
+    )
+    assert run.returncode == 0, run.stderr
+    assert "dataset card" not in run.stderr  # it warns of a header that it cannot use
+    sizes, first_name, names, first_signal, signal = json.loads(run.stdout)
+    expected = opened(counts)
+    test = expected["split"].values == 2
+    assert sizes == {"train": 3, "validation": 3, "test": 3}
+    assert names == np.array(fault_names(expected))[test].tolist()
+    np.testing.assert_array_equal(np.array(signal, np.float32), stored(expected)[test, 1])
+    np.testing.assert_array_equal(np.array(first_signal, np.float32), stored(expected)[0, 0])
+    assert first_name == fault_names(expected)[0]
+
+
+@pytest.mark.parametrize("to", FORMS)
+def test_a_choice_has_the_same_records_and_channels(counts, tmp_path, to):
+    made = gen.copy(counts, tmp_path / "out", to=to, where="fault in ('inner', 'outer')", split="test", channels=["b"])
+    assert (made.records, made.channels) == (2, ("b",))
+    assert (made.files, made.bytes) == (len(tree(tmp_path / "out")), sum(map(len, tree(tmp_path / "out").values())))
+    assert "2 of 9 records" in (tmp_path / "out/README.md").read_text()
+
+
+@pytest.mark.parametrize("to", FORMS)
+def test_the_same_corpus_gives_the_same_bytes(counts, tmp_path, to, monkeypatch):
+    gen.copy(counts, tmp_path / "one", to=to)
+    monkeypatch.setattr("time.time", lambda: 0.0)
+    gen.copy(counts, tmp_path / "two", to=to)
+    assert tree(tmp_path / "one") == tree(tmp_path / "two")
+
+
+@pytest.mark.parametrize("to", FORMS)
+def test_a_copy_that_is_killed_leaves_nothing_under_its_name(counts, tmp_path, to):
+    output, left = tmp_path / "out", []
+    whole = None
+    for _ in killed(lambda: gen.copy(counts, output, to=to), moments=5):
+        if output.exists():
+            whole = whole or tree(output)
+            assert tree(output) == whole
+            shutil.rmtree(output)
+        left = list(tmp_path.iterdir())
+    gen.copy(counts, output, to=to)
+    assert [path.name for path in tmp_path.iterdir()] == ["out"], left
+
+
+def test_a_single_file_gives_the_same_bytes_as_its_folder(counts, tmp_path):
+    gen.copy(counts, tmp_path / "one.nc")
+    gen.copy(tmp_path / "one.nc", tmp_path / "folder")
+    for to in ("parquet", "mat"):
+        gen.copy(tmp_path / "folder", tmp_path / f"folder_{to}", to=to)
+        gen.copy(tmp_path / "one.nc", tmp_path / f"file_{to}", to=to)
+        assert tree(tmp_path / f"folder_{to}") == tree(tmp_path / f"file_{to}")
+
+
+def test_a_target_with_a_suffix_is_one_table_or_one_store(corpus, tmp_path):
+    choice = {"split": "train", "where": "rig > 0"}
+    for to in ("parquet", "zarr"):
+        gen.copy(corpus, tmp_path / to, to=to, **choice)
+        assert gen.copy(corpus, tmp_path / f"one.{to}", **choice).form == to
+    assert pq.read_table(tmp_path / "one.parquet").equals(pq.read_table(tmp_path / "parquet/data"), check_metadata=True)
+    assert tree(tmp_path / "one.zarr") == tree(tmp_path / "zarr/corpus.zarr")
+
+
+@pytest.mark.parametrize("to", FORMS)
+def test_a_form_of_several_corpora_is_that_of_the_joined_corpus(counts, tmp_path, to):
+    write_parts(tmp_path / "other", [dataset(100, 3)])
+    choice = {"where": "fault != 'outer'", "channels": ["b"]}
+    gen.copy([counts, tmp_path / "other"], tmp_path / "at_once", to=to, **choice)
+    gen.copy([counts, tmp_path / "other"], tmp_path / "joined", **choice)
+    gen.copy(tmp_path / "joined", tmp_path / "in_steps", to=to)
+    one, other = (read_labels_and_signals(tmp_path / name, to) for name in ("at_once", "in_steps"))
+    assert [*one] == [*other]
+    for name in one:
+        np.testing.assert_array_equal(one[name], other[name], err_msg=name)
+    assert (tmp_path / "at_once/README.md").read_text().count("10 of 12 records of 2 corpora") == 1
+
+
+def read_labels_and_signals(folder, to):
+    """All columns but the number of the record, as arrays by name."""
+    if to == "zarr":
+        with xr.open_zarr(folder / "corpus.zarr") as found:
+            return {str(name): values.values for name, values in found.variables.items()}
+    if to in ("parquet", "huggingface"):
+        table = pq.read_table(folder / "data")
+        return {
+            name: table[name].to_numpy() for name in table.column_names if not name.startswith(("record", "accel"))
+        } | {"signal": np.stack(table["acceleration_b"].to_numpy())}
+    signals = [path.read_bytes() for path in sorted(folder.rglob("record*.csv")) + sorted(folder.rglob("record*.wav"))]
+    signals += [each["acceleration"] for path in folder.glob("*.mat") for each in scipy.io.loadmat(path)["records"][0]]
+    labels = rows(folder / "labels.csv")
+    return {name: [row[name] for row in labels] for name in labels[0] if name not in ("record", "file", "place")} | {
+        "": signals
+    }
+
+
+def test_licence_and_creators_go_along(tmp_path):
+    write_corpus(tmp_path / "c", (3,))
+    publish(tmp_path / "c", Publication(license="CC-BY-4.0", creators=[{"name": "Jane Doe"}]))
+    for to in ("csv", "huggingface"):
+        gen.copy(tmp_path / "c", tmp_path / to, to=to)
+        page = (tmp_path / to / "README.md").read_text()
+        assert "Licence: CC-BY-4.0" in page
+        assert "Creators: Jane Doe" in page
+    assert 'license: "cc-by-4.0"' in page
+
+
+def test_texts_of_strangers_stay_texts(tmp_path):
+    folder, wicked = tmp_path / "corpus", '=HYPERLINK("http://x")\n- a: [b'
+    part = dataset(0, 3, channels=("../../x", "=1"))
+    part["bearing"] = ("record", [wicked, "+1", "-2"], part["bearing"].attrs)
+    part["a=1 or b"] = ("record", np.arange(3.0), {"units": "@x", "role": "latent", "long_name": "=1+1"})
+    with new_corpus(folder, title='a"\n---\nlicense: mit # \x1b[2J') as corpus:
+        corpus.write(part)
+    for to in FORMS:
+        gen.copy(folder, tmp_path / to, to=to)
+        assert all(re.fullmatch(r"[\w./-]+", name) and ".." not in name for name in tree(tmp_path / to) if to != "zarr")
+    for table in ("csv/labels.csv", "csv/variables.csv", "mat/labels.csv", "wav/labels.csv"):
+        cells = [cell for row in csv.reader((tmp_path / table).read_text().split("\n")) for cell in row]
+        assert not [cell for cell in cells if cell.startswith(("=", "+", "@"))]
+    header = (tmp_path / "huggingface/README.md").read_text().split("---\n")[1]
+    from ruamel.yaml import YAML
+
+    facts = YAML(typ="safe").load(header)
+    assert "license" not in facts
+    assert facts["pretty_name"].startswith('a" --- license: mit')
+    assert pq.read_table(tmp_path / "parquet/data")["bearing"].to_pylist()[0] == wicked
+
+
+def test_a_fault_that_is_not_known_is_null_for_hugging_face(tmp_path):
+    part = dataset(0, 3)
+    part["fault"] = ("record", np.array([1, 127, 5], np.int8), part["fault"].attrs)
+    part["split"] = ("record", np.zeros(3, np.int8), part["split"].attrs)
+    write_parts(tmp_path / "c", [part])
+    gen.copy(tmp_path / "c", tmp_path / "out", to="huggingface")
+    assert pq.read_table(tmp_path / "out/data")["fault"].to_pylist() == [1, None, 5]
+    gen.copy(tmp_path / "c", tmp_path / "tables", to="parquet")
+    assert pq.read_table(tmp_path / "tables/data")["fault"].to_pylist() == ["inner", "unknown", "compound"]
+
+
+def test_refusals_are_one_sentence(counts, tmp_path, monkeypatch):
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full/own.txt").write_text("mine")
+    with pytest.raises(CorpusError, match=r"full: exists and is not an empty folder; give a new name"):
+        gen.copy(counts, tmp_path / "full", to="csv")
+    assert (tmp_path / "full/own.txt").read_text() == "mine"
+    with pytest.raises(CorpusError, match=r"to: there is no form 'xls'; allowed are parquet, zarr, mat, csv"):
+        gen.copy(counts, tmp_path / "out", to="xls")
+    for name, to, sentence in (
+        ("a.csv", None, "csv is a folder of files; give it by --to csv"),
+        ("a.nc", "wav", "nc is one file, and --to wav makes a folder; leave one of the two out"),
+    ):
+        with pytest.raises(CorpusError, match=sentence):
+            gen.copy(counts, tmp_path / name, to=to)
+    monkeypatch.setattr("gen.exporting.forms.find_spec", lambda _: None)
+    with pytest.raises(CorpusError, match=r"zarr: needs zarr; pip install 'raceway\[zarr\]'"):
+        gen.copy(counts, tmp_path / "out", to="zarr")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_full_disk_ends_in_one_sentence(counts, tmp_path, monkeypatch):
+    def refuse(*_args, **_named):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(wavfile, "write", refuse)
+    with pytest.raises(CorpusError, match=r"out: could not be written \(No space left on device\); free some space"):
+        gen.copy(counts, tmp_path / "out", to="wav")
+    assert list(tmp_path.iterdir()) == []
+
+
+@given(st.lists(st.text()))
+def test_plain_names_are_safe_and_all_different(names):
+    found = plain_names(names, ["record"])
+    assert all(re.fullmatch(r"[A-Za-z][A-Za-z0-9_]{0,60}", name) for name in found)
+    assert len({name.lower() for name in [*found, "record"]}) == len(names) + 1
+
+
+@given(st.text())
+def test_no_cell_begins_a_formula_or_a_line(text):
+    assert not cell_text(text).lstrip().startswith(("=", "+", "-", "@"))
+    assert cell_text(text).isprintable()

@@ -1,0 +1,43 @@
+"""Records whose step is too coarse: generate, info and validate say how many, and which key to change."""
+
+import re
+
+import pytest
+
+SENTENCE = re.compile(
+    r"[1-9]\d* of the \d+ records whose step was checked change by more than 5 % \(up to \d+ %\) at half the step; "
+    r"raise recording\.oversampling above \d+\."
+)
+
+
+@pytest.fixture(scope="module")
+def fast(tiny_recipe, tmp_path_factory):
+    """Recipe of a shaft that turns so fast that a ball passes a spall within a few steps."""
+    path = tmp_path_factory.mktemp("fast") / "fast.yaml"
+    path.write_text(tiny_recipe.read_text().replace("{kind: uniform, low: 4500, high: 6000}", "60000"))
+    return path
+
+
+def test_every_command_that_shows_a_corpus_tells_of_coarse_steps(run, told, fast, tmp_path):
+    made = run("generate", fast, "-o", tmp_path / "c", "--workers", 1)
+    assert made.exit_code == 0
+    sentence = SENTENCE.search(made.stderr)
+    assert sentence is not None
+    assert sentence[0] in run("info", tmp_path / "c").stdout
+    assert sentence[0] in told("info", tmp_path / "c")["warnings"]
+    checked = run("validate", tmp_path / "c")
+    assert (checked.exit_code, checked.stdout) == (0, f"{tmp_path / 'c'}: sound.\n")
+    assert sentence[0] in checked.stderr
+
+
+def test_a_finer_step_ends_the_warning(run, fast, tmp_path):
+    fine = tmp_path / "fine.yaml"
+    fine.write_text(fast.read_text().replace("duration_s: 0.1", "duration_s: 0.1, oversampling: 64"))
+    made = run("generate", fine, "-o", tmp_path / "c", "--workers", 1)
+    assert made.exit_code == 0
+    assert "whose step was checked" not in made.stderr
+
+
+def test_usual_corpora_have_no_coarse_steps(run, tiny_corpus):
+    for command in ("info", "validate"):
+        assert "whose step was checked" not in run(command, tiny_corpus).output

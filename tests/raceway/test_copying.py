@@ -1,0 +1,97 @@
+"""``raceway copy``: its forms, its output and its errors."""
+
+import pytest
+
+from gen.corpus import validate_corpus
+from gen.exporting import FORMS
+from raceway.commands import copying
+from raceway.console.ending import BAD_INPUT
+from tests import corpora, tone_corpora
+
+
+@pytest.fixture
+def tones(tmp_path):
+    """Folders of two corpora of 12 records."""
+    folders = [tmp_path / "one", tmp_path / "other"]
+    for seed, folder in enumerate(folders):
+        tone_corpora.write_corpus(folder, specimens=4, parts=1, seed=seed)
+    return folders
+
+
+def test_the_command_offers_every_form():
+    assert tuple(FORMS) == copying.FORMS
+    assert all(f"\n  {form} " in copying.copy.help for form in FORMS)
+
+
+def test_a_choice_is_copied_and_described(run, tones, tmp_path):
+    where = "fault in ('inner', 'outer')"
+    result = run("copy", tones[0], "--where", where, "--rename-channel", "housing=a", "-o", tmp_path / "s.nc")
+    assert result.exit_code == 0, result.output
+    assert f"{tmp_path / 's.nc'}: 6 of 12 records, 1 channel (a) in 1 file, " in result.stdout
+    assert f"Next: raceway info {tmp_path / 's.nc'}" in result.stdout
+    assert "copying: 6 of 6 records" in result.stderr
+
+
+def test_a_copy_there_and_back_is_the_same_corpus(told, tones, tmp_path):
+    told("copy", tones[0], "-o", tmp_path / "c.nc")
+    told("copy", tmp_path / "c.nc", "-o", tmp_path / "again")
+    assert told("validate", tmp_path / "c.nc")["valid"]
+    one, file, again = (told("info", path) for path in (tones[0], tmp_path / "c.nc", tmp_path / "again"))
+    for other in (file, again):
+        assert {key for key in one if one[key] != other[key]} <= {"corpus", "bytes", "parts", "part_mb", "files"}
+    assert told("features", tmp_path / "c.nc", "-o", tmp_path / "features.nc")["records"] == 12
+
+
+def test_several_corpora_are_joined(run, told, tones, tmp_path):
+    found = told("copy", *tones, "-o", tmp_path / "m")
+    assert found == {
+        "target": str(tmp_path / "m"), "form": "folder", "records": 24, "of": 24, "channels": ["housing"], "filled": [],
+        "files": found["files"], "bytes": sum(path.stat().st_size for path in (tmp_path / "m").rglob("*") if path.is_file()),
+    }  # fmt: skip
+    assert validate_corpus(tmp_path / "m") == []
+    corpora.write_parts(tmp_path / "random", [corpora.dataset(0, 4)])
+    corpora.write_parts(tmp_path / "plain", [corpora.dataset(9, 4).drop_vars("draws")])
+    result = run("copy", tmp_path / "random", tmp_path / "plain", "-o", tmp_path / "both")
+    assert "variables that one of the sources lacks are marked as not known in its records: draws." in result.stderr
+
+
+def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
+    done = run("copy", tones[0], "-o", tmp_path / "out", "--to", "wav", "--where", "fault == 'inner'")
+    assert done.exit_code == 0
+    assert "3 of 12 records, 1 channel (housing) as wav in 6 files" in done.stdout
+    assert f"Next: read {tmp_path / 'out'}/README.md" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ("{one} --where fualt=='inner' -o {out}", "character 1: there is no variable fualt; the nearest is fault."),
+        ("{one} --split tets -o {out}", "there is no split 'tets'"),
+        ("{one} --channels a, -o {out}", "there is no channel 'a'"),
+        ("{one} --split train -o {other}", "exists and is not an empty folder"),
+        ("{one} {one} -o {out}", "has the same samples as record 0"),
+        ("{one} -o {one}/parts/part-00000.nc", "choose a place outside it"),
+        ("{one} --to xls -o {out}", "'xls' is not one of"),
+        ("{one} --rename-channel housing -o {out}", "give OLD=NEW, once for each channel"),
+        ("{one} --rename-channel house=a -o {out}", "there is no channel 'house'; the nearest is housing."),
+        ("{one}/README.md -o {out}", "README.md"),
+        ("{none} -o {out}", "no such folder or file"),
+        ("-o {out}", "Missing argument"),
+    ],
+)
+def test_what_cannot_be_done_is_one_sentence_and_leaves_nothing(run, tones, tmp_path, words, sentence):
+    places = {"one": tones[0], "other": tones[1], "out": tmp_path / "out", "none": tmp_path / "none"}
+    result = run("copy", *(word.format(**places) for word in words.split(" ")))
+    assert result.exit_code == BAD_INPUT
+    assert sentence in result.stderr
+    assert result.stderr.count("\n") <= 4
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "other"]
+
+
+@pytest.mark.parametrize("target", ["out", "out.nc", "out.parquet"])
+def test_a_full_disk_is_one_sentence_and_leaves_nothing(start, tones, tmp_path, target):
+    process = start("copy", *tones, "-o", tmp_path / target, LARGEST_FILE="40000")
+    error = process.communicate()[1]
+    assert process.returncode == BAD_INPUT, error
+    assert "could not be written" in error
+    assert not list(tmp_path.glob("*out*"))

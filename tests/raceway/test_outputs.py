@@ -1,0 +1,128 @@
+"""No command writes over its input, into a corpus, or over a file of another kind; a result of the same kind is replaced."""
+
+import shutil
+from pathlib import Path
+
+import click
+import numpy as np
+import pytest
+
+from features.baselines import save_model, train
+from features.table import feature_table
+from features.table_files import write_table
+from gen import copy
+from gen.corpus import corpus_files, read_manifest
+from gen.errors import CorpusError
+from raceway.cli import cli
+
+# every command with -o by the line that comes before it, and the name of its result; a folder has no suffix
+RESULTS = {
+    "features {corpus}": "result.nc",
+    "features {corpus} --band 300 5000": "result.parquet",
+    "train {corpus} --estimator majority": "result.skops",
+    "plot {corpus} --record 1": "result.png",
+    "diagnose {recording} --bearing 6205 --rpm 1500 --rate 12000 --unit g --model {model}": "result.html",
+    "replay {corpus} --record 1": "record.nc",
+    "benchmark {corpus}": "report",
+    "compare {corpus} {corpus}": "report",
+    "gallery": "report",
+    "reproduce ophel2025": "report",
+    "generate {recipe}": "new",
+    "import generic {raw}": "new",
+    "import cwru {raw}": "new",
+    "import mfpt {raw}": "new",
+    "copy {corpus}": "new",
+}
+
+
+@pytest.fixture
+def places(tiny_recipe, tiny_corpus, tmp_path):
+    """A copy of a corpus, and files of other kinds."""
+    corpus = shutil.copytree(tiny_corpus, tmp_path / "corpus")
+    shutil.copy(tiny_recipe, tmp_path / "recipe.yaml")
+    table = feature_table(corpus)
+    save_model(train(table, "majority"), tmp_path / "model.skops")
+    np.save(tmp_path / "recording.npy", np.random.default_rng(0).standard_normal(12_000))
+    (tmp_path / "raw").mkdir()
+    names = {"recording": "recording.npy", "recipe": "recipe.yaml", "raw": "raw", "model": "model.skops"}
+    return {"corpus": corpus, **{name: tmp_path / file for name, file in names.items()}}
+
+
+def contents(folder: Path) -> dict[Path, bytes]:
+    return {path: path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
+
+
+def all_commands(group: click.Group, *before: str) -> list[str]:
+    found = []
+    for name, command in group.commands.items():
+        if isinstance(command, click.Group):
+            found += all_commands(command, *before, name)
+        elif any("-o" in option.opts for option in command.params):
+            found.append(" ".join([*before, name]))
+    return found
+
+
+def test_every_command_with_an_output_is_tried():
+    tried = {line.partition(" {")[0] for line in RESULTS} | {"reproduce"}
+    assert set(all_commands(cli)) <= tried
+
+
+@pytest.mark.parametrize("line", RESULTS)
+def test_nothing_is_written_into_a_corpus(run, places, line, tmp_path):
+    name, before = RESULTS[line], contents(tmp_path)
+    (tmp_path / "link").symlink_to(places["corpus"] / "parts")
+    for place in (places["corpus"], places["corpus"] / "parts", tmp_path / "link"):
+        result = run(*line.format(**places).split(), "-o", place / name)
+        assert result.exit_code == 2, result.output
+        assert f"is in the corpus {places['corpus'].resolve()}; choose a place outside it." in result.stderr
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." not in name])
+def test_a_corpus_is_no_folder_for_other_results(run, places, line, tmp_path):
+    before = contents(tmp_path)
+    result = run(*line.format(**places).split(), "-o", places["corpus"], *(["--seed", 9] if "generate" in line else []))
+    assert result.exit_code == 2, result.output
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." in name])
+def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
+    corpus, suffix = places["corpus"], Path(RESULTS[line]).suffix
+    copy([corpus], tmp_path / "single.nc")
+    files = [
+        corpus / "index.nc",
+        *corpus_files(corpus)[:1],
+        tmp_path / "single.nc",
+        places["recipe"],
+        places["recording"],
+    ]
+    for number, file in enumerate(files):
+        shutil.copy(file, tmp_path / f"{number}{suffix}")
+    before = contents(tmp_path)
+    for number in range(len(files)):
+        result = run(*line.format(**places).split(), "-o", tmp_path / f"{number}{suffix}")
+        assert result.exit_code == 2, result.output
+        assert "; give another name, or remove it first." in result.stderr
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." in name and name != "record.nc"])
+def test_a_result_of_the_same_kind_is_replaced(run, places, line, tmp_path):
+    for _ in range(2):
+        result = run(*line.format(**places).split(), "-o", tmp_path / RESULTS[line])
+        assert result.exit_code == 0, result.output
+
+
+def test_the_python_writers_keep_the_same_rule(places, tmp_path):
+    corpus = places["corpus"]
+    table, before = feature_table(corpus), contents(tmp_path)
+    (part, *_) = read_manifest(corpus).parts
+    for path in (corpus / "parts" / part.name, corpus / "table.nc"):
+        with pytest.raises(CorpusError, match="is in the corpus"):
+            write_table(table, path)
+        with pytest.raises(CorpusError, match="is in the corpus"):
+            save_model(train(table, "majority"), path)
+    with pytest.raises(CorpusError, match="exists and is no model"):
+        save_model(train(table, "majority"), places["recipe"])
+    assert contents(tmp_path) == before

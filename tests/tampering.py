@@ -1,0 +1,46 @@
+"""Corpora that are changed by someone who knows the format: checksums, manifest and index agree with the changed files."""
+
+import hashlib
+import json
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import h5py
+
+from gen.corpus.files import append_checksum, remove_checksum
+from gen.corpus.index import corpus_attributes
+from gen.corpus.unicode_text import write_unicode
+from gen.errors import CorpusError
+
+
+@contextmanager
+def edited(path: Path) -> Iterator[h5py.File]:
+    """Open a netCDF file of a corpus for changes; in the end it has the checksum of its bytes."""
+    remove_checksum(path)
+    with h5py.File(path, "r+") as file:
+        yield file
+    append_checksum(path)
+
+
+def edit_manifest(folder, parts=(), **changes):
+    """Change facts of ``manifest.json``, and those of some parts by their number."""
+    content = json.loads((folder / "manifest.json").read_text()) | changes
+    for number, change in dict(parts).items():
+        content["parts"][number] |= change
+    (folder / "manifest.json").write_text(json.dumps(content))
+
+
+def seal(folder):
+    """Let manifest and index of a folder name the parts as they are now."""
+    content = json.loads((folder / "manifest.json").read_text())
+    for row in content["parts"]:
+        data = (folder / "parts" / row["name"]).read_bytes()
+        row |= {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
+    content["parts_sha256"] = hashlib.sha256("\n".join(row["sha256"] for row in content["parts"]).encode()).hexdigest()
+    (folder / "manifest.json").write_text(json.dumps(content))
+    with suppress(CorpusError), edited(folder / "index.nc") as index:
+        attributes = corpus_attributes(content, None, folder)
+        for name in attributes.keys() & index.attrs.keys():
+            del index.attrs[name]
+        write_unicode(index, attributes)
