@@ -9,7 +9,7 @@ FLOORS := .venv-floors
 FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/test_yaml_files_laws.py \
 	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
-.PHONY: quickstart test lint generated bench fuzz floors clean
+.PHONY: quickstart test lint generated bench thorough floors clean
 
 $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Raceway needs Python 3.11 or later; set PYTHON=..."; exit 2; }
@@ -22,7 +22,7 @@ quickstart: $(VENV)/installed
 	@$(BIN)/raceway features $(OUT)/corpus -o $(OUT)/features.nc
 	@$(BIN)/raceway train $(OUT)/corpus -o $(OUT)/model.skops
 	@$(BIN)/raceway benchmark $(OUT)/corpus -o $(OUT)/benchmark
-	@echo "corpus  $(OUT)/corpus/corpus.nc"
+	@echo "corpus  $(OUT)/corpus"
 	@echo "model   $(OUT)/model.skops"
 	@echo "report  $(OUT)/benchmark/report.html"
 	@echo "scores  $(OUT)/benchmark/results.json"
@@ -41,7 +41,9 @@ generated: $(VENV)/installed
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks
 
-fuzz: $(VENV)/installed
+# fresh examples of all laws, and the fuzzer for longer
+thorough: $(VENV)/installed
+	$(BIN)/python -m pytest -n logical --dist worksteal --hypothesis-profile=fresh
 	$(BIN)/python -m tests.fuzz --count 20000
 
 $(FLOORS)/installed: pyproject.toml

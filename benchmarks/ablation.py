@@ -102,13 +102,13 @@ def real_tables(real: Path, folder: Path) -> dict[str, xr.Dataset]:
     """Feature tables of the sets in ``real``; UESTC with its labelled speeds and with the true ones."""
     found = {}
     if (real / "cwru").is_dir():
-        found["wang"] = import_cwru(real / "cwru", folder / "wang", subset="wang").directory
-        found["cwru"] = import_cwru(real / "cwru", folder / "cwru").directory
+        found["wang"] = import_cwru(real / "cwru", folder / "wang", subset="wang").path
+        found["cwru"] = import_cwru(real / "cwru", folder / "cwru").path
     if (real / "mfpt").is_dir():
-        found["mfpt"] = import_mfpt(real / "mfpt", folder / "mfpt").directory
+        found["mfpt"] = import_mfpt(real / "mfpt", folder / "mfpt").path
     if (real / "uestc").is_dir():
         for name, mapping in (("uestc", UESTC_LABELLED), ("uestc, true speeds", UESTC)):
-            found[name] = import_generic(mapping, folder / mapping.stem, folder=real / "uestc").directory
+            found[name] = import_generic(mapping, folder / mapping.stem, folder=real / "uestc").path
     return {name: feature_table(path, groups=GROUPS) for name, path in found.items()}
 
 
@@ -117,7 +117,7 @@ def scores_of(recipe: Mapping[str, Any], seed: int, tests: Mapping[str, xr.Datas
     with tempfile.TemporaryDirectory() as name:
         path = Path(name) / "recipe.yaml"
         YAML().dump(dict(recipe), path)
-        corpus = generate(path, Path(name) / "corpus", workers=workers, seed=seed).directory
+        corpus = generate(path, Path(name) / "corpus", workers=workers, seed=seed).path
         model = train(feature_table(corpus, groups=GROUPS), DEFAULT_ESTIMATOR, seed=seed)
     return {test: evaluate(table, model) for test, table in tests.items()}
 
@@ -152,11 +152,11 @@ class Cost(NamedTuple):
 def cost_of(recipe: Recipe) -> Cost:
     """Cost of the first part of a recipe, without the faults that are drawn again."""
     scenarios = draw_scenarios(recipe, 0, min(recipe.corpus.records_per_part, recipe.n_records))
-    groups = [group for group, _ in laid_out(scenarios, recipe)]
+    groups = [group for group, _ in laid_out(scenarios)]
     return Cost(
         kernels=len({group.shape for group in groups}),
         lane_steps=LANES * sum(group.steps for group in groups) / len(scenarios),
-        filled=integrations(scenarios, recipe) / (LANES * len(groups)),
+        filled=integrations(scenarios) / (LANES * len(groups)),
     )
 
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
 from features.indicators import Orders, feature_names, indicators
-from gen.corpus import SCHEMA, SIGNAL, Codec, make_dataset, part_name, write_index, write_manifest, write_part
+from gen.corpus import SCHEMA, SIGNAL, Codec, finish_corpus, make_dataset, part_name, write_part
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 
@@ -102,8 +102,7 @@ def noise_corpus(folder: Path, records: int, samples: int = SHORT, codec: Codec 
     parts = [made._replace(name=part_name(number)) for number in range(records // PER_PART)]
     for part in parts[1:]:
         shutil.copy(first, first.with_name(part.name))
-    write_index(folder, parts)
-    write_manifest(folder, parts, complete=True)
+    finish_corpus(folder, parts, title="noise")
     return folder
 
 

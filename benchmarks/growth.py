@@ -2,7 +2,7 @@
 
 :func:`gen.generate` runs in this process. Only its tasks are replaced: each waits for a stated time and links a part of real records
 under its name. The scheduler is a process of its own, as are groups of the workers; their processor time is read from the system. All
-else is as for any corpus: claims, journal, manifest, index and data card.
+else is as for any corpus: lock, manifest, index and data card.
 
 ``python -m benchmarks.growth --parts 100 1000 10000 --workers 64`` prints one line for each number of parts.
 """
@@ -73,7 +73,7 @@ def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float, per_part
         folder = Path(temporary)
         largest = {"records_per_part": per_part, "records_per_specimen": per_part, "specimens_per_rig": 1}
         recipe = variant(SHORT, folder / "parts.yaml", corpus=largest | {"rigs": max(*sizes, 2 * workers)})
-        model = generation.generate(recipe, folder / "model", records=per_part).directory
+        model = generation.generate(recipe, folder / "model", records=per_part).path
         made = partial(_made, model / "parts" / part_name(0), read_manifest(model).parts[0], task_s)
         with patch.object(generation, "_made", made):
             first = 2 * workers * per_part
@@ -83,7 +83,7 @@ def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float, per_part
 
 def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, scheduler: psutil.Process) -> Cost:
     ending = []
-    finish = vars(generation)["finished"]
+    finish = vars(generation)["_finish"]
 
     def timed(*given: Any) -> Any:
         start = time.process_time()
@@ -92,7 +92,7 @@ def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, s
         return done
 
     before = time.process_time(), _cpu_seconds(scheduler)
-    with patch.object(generation, "finished", timed):
+    with patch.object(generation, "_finish", timed):
         generation.generate(recipe, folder, records=parts * per_part, scheduler=address)
     driver, of_scheduler = time.process_time() - before[0] - ending[0], max(_cpu_seconds(scheduler) - before[1], TICK_S)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
@@ -105,7 +105,6 @@ def _made(
     task_s: float,
     tally: generation.Tally,
     directory: Path,
-    _known: object,
     _workers: int,
     client: Client,
 ) -> Generator[tuple[int, Outcome]]:

@@ -17,7 +17,7 @@ from gen.physics.inputs import KernelInput
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.layout import Batch
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.batches import Group, integrate_batch
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import laid_out
@@ -59,10 +59,11 @@ def kernel_rate(recipe: Path | str, records: int) -> Rate:
     checked = read_recipe(recipe)
     once = checked.corpus.model_copy(update={"truth": "none"})  # no second run of a record without its fault
     checked = checked.model_copy(update={"corpus": once})
-    axis, scenarios = timeline(checked), draw_scenarios(checked, 0, records)
-    batches = laid_out(scenarios, checked)
+    axis, scenarios = timeline(settings_of(checked)), draw_scenarios(checked, 0, records)
+    batches = laid_out(scenarios)
     total = axis.integrated * sum(
-        steps_per_sample(kernel_input(scenario, axis), scenario.record.number, checked) for scenario in scenarios
+        steps_per_sample(kernel_input(scenario, axis), scenario.record.number, settings_of(checked))
+        for scenario in scenarios
     )
     integrate_every(batches, axis)  # compiles the kernels, or loads them
     return _rate(total, lambda: integrate_every(batches, axis))
@@ -78,7 +79,9 @@ def step_seconds(recipe: Path | str) -> tuple[float, int]:
     """Step of our kernel for the first record of a recipe [s], and steps per sample."""
     checked = read_recipe(recipe)
     (scenario,) = draw_scenarios(checked, 0, 1)
-    factor = steps_per_sample(kernel_input(scenario, timeline(checked)), scenario.record.number, checked)
+    factor = steps_per_sample(
+        kernel_input(scenario, timeline(settings_of(checked))), scenario.record.number, settings_of(checked)
+    )
     return 1 / (checked.recording.sample_rate_hz * factor), factor
 
 
@@ -99,7 +102,11 @@ def _c_rates(recipe: Path | str, records: int, folder: Path) -> dict[str, Rate]:
         return {}
     sources = {"plain": PLAIN_LANES, "fused": PLAIN_LANES} | ({"intrinsics": INTRINSIC_LANES} if has_avx512() else {})
     checked = read_recipe(recipe)
-    groups, samples, (dt, steps) = seed_records(checked, records), timeline(checked).integrated, step_seconds(recipe)
+    groups, samples, (dt, steps) = (
+        seed_records(checked, records),
+        timeline(settings_of(checked)).integrated,
+        step_seconds(recipe),
+    )
     chosen = {}
     for source, every in sources.items():
         of_source = _steps_only if source == "intrinsics" else _filtered

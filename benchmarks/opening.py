@@ -1,4 +1,6 @@
-"""Time to open a corpus of many parts and read one record, compared with ``xarray.open_mfdataset`` over the parts.
+"""Time to open a corpus and read one record, compared with ``xarray.open_mfdataset`` over its parts.
+
+A corpus of many parts is opened as a folder, and as a single file with the same records.
 
 The files are in the page cache. ``check="size"`` compares the sizes of files with the manifest, the default compares their hashes.
 """
@@ -20,21 +22,32 @@ def rows(pairs: int = 9, *, parts: int = 50, records_per_part: int = 20) -> Iter
     """Lines of the table."""
     with tempfile.TemporaryDirectory() as folder:
         recipe = variant(SHORT, Path(folder) / "parts.yaml", corpus={"records_per_part": records_per_part})
-        corpus = generate(recipe, Path(folder) / "corpus", records=parts * records_per_part).directory
+        corpus, file = (
+            generate(recipe, Path(folder) / name, records=parts * records_per_part).path for name in ("c", "c.nc")
+        )
         record = parts * records_per_part // 2
         found = interleaved(
             pairs,
             hashed=lambda: 1 / seconds(read_record, corpus, record),
             sized=lambda: 1 / seconds(read_record, corpus, record, "size"),
+            single=lambda: 1 / seconds(read_record, file, record, "size"),
             many=lambda: 1 / seconds(read_from_parts, corpus, record),
         )
     what, alternative = f"open {parts} parts, read a record", "xarray.open_mfdataset"
     yield row("opening size", f"{what}, check='size'", "1/s", found["sized"], alternative, found["many"])
+    yield row(
+        "opening file",
+        f"open one file of {parts} parts, read a record",
+        "1/s",
+        found["single"],
+        alternative,
+        found["many"],
+    )
     yield row("opening sha256", f"{what}, check='sha256'", "1/s", found["hashed"], alternative, found["many"])
 
 
 def read_record(corpus: Path, record: int, check: str = "sha256") -> np.ndarray:
-    """Signal of one record through ``corpus.nc``, shape (channel, time) [m s-2]."""
+    """Signal of one record, shape (channel, time) [m s-2]."""
     with open_corpus(corpus, check) as opened:
         return opened[SIGNAL][record].values
 

@@ -15,7 +15,7 @@ from benchmarks.kernel import FULL, integrate_every
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row, run_python, seconds
 from gen.generation import generate
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.simulate import laid_out
 from gen.simulation.timeline import timeline
 
@@ -35,7 +35,7 @@ start = time.process_time()
 made = generate(recipe, folder / "corpus", records=records)
 took = time.process_time() - start
 status = Path("/proc/self/status").read_text().split()
-size = sum(path.stat().st_size for path in made.directory.rglob("*") if path.is_file())
+size = sum(path.stat().st_size for path in made.path.rglob("*") if path.is_file())
 print(json.dumps({
     "ms": 1e3 * took / records, "MB": int(status[status.index("VmHWM:") + 1]) / 1e3, "bytes": size / made.records,
 }))
@@ -82,8 +82,8 @@ def throughput_rows(pairs: int, recipe: Path = FULL, sizes: tuple[int, int] = SI
 def _kernel_alone(recipe: Path, records: int) -> Callable[[], float]:
     """Function that measures the records per second of the kernel; as in a corpus, a record with a fault is also run without it."""
     checked = read_recipe(recipe)
-    batches = laid_out(draw_scenarios(checked, 0, records), checked)
-    return lambda: records / cpu_seconds(integrate_every, batches, timeline(checked))
+    batches = laid_out(draw_scenarios(checked, 0, records))
+    return lambda: records / cpu_seconds(integrate_every, batches, timeline(settings_of(checked)))
 
 
 def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_per_part: int = 32) -> Iterator[Line]:

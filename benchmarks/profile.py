@@ -25,7 +25,7 @@ from gen.physics.kernel.step import advance
 from gen.physics.kernel.turning import STRIDE, keep_turning, move_processes, new_walk, turn_rings
 from gen.physics.kernel.waviness import move_gaps
 from gen.recipe import Recipe, read_recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.batches import integrate_batch
 from gen.simulation.simulate import integrations, laid_out
 from gen.simulation.timeline import timeline
@@ -102,7 +102,7 @@ def march(without: int, shape: Any, batch: Batch, n_steps: int, dt: float, filte
 def kernel_parts(recipe: Recipe) -> tuple[dict[str, float], int, Load]:
     """Time of each part for each lane and knot [s], mean over batches of the commonest kernel and step; its steps per knot; the load."""
     scenarios = draw_scenarios(recipe, 0, min(recipe.corpus.records_per_part, recipe.n_records))
-    in_lanes = laid_out(scenarios, recipe)
+    in_lanes = laid_out(scenarios)
     (shape, n_steps), _ = Counter(group for group, _ in in_lanes).most_common(1)[0]
     every = [batch for group, batch in in_lanes if group == (shape, n_steps)]
     chosen = every[:: -(-len(every) // BATCHES)]
@@ -110,10 +110,10 @@ def kernel_parts(recipe: Recipe) -> tuple[dict[str, float], int, Load]:
     steps = sum(group.steps for group, _ in in_lanes) / len(in_lanes)
     start = time.thread_time()
     for group, batch in in_lanes:
-        integrate_batch(group, batch, timeline(recipe))
+        integrate_batch(group, batch, timeline(settings_of(recipe)))
     kernel = (time.thread_time() - start) / len(scenarios)
-    load = Load(lanes / len(scenarios), integrations(scenarios, recipe) / lanes, steps, kernel)
-    knot = 1 / timeline(recipe).fs
+    load = Load(lanes / len(scenarios), integrations(scenarios) / lanes, steps, kernel)
+    knot = 1 / timeline(settings_of(recipe)).fs
     given: Any = (n_steps, knot / n_steps, decimation(n_steps), KNOTS)
     march(NOTHING, shape, chosen[0], *given)
     best = np.full((len(PARTS) + 1, len(chosen)), np.inf)
@@ -146,7 +146,7 @@ def main() -> None:
         share = "" if stage == "features" else f"{seconds / total:6.0%}"
         print(f"{stage:36}{seconds * whole:8.0f} us{share}")
         if stage == "integrate":
-            _print_parts(parts, n_steps, load, timeline(recipe).integrated * 1e6)
+            _print_parts(parts, n_steps, load, timeline(settings_of(recipe)).integrated * 1e6)
     steps = parts["steps"] / n_steps
     print(
         f"\n{load.lanes * load.busy:.2f} integrations of a record; {load.busy:.0%} of the lanes at work\n"

@@ -1,4 +1,4 @@
-"""Time to read and to hash a corpus, compared with xarray on ``corpus.nc``, whose virtual dataset opens every part.
+"""Time to read and to hash a corpus in a folder and in a single file, compared with xarray on the single file.
 
 The files are in the page cache. Processes are forked, like those of a data loader.
 """
@@ -13,12 +13,12 @@ import xarray as xr
 
 from benchmarks.pairs import Line, interleaved, row, seconds
 from benchmarks.pipeline import SHORT, variant
-from gen.corpus import SIGNAL, files, open_corpus, part_paths
+from gen.corpus import SIGNAL, corpus_files, files, open_corpus
 from gen.generation import generate
 
 BLOCK = 64  # records read at a time
 PROCESSES = 4
-ALTERNATIVE = "xarray on corpus.nc"
+ALTERNATIVE = "xarray on the single file"
 
 Opened = Callable[[], xr.Dataset]
 
@@ -32,8 +32,8 @@ def rows(pairs: int = 5, *, parts: int = 40, records_per_part: int = 64, seconds
             corpus={"records_per_part": records_per_part},
             recording={"sample_rate_hz": 12800, "duration_s": seconds_each},
         )
-        corpus = generate(recipe, Path(folder) / "corpus", records=parts * records_per_part).directory
         records = parts * records_per_part
+        corpus, file = (generate(recipe, Path(folder) / name, records=records).path for name in ("c", "c.nc"))
         ways = {
             "in order": in_order,
             "at random": at_random,
@@ -44,9 +44,15 @@ def rows(pairs: int = 5, *, parts: int = 40, records_per_part: int = 64, seconds
             found = interleaved(
                 pairs,
                 ours=lambda read=read: records / seconds(read, lambda: open_corpus(corpus, "size"), records),
-                theirs=lambda read=read: records / seconds(read, lambda: plain(corpus), records),
+                single=lambda read=read: records / seconds(read, lambda: open_corpus(file, "size"), records),
+                theirs=lambda read=read: records / seconds(read, lambda: plain(file), records),
             )
-            yield row(f"reading {name}", f"{records} records", "1/s", found["ours"], ALTERNATIVE, found["theirs"])
+            for form, what in (
+                ("ours", f"{records} records of {parts} parts"),
+                ("single", f"{records} records of one file"),
+            ):
+                named = f"reading {name}" + (" from a file" if form == "single" else "")
+                yield row(named, what, "1/s", found[form], ALTERNATIVE, found["theirs"])
         found = interleaved(
             pairs,
             hashing=lambda: seconds(hashed, corpus),
@@ -55,15 +61,15 @@ def rows(pairs: int = 5, *, parts: int = 40, records_per_part: int = 64, seconds
         yield row("reading hashes", "hash every file", "s", found["hashing"], "reading in order", found["reading"])
 
 
-def plain(corpus: Path) -> xr.Dataset:
+def plain(file: Path) -> xr.Dataset:
     """The corpus as xarray opens it by itself."""
-    return xr.open_dataset(corpus / "corpus.nc", engine="netcdf4", decode_times=False)
+    return xr.open_dataset(file, engine="netcdf4", decode_times=False)
 
 
 def hashed(corpus: Path) -> None:
     """Hash every file of a corpus, as a process does when it first opens it."""
     files.forget_hashes()
-    part_paths(corpus, "sha256")
+    corpus_files(corpus, "sha256")
 
 
 def in_order(opened: Opened, records: int) -> None:

@@ -38,11 +38,11 @@ def real_corpora(real: Path, folder: Path) -> list[Path]:
     """Import the sets that are in ``real``."""
     found = []
     if (real / "cwru").is_dir():
-        found.append(import_cwru(real / "cwru", folder / "cwru").directory)
+        found.append(import_cwru(real / "cwru", folder / "cwru").path)
     if (real / "mfpt").is_dir():
-        found.append(import_mfpt(real / "mfpt", folder / "mfpt").directory)
+        found.append(import_mfpt(real / "mfpt", folder / "mfpt").path)
     if (real / "uestc").is_dir():
-        found.append(import_generic(UESTC, folder / "uestc", folder=real / "uestc").directory)
+        found.append(import_generic(UESTC, folder / "uestc", folder=real / "uestc").path)
     return found
 
 

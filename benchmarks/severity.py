@@ -18,7 +18,7 @@ from gen.errors import SimulationError
 from gen.physics.bearing import Bearing
 from gen.physics.rotor import Machine, as_columns, ball_forces, rest
 from gen.recipe import find_recipe, read_recipe
-from gen.scenarios import Scenario, draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.inputs import bare_inputs, only
 from gen.simulation.simulate import simulate
@@ -38,8 +38,8 @@ def contributions(
         fault["angle_deg"] = TURNING
     recipe = reference_recipe(fault, n_seeds, operation=operation, recording={"duration_s": seconds})
     scenarios = draw_scenarios(recipe)
-    response = simulate(scenarios + [scenario.without_fault() for scenario in scenarios], recipe).acceleration
-    damaged, healthy = response[:, 0, timeline(recipe).kept].astype(float).reshape(2, n_seeds, -1)
+    response = simulate(scenarios + [scenario.without_fault() for scenario in scenarios]).acceleration
+    damaged, healthy = response[:, 0, timeline(settings_of(recipe)).kept].astype(float).reshape(2, n_seeds, -1)
     return damaged - healthy
 
 

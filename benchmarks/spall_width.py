@@ -22,7 +22,7 @@ from benchmarks.severity import unloading_drop, unloading_length
 from benchmarks.visibility import FloatArray, reference_recipe
 from gen.physics.bearing import Bearing, orders
 from gen.physics.inputs import KernelInput
-from gen.scenarios import Scenario, draw_scenarios
+from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import Timeline, timeline
 
@@ -76,7 +76,7 @@ def passage(kind: str, width_mm: float, rpm: float, profile: str = "geometric", 
         operation={"shaft_rpm": rpm, "slip_percent": 0, "jitter_deg": 0, "speed_wander_percent": 0},
     )
     scenario = draw_scenarios(recipe)[0]
-    response = simulate([scenario, scenario.without_fault()], recipe)
+    response = simulate([scenario, scenario.without_fault()])
     given, bearing, width = response.inputs[0], scenario.specimen.bearing, 1e-3 * width_mm
     assert given is not None
     load = scenario.rig.machine["load_angle"]
@@ -86,7 +86,7 @@ def passage(kind: str, width_mm: float, rpm: float, profile: str = "geometric", 
     duration = width / contact_speed(bearing, given.turning.shaft_rate)
     n = round(FS * duration * (EXIT[1] - ENTRY[0]) / 2)
     place = np.linspace(ENTRY[0], EXIT[1], n)
-    parts = [slice(start, start + n) for start in _starts(scenario, given, timeline(recipe), n)]
+    parts = [slice(start, start + n) for start in _starts(scenario, given, timeline(settings_of(recipe)), n)]
     events = np.median([_events(place, kinks[part], sensor[part], fast[part]) for part in parts], axis=0)
     needed = unloading_drop(given.machine, bearing, load)
     unloaded = unloading_length(kind, needed, bearing) if profile == "geometric" else 0.0  # others drop at once

@@ -145,10 +145,10 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         corpora = {
-            "UESTC": import_generic(UESTC_LABELLED, folder / "uestc", folder=options.real / "uestc").directory,
-            "CWRU": import_cwru(options.real / "cwru", folder / "cwru").directory,
-            "MFPT": import_mfpt(options.real / "mfpt", folder / "mfpt").directory,
-            "simulated": generate("domain_randomised", folder / "made", records=options.records).directory,
+            "UESTC": import_generic(UESTC_LABELLED, folder / "uestc", folder=options.real / "uestc").path,
+            "CWRU": import_cwru(options.real / "cwru", folder / "cwru").path,
+            "MFPT": import_mfpt(options.real / "mfpt", folder / "mfpt").path,
+            "simulated": generate("domain_randomised", folder / "made", records=options.records).path,
         }
         for title, corpus in corpora.items():
             for line in report(corpus, title):

@@ -27,7 +27,7 @@ def command_rows(pairs: int) -> Iterator[Line]:
     """Short commands and imports, compared with the import of the libraries they need."""
     with tempfile.TemporaryDirectory() as folder:
         recipe = variant(SHORT, Path(folder) / "short.yaml", corpus={"records_per_part": 20})
-        corpus = str(generate(recipe, Path(folder) / "corpus", records=40).directory)
+        corpus = str(generate(recipe, Path(folder) / "corpus", records=40).path)
         commands = {
             "help": ("-m", "raceway", "--help"),
             "recipes": ("-m", "raceway", "recipes"),

@@ -15,9 +15,8 @@ import numpy as np
 import gen
 from benchmarks.features import PER_PART, noise_corpus
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row
-from gen.corpus import SIGNAL, open_corpus, part_paths
-from gen.corpus.reading import stored_blocks
-from gen.sharing.items import LabelledRecords
+from gen.corpus import SIGNAL, corpus_files, open_corpus, stored_blocks
+from gen.exporting.items import LabelledRecords
 
 SCALE = np.float32(1e-3)  # of the counts of a noise corpus
 Places = np.ndarray
@@ -33,7 +32,7 @@ def rows(pairs: int = 7, *, parts: int = 8, samples: int = 12_800, batch: int = 
 
 def loading_rows(pairs: int, folder: Path, batch: int) -> Iterator[Line]:
     """Shuffled records from a corpus, compared with other ways to read them."""
-    paths, items = part_paths(folder, "size"), gen.torch_dataset(folder, check="size")
+    paths, items = corpus_files(folder, "size"), gen.torch_dataset(folder, check="size")
     records = len(items)
     order = np.random.default_rng(0).permutation(records)
     batches = [order[start : start + batch] for start in range(0, records, batch)]

@@ -39,5 +39,5 @@ def cpu_per_record(recipe: Recipe) -> float:
     with tempfile.TemporaryDirectory() as folder:
         (Path(folder) / "parts").mkdir()
         start = time.process_time()
-        ((_, made),) = make_parts(recipe, range(1), Path(folder), {})
+        ((_, made),) = make_parts(recipe, range(1), Path(folder))
         return 1e3 * (time.process_time() - start) / max(made.row.records, 1)

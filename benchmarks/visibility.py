@@ -90,7 +90,7 @@ def reference_recipe(fault: dict[str, Any], n_seeds: int, **changes: Any) -> Rec
 def recorded(recipe: Recipe) -> tuple[FloatArray, float]:
     """Records of a recipe, shape (seed, time) [m s-2], and their shaft rate [Hz]."""
     scenarios = draw_scenarios(recipe)
-    signals = measure(simulate(scenarios, recipe).acceleration, scenarios, recipe).signal[:, 0]
+    signals = measure(simulate(scenarios).acceleration, scenarios).signal[:, 0]
     return signals.astype(float), scenarios[0].record.conditions["shaft"]
 
 

@@ -1,7 +1,7 @@
-"""Size, CPU time and memory of a corpus in every form of ``raceway export``: ``python -m benchmarks.exports [RECORDS [SAMPLES]]``.
+"""Size, CPU time and memory of ``raceway copy`` for every form: ``python -m benchmarks.copying [RECORDS [SAMPLES]]``.
 
 The corpus is made without a simulation: noise of 11 bits and one tone, 10,000 records of 4096 samples if not told otherwise, with all
-labels of a simulated corpus. Every export runs in a process of its own. The first line is the corpus itself, the second a packed file.
+labels of a simulated corpus. Every copy runs in a process of its own. The first line is the corpus itself.
 """
 
 import json
@@ -15,27 +15,14 @@ import numpy as np
 import xarray as xr
 
 from benchmarks.pairs import run_python
-from gen.corpus import (
-    DRAWS,
-    FAULTS,
-    SCHEMA,
-    SIMULATED,
-    make_dataset,
-    part_name,
-    write_index,
-    write_manifest,
-    write_part,
-)
-from gen.sharing.exporting import FORMS
+from gen.corpus import DRAWS, FAULTS, SCHEMA, SIMULATED, identity, make_dataset, new_corpus
+from gen.exporting import FORMS
 
 FS = 12_800.0
-_EXPORT = """
+_COPY = """
 import json, re, sys, time
 import gen
-if sys.argv[3] == "packed file":
-    gen.pack(*sys.argv[1:3])
-else:
-    gen.export(*sys.argv[1:])
+gen.copy(json.loads(sys.argv[1]), sys.argv[2], **json.loads(sys.argv[3]))
 peak = re.search(r"VmHWM:\\s+(\\d+)", open("/proc/self/status").read())[1]  # ru_maxrss counts the parent process too
 print(json.dumps({"seconds": time.process_time(), "memory": int(peak) / 1e3}))
 """
@@ -55,26 +42,26 @@ class Cost(NamedTuple):
     """Peak memory of the process [MB]."""
 
 
-def make_corpus(folder: Path, records: int, samples: int) -> Path:
+def make_corpus(folder: Path, records: int, samples: int, seed: int = 0) -> Path:
     """Write a corpus of noise, so many samples a record."""
-    (folder / "parts").mkdir(parents=True)
-    starts = range(0, records, IN_PART)
-    rows = []
-    for number, first in enumerate(starts):
-        dataset = _records(first, min(IN_PART, records - first), samples)
-        rows.append(write_part(dataset, folder / "parts" / part_name(number)))
-    write_index(folder, rows)
-    write_manifest(folder, rows, complete=True)
+    with new_corpus(folder, title="Noise of a benchmark") as corpus:
+        for first in range(0, records, IN_PART):
+            corpus.write(_records(first, min(IN_PART, records - first), samples, seed))
     return folder
 
 
 def costs(records: int = 10_000, samples: int = 4096) -> Iterator[Cost]:
     """Cost of each form for a corpus of so many records and samples a record."""
     with tempfile.TemporaryDirectory() as temporary:
-        corpus = make_corpus(Path(temporary) / "corpus", records, samples)
+        folder = Path(temporary)
+        corpus, other = (make_corpus(folder / name, records, samples, seed) for seed, name in enumerate(("a", "b")))
         yield Cost("corpus", *_size(corpus), np.nan, np.nan)
-        for form in ("packed file", *FORMS):
-            yield _cost(corpus, Path(temporary) / form, form)
+        yield _cost([corpus], folder / "copy", "folder")
+        yield _cost([corpus], folder / "one.nc", "one file")
+        yield _cost([corpus], folder / "sixth", "a sixth of the records", where="fault == 'inner'")
+        yield _cost([corpus, other], folder / "joined", "two corpora joined")
+        for form in FORMS:
+            yield _cost([corpus], folder / form, form, to=form)
 
 
 def table(found: Iterator[Cost]) -> Iterator[str]:
@@ -85,13 +72,17 @@ def table(found: Iterator[Cost]) -> Iterator[str]:
         yield f"| {cost.form} | {cost.files} | " + " | ".join(numbers) + " |"
 
 
-def _records(first: int, n: int, samples: int) -> xr.Dataset:
-    rng = np.random.default_rng(first)
+def _records(first: int, n: int, samples: int, seed: int) -> xr.Dataset:
+    rng = np.random.default_rng([seed, first])
     number = np.arange(first, first + n)
     specimen, variables = number // 10, SCHEMA + SIMULATED
     columns: dict[str, Any] = {v.name: np.full(n, "made up") if v.dtype == "str" else np.zeros(n) for v in variables}
     columns |= {"specimen": specimen, "rig": specimen // 8, "recording": number, "fault": specimen % len(FAULTS)}
     columns |= {"split": specimen % 3, "sample_rate": np.full(n, FS), "shaft_rate": rng.uniform(20, 40, n)}
+    columns["identity"] = [
+        identity(f"noise-{seed}", *some)
+        for some in zip(*(each.tolist() for each in (specimen // 8, specimen, number)), strict=True)
+    ]
     columns[DRAWS] = [
         json.dumps({f"value_{place}": value for place, value in enumerate(row)}) for row in rng.random((n, 60))
     ]
@@ -103,10 +94,10 @@ def _records(first: int, n: int, samples: int) -> xr.Dataset:
     )
 
 
-def _cost(corpus: Path, output: Path, form: str) -> Cost:
-    """Export in a process of its own."""
-    told = json.loads(run_python("-c", _EXPORT, corpus, output, form))
-    return Cost(form, *_size(output), told["seconds"], told["memory"])
+def _cost(sources: list[Path], target: Path, form: str, **options: str) -> Cost:
+    """Copy in a process of its own."""
+    told = json.loads(run_python("-c", _COPY, json.dumps([*map(str, sources)]), target, json.dumps(options)))
+    return Cost(form, *_size(target), told["seconds"], told["memory"])
 
 
 def _size(made: Path) -> tuple[int, float]:
