@@ -135,13 +135,7 @@ def block_features(
     """
     x, (fs, labelled, *nominal) = read_channel(block, channel, ("sample_rate", "shaft_rate", *Orders._fields))
     shaft_rate = labelled if shaft_rate is None else shaft_rate
-    orders = Orders(*nominal)
-    values = np.full((len(x), len(feature_names(groups, band))), np.nan)
-    for rate in np.unique(fs[fs > 0]):
-        rows = np.flatnonzero(fs == rate)
-        chosen = Orders(*(order[rows] for order in orders))
-        values[rows], _ = indicators(x[rows], float(rate), shaft_rate[rows], chosen, groups, band)
-    return values
+    return indicators(x, float(fs[0]), shaft_rate, Orders(*nominal), groups, band)[0]
 
 
 def _features_of_block(

@@ -9,20 +9,13 @@ from numpy.typing import NDArray
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, first_records, settings_of
-from gen.simulation.batches import Group, Integration, group_of, integrate_all
+from gen.simulation.batches import Group, Integration, group_of
 from gen.simulation.simulate import Response, motion_of
 from gen.simulation.timeline import timeline
 
 FloatArray = NDArray[np.float64]
 
 CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # every 32nd part repeats 1 % of the records of 32 parts at half the step
-
-
-def step_errors(scenarios: list[Scenario], recipe: Recipe, response: Response) -> FloatArray:
-    """Relative rms change of some records of a part when their step is halved, NaN for the others, shape (record,)."""
-    finer = step_checks(scenarios, recipe, response)
-    integrate_all(finer.values(), timeline(settings_of(recipe)))
-    return step_changes(finer, response, recipe)
 
 
 def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Integration]:

@@ -50,7 +50,7 @@ class MadePart(NamedTuple):
     """Of the part among those that are made."""
     records: Records
     step_error: NDArray[np.float64]
-    """As from :func:`gen.checking.step_errors`."""
+    """As from :func:`gen.checking.step_changes`."""
 
 
 Result = TypeVar("Result")

@@ -10,6 +10,7 @@ _MAKES_RECORDS = (
     "scenarios",
     "simulation",
     "measurement",
+    "checking.py",
     "families.py",
     "labels.py",
     "making.py",

@@ -260,7 +260,7 @@ def _verdict(null: Scores, chance: float) -> str:
 
 def _facts(manifest: Manifest, results: Results) -> list[tuple[str, str]]:
     """Origin of the numbers: the manifest without its parts, and the settings of the benchmark."""
-    left_out = {"parts_", "parts_sha256", "signals_", "complete", "records", "title", "publication"}
+    left_out = {"parts", "parts_sha256", "signals", "complete", "records", "title", "publication"}
     facts = manifest.model_dump(exclude=left_out, exclude_unset=True)
     if manifest.publication.license:
         facts["licence"] = manifest.publication.license

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from gen.corpus.layout import is_bare_dimension, is_deflated, is_text, packing_of
 from gen.corpus.open_files import close, opened, source_of
 from gen.corpus.part import inflated
-from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
+from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -53,14 +53,15 @@ def read_channel(
             else stored[rows.start : rows.stop, channel]
         )
         columns = [_numbers(file.dataset(name), name, records, rows) for name in names]
+        for problem in operating_problems(dict(zip(names, columns, strict=True))):
+            raise ValueError(problem.removesuffix("."))
     if block.stop == records:
         close([source])  # features read each file once, and an open file holds 1 MB
     if packing.scale is None:
         return read, columns
     signal = np.empty((len(rows), samples), np.float32)
     for row, counts in zip(signal, all_inflated(read, samples, source.path) if deflated else read, strict=True):
-        np.multiply(counts, np.float32(packing.scale), out=row, dtype=np.float32)
-        row[counts == packing.fill] = np.nan
+        packing.decode(counts, row)
     return signal, columns
 
 

@@ -24,7 +24,7 @@ from gen.corpus.joining import check_fit, check_repeats, new_numbers, sample_dig
 from gen.corpus.layout import PACKING, stored_signal
 from gen.corpus.manifest import Manifest, read_manifest, recipe_text
 from gen.corpus.publication import Publication
-from gen.corpus.schema import SIGNAL, schema_problems
+from gen.corpus.schema import SIGNAL
 from gen.corpus.where import nearest
 from gen.errors import CorpusError
 from gen.limits import check_limit
@@ -156,7 +156,7 @@ class Chosen:
 
     def facts(self) -> dict[str, Any]:
         """Fields of the manifest of a copy: those that all corpora share, and all sentences of any; of a choice, no hash of the whole."""
-        each = [manifest.model_dump(mode="json", by_alias=True, exclude_unset=True) for manifest in self.manifests]
+        each = [manifest.model_dump(mode="json", exclude_unset=True) for manifest in self.manifests]
         left_out = _OWN_FACTS | (_FACTS_OF_THE_WHOLE if self.asked else set())
         found: dict[str, Any] = {"title": self.title, "publication": self.publication}
         for name in dict.fromkeys(name for facts in each for name in facts if name not in left_out):
@@ -240,8 +240,8 @@ def choose(
     if not sources:
         raise CorpusError("copy: no corpus is given; give one or more.")
     with ExitStack() as stack:
+        opened = [stack.enter_context(open_corpus(path)) for path in sources]
         manifests = [read_manifest(path) for path in sources]
-        opened = [stack.enter_context(_opened(path)) for path in sources]
         opened = [
             _with_channels(corpus, channels, path)
             for corpus, path in zip(_renamed(opened, rename or {}), sources, strict=True)
@@ -273,13 +273,6 @@ def _history(told: Mapping[str, str | None]) -> str:
     """
     asked = "; ".join(f"{name} {text}" for name, text in told.items() if text)
     return asked and f"copied by raceway copy: {' '.join(asked.split())}"
-
-
-def _opened(path: Path) -> xr.Dataset:
-    corpus = open_corpus(path)
-    if problems := schema_problems(corpus):
-        raise CorpusError(f"{path}: {problems[0].removesuffix('.')}; make or copy the corpus again.")
-    return corpus
 
 
 def _renamed(corpora: Sequence[xr.Dataset], rename: Mapping[str, str]) -> list[xr.Dataset]:

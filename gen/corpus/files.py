@@ -29,7 +29,7 @@ _TRIAL_BYTES = 16_000_000  # more than HDF5 writes at once
 _ADVICE = dict.fromkeys(
     (errno.ENOSPC, errno.EDQUOT, errno.EFBIG), "free some space or choose another folder"
 ) | dict.fromkeys((errno.EACCES, errno.EPERM), "get permission to write there or choose another folder")
-_hashes: dict[tuple[str, Stamp, int], str] = {}
+_hashes: dict[tuple[str, Stamp], tuple[str, str]] = {}
 _CHECKSUM = re.compile(rb"\nsha256:([0-9a-f]{64})\n")
 _CHECKSUM_BYTES = 73
 _HOST = re.sub(r"[^\w-]", "-", platform.node())
@@ -45,25 +45,28 @@ def stamp(path: Path | str) -> Stamp:
 
 def sha256(path: Path) -> str:
     """SHA-256 of a file, in hexadecimal; kept in this process until the stamp of the file changes."""
-    return _sha256(path, 0)
+    return _both_hashes(path)[0]
 
 
-def _sha256(path: Path, left_out: int) -> str:
-    """SHA-256 of all bytes of a file but the last ``left_out``."""
-    key = (str(path.absolute()), stamp(path), left_out)
+def _both_hashes(path: Path) -> tuple[str, str]:
+    """SHA-256 of a file, and of its bytes before the line with the checksum."""
+    key = str(path.absolute()), stamp(path)
     known = _hashes.get(key)
     if known is not None:
         return known
-    digest, left = hashlib.sha256(), key[1][0] - left_out
+    digest, left = hashlib.sha256(), key[1][0] - _CHECKSUM_BYTES
     with path.open("rb", buffering=0) as stream:
         while left > 0 and (block := stream.read(min(left, _READ_BYTES))):
             digest.update(block)
             left -= len(block)
+        before = digest.hexdigest()
+        digest.update(stream.read())
+    found = digest.hexdigest(), before
     if stamp(path) == key[1] and time.time_ns() - key[1][1] > _CLOCK_TICK:
         if len(_hashes) >= _MOST_HASHES:
             _hashes.clear()
-        _hashes[key] = digest.hexdigest()
-    return digest.hexdigest()
+        _hashes[key] = found
+    return found
 
 
 def append_checksum(path: Path) -> str:
@@ -82,7 +85,7 @@ def remove_checksum(path: Path) -> None:
     os.truncate(path, path.stat().st_size - _CHECKSUM_BYTES)
 
 
-def _checksum(path: Path) -> str | None:
+def stored_checksum(path: Path) -> str | None:
     """SHA-256 in the last line of a file; None if it has no such line."""
     with path.open("rb") as stream:
         if stream.seek(0, os.SEEK_END) < _CHECKSUM_BYTES:
@@ -92,15 +95,9 @@ def _checksum(path: Path) -> str | None:
     return None if line is None else line[1].decode()
 
 
-def has_checksum(path: Path) -> bool:
-    """Whether a file ends with a line for a SHA-256."""
-    return _checksum(path) is not None
-
-
 def has_whole_bytes(path: Path) -> bool:
     """Whether a file ends with the SHA-256 of all its other bytes."""
-    digest = _checksum(path)
-    return digest is not None and digest == _sha256(path, _CHECKSUM_BYTES)
+    return stored_checksum(path) == _both_hashes(path)[1]
 
 
 def forget_hashes() -> None:

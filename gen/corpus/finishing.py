@@ -15,7 +15,6 @@ from gen.corpus.manifest import (
     INDEX_NAME,
     MANIFEST_NAME,
     RECIPE_NAME,
-    checked,
     corpus_files,
     facts_of_parts,
     read_manifest,
@@ -38,7 +37,7 @@ def finish_corpus(directory: Path, rows: Iterable[PartRow], **facts: Any) -> Sig
     write_manifest(directory, content)
     write_card(directory)
     write_croissant(directory)
-    return checked(content, directory).signals
+    return SignalCounts(**content["signals"])
 
 
 def finish_file(directory: Path, rows: Iterable[PartRow], file: Path, **facts: Any) -> SignalCounts:
@@ -47,7 +46,7 @@ def finish_file(directory: Path, rows: Iterable[PartRow], file: Path, **facts: A
     content = facts_of_parts(rows, facts)
     join_parts(directory, rows, corpus_attributes(content, recipe_text(directory), directory), file)
     shutil.rmtree(directory)
-    return checked(content, directory).signals
+    return SignalCounts(**content["signals"])
 
 
 def remove_temporary_files(directory: Path) -> None:
@@ -73,7 +72,7 @@ def publish(path: Path | str, publication: Publication) -> None:
     corpus_files(path)
     manifest = read_manifest(path)
     publication = publication.dated()
-    facts = manifest.model_dump(mode="json", by_alias=True, exclude_unset=True) | {"publication": publication}
+    facts = manifest.model_dump(mode="json", exclude_unset=True) | {"publication": publication}
     if path.is_file():
         remove_left_behind_of(path)
         if publication == manifest.publication:

@@ -142,20 +142,12 @@ def _plain(value: Any, name: str) -> Any:
 
 
 def stored_signal(signal: xr.Variable) -> tuple[NDArray[Any], float | None]:
-    """Counts of a signal and their scale, or accelerations and None; a decoded signal is turned back into its counts."""
-    scale = packing_scale(signal)
-    if scale is None or "scale_factor" in signal.attrs:
-        return signal.values, scale
+    """Counts of a decoded signal and their scale, or accelerations and None."""
+    if np.dtype(signal.encoding.get("dtype", signal.dtype)).kind != "i":
+        return signal.values, None
+    scale = float(signal.encoding["scale_factor"])
     counts = np.rint(np.asarray(signal.values, np.float64) / scale)
     lost = np.isnan(counts)
     if lost.any():
         counts[lost] = float(signal.encoding["_FillValue"])
     return counts.astype(np.int16), scale
-
-
-def packing_scale(signal: xr.Variable) -> float | None:
-    """Factor from counts to m s-2 of a signal, decoded or not; None if it is stored in floating point."""
-    if "scale_factor" in signal.attrs:
-        return float(signal.attrs["scale_factor"])
-    counts = np.dtype(signal.encoding.get("dtype", signal.dtype)).kind == "i"
-    return float(signal.encoding["scale_factor"]) if counts else None

@@ -14,15 +14,15 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, StringConstraints, ValidationError, model_validator
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from gen.corpus.blocks import RecordBlock, blocks_of
-from gen.corpus.files import has_checksum, has_whole_bytes, plain_file, sha256, write_text_durably
+from gen.corpus.files import has_whole_bytes, plain_file, sha256, stored_checksum, write_text_durably
 from gen.corpus.open_files import file_facts
 from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
 from gen.corpus.schema import FORMAT
-from gen.corpus.signals import SignalCounts, summed
+from gen.corpus.signals import Count, SignalCounts, summed
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -39,8 +39,6 @@ _TEXTS = ("title", "recipe", "recipe_sha256", "sources_sha256", "parts_sha256", 
 _COUNTED = ("raceway_format", "complete", "records", "signals", "publication", "parts_sha256", "parts")
 """Facts that :func:`facts_of_parts` computes or checks."""
 
-Count = Annotated[int, Field(ge=0, lt=2**63)]
-_Hash = Annotated[str, StringConstraints(pattern=r"^[0-9a-f]{64}$")]
 _Sentences = tuple[str, ...]
 
 
@@ -48,28 +46,6 @@ class Strict(BaseModel):
     """Checked value of the manifest: no conversion of types, no unknown field, and no change."""
 
     model_config = ConfigDict(strict=True, frozen=True, extra="forbid")
-
-
-class _Signals(Strict):
-    clipped: Count = 0
-    dead: Count = 0
-    constant: Count = 0
-    not_finite: Count = 0
-
-
-class ListedPart(Strict):
-    """A part as it is listed in the manifest."""
-
-    name: Annotated[str, StringConstraints(pattern=r"^part-[0-9]{5,9}\.nc$")]
-    records: Count
-    bytes: Count
-    sha256: _Hash
-    signals_: Annotated[_Signals, Field(alias="signals")]
-
-    @property
-    def row(self) -> PartRow:
-        """The same row as a tuple."""
-        return PartRow(self.name, self.records, self.bytes, self.sha256, SignalCounts(**dict(self.signals_)))
 
 
 class Overrides(Strict):
@@ -85,7 +61,8 @@ class Manifest(Strict):
     raceway_format: int
     complete: bool = True
     records: Count
-    signals_: Annotated[_Signals, Field(alias="signals")] = _Signals()
+    signals: SignalCounts = SignalCounts()
+    """Counts of the records that cannot be used."""
     title: str | None = None
     recipe: str | None = None
     """Name of the recipe."""
@@ -105,28 +82,19 @@ class Manifest(Strict):
     recordings: Count | None = None
     skipped: _Sentences = ()
     warnings: _Sentences = ()
-    parts_: Annotated[tuple[ListedPart, ...], Field(alias="parts")] = ()
-
-    @property
-    def parts(self) -> list[PartRow]:
-        """Rows of the parts, in the order of their records; none of a single file."""
-        return [part.row for part in self.parts_]
-
-    @property
-    def signals(self) -> SignalCounts:
-        """Counts of the records that cannot be used."""
-        return SignalCounts(**dict(self.signals_))
+    parts: tuple[PartRow, ...] = ()
+    """Rows of the parts, in the order of their records; none of a single file."""
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         """Refuse names and counts that disagree."""
-        names = [part.name for part in self.parts_]
+        names = [part.name for part in self.parts]
         if (repeated := next((name for name, count in Counter(names).items() if count > 1), None)) is not None:
             raise ValueError(f"it lists {repeated} more than once")
-        if names and sum(part.records for part in self.parts_) != self.records:
-            raise ValueError(f"it counts {self.records} records, its parts {sum(part.records for part in self.parts_)}")
+        if names and sum(part.records for part in self.parts) != self.records:
+            raise ValueError(f"it counts {self.records} records, its parts {sum(part.records for part in self.parts)}")
         if names and summed(row.signals for row in self.parts) != self.signals:
-            raise ValueError("it counts other unusable records than its parts")
+            raise ValueError("its number of unusable records is not the sum over its parts")
         for counts, records in ((self.signals, self.records), *((row.signals, row.records) for row in self.parts)):
             if sum(counts) > records:
                 raise ValueError(f"it counts {sum(counts)} unusable records of {records}")
@@ -190,10 +158,10 @@ def first_problem(error: ValidationError) -> str:
     return f"{place}: {reason}" if place else reason
 
 
-def read_manifest(path: Path | str) -> Manifest:
+def read_manifest(path: Path | str, check: Check = "sha256") -> Manifest:
     """Read and check the manifest of a corpus: ``manifest.json`` of a folder, the attributes of a single file.
 
-    That of an unfinished corpus lists the parts that are in its folder.
+    That of an unfinished corpus lists the parts that are in its folder. A single file is compared with its hash first.
 
     Raises
     ------
@@ -202,6 +170,8 @@ def read_manifest(path: Path | str) -> Manifest:
     """
     path = Path(path)
     if path.is_file():
+        if check == "sha256":
+            check_bytes(path)
         return _manifest_of_file(path)
     if not path.is_dir():
         raise CorpusError(
@@ -217,7 +187,7 @@ def read_manifest(path: Path | str) -> Manifest:
     except OSError as error:
         raise CorpusError(f"{place}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
     manifest = checked(content, place)
-    if manifest.complete and not manifest.parts_:
+    if manifest.complete and not manifest.parts:
         raise CorpusError(f"{place}: is marked complete and lists no parts; do not trust this corpus.")
     return manifest if manifest.complete else _with_present_parts(manifest, path)
 
@@ -251,7 +221,7 @@ def _with_present_parts(manifest: Manifest, directory: Path) -> Manifest:
     found = (path for path in (directory / "parts").glob("part-*.nc") if _PART_NAME.fullmatch(path.name))
     paths = sorted(found, key=lambda path: (len(path.name), path.name))  # part-100000 comes after part-99999
     rows = [row for row in map(row_of, paths) if row is not None]
-    content = manifest.model_dump(mode="json", by_alias=True) | facts_of_parts(rows, {}, complete=False)
+    content = manifest.model_dump(mode="json") | facts_of_parts(rows, {}, complete=False)
     return checked(content, directory / MANIFEST_NAME)
 
 
@@ -316,13 +286,13 @@ def _altered(file: Path) -> str:
 def check_bytes(file: Path) -> None:
     """Refuse a single file that has been altered, before a library opens it."""
     try:
-        ends, whole = has_checksum(file), has_whole_bytes(file)
+        ends, whole = stored_checksum(file) is not None, has_whole_bytes(file)
     except OSError as error:
         raise CorpusError(f"{file}: cannot be read ({error.strerror or error}); copy it again.") from None
     if not ends:
         raise CorpusError(
-            f"{file}: has no checksum of Raceway at its end: it is no corpus of this format, or was cut off or rewritten by another "
-            f"program; give a corpus, or copy it again."
+            f"{file}: has no checksum of Raceway at its end: it is another file, such as a feature table, or was cut off or rewritten by "
+            f"another program; give a corpus, or copy it again."
         )
     if not whole:
         raise CorpusError(_altered(file))
@@ -339,9 +309,7 @@ def corpus_files(path: Path | str, check: Check = "sha256") -> list[Path]:
         If the corpus is unfinished, or one of its files is missing, altered or outside its folder.
     """
     path = Path(path)
-    if path.is_file() and check == "sha256":
-        check_bytes(path)
-    manifest = read_manifest(path)
+    manifest = read_manifest(path, check)
     if not manifest.complete:
         raise CorpusError(f"{path}: is unfinished; run the raceway generate command that began it again.")
     problems = file_problems(path, manifest, check)
@@ -353,6 +321,6 @@ def corpus_files(path: Path | str, check: Check = "sha256") -> list[Path]:
 def record_blocks(path: Path | str, check: Check = "sha256") -> list[RecordBlock]:
     """All records of a finished corpus in blocks that fit the memory of a task; it raises the errors of :func:`corpus_files`."""
     path = Path(path)
-    files, manifest = corpus_files(path, check), read_manifest(path)
+    files, manifest = corpus_files(path, check), read_manifest(path, check)
     counts = [row.records for row in manifest.parts] or [manifest.records]
     return [block for file, records in zip(files, counts, strict=True) for block in blocks_of(file, records)]

@@ -4,19 +4,20 @@ import json
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Annotated, Any, NamedTuple
 
 import h5py
 import netCDF4
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from pydantic import Field
 
 from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import append_checksum, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
-from gen.corpus.signals import SignalCounts, counted, judge
+from gen.corpus.signals import Count, SignalCounts, counted, judge
 from gen.corpus.unicode_text import set_attributes, write_unicode
 
 _INCOMPRESSIBLE = 7.8  # bits per byte
@@ -25,10 +26,10 @@ _INCOMPRESSIBLE = 7.8  # bits per byte
 class PartRow(NamedTuple):
     """Entry of a part in the manifest."""
 
-    name: str
-    records: int
-    bytes: int
-    sha256: str
+    name: Annotated[str, Field(pattern=r"^part-[0-9]{5,9}\.nc$")]
+    records: Count
+    bytes: Count
+    sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
     signals: SignalCounts = SignalCounts()
     """Counts of the records that cannot be used."""
 

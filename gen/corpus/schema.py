@@ -34,6 +34,8 @@ IDENTITY = (
     "identity"  # joined corpora get new numbers from it, so that a machine has the same number in all of their records
 )
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
+_RATES = ("shaft_rate", "load", "ftf", "bpfo", "bpfi", "bsf")
+_HIGHEST = 1e8
 MISSING_COUNT = -32768  # value that a missing part reads as; the converter never gives it
 
 
@@ -232,12 +234,22 @@ def schema_problems(dataset: "xr.Dataset", further: tuple[Variable, ...] = ()) -
         if array.attrs.get("role") not in ROLES or "long_name" not in array.attrs:
             problems.append(f"{name} needs a long_name and a role, one of {', '.join(ROLES)}.")
         problems += _values_problems(known.get(str(name)), str(name), array)
-    return problems
+    return problems or operating_problems({name: dataset[name].values for name in ("sample_rate", *_RATES)})
 
 
 def _missing(dataset: "xr.Dataset") -> list[str]:
     required = [SIGNAL, "channel", "elapsed_time", *(variable.name for variable in SCHEMA)]
     return [name for name in required if name not in dataset.variables]
+
+
+def operating_problems(columns: Mapping[str, NDArray[Any]]) -> list[str]:
+    """Sample rates, shaft rates, loads and orders that no analysis can use, one sentence each."""
+    rates = np.unique(columns.get("sample_rate", 1.0))
+    if len(rates) != 1 or not 1 <= rates[0] <= _HIGHEST:
+        shown = ", ".join(f"{rate:g}" for rate in rates[:3])
+        return [f"sample_rate is {shown} Hz, not one rate from 1 to {_HIGHEST:g} Hz for all records."]
+    wrong = [name for name in _RATES if name in columns and (np.abs(columns[name]) > _HIGHEST).any()]
+    return [f"{name} has values above {_HIGHEST:g}." for name in wrong]
 
 
 def _values_problems(known: Variable | None, name: str, array: "xr.Variable") -> list[str]:

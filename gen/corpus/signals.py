@@ -5,10 +5,11 @@ other records, and counted when a part is written; the manifest holds the counts
 """
 
 from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from gen.corpus.schema import MISSING_COUNT
 
@@ -27,13 +28,17 @@ _ADVICE = {
 }
 
 
+Count = Annotated[int, Field(ge=0, lt=2**63)]
+"""Count in a manifest, which may come from a stranger."""
+
+
 class SignalCounts(NamedTuple):
     """Number of records that cannot be used, by reason; all others are sound."""
 
-    clipped: int = 0
-    dead: int = 0
-    constant: int = 0
-    not_finite: int = 0
+    clipped: Count = 0
+    dead: Count = 0
+    constant: Count = 0
+    not_finite: Count = 0
 
 
 def judge(signal: NDArray[np.integer] | NDArray[np.floating]) -> NDArray[np.int8]:

@@ -11,7 +11,7 @@ def step_complaint(corpus: xr.Dataset) -> str | None:
 
     The step of some records of a simulated corpus is checked, and of no imported one.
     """
-    if "step_error" not in corpus.variables:
+    if not {"step_error", "oversampling"} <= corpus.variables.keys():
         return None
     error, steps = corpus["step_error"].values, corpus["oversampling"].values
     coarse = error > COARSE

@@ -17,7 +17,6 @@ from gen.corpus.manifest import (
     INDEX_NAME,
     MANIFEST_NAME,
     Manifest,
-    check_bytes,
     facts_of_parts,
     file_problems,
     read_manifest,
@@ -39,8 +38,6 @@ def validate_corpus(path: Path | str) -> list[str]:
     """
     path = Path(path)
     try:
-        if path.is_file():
-            check_bytes(path)
         manifest = read_manifest(path)
         problems = file_problems(path, manifest, "sha256")
         if problems or not manifest.complete:
@@ -56,7 +53,7 @@ def _facts_problems(path: Path, manifest: Manifest, corpus: xr.Dataset) -> list[
     """Facts of ``manifest.json`` and ``recipe.yaml`` that ``index.nc`` has in another form."""
     if path.is_file():
         return []
-    content = manifest.model_dump(mode="json", by_alias=True, exclude_unset=True)
+    content = manifest.model_dump(mode="json", exclude_unset=True)
     content = facts_of_parts(manifest.parts, content | {"publication": manifest.publication})
     wanted = corpus_attributes(content, recipe_text(path), path)
     names = {*wanted, *(Manifest.model_fields.keys() & corpus.attrs.keys() - {"raceway_format"})}

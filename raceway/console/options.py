@@ -14,29 +14,8 @@ A_PATH = click.Path(path_type=Path)
 
 
 def corpus_path(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
-    """Folder or single file of a corpus; ``index.nc`` stands for its folder, and a feature table is refused."""
-    if path is None or not path.is_file():
-        return path
-    if path.name == "index.nc":
-        return path.parent
-    if _is_table(path):
-        from gen.errors import CorpusError  # not at the top: help needs nothing of gen
-
-        raise CorpusError(f"{path}: is a feature table; give a corpus: a folder with manifest.json, or one .nc file.")
-    return path
-
-
-def _is_table(path: Path) -> bool:
-    """Whether a file is a feature table in netCDF."""
-    if path.suffix != ".nc":
-        return False
-    import h5py
-
-    try:
-        with h5py.File(path, "r", locking=False) as content:
-            return {"features", "feature"} <= set(content)
-    except OSError:
-        return False
+    """Folder or single file of a corpus; ``index.nc`` stands for its folder."""
+    return path.parent if path is not None and path.name == "index.nc" and path.is_file() else path
 
 
 json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")

@@ -62,9 +62,7 @@ def describe(directory: Path) -> dict[str, Any]:
         If the folder holds no corpus, or a part is missing or altered.
     """
     manifest = read_manifest(directory)
-    known = manifest.model_dump(
-        exclude={"parts_", "complete", "records", "parts_sha256", "signals_"}, exclude_unset=True
-    )
+    known = manifest.model_dump(exclude={"parts", "complete", "records", "parts_sha256", "signals"}, exclude_unset=True)
     about = {
         "corpus": directory,
         "complete": manifest.complete,
@@ -103,12 +101,12 @@ def _shown(records: xr.Dataset) -> xr.Dataset:
 
 
 def _content(labels: xr.Dataset) -> dict[str, Any]:
-    rates = np.unique(labels["sample_rate"].values)
+    fs = float(labels["sample_rate"][0])
     return {
         "title": str(labels.attrs.get("title", "")),
         "channels": [str(name) for name in labels["channel"].values],
-        "sample_rate": float(rates[0]) if len(rates) == 1 else rates.tolist(),
-        "duration": labels.sizes["elapsed_time"] / float(rates[0]),
+        "sample_rate": fs,
+        "duration": labels.sizes["elapsed_time"] / fs,
         "samples": labels.sizes["elapsed_time"],
         "classes": _named_counts(labels["fault"].values, FAULT_NAMES),
         "splits": _named_counts(labels["split"].values, dict(enumerate(SPLITS))),

@@ -125,7 +125,7 @@ def test_one_call_makes_one_file_with_the_same_records(single, whole):
     assert (single.path.name, single.records, single.parts, single.kept, single.failures) == ("corpus.nc", 24, 3, 0, ())
     assert [path.name for path in single.path.parent.iterdir()] == ["corpus.nc"]
     assert validate_corpus(single.path) == []
-    facts = read_manifest(whole.path).model_copy(update={"parts_": ()})
+    facts = read_manifest(whole.path).model_copy(update={"parts": ()})
     assert read_manifest(single.path) == facts
     assert recipe_text(single.path) == recipe_text(whole.path)
     with open_corpus(single.path) as one, open_corpus(whole.path) as other:

@@ -57,7 +57,10 @@ def test_windows_too_short_for_lines_are_compared_by_the_other_measures(told, se
         ("{made} {first}", "Missing option '-o'"),
         ("{made} {nowhere} -o {new}", "nowhere: no such folder or file; give a corpus: a folder"),
         ("{nowhere} {made} -o {new}", "nowhere: no such folder or file; give a corpus: a folder"),
-        ("{made} {made}/manifest.json -o {new}", "manifest.json: has no checksum of Raceway at its end: it is no corpus of this format"),
+        (
+            "{made} {made}/manifest.json -o {new}",
+            "manifest.json: has no checksum of Raceway at its end: it is another file",
+        ),
         ("{cages} {second} -o {new}", "has no class that the real corpora have: healthy here, inner, outer there"),
         ("{made} {still} -o {new}", "still: no record has a shaft rate and fault orders above 0"),
         ("{made} {first} -o {new} --top 7000", "shows nothing above 6000 Hz, and records are compared up to 7000 Hz"),

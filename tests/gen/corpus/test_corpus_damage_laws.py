@@ -149,7 +149,7 @@ REFUSED = {
         lambda c: edit_manifest(c, {1: {"signals": {"dead": 5}}}, signals={"dead": 5}), r"it counts 5 unusable records of 4",
     ),
     "the sum of unusable records is another": (
-        lambda c: edit_manifest(c, signals={"dead": 1}), "it counts other unusable records than its parts",
+        lambda c: edit_manifest(c, signals={"dead": 1}), "its number of unusable records is not the sum over its parts",
     ),
     "the manifest holds lists for objects": (lambda c: (c / "manifest.json").write_text("[[]]"), NO_MANIFEST),
     "the manifest is nested without end": (lambda c: (c / "manifest.json").write_text("[" * 100_000), NO_MANIFEST),

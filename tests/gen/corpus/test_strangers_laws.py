@@ -181,6 +181,9 @@ ODD = {
     "a variable of no known dimension": lambda f: f.create_dataset("x", data=np.zeros(4)),
     "a fact that is a list of numbers": lambda f: f.attrs.__setitem__("title", np.zeros((2, 2))),
     "a fact that is no UTF-8": lambda f: f.attrs.__setitem__("title", np.bytes_(b"\xff\xfe")),
+    "a sample rate of zero": lambda f: f["sample_rate"].write_direct(np.zeros(9)),
+    "two sample rates": lambda f: f["sample_rate"].write_direct(np.arange(9) // 5 + 1e4),
+    "an infinite order": lambda f: f["bpfo"].write_direct(np.full(9, np.inf)),
     "references for labels": lambda f: reshaped(f, "load", np.array([f["fault"].ref] * 9, dtype=h5py.ref_dtype)),
 }  # fmt: skip
 OF_SIGNALS = {

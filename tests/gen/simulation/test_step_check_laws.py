@@ -5,13 +5,14 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from gen.checking import CHECKED_PARTS, checked_places, step_errors
+from gen.checking import CHECKED_PARTS, checked_places, step_changes, step_checks
 from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
 from gen.errors import RecipeError, SimulationError
 from gen.generation import generate
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens, settings_of
+from gen.simulation.batches import integrate_all
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
 from gen.simulation.steps import COARSEST_STEP, FINE_STEP
@@ -28,6 +29,13 @@ ROUGH = {
     "specimen.waviness_nm": {"kind": "grid", "values": [10] * 4 + [10_000] * 4 + [10] * 4},
     "operation.load_n": 20,
 }
+
+
+def step_errors(scenarios, recipe, response):
+    """Relative rms change of some records of a part when their step is halved, NaN for the others, shape (record,)."""
+    finer = step_checks(scenarios, recipe, response)
+    integrate_all(finer.values(), timeline(settings_of(recipe)))
+    return step_changes(finer, response, recipe)
 
 
 @pytest.fixture(scope="module")
