@@ -42,8 +42,6 @@ def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
     with guarded(path, "MATLAB"):
         with LIBRARY_LOCK:
             in_hdf5 = h5py.is_hdf5(path)
-        if variable is None or "*" in variable:
-            variable = _only(_sizes_in_hdf5(path) if in_hdf5 else _sizes(path), variable)
         return _read_hdf5(path, variable) if in_hdf5 else _read(path, variable)
 
 
@@ -66,15 +64,21 @@ def _content(path: Path, only: str | None = None) -> dict[str, Any]:
     return found
 
 
-def _read(path: Path, variable: str) -> NDArray[Any]:
-    found = _content(path, variable.split(".")[0])
-    if variable not in found:
-        message = f"holds {listing([*(found or _content(path))])}, not {variable}"
+def _read(path: Path, variable: str | None) -> NDArray[Any]:
+    name = _whole_name(variable)
+    found = _content(path, name and name.split(".")[0])
+    name = name or _only({key: np.size(value) for key, value in found.items() if _is_array(value, _REAL)}, variable)
+    if name not in found:
+        message = f"holds {listing([*(found or _content(path))])}, not {name}"
         raise UnusableError(message)
-    if not _is_array(found[variable], _REAL + "U"):
-        message = f"holds {variable}, but neither real numbers nor text in it"
+    if not _is_array(found[name], _REAL + "U"):
+        message = f"holds {name}, but neither real numbers nor text in it"
         raise UnusableError(message)
-    return np.asarray(found[variable])
+    return np.asarray(found[name])
+
+
+def _whole_name(variable: str | None) -> str | None:
+    return None if variable is None or "*" in variable else variable
 
 
 def _is_array(value: Any, kinds: str) -> bool:
@@ -82,37 +86,45 @@ def _is_array(value: Any, kinds: str) -> bool:
     return not isinstance(value, list) and np.asarray(value).dtype.kind in kinds
 
 
-def _sizes(path: Path) -> dict[str, int]:
-    """Numbers of values of all real arrays, by name."""
-    return {name: np.size(value) for name, value in _content(path).items() if _is_array(value, _REAL)}
-
-
-def _read_hdf5(path: Path, variable: str) -> NDArray[Any]:
+def _read_hdf5(path: Path, variable: str | None) -> NDArray[Any]:
     with LIBRARY_LOCK, h5py.File(path, "r") as file:
+        name = _whole_name(variable) or _only(_sizes(file), variable)
         try:
-            dataset = own_dataset(file, variable.replace(".", "/"))
+            dataset = own_dataset(file, name.replace(".", "/"))
         except ForeignStorageError as error:
             message = f"refers to values outside the file: {error}"
             raise UnusableError(message) from None
         except KeyError:
-            message = f"holds {listing([*islice(file, 6)])}, not {variable}"
+            message = f"holds {listing([*islice(file, 6)])}, not {name}"
             raise UnusableError(message) from None
         if dataset.dtype.kind not in _REAL or dataset.shape is None:
-            message = f"holds {variable}, but it is not real numbers"
+            message = f"holds {name}, but it is not real numbers"
             raise UnusableError(message)
-        return np.asarray(dataset)
+        if dataset.attrs.get("MATLAB_empty"):  # it holds its dimensions
+            return np.empty(0)
+        values = np.asarray(dataset)
+        return _text(values) if _is_text(dataset) else values
 
 
-def _sizes_in_hdf5(path: Path) -> dict[str, int]:
-    """As :func:`_sizes`; ``#refs#`` holds the contents of cells."""
+def _is_text(dataset: h5py.Dataset) -> bool:
+    return dataset.attrs.get("MATLAB_class") in (b"char", "char")
+
+
+def _text(codes: NDArray[Any]) -> NDArray[np.str_]:
+    """Text of character codes, one for each row; their first axis is the second of MATLAB."""
+    return np.squeeze(["".join(map(chr, row)) for row in np.atleast_2d(codes.T)])
+
+
+def _sizes(file: h5py.File) -> dict[str, int]:
+    """Numbers of values of all real arrays, by name; ``#refs#`` holds the contents of cells."""
     found: dict[str, int] = {}
 
     def note(name: str, node: Any) -> None:
-        if isinstance(node, h5py.Dataset) and node.dtype.kind in _REAL and not name.startswith("#"):
+        numbers = isinstance(node, h5py.Dataset) and node.dtype.kind in _REAL and not _is_text(node)
+        if numbers and not name.startswith("#"):
             found[name.replace("/", ".")] = node.size or 0
 
-    with LIBRARY_LOCK, h5py.File(path, "r") as file:
-        file.visititems(note)
+    file.visititems(note)
     return found
 
 

@@ -201,6 +201,34 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
     assert done.skipped[1] == "whole.mat:x: holds vibration, not x; skipped."
 
 
+def level_5(path, rpm):
+    scipy.io.savemat(path, {"x": SIGNAL, "RPM": rpm})
+
+
+def level_7_3(path, rpm):
+    """As MATLAB writes it: text as codes with the class ``char``, and in place of an empty array its dimensions."""
+    text, empty = isinstance(rpm, str), np.size(rpm) == 0
+    values = np.zeros(2, "u8") if empty else np.array([[ord(letter)] for letter in rpm], "u2") if text else rpm
+    with h5py.File(path, "w") as file:
+        file["x"] = SIGNAL[np.newaxis]
+        file["RPM"] = values
+        file["RPM"].attrs["MATLAB_class"] = np.bytes_("char" if text else "double")
+        if empty:
+            file["RPM"].attrs["MATLAB_empty"] = 1
+
+
+@pytest.mark.parametrize("write", [level_5, level_7_3])
+def test_a_number_in_a_matlab_file_may_be_text_and_any_other_text_is_no_number(tmp_path, write):
+    for name, rpm in {"number": 1772.0, "text": "1772", "word": "fast", "empty": np.zeros((0, 0))}.items():
+        write(tmp_path / f"{name}.mat", rpm)
+    keys = COMMON.replace("1500", "{variable: RPM}") + "variable: x\n"
+    done, corpus = imported(tmp_path, keys + "files: [{path: '*.mat'}]\n")
+    np.testing.assert_allclose(corpus.shaft_rate, 1772 / 60)
+    assert done.recordings == 2
+    assert done.skipped[0].startswith("empty.mat:x: holds float64 of shape (0,")
+    assert done.skipped[1:] == ("word.mat:x: holds RPM, which is no number for shaft_rpm; skipped.",)
+
+
 REFUSED = {
     "no_files": (COMMON, "mapping.yaml: files: is missing; give it."),
     "files_empty": (COMMON + "files: []", "files: is empty; give at least one."),

@@ -20,6 +20,8 @@ def write_matlab_7_3(path):
     with h5py.File(path, "w") as file:
         file["run/x"] = X[np.newaxis]
         file["rpm"] = np.array([[1500.0]])
+        file["notes"] = np.full((200, 1), ord("a"), "u2")
+        file["notes"].attrs["MATLAB_class"] = np.bytes_("char")
 
 
 FILES = {
@@ -128,6 +130,13 @@ def cut_wav(path):
     path.write_bytes(path.read_bytes()[:-8])
 
 
+def without_length(path):
+    wavfile.write(path, 8000, X)
+    content = bytearray(path.read_bytes())
+    content[4:8] = bytes(4)
+    path.write_bytes(content)
+
+
 def with_encoding(number):
     def write(path):
         wavfile.write(path, 8000, np.zeros(9, "i2"))
@@ -145,6 +154,7 @@ REFUSED = {
     "no_wav": ("a.wav", lambda path: path.write_bytes(b"1" * 99), {}, "not a WAV file (File format b'1111' not understood."),
     "cut_wav": ("a.wav", cut_wav, {}, "is truncated, damaged or not a WAV file (Reached EOF prematurely;"),
     "no_samples": ("a.wav", lambda path: path.write_bytes(b"RIFF1234WAVE"), {}, "not a WAV file (Unexpected end of file.)."),
+    "no_length": ("a.wav", without_length, {}, "a.wav: is truncated, damaged or not a WAV file."),
     "compressed": ("a.wav", with_encoding(85), {}, "(Unknown wave file format: MPEGLAYER3. Supported formats: PCM, IEEE_FLOAT)."),
     "half_float": ("a.wav", with_encoding(3), {}, "(Unsupported bit depth: the WAV file has 16-bit floating-point data.)."),
     "named_column": (
