@@ -13,7 +13,6 @@ units       units of recipes and mapping files, turned into SI
 cluster     independent tasks on dask
 workers     independent tasks in this thread, threads, processes or a cluster
 sources     hash of the source files that make records
-plain_files files opened only if they are no pipes or devices
 yaml_files  recipes and mapping files, read within the limits
 sentences   an error sentence for each wrong key or value of these files
 physics     pure: bearing, Hertz contact, spalls, machine, kernel

@@ -27,7 +27,6 @@ from ruamel.yaml.events import (
 
 from gen.errors import RacewayError
 from gen.limits import check_limit, limit
-from gen.plain_files import open_plain
 
 DEEPEST = 50  # levels, with aliases expanded; a recipe has about six
 LONGEST_NUMBER = 100  # characters
@@ -81,7 +80,9 @@ def read_yaml(path: Path, error: type[RacewayError]) -> Any:
         ``yaml_values``.
     """
     try:
-        with open_plain(path) as stream:
+        if path.exists() and not path.is_file():
+            raise error(f"{path}: cannot be read (is a folder, a pipe or a device); give a YAML file.")
+        with path.open("rb") as stream:
             content = stream.read(limit("yaml_bytes") + 1)
             size = max(len(content), path.stat().st_size)
     except OSError as flaw:

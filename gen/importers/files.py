@@ -4,6 +4,7 @@ Every error becomes an :class:`UnusableError` with a reason and without the name
 """
 
 import codecs
+import errno
 import os
 import re
 import warnings
@@ -17,13 +18,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.limits import check_limit
-from gen.plain_files import open_plain
 
 FloatArray = NDArray[np.floating]
 
 _HEAD_LINES = 100
 _START = 2_000_000  # bytes that tell the encoding
 _DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+([eE][-+]?\d+)?")
+_WITH_REASON = (ValueError, OSError, EOFError, Warning)  # of a library; the text of others is about its code
 _NO_NUMBER = re.compile(r"[^\d\s.,;eE+-]")
 
 
@@ -152,7 +153,9 @@ def guarded(path: Path, kind: str) -> Iterator[None]:
     MemoryError
         If its values do not fit in memory.
     """
-    with open_plain(path) as stream:
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "is a folder, a pipe or a device", str(path))
+    with path.open("rb") as stream:
         size = os.fstat(stream.fileno()).st_size
     if size == 0:
         raise UnusableError("is empty (0 bytes); copy it again")
@@ -164,8 +167,8 @@ def guarded(path: Path, kind: str) -> Iterator[None]:
     except (UnusableError, MemoryError):
         raise
     except Exception as error:  # SciPy, h5py and NumPy raise a dozen unrelated types on damaged bytes
-        reason = str(error).splitlines()[0][:120] if str(error) else type(error).__name__
-        message = f"is truncated, damaged or not a {kind} file ({reason})"
+        reason = f" ({str(error).splitlines()[0][:120]})" if isinstance(error, _WITH_REASON) and str(error) else ""
+        message = f"is truncated, damaged or not a {kind} file{reason}"
         raise UnusableError(message) from error
 
 

@@ -6,7 +6,6 @@ speed, load and severity by class. The same corpus and libraries give the same b
 
 import io
 import json
-import os
 from pathlib import Path
 from typing import Any
 
@@ -42,7 +41,6 @@ from gen.corpus.card.additions import (
 )
 from gen.errors import CorpusError
 from gen.limits import check_limit
-from gen.plain_files import open_plain
 
 DPI = 110
 COLOURS = 48  # of a picture: lines, text and shades look the same, and the file has half the size
@@ -124,9 +122,10 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
         If the file is none, or its scores are of another corpus: one with another title, or other counts of records.
     """
     try:
-        with open_plain(path) as file:
-            check_limit("manifest_bytes", os.fstat(file.fileno()).st_size, f"{path}:", CorpusError)
-            results = json.loads(file.read())
+        if path.exists() and not path.is_file():
+            raise CorpusError(f"{path}: is a folder, a pipe or a device; give results.json of raceway benchmark.")
+        check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
+        results = json.loads(path.read_bytes())
         title, classes = results["corpus"]["title"], results["corpus"]["classes"]
         scores = CardScores(
             track=results["track"],
