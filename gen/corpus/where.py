@@ -120,9 +120,10 @@ class _Condition:
             items = right.elts if isinstance(right, ast.Tuple | ast.List) else [right]
             if name := next((item for item in items if isinstance(item, ast.Name)), None):
                 raise self._wrong(name, f"{name.id} is a name; put a text in quotes: '{name.id}'.")
-            found = [self._compared(left, ast.Eq(), item) for item in items]
-            member = np.logical_or.reduce([np.zeros_like(self._of(left).values, bool), *found])
-            return member if isinstance(sign, ast.In) else ~member
+            within = isinstance(sign, ast.In)
+            found = [self._compared(left, ast.Eq() if within else ast.NotEq(), item) for item in items]
+            combine, of_none = (np.logical_or, np.zeros_like) if within else (np.logical_and, np.ones_like)
+            return combine.reduce([of_none(self._of(left).values, bool), *found])
         compare = _SIGNS.get(type(sign))
         if compare is None:
             raise self._misplaced(left, "a comparison (==, !=, <, <=, >, >=, in)")

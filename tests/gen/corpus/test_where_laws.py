@@ -81,7 +81,7 @@ def test_a_condition_holds_for_the_records_that_its_words_ask_for(pair):
         ("rate < -.5", [4]),
         ("10 < rate <= 30", [1, 2]),
         (" 1 <= rig<3 ", [1, 2]),
-        ("rate not in [20, 30]", [0, 3, 4]),
+        ("rate not in [20, 30]", [0, 4]),
         (f"rate < 1{'0' * 400}", [0, 1, 2, 4]),
     ],
 )
