@@ -14,7 +14,7 @@ from features.baselines.own import Maker
 from features.baselines.records import DEFAULT_GROUPS, IntArray, Records, records_of
 from features.baselines.scores import Scores
 from features.baselines.splits import grouped_case, score_splits
-from features.baselines.tracks import Split, Track
+from features.baselines.tracks import Split
 from features.waveforms import Waveforms
 
 LEAST_OF_A_CLASS = 2  # training specimens of a class in the smallest set, on average
@@ -33,17 +33,14 @@ def learning_curve(
     data: xr.Dataset | Waveforms,
     estimator: str | Maker,
     *,
-    track: Track = "specimen",
     folds: int = 5,
-    groups: Sequence[str] = DEFAULT_GROUPS,
-    seed: int = 0,
 ) -> tuple[CurvePoint, ...]:
     """Scores against the number of training specimens, which doubles from point to point up to all of them.
 
-    The parameters and errors are those of `cross_validate`.
+    The tested specimens are new. The parameters and errors are those of `cross_validate`.
     """
-    records = records_of(data, groups)
-    return curve_points(records, estimator, grouped_case(records, track, folds, seed)[1], seed)
+    records = records_of(data, DEFAULT_GROUPS)
+    return curve_points(records, estimator, grouped_case(records, "specimen", folds, seed=0)[1], seed=0)
 
 
 def curve_points(

@@ -32,7 +32,6 @@ def cross_validate(
     *,
     track: Track = "specimen",
     folds: int = 5,
-    groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
 ) -> Scores:
     """Scores of a classifier on specimens, rigs or other groups that it was not trained on.
@@ -48,8 +47,6 @@ def cross_validate(
         A name of `TRACKS`: the respect in which the tested records are new.
     folds
         Number of splits. Their predictions are pooled; the balanced accuracy of each split is returned too.
-    groups
-        Groups of features.
     seed
         Of splits, estimator and bootstrap.
 
@@ -62,7 +59,7 @@ def cross_validate(
     ValueError
         For an unknown estimator.
     """
-    records = records_of(data, groups)
+    records = records_of(data, DEFAULT_GROUPS)
     labels, splits = grouped_case(records, track, folds, seed)
     scores = score_splits(records, labels, estimator, splits, seed)
     return replace(scores, uncovered_widths=uncovered_in_splits(records, splits))
@@ -74,14 +71,13 @@ def controls(
     *,
     track: Track = "specimen",
     folds: int = 5,
-    groups: Sequence[str] = DEFAULT_GROUPS,
     seed: int = 0,
 ) -> dict[str, Scores]:
     """Scores of both controls of a classifier: ``leaky`` and ``null``, as in `control_cases`.
 
     The parameters are those of `cross_validate`.
     """
-    records = records_of(data, groups)
+    records = records_of(data, DEFAULT_GROUPS)
     cases = control_cases(records, track, folds, seed)
     return {name: score_splits(records, labels, estimator, splits, seed) for name, (labels, splits) in cases.items()}
 

@@ -113,18 +113,12 @@ class Waiting(Generic[Owner]):
         return [heappop(members)[2:] for _ in range(min(LANES, len(members)))]
 
 
-def integrate_all(
-    integrations: Iterable[Integration], timeline: Timeline, report: Callable[[int], None] = lambda _: None
-) -> None:
-    """Integrate records; ``report`` is called with the number of integrations done after each batch."""
+def integrate_all(integrations: Iterable[Integration], timeline: Timeline) -> None:
+    """Integrate records, batch by batch."""
     waiting: Waiting[None] = Waiting()
     waiting.add(integrations, None)
-    done = 0
     while waiting:
-        batch = [one for one, _ in waiting.fullest()]
-        integrate_together(batch, timeline)
-        done += len(batch)
-        report(done)
+        integrate_together([one for one, _ in waiting.fullest()], timeline)
 
 
 def integrate_together(integrations: Sequence[Integration], timeline: Timeline) -> None:

@@ -1,6 +1,6 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -63,15 +63,13 @@ class Run(NamedTuple):
     """Without the fault; None for a record without a fault, and with ``corpus.truth: none``."""
 
 
-def simulate(scenarios: list[Scenario], *, report: Callable[[int], None] = lambda _: None) -> Response:
+def simulate(scenarios: list[Scenario]) -> Response:
     """Integrate scenarios.
 
     Parameters
     ----------
     scenarios : list of Scenario
         Records to simulate; they share their settings.
-    report : callable, optional
-        Called after each batch with the number of records integrated so far.
 
     Returns
     -------
@@ -86,7 +84,7 @@ def simulate(scenarios: list[Scenario], *, report: Callable[[int], None] = lambd
     runs = runs_of(scenarios)
     wanted = [one for run in runs for one in (run.own, run.twin) if one is not None]
     axis = timeline(common_settings(scenarios))
-    integrate_all(wanted, axis, lambda done: report(done * len(scenarios) // len(wanted)))
+    integrate_all(wanted, axis)
     return response_of(runs)
 
 
