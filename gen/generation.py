@@ -209,10 +209,12 @@ def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> Non
         raise CorpusError(f"{place}: holds a corpus of another recipe, seed or size; choose another name.")
     began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
     now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
-    other = [f"{name} {began.get(name, 'none')} (now {now[name]})" for name in now if began.get(name) != now[name]]
+    other = [name for name in now if began.get(name) != now[name]]
     if other:
+        was, installed = (", ".join(f"{name} {found.get(name, 'none')}" for name in other) for found in (began, now))
         raise CorpusError(
-            f"{place}: was begun with {', '.join(other)}, which may give other bits; complete it with these, or choose another name."
+            f"{place}: was begun with {was}; {installed} is installed and can give other samples: install the former to "
+            "complete it, or choose another name."
         )
 
 

@@ -29,7 +29,7 @@ from gen.corpus.where import nearest
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
-_MOST_IN_BLOCK = 1024  # records; drawn values are text of some kilobytes a record
+_MOST_IN_BLOCK = 1024  # records; scenarios are text of some kilobytes a record
 _SPAN = 8  # times the records of a block; variables are read with those of the records between the chosen ones
 _SAME = ("Conventions", "raceway_format")  # global attributes of every corpus
 _OF_THE_WHOLE = ("summary", "id", "naming_authority")  # facts of publication that a choice of records does not have
@@ -284,10 +284,9 @@ def _renamed(corpora: Sequence[xr.Dataset], rename: Mapping[str, str]) -> list[x
     found = []
     for corpus in corpora:
         names = [rename.get(name, name) for name in channel_names(corpus)]
-        if len(set(names)) < len(names):
-            raise CorpusError(
-                f"rename: two channels would be named {', '.join(sorted(names))}; give each its own name."
-            )
+        twice = next((name for name in names if names.count(name) > 1), None)
+        if twice is not None:
+            raise CorpusError(f"rename: two channels would be named {twice}; give each its own name.")
         found.append(corpus.assign_coords(channel=("channel", np.array(names, object), corpus["channel"].attrs)))
     return found
 

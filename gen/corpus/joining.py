@@ -180,6 +180,6 @@ def check_repeats(digests: NDArray[np.bytes_], places: Sequence[tuple[str, NDArr
         first, second = int(one[found]), int(other[found])
         raise CorpusError(
             f"{names[owner[second]]}: record {number[second]} has the same samples as record {number[first]} of "
-            f"{names[owner[first]]}, and a record that is there twice can be in training and test set at once; give corpora of "
+            f"{names[owner[first]]}, and a record that occurs twice can be in the training and in the test set; give corpora of "
             "different seeds, or leave these records out (--where)."
         )

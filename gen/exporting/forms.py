@@ -154,10 +154,10 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
     if suffix and to is not None:
         raise CorpusError(f"{target}: {suffix} is one file, and --to {to} makes a folder; leave one of the two out.")
     form = to or suffix[1:] or "folder"
-    if codec is not None and (codec not in CODECS or form not in ("folder", "nc")):
-        raise CorpusError(
-            f"codec: {codec!r} is not one of {', '.join(CODECS)} for a corpus; leave it out for other forms."
-        )
+    if codec is not None and codec not in CODECS:
+        raise CorpusError(f"codec: there is no codec {codec!r}; allowed are {', '.join(CODECS)}.")
+    if codec is not None and form not in ("folder", "nc"):
+        raise CorpusError(f"codec: --codec is for corpora; leave it out for {form}.")
     package, extra = _NEEDS.get(form, ("", ""))
     if package and find_spec(package) is None:
         raise CorpusError(f"{form}: needs {package}; pip install 'raceway[{extra}]', or choose another form.")

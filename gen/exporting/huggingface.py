@@ -121,5 +121,5 @@ _READING = """\
     signal = records["{split}"].with_format("numpy")[0]["acceleration_{channel}"]  # m s-2
     name = records["{split}"].features["fault"].int2str(records["{split}"][0]["fault"])
 
-A fault that is not known is null. Records of one specimen are all in the same split.
+A fault that is not known is null.
 """

@@ -152,9 +152,9 @@ def test_far_apart_records_are_read_and_written_like_near_ones(tmp_path, monkeyp
         ({"split": "tets"}, "there is no split 'tets'"),
         ({"channels": ["c"]}, "source: channels: there is no channel 'c'"),
         ({"rename": {"c": "d"}}, "rename: there is no channel 'c'; allowed are a, b."),
-        ({"rename": {"a": "b"}}, "rename: two channels would be named b, b; give each its own name."),
-        ({"codec": "lz4"}, "codec: 'lz4' is not one of zlib, zstd, none"),
-        ({"to": "csv", "codec": "zstd"}, "leave it out for other forms"),
+        ({"rename": {"a": "b"}}, "rename: two channels would be named b; give each its own name."),
+        ({"codec": "lz4"}, "codec: there is no codec 'lz4'; allowed are zlib, zstd, none."),
+        ({"to": "csv", "codec": "zlib"}, "codec: --codec is for corpora; leave it out for csv."),
     ],
     ids=str,
 )
