@@ -58,7 +58,7 @@ def feature_table(
     Parameters
     ----------
     corpus
-        The folder of the corpus.
+        Folder or file of the corpus.
     groups
         Some of ``features.indicators.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
     speed

@@ -110,7 +110,7 @@ def open_waveforms(
     Parameters
     ----------
     corpus
-        The folder of the corpus.
+        Folder or file of the corpus.
     channel
         Name of the channel, or its number from 0.
     normalise

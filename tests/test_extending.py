@@ -15,7 +15,7 @@ TASKS = (
     "file of a corpus",
     "fact of publication",
     "section of the data card",
-    "form of export",
+    "form of copy",
     "baseline",
     "bearing",
     "label",

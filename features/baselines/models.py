@@ -187,7 +187,7 @@ def evaluate(
     Parameters
     ----------
     data
-        A feature table, or the folder of a corpus to compute features of.
+        A feature table, or the folder or file of a corpus to compute features of.
     model
         A model, or the path of a model file.
     reference

@@ -114,7 +114,7 @@ def recording_reference(
     fs
         Sample rate [Hz].
     corpus
-        Folder of the corpus to be tested.
+        Folder or file of the corpus to be tested.
     file
         Path of the recording, with which an error sentence begins.
     shaft_rate

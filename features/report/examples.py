@@ -38,7 +38,7 @@ def plot_record(
     Parameters
     ----------
     corpus
-        The folder of the corpus.
+        Folder or file of the corpus.
     record
         Its number, from 0.
     path

@@ -23,7 +23,7 @@ _BOTH = (
 
 
 def publication_attributes(manifest: Manifest) -> dict[str, str]:
-    """Global attributes of ``index.nc``, of single files and of exports, beside those of the parts.
+    """Global attributes of ``index.nc``, of single files and of copies in other forms, beside those of the parts.
 
     They follow from the manifest alone: its ``publication``, its counts and the hash of its parts.
     """

@@ -1,4 +1,4 @@
-"""Stored records of a file, some at a time, read without xarray: for features, checks, copies and exports."""
+"""Stored records of a file, some at a time, read without xarray: for features, checks and copies."""
 
 import math
 import zlib

@@ -30,7 +30,7 @@ ncdump, nccopy, NCO, Octave, R's ncdf4, h5py, netCDF4 and xarray read single fil
 without text variables. MATLAB was not tried. [copying.md](copying.md) has the versions.
 
 Facts about the records are fields of `manifest.json`, and global attributes of `index.nc` and of a single file, there
-as JSON where they are not text. Each is there only if it has something to tell:
+as JSON where they are not text. A fact without content is left out:
 
 | fact | content |
 |---|---|

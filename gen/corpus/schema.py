@@ -29,14 +29,14 @@ _CONTENT_OF_ROLES = {  # words of ISO 19115-1 in the attribute coverage_content_
     "provenance": "auxiliaryInformation",
 }
 SIGNAL = "acceleration"
-DRAWS = "draws"  # variable of simulated corpora: all drawn values of a record, as JSON of some kilobytes
+DRAWS = "draws"  # variable of simulated corpora: the scenario of a record, as JSON of some kilobytes
 IDENTITY = (
     "identity"  # joined corpora get new numbers from it, so that a machine has the same number in all of their records
 )
 SIGNAL_DIMS = ("record", "channel", "elapsed_time")
 _RATES = ("shaft_rate", "load", "ftf", "bpfo", "bpfi", "bsf")
 _HIGHEST = 1e8
-MISSING_COUNT = -32768  # value that a missing part reads as; the converter never gives it
+MISSING_COUNT = -32768  # count of a missing sample (_FillValue); the converter never gives it
 
 
 class Variable(NamedTuple):

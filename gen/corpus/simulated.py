@@ -56,7 +56,7 @@ SIMULATED = (
     Variable("step_error", "f8", "1", "provenance", "relative rms change of the bodies' motion at half the step, NaN if not tried"),
     Variable("fault_tries", "i2", "1", "provenance", "faults drawn before this one, which could not be seen"),
     Variable("level_tries", "i2", "1", "provenance", "levels drawn before this one, at which the fault could not be seen"),
-    Variable(DRAWS, "str", "1", "provenance", "every drawn value of the record, as JSON"),
+    Variable(DRAWS, "str", "1", "provenance", "the whole scenario of the record, as JSON"),
 )  # fmt: skip
 
 

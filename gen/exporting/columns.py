@@ -66,7 +66,7 @@ class Export:
 
     @cached_property
     def columns(self) -> list[Column]:
-        """Columns of the per-record variables: those of every corpus first, drawn values last."""
+        """Columns of the per-record variables: those of every corpus first, the scenario last."""
         corpus = self.chosen.corpora[0]
         schema = [variable.name for variable in SCHEMA]
         further = [name for name in per_record(corpus) if name not in schema and name != DRAWS]
@@ -84,7 +84,7 @@ class Export:
         signal = f"{chosen.samples / chosen.sample_rate:g} s at {chosen.sample_rate:g} Hz"
         channels = ", ".join(map(plain_text, chosen.channels))
         count = f"{chosen.count} of {chosen.of} records of {'a corpus' if len(chosen.paths) == 1 else f'{len(chosen.paths)} corpora'}"
-        about = f"{count}, {signal}, channels {channels}, in m s-2, copied by Raceway. `record` is their number there."
+        about = f"{count}, {signal}, channels {channels}, in m s-2, copied by Raceway. `record` is the number of the record in the source."
         lines = [f"# {self.title}", "", about]
         for name, heading in _TERMS.items():
             text = plain_text(chosen.attributes.get(name, ""))

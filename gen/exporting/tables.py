@@ -26,7 +26,7 @@ Writer = Callable[[Block, Iterable[Sequence[Any]]], None]
 
 @contextmanager
 def label_table(export: Export, folder: Path, more: Sequence[str] = ()) -> Iterator[Writer]:
-    """Write ``labels.csv``, one row a record: its number in the corpus, its file, ``more``, and its labels without the drawn values."""
+    """Write ``labels.csv``, one row a record: its number in the corpus, its file, ``more``, and its labels without its scenario."""
     columns = [column for column in export.columns if column.variable != DRAWS]
     with (folder / LABELS).open("w", encoding="utf-8", newline="") as stream:
         table = csv.writer(stream, lineterminator="\n")

@@ -113,7 +113,7 @@ def import_cwru(
     source : Path
         Folder of the published MATLAB files; subfolders are searched.
     output : Path
-        Folder of the new corpus.
+        New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
     window : float
         Length of a record [s].
     subset : {"all", "wang"}

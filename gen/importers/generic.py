@@ -31,7 +31,7 @@ from gen.progress import Progress
 from gen.sentences import sentences
 from gen.units import rpm_to_hertz, to_si
 
-_NO_RATE = 10_000.0  # Hz, if no file tells a rate: each is then refused with its own reason
+_NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
 _SPALLS = {"healthy": 0, "cage": 0, "compound": 2, UNKNOWN: -1}
 _SAME_SPEED = 0.02  # relative; files of one recording can differ by less, and the record has the speed of the first
 
@@ -72,7 +72,7 @@ def import_generic(
     source : Path
         The mapping file (YAML).
     output : Path
-        Folder of the new corpus.
+        New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
     window : float
         Length of a record [s].
     folder : Path, optional
@@ -110,7 +110,9 @@ def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
 
 
 def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File, ...]]) -> float:
-    """Sample rate of the corpus [Hz]: the one asked for, or that of all recordings; any if no file tells one, and so none can be used.
+    """Sample rate of the corpus [Hz]: the one asked for, or that of all recordings.
+
+    It is 10 kHz if no file states one; every file is then skipped.
 
     Raises
     ------

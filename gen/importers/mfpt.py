@@ -45,7 +45,7 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
     source : Path
         Folder of the published MATLAB files; subfolders are searched.
     output : Path
-        Folder of the new corpus.
+        New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
     window : float
         Length of a record [s].
     progress : callable, optional

@@ -39,7 +39,7 @@ def rebuilding(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
         window = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])
         words = ["raceway", "import", manifest.importer, "SRC", "--window", f"{window:g}", "-o", _NEW]
         lines += [
-            "With your copy of the recordings in place of SRC, and with the other options of the import, which the folder does not tell:",
+            "With your copy of the recordings in place of SRC, and the other options of the import, which are not stored in the corpus:",
             "",
             *("```sh", _quoted(words), "```"),
         ]

@@ -1,6 +1,6 @@
 """Least, median and largest value of each quantity of a corpus, for its data card.
 
-The per-record variables are those of every corpus. A simulated corpus also has ``draws``, every drawn value of a record as JSON; its
+The per-record variables are those of every corpus. A simulated corpus also has ``draws``, the scenario of a record as JSON; its
 quantities are taken from some records, because all of them would take long to read. Their units are those of the recipe's keys in SI.
 """
 
