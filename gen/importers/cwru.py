@@ -19,8 +19,9 @@ from gen.corpus import Variable
 from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.files import FloatArray, UnusableError, one_column
-from gen.importers.matlab import read_matlab
+from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
+from gen.importers.resampling import resampled
 from gen.physics.catalogue import CATALOGUE
 from gen.progress import Progress
 from gen.units import HORSEPOWER, MIL, STANDARD_GRAVITY, rpm_to_hertz
@@ -220,21 +221,16 @@ def _at_12_khz(signal: FloatArray) -> tuple[FloatArray, str]:
     All four were published at 48 kHz; copies resampled to 12 kHz exist. The files do not state their sample rate, so it is taken from the
     length: 244,000 samples (97) or 484,000 at 48 kHz, at most 121,000 at 12 kHz.
     """
-    from scipy.signal import resample_poly  # loads scipy.stats
-
     if signal.size <= _LONGEST_AT_12_KHZ:
         return signal, f"its {signal.size} samples are taken as resampled from 48 to 12 kHz by somebody else"
-    resampled = resample_poly(signal, 1, 4)
-    return resampled, (
-        f"its {signal.size} samples are taken as recorded at 48 kHz and resampled to 12 kHz with "
-        "scipy.signal.resample_poly(x, 1, 4), which attenuates above 5 kHz: compare below 5 kHz"
-    )
+    slower, sentence = resampled(signal, 4 * FS, FS)
+    return slower, f"its {signal.size} samples are taken as recorded at 48 kHz and {sentence}"
 
 
 def _labelled_rpm(path: Path, variable: str, nominal: int) -> tuple[float, tuple[str, ...]]:
     """Speed in the file, or the nominal speed with a warning if the file has none or one far from it [rpm]."""
     try:
-        rpm = float(one_column(read_matlab(path, variable))[0])
+        rpm = read_number(path, variable)
     except UnusableError as reason:
         return nominal, (f"{reason}: the nominal {nominal} rpm of its motor load are used",)
     if not abs(rpm / nominal - 1) <= _SPEED_TOLERANCE:

@@ -18,12 +18,12 @@ from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.assumptions import assumptions
 from gen.importers.conversion import accelerations, doubts
-from gen.importers.files import FloatArray, UnusableError, one_column
+from gen.importers.files import FloatArray, UnusableError
 from gen.importers.listing import File, listed_recordings, name_of_recording
 from gen.importers.mapping import MappingFile, read_mapping
 from gen.importers.mapping_keys import Facts
 from gen.importers.mapping_values import bearing_of
-from gen.importers.matlab import read_matlab
+from gen.importers.matlab import read_number
 from gen.importers.recordings import Candidate, Recording
 from gen.importers.resampling import resampled
 from gen.importers.signals import read_values
@@ -46,13 +46,15 @@ class _Target(NamedTuple):
 class _Joined(NamedTuple):
     """Values of each channel in the unit of the files, shape (time,), and their sample rate [Hz].
 
-    ``stated`` is the sample rate that the files state themselves; ``absolute`` tells whether the values have a unit.
+    ``stated`` is the sample rate that the files state themselves; ``absolute`` tells whether the values have a unit; ``facts`` are
+    those of the first file.
     """
 
     values: list[FloatArray]
     fs: float
     stated: float | None
     absolute: bool
+    facts: Facts
 
 
 def import_generic(
@@ -144,11 +146,7 @@ def _measured(file: File) -> dict[str, float]:
         if file.path.suffix.lower() != ".mat":
             message = f"has no variables, and {key} is to be read from {reading.variable}; give {key} as a number"
             raise UnusableError(message)
-        value = read_matlab(file.path, reading.variable)
-        try:
-            number = float(value.item() if value.size == 1 else one_column(value)[0])
-        except ValueError:
-            number = math.nan
+        number = read_number(file.path, reading.variable)
         if not math.isfinite(number):
             message = f"holds {reading.variable}, which is no number for {key}"
             raise UnusableError(message)
@@ -157,7 +155,7 @@ def _measured(file: File) -> dict[str, float]:
 
 
 def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, specimen: int) -> Recording:
-    values, rate, stated, absolute = _joined(files)
+    values, rate, stated, absolute, facts = _joined(files)
     warnings: list[str] = []
     signals: list[FloatArray] = []
     for sensor, column in zip(files[0].section.sensors(), values, strict=True):
@@ -177,7 +175,7 @@ def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, speci
             raise UnusableError(message)
         signal, sentence = resampled(signal, rate, target.fs)
         warnings.append(sentence)
-    return _recording(_facts(files[0]), signal, number, rig, specimen)._replace(warnings=tuple(warnings))
+    return _recording(facts, signal, number, rig, specimen)._replace(warnings=tuple(warnings))
 
 
 def _joined(files: tuple[File, ...]) -> _Joined:
@@ -186,8 +184,8 @@ def _joined(files: tuple[File, ...]) -> _Joined:
     speeds: list[float] = []
     stated: float | None = None
     absolute = True
-    for file in files:
-        facts = _facts(file)
+    every = [_facts(file) for file in files]
+    for file, facts in zip(files, every, strict=True):
         found = [read_values(file.path, sensor.place) for sensor in file.section.sensors(file.groups)]
         rate = facts.sample_rate_hz or found[0].fs
         if rate is None:
@@ -202,7 +200,9 @@ def _joined(files: tuple[File, ...]) -> _Joined:
     if max(speeds) > (1 + _SAME_SPEED) * min(speeds):
         message = f"is joined of files at {min(speeds):g} to {max(speeds):g} rpm; give each recording a name of its own"
         raise UnusableError(message)
-    return _Joined([np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), stated, absolute)
+    return _Joined(
+        [np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), stated, absolute, every[0]
+    )
 
 
 def _facts(file: File) -> Facts:

@@ -4,6 +4,7 @@ Data sets name the same variable differently in every file. So a name can have a
 in the file.
 """
 
+import math
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from itertools import islice
@@ -15,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.hdf5 import LIBRARY_LOCK, ForeignStorageError, own_dataset
-from gen.importers.files import UnusableError, guarded
+from gen.importers.files import UnusableError, guarded, one_column
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
@@ -43,6 +44,15 @@ def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
         with LIBRARY_LOCK:
             in_hdf5 = h5py.is_hdf5(path)
         return _read_hdf5(path, variable) if in_hdf5 else _read(path, variable)
+
+
+def read_number(path: Path, variable: str | None) -> float:
+    """Number in a file, which can be a text or the first of several; NaN if it is neither. Errors as in :func:`read_matlab`."""
+    value = read_matlab(path, variable)
+    try:
+        return float(value.item() if value.size == 1 else one_column(value)[0])
+    except ValueError:
+        return math.nan
 
 
 def _content(path: Path, only: str | None = None) -> dict[str, Any]:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.files import UnusableError, one_column
-from gen.importers.matlab import read_matlab
+from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.importers.resampling import resampled
 from gen.physics.catalogue import CATALOGUE
@@ -113,6 +113,6 @@ def _read(path: Path, fault: str, number: int) -> Recording:
 def _number(path: Path, variable: str) -> float:
     """Number in a file, which some files hold as text; NaN if it is missing or not a number."""
     try:
-        return float(read_matlab(path, variable).item())
-    except (UnusableError, ValueError):
+        return read_number(path, variable)
+    except UnusableError:
         return math.nan

@@ -61,7 +61,7 @@ class Record(NamedTuple):
     columns: dict[str, Any]
 
 
-def read_recording(candidate: Candidate, length: int, fs: float, channels: tuple[str, ...] = ("",)) -> Recording:
+def read_recording(candidate: Candidate, length: int, fs: float, channels: tuple[str, ...]) -> Recording:
     """Read a candidate that must hold at least ``length`` samples at ``fs`` [Hz]; the signal is then of shape (channel, time).
 
     Raises
