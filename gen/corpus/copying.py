@@ -22,7 +22,7 @@ from gen.corpus.choice import channel_names, chosen_channels, chosen_records
 from gen.corpus.index import open_corpus
 from gen.corpus.joining import check_fit, check_repeats, new_numbers, sample_digests, with_same_variables
 from gen.corpus.layout import PACKING, stored_signal
-from gen.corpus.manifest import Manifest, read_manifest, recipe_text
+from gen.corpus.manifest import COUNTED, Manifest, read_manifest, recipe_text
 from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL
 from gen.corpus.where import nearest
@@ -33,17 +33,6 @@ _MOST_IN_BLOCK = 1024  # records; scenarios are text of some kilobytes a record
 _SPAN = 8  # times the records of a block; variables are read with those of the records between the chosen ones
 _SAME = ("Conventions", "raceway_format")  # global attributes of every corpus
 _OF_THE_WHOLE = ("summary", "id", "naming_authority")  # facts of publication that a choice of records does not have
-_OWN_FACTS = {
-    "raceway_format",
-    "complete",
-    "records",
-    "signals",
-    "index",
-    "parts",
-    "parts_sha256",
-    "publication",
-    "title",
-}
 _FACTS_OF_THE_WHOLE = {"recipe_sha256", "overrides", "recordings"}
 
 
@@ -157,7 +146,7 @@ class Chosen:
     def facts(self) -> dict[str, Any]:
         """Fields of the manifest of a copy: those that all corpora share, and all sentences of any; of a choice, no hash of the whole."""
         each = [manifest.model_dump(mode="json", exclude_unset=True) for manifest in self.manifests]
-        left_out = _OWN_FACTS | (_FACTS_OF_THE_WHOLE if self.asked else set())
+        left_out = {*COUNTED, "title"} | (_FACTS_OF_THE_WHOLE if self.asked else set())
         found: dict[str, Any] = {"title": self.title, "publication": self.publication}
         for name in dict.fromkeys(name for facts in each for name in facts if name not in left_out):
             values = [facts.get(name) for facts in each]

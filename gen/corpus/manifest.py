@@ -36,7 +36,7 @@ _PART_NAME = re.compile(r"part-\d{5,9}\.nc")
 _TEXTS = ("title", "recipe", "recipe_sha256", "sources_sha256", "parts_sha256", "importer")
 """Facts that are text; the others are stored as JSON in global attributes."""
 
-_COUNTED = ("raceway_format", "complete", "records", "signals", "publication", "parts_sha256", "parts")
+COUNTED = ("raceway_format", "complete", "records", "signals", "publication", "parts_sha256", "parts")
 """Facts that :func:`facts_of_parts` computes or checks."""
 
 _Sentences = tuple[str, ...]
@@ -108,7 +108,7 @@ def facts_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complet
     """
     rows = list(rows)
     publication: Publication = facts.get("publication") or Publication()
-    known = {name: value for name, value in facts.items() if name not in _COUNTED and value is not None}
+    known = {name: value for name, value in facts.items() if name not in COUNTED and value is not None}
     return {
         "raceway_format": FORMAT,
         "complete": complete,
