@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from gen.corpus import LIBRARY_LOCK, check_result_file, whole_or_not_at_all
+from gen.corpus import LIBRARY_LOCK, check_result, whole_or_not_at_all
 from gen.errors import CorpusError
 from gen.limits import check_limit
 
@@ -50,7 +50,7 @@ def check_destination(path: Path | str) -> None:
     if path.suffix == ".parquet" and find_spec("pyarrow") is None:
         message = f"{path}: Parquet needs pyarrow; pip install 'raceway[parquet]', or write .nc instead."
         raise CorpusError(message)
-    check_result_file(path, "feature table")
+    check_result(path, "feature table")
 
 
 def read_table(path: Path | str) -> xr.Dataset:

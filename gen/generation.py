@@ -6,10 +6,9 @@ of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are t
 """
 
 import platform
-import shutil
 import threading
 from collections.abc import Callable, Generator, Iterator
-from contextlib import AbstractContextManager, closing, contextmanager, nullcontext
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -20,9 +19,10 @@ from gen.corpus import (
     MANIFEST_NAME,
     RECIPE_NAME,
     SignalCounts,
-    check_name,
+    check_place,
     corpus_files,
     facts_of_parts,
+    file_facts,
     finish_corpus,
     finish_file,
     is_single_file,
@@ -30,7 +30,9 @@ from gen.corpus import (
     part_name,
     read_manifest,
     remove_left_behind_of,
+    remove_parts,
     remove_temporary_files,
+    row_of,
     write_durably,
     write_manifest,
     writing,
@@ -108,6 +110,7 @@ def generate(
     """
     checked = read_recipe(recipe, seed=seed, records=records)
     target = Path(target)
+    check_place(target)
     folder = target.with_name(f"{target.name}.parts") if is_single_file(target) else target
     facts = facts_of(checked, {"seed": seed, "records": records})
     if is_single_file(target) and target.exists():
@@ -117,7 +120,10 @@ def generate(
             remove_left_behind_of(target)
         _prepare(folder, Path(find_recipe(recipe)), facts)
         outcomes = _all_parts(Tally(checked, progress), folder, workers, client, notice)
-        return _finish(target, folder, outcomes, facts)
+        found = _finish(target, folder, outcomes, facts)
+        if folder is not target:
+            remove_parts(folder, map(part_name, range(checked.n_parts)))
+        return found
 
 
 def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
@@ -135,7 +141,11 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
     corpus_files(file)
     manifest = read_manifest(file)
     _check_same(file, manifest, facts)
-    shutil.rmtree(folder, ignore_errors=True)  # a call was killed between the last two steps
+    with suppress(CorpusError):  # not left by a call that was killed between the last two steps
+        left = read_manifest(folder)
+        if not left.complete and left.recipe_sha256 == manifest.recipe_sha256:
+            with locked(folder):
+                remove_parts(folder, map(part_name, range(recipe.n_parts)))
     return Generated(file, manifest.records, recipe.n_parts, recipe.n_parts, manifest.failures, manifest.signals)
 
 
@@ -171,7 +181,6 @@ def _finish(target: Path, folder: Path, outcomes: list[Outcome], facts: dict[str
 @contextmanager
 def _claimed(folder: Path) -> Iterator[None]:
     """Create the folder and lock it against other calls."""
-    check_name(folder)
     if folder.exists() and not folder.is_dir():
         raise CorpusError(f"{folder}: is a file; give a folder, or a file that ends in .nc, for the corpus.")
     with writing(folder):
@@ -190,6 +199,7 @@ def _prepare(folder: Path, recipe_path: Path, facts: dict[str, Any]) -> None:
         if (folder / MANIFEST_NAME).exists():
             manifest = read_manifest(folder)
             _check_same(folder, manifest, facts)
+            _check_generated(folder, manifest)
             if not facts["publication"].stored:
                 facts["publication"] = manifest.publication  # given after the corpus was made
         elif any(folder.iterdir()):
@@ -216,6 +226,13 @@ def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> Non
             f"{place}: was begun with {was}; {installed} is installed and can give other samples: install the former to "
             "complete it, or choose another name."
         )
+
+
+def _check_generated(folder: Path, manifest: "Manifest") -> None:
+    """Refuse a copy: its parts have other records than those that are generated, and would be made again."""
+    whole = next(filter(row_of, (folder / "parts" / row.name for row in manifest.parts)), None)
+    if whole is not None and "recipe_sha256" not in file_facts(whole)[0]:
+        raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
 
 
 class Tally:

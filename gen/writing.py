@@ -21,7 +21,7 @@ from gen.corpus import (
     SIMULATED,
     NewCorpus,
     Variable,
-    check_new_target,
+    check_new,
     make_dataset,
     new_corpus,
 )
@@ -63,7 +63,7 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
         sample rate, length, channels or converter than others.
     """
     target = Path(target).absolute()
-    check_new_target(target)
+    check_new(target)
     if not isinstance(dataset, xr.Dataset):
         raise CorpusError(f"{type(dataset).__name__} given in place of a Dataset; give one from gen.records.")
     rows = dataset if "record" in dataset.dims else _as_one_row(dataset)

@@ -5,7 +5,6 @@ score of a random split of records, which leaks; the grouped score with labels p
 at chance; and the score on another corpus.
 """
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from importlib.metadata import version
@@ -33,7 +32,7 @@ from features.baselines.severities import Widths, uncovered_in_splits
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
 from features.baselines.tracks import TRACKS, Track
 from features.waveforms import Waveforms
-from gen.corpus import FAULTS, write_text_durably
+from gen.corpus import FAULTS, write_numbers
 from gen.errors import CorpusError
 from gen.progress import Progress
 
@@ -292,4 +291,4 @@ def _content(records: Records, unknown: int) -> Content:
 
 def write_results(results: Results, path: Path) -> None:
     """Write results as JSON, whole or not at all."""
-    write_text_durably(json.dumps(asdict(results), indent=1, allow_nan=False) + "\n", path)
+    write_numbers(asdict(results), path)

@@ -40,7 +40,7 @@ from features.baselines.references import RELATIVE, paired_table, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
-from gen.corpus import UNKNOWN_CODE, check_result_file
+from gen.corpus import UNKNOWN_CODE, check_result
 from gen.errors import CorpusError
 from gen.progress import Progress
 
@@ -250,7 +250,7 @@ def save_model(model: Model, path: Path | str) -> None:
         raise CorpusError(
             f"{path}: {model.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
         )
-    check_result_file(Path(path), "model")
+    check_result(Path(path), "model")
     relative = None if model.relative is None else _content(model.relative)
     write_model_file({"raceway_model": FORMAT, **_content(model), "relative": relative}, Path(path))
 

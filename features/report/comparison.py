@@ -4,7 +4,6 @@
 with all numbers. Names of folders are escaped by the page and not drawn.
 """
 
-import json
 from pathlib import Path
 from typing import NamedTuple
 
@@ -15,11 +14,11 @@ from features.indicators import Orders
 from features.realism.comparison import SHARES, Comparison
 from features.realism.measures import MEASURES, NAMES, Measure
 from features.realism.windows import Windows, typical_window
-from features.report.page import make_folder, template
+from features.report.page import template
 from features.report.pictures import Shown, picture
 from features.report.sides import draw_distributions, draw_sides
 from features.signal.rows import FloatArray
-from gen.corpus import FAULTS, write_text_durably
+from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_durably
 
 TYPICAL = "kurtosis"  # an example has the median of this measure, which every class has
 
@@ -67,8 +66,8 @@ def write_comparison(comparison: Comparison, output: Path | str) -> Path:
         classes=[_part(comparison, fault) for fault in comparison.auc],
         typical=TYPICAL,
     )
-    make_folder(output)
-    write_text_durably(json.dumps(comparison.plain(), indent=1, allow_nan=False) + "\n", output / "comparison.json")
+    make_result_folder(output)
+    write_numbers(comparison.plain(), output / "comparison.json")
     write_text_durably(page, output / "report.html")
     return output / "report.html"
 

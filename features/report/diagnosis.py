@@ -25,7 +25,7 @@ from features.report.pictures import (
     name_lines,
     picture,
 )
-from gen.corpus import check_result_file, write_text_durably
+from gen.corpus import check_result, write_text_durably
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
 DRAWN_HARMONICS = 3  # of each family
@@ -74,7 +74,7 @@ def write_diagnosis(
         fs=recording.fs,
         assumed=assumed,
     )
-    check_result_file(Path(output), "page")
+    check_result(Path(output), "page")
     write_text_durably(page, Path(output))
 
 

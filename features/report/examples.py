@@ -11,7 +11,7 @@ from features.channels import channel_number
 from features.faults import COMBS, LOOKS
 from features.indicators import Orders, feature_names, indicators
 from features.report.pictures import PictureFormat, Shown, draw_record, picture
-from gen.corpus import FAULT_NAMES, SIGNAL, check_result_file, open_corpus, write_durably
+from gen.corpus import FAULT_NAMES, SIGNAL, check_result, open_corpus, write_durably
 from gen.errors import CorpusError
 
 CANDIDATES = 15  # records of a class among which its example is chosen
@@ -79,7 +79,7 @@ def plot_record(
             f"finite number or not positive; choose another record."
         )
         raise CorpusError(message)
-    check_result_file(path, "picture")
+    check_result(path, "picture")
     write_durably(picture(draw_record(shown), formats[suffix]), path)
 
 

@@ -27,11 +27,10 @@ from gen.corpus import (
     FAULTS,
     SPLITS,
     Manifest,
-    check_result_folder,
+    make_result_folder,
     open_corpus,
     read_manifest,
     write_text_durably,
-    writing,
 )
 
 LONGEST_TEXT = 300
@@ -86,7 +85,7 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
             **_scores(results),
             facts=_facts(read_manifest(corpus), results),
         )
-    make_folder(output)
+    make_result_folder(output)
     write_results(results, output / "results.json")
     write_text_durably(page, output / "report.html")
     return output / "report.html"
@@ -105,13 +104,6 @@ def template(name: str) -> jinja2.Template:
     environment.filters["figure"] = lambda value: "–" if value is None else f"{value:.3f}"
     environment.filters["image"] = lambda svg: f"data:image/svg+xml;base64,{base64.b64encode(svg).decode()}"
     return environment.get_template(name)
-
-
-def make_folder(output: Path) -> None:
-    """Create the folder of a page if it does not exist; CorpusError if the disk refuses."""
-    check_result_folder(output)
-    with writing(output):
-        output.mkdir(parents=True, exist_ok=True)
 
 
 def _content(corpus: xr.Dataset) -> dict[str, Any]:

@@ -25,7 +25,7 @@ from features.indicators import WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients, psd, psd_whitened
-from gen.corpus import FAULT_NAMES
+from gen.corpus import FAULT_NAMES, GENERATOR
 
 PictureFormat = Literal["png", "svg", "pdf"]
 
@@ -81,8 +81,12 @@ class Quantity(NamedTuple):
 def picture(figure: Figure, suffix: PictureFormat) -> bytes:
     """Encode a figure; equal figures give equal bytes."""
     stream = io.BytesIO()
-    undated = {"svg": {"Date": None}, "pdf": {"CreationDate": None}, "png": {}}[suffix]
-    figure.savefig(stream, format=suffix, metadata=undated)
+    facts = {
+        "svg": {"Creator": GENERATOR, "Date": None},
+        "pdf": {"Creator": GENERATOR, "CreationDate": None},
+        "png": {"Software": GENERATOR},
+    }[suffix]
+    figure.savefig(stream, format=suffix, metadata=facts)
     return stream.getvalue()
 
 

@@ -44,14 +44,12 @@ from gen.lazy import lazy_names
 if TYPE_CHECKING:
     from gen.corpus.acdd import publication_attributes
     from gen.corpus.blocks import RecordBlock, read_channel, stored_blocks, stored_columns
-    from gen.corpus.card.page import card_folder, data_card, write_card
+    from gen.corpus.card.page import card_folder, check_card, data_card, write_card
     from gen.corpus.codecs import CODECS, Codec
     from gen.corpus.croissant import write_croissant
     from gen.corpus.description import format_page
     from gen.corpus.files import (
         check_name,
-        check_new_file,
-        check_new_folder,
         plain_file,
         remove_left_behind,
         remove_left_behind_of,
@@ -64,7 +62,7 @@ if TYPE_CHECKING:
         write_text_durably,
         writing,
     )
-    from gen.corpus.finishing import finish_corpus, finish_file, publish, remove_temporary_files
+    from gen.corpus.finishing import finish_corpus, finish_file, publish, remove_parts, remove_temporary_files
     from gen.corpus.hdf5 import LIBRARY_LOCK
     from gen.corpus.index import open_corpus
     from gen.corpus.layout import stored_signal
@@ -84,9 +82,17 @@ if TYPE_CHECKING:
         row_of,
         write_manifest,
     )
-    from gen.corpus.new import NewCorpus, check_new_target, is_single_file, new_corpus
+    from gen.corpus.new import NewCorpus, is_single_file, new_corpus
     from gen.corpus.open_files import file_facts
-    from gen.corpus.outputs import check_new_corpus, check_result_file, check_result_folder
+    from gen.corpus.outputs import (
+        GENERATOR,
+        check_new,
+        check_place,
+        check_result,
+        check_result_folder,
+        make_result_folder,
+        write_numbers,
+    )
     from gen.corpus.part import PartRow, part_name, write_part
     from gen.corpus.publication import Creator, Publication, read_publication
     from gen.corpus.reading import open_part
@@ -120,6 +126,7 @@ __all__ = [
     "FAULTS",
     "FAULT_NAMES",
     "FORMAT",
+    "GENERATOR",
     "IDENTITY",
     "INDEX_NAME",
     "LIBRARY_LOCK",
@@ -145,12 +152,11 @@ __all__ = [
     "SignalCounts",
     "Variable",
     "card_folder",
+    "check_card",
     "check_name",
-    "check_new_corpus",
-    "check_new_file",
-    "check_new_folder",
-    "check_new_target",
-    "check_result_file",
+    "check_new",
+    "check_place",
+    "check_result",
     "check_result_folder",
     "class_names",
     "complaint",
@@ -168,6 +174,7 @@ __all__ = [
     "is_single_file",
     "locked",
     "make_dataset",
+    "make_result_folder",
     "new_corpus",
     "open_corpus",
     "open_part",
@@ -182,6 +189,7 @@ __all__ = [
     "record_blocks",
     "remove_left_behind",
     "remove_left_behind_of",
+    "remove_parts",
     "remove_temporary_files",
     "row_of",
     "sha256",
@@ -199,6 +207,7 @@ __all__ = [
     "write_croissant",
     "write_durably",
     "write_manifest",
+    "write_numbers",
     "write_part",
     "write_text_durably",
     "writing",
@@ -210,16 +219,15 @@ __getattr__, __dir__ = lazy_names(
     {
         "gen.corpus.acdd": ("publication_attributes",),
         "gen.corpus.blocks": ("RecordBlock", "read_channel", "stored_blocks", "stored_columns"),
-        "gen.corpus.card.page": ("card_folder", "data_card", "write_card"),
+        "gen.corpus.card.page": ("card_folder", "check_card", "data_card", "write_card"),
         "gen.corpus.codecs": ("CODECS", "Codec"),
         "gen.corpus.croissant": ("write_croissant",),
         "gen.corpus.description": ("format_page",),
         "gen.corpus.files": (
-            "check_name", "check_new_file", "check_new_folder", "plain_file", "remove_left_behind", "remove_left_behind_of",
-            "sha256", "temporary_beside", "temporary_folder", "whole_folder_or_none", "whole_or_not_at_all", "write_durably",
-            "write_text_durably", "writing",
+            "check_name", "plain_file", "remove_left_behind", "remove_left_behind_of", "sha256", "temporary_beside", "temporary_folder",
+            "whole_folder_or_none", "whole_or_not_at_all", "write_durably", "write_text_durably", "writing",
         ),
-        "gen.corpus.finishing": ("finish_corpus", "finish_file", "publish", "remove_temporary_files"),
+        "gen.corpus.finishing": ("finish_corpus", "finish_file", "publish", "remove_parts", "remove_temporary_files"),
         "gen.corpus.hdf5": ("LIBRARY_LOCK",),
         "gen.corpus.index": ("open_corpus",),
         "gen.corpus.layout": ("stored_signal",),
@@ -228,9 +236,11 @@ __getattr__, __dir__ = lazy_names(
             "INDEX_NAME", "MANIFEST_NAME", "RECIPE_NAME", "Check", "Manifest", "corpus_files", "facts_as_attributes",
             "facts_of_parts", "read_manifest", "recipe_text", "record_blocks", "row_of", "write_manifest",
         ),
-        "gen.corpus.new": ("NewCorpus", "check_new_target", "is_single_file", "new_corpus"),
+        "gen.corpus.new": ("NewCorpus", "is_single_file", "new_corpus"),
         "gen.corpus.open_files": ("file_facts",),
-        "gen.corpus.outputs": ("check_new_corpus", "check_result_file", "check_result_folder"),
+        "gen.corpus.outputs": (
+            "GENERATOR", "check_new", "check_place", "check_result", "check_result_folder", "make_result_folder", "write_numbers",
+        ),
         "gen.corpus.part": ("PartRow", "part_name", "write_part"),
         "gen.corpus.publication": ("Creator", "Publication", "read_publication"),
         "gen.corpus.reading": ("open_part",),

@@ -132,20 +132,6 @@ def check_name(path: Path) -> None:
         raise CorpusError(f"{path}: the name is not UTF-8, and netCDF needs UTF-8; choose another.") from None
 
 
-def check_new_folder(path: Path) -> None:
-    """Refuse a folder that holds something, and a name that netCDF cannot open."""
-    check_name(path)
-    if path.is_symlink() or (path.exists() and not (path.is_dir() and not any(path.iterdir()))):
-        raise CorpusError(f"{path}: exists and is not an empty folder; give a new folder, or remove this one first.")
-
-
-def check_new_file(path: Path) -> None:
-    """Refuse a file that exists, and a name that netCDF cannot open."""
-    check_name(path)
-    if path.exists() or path.is_symlink():
-        raise CorpusError(f"{path}: exists; give a new name, or remove it first.")
-
-
 @contextmanager
 def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     """Temporary path to write to: it is flushed to disk and then replaces ``path`` in one step, or is removed if anything fails.
@@ -173,9 +159,9 @@ def whole_folder_or_none(path: Path) -> Iterator[Path]:
     Raises
     ------
     CorpusError
-        If ``path`` exists and is not an empty folder, or if writing fails, with the reason that the system gives.
+        If writing fails, with the reason that the system gives; also if ``path`` exists by then and is not an empty folder.
     """
-    check_new_folder(path)
+    check_name(path)
     path = path.absolute()  # "." has no name
     with temporary_beside(path) as temporary, writing(path, temporary):
         remove_left_behind_of(path)

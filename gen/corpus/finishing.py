@@ -1,12 +1,12 @@
 """The files of a finished corpus beside its parts: index, manifest, data card; one file of all parts; a change of the publication."""
 
-import shutil
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from gen.corpus.acdd import publication_attributes
-from gen.corpus.card.page import write_card
+from gen.corpus.card.page import check_card, write_card
 from gen.corpus.croissant import CROISSANT_NAME, write_croissant
 from gen.corpus.files import remove_left_behind, remove_left_behind_of
 from gen.corpus.index import corpus_attributes, join_parts, rewrite_attributes, write_index
@@ -41,11 +41,10 @@ def finish_corpus(directory: Path, rows: Iterable[PartRow], **facts: Any) -> Sig
 
 
 def finish_file(directory: Path, rows: Iterable[PartRow], file: Path, **facts: Any) -> SignalCounts:
-    """Write all parts of a folder into one file, and remove the folder; returns the counts of records that cannot be used."""
+    """Write all parts of a folder into one file; returns the counts of records that cannot be used."""
     rows = list(rows)
     content = facts_of_parts(rows, facts)
     join_parts(directory, rows, corpus_attributes(content, recipe_text(directory), directory), file)
-    shutil.rmtree(directory)
     return SignalCounts(**content["signals"])
 
 
@@ -57,6 +56,17 @@ def remove_temporary_files(directory: Path) -> None:
     remove_left_behind(directory / "pictures", "*.png")
 
 
+def remove_parts(directory: Path, names: Iterable[str]) -> None:
+    """Remove the parts of a finished single file, with the manifest and recipe beside them, and the folder if it holds nothing else."""
+    remove_temporary_files(directory)
+    parts = directory / "parts"
+    for file in (*(parts / name for name in names), directory / RECIPE_NAME, directory / MANIFEST_NAME):
+        file.unlink(missing_ok=True)
+    for folder in (parts, directory):
+        with suppress(OSError):  # a file of the user is in it
+            folder.rmdir()
+
+
 def publish(path: Path | str, publication: Publication) -> None:
     """Change licence, creators and references of a finished corpus.
 
@@ -66,9 +76,10 @@ def publish(path: Path | str, publication: Publication) -> None:
     Raises
     ------
     CorpusError
-        If the corpus is unfinished or altered, another call changes it, or a file cannot be written.
+        If the corpus is unfinished, altered or a part of another, another call changes it, or a file or its data card cannot be written.
     """
     path = Path(path)
+    check_card(path)
     corpus_files(path)
     manifest = read_manifest(path)
     publication = publication.dated()

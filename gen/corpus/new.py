@@ -9,8 +9,6 @@ import xarray as xr
 
 from gen.corpus.codecs import Codec
 from gen.corpus.files import (
-    check_new_file,
-    check_new_folder,
     remove_left_behind_of,
     temporary_beside,
     whole_folder_or_none,
@@ -19,6 +17,7 @@ from gen.corpus.files import (
 )
 from gen.corpus.finishing import finish_corpus, finish_file
 from gen.corpus.manifest import RECIPE_NAME
+from gen.corpus.outputs import check_new
 from gen.corpus.part import PartRow, part_name, write_part
 from gen.errors import CorpusError
 
@@ -39,11 +38,6 @@ class NewCorpus:
 def is_single_file(target: Path) -> bool:
     """Whether a corpus with this name is one file."""
     return target.suffix == ".nc"
-
-
-def check_new_target(target: Path) -> None:
-    """Refuse a target that exists, before any work is done."""
-    (check_new_file if is_single_file(target) else check_new_folder)(target)
 
 
 @contextmanager
@@ -69,11 +63,12 @@ def new_corpus(
         If the target exists, no part was written, or writing fails, with the reason that the system gives.
     """
     target = Path(target).absolute()
-    check_new_target(target)
+    check_new(target)
     if is_single_file(target):
         parts = target.with_name(f"{target.name}.parts")
         with temporary_beside(parts) as folder, writing(target, folder):
             remove_left_behind_of(parts)
+            remove_left_behind_of(target)
             yield from _written(folder, target, codec, recipe_text, facts)
         return
     with whole_folder_or_none(target) as folder:

@@ -1,23 +1,54 @@
-"""Places of results: a result replaces an earlier result of its kind and nothing else, and no file of a corpus."""
+"""Places of corpora and results: nothing is written into a corpus, and nothing replaced but an earlier result of the same kind."""
 
+import json
+import zipfile
+from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import Any
 
 import h5py
 
+from gen.corpus.files import check_name, write_text_durably, writing
+from gen.corpus.manifest import INDEX_NAME
 from gen.errors import CorpusError
 
-_HDF5, _PARQUET, _ZIP = b"\x89HDF", b"PAR1", b"PK"
-KINDS: dict[str, tuple[bytes, ...]] = {
-    "feature table": (_HDF5, _PARQUET),
-    "model": (_ZIP,),
-    "page": (b"<!doctype html",),
-    "picture": (b"\x89PNG", b"<?xml", b"%PDF"),
-}
-"""First bytes of the files of each kind of result."""
+GENERATOR = "Raceway"
+"""Name that pages, pictures and numbers have among their facts."""
+_MARKS = tuple(
+    mark.encode()
+    for mark in (
+        f'<meta name="generator" content="{GENERATOR}">',
+        f'"generator": "{GENERATOR}"',
+        f"Software\0{GENERATOR}",  # PNG
+        f"<dc:title>{GENERATOR}</dc:title>",  # SVG
+        f"/Creator ({GENERATOR})",  # PDF
+    )
+)
+_HEAD, _TAIL = 4096, 65_536  # bytes with the facts of a file; those of PDF are before the list of objects at its end
+_OF_PAGES = (".html", ".json", ".png")
 
 
-def check_result_file(path: Path, kind: str | None) -> None:
-    """Refuse a file for a result that lies in a corpus, or exists and is no result of the same kind.
+def check_place(path: Path) -> None:
+    """Refuse a place that no corpus can have: one in another corpus, a name that netCDF cannot open, and that of an index."""
+    check_name(path)
+    _check_outside(path, path.parent)
+    if path.name == INDEX_NAME:
+        raise CorpusError(f"{path}: {INDEX_NAME} is the name of the index in a corpus; choose another name.")
+
+
+def check_new(path: Path) -> None:
+    """Refuse a target that is neither absent nor an empty folder, and a place that no corpus can have."""
+    check_place(path)
+    is_file = path.suffix in (".nc", ".parquet")
+    place = path.parent.resolve() / path.name  # new/../old does not exist, and is old once new does
+    if place.is_symlink() or (place.exists() and (is_file or not place.is_dir() or any(place.iterdir()))):
+        raise CorpusError(
+            f"{path}: exists{'' if is_file else ' and is not an empty folder'}; give a new name, or remove it first."
+        )
+
+
+def check_result(path: Path, kind: str | None) -> None:
+    """Refuse a file for a result that lies in a corpus, or exists and is no earlier result of the same kind.
 
     Parameters
     ----------
@@ -33,36 +64,76 @@ def check_result_file(path: Path, kind: str | None) -> None:
     """
     _check_outside(path, path.parent)
     if path.is_file() and path.stat().st_size and (kind is None or not _is_of_kind(path, kind)):
-        is_none = "" if kind is None else f" and is no {kind}"
+        is_none = "" if kind is None else f" and is no {kind} of raceway"
         raise CorpusError(f"{path}: exists{is_none}; give another name, or remove it first.")
 
 
 def check_result_folder(path: Path) -> None:
-    """Refuse a folder for results that is a corpus, or lies in one."""
+    """Refuse a folder for pages that is a corpus, lies in one, or holds a page, picture or JSON file that Raceway did not make."""
     _check_outside(path, path)
+    for file in sorted(path.glob("*")):
+        if file.suffix in _OF_PAGES and file.is_file() and not _is_of_kind(file, "page"):
+            raise CorpusError(f"{file}: was not made by raceway; choose another folder, or move it first.")
 
 
-def check_new_corpus(path: Path) -> None:
-    """Refuse a corpus within another."""
-    _check_outside(path, path.parent)
+def make_result_folder(path: Path) -> None:
+    """Create the folder of a page if it does not exist; CorpusError if it is refused, or cannot be written."""
+    check_result_folder(path)
+    with writing(path):
+        path.mkdir(parents=True, exist_ok=True)
+
+
+def write_numbers(content: Mapping[str, Any], path: Path) -> None:
+    """Write results as JSON, whole or not at all."""
+    text = json.dumps({"generator": GENERATOR, **content}, indent=1, allow_nan=False)
+    write_text_durably(f"{text}\n", path)
+
+
+def corpus_around(folder: Path) -> Path | None:
+    """Corpus that a folder is, or lies in; None without."""
+    real = folder.resolve()
+    around = (real, *real.parents)
+    return next((it for it in around if (it / "manifest.json").is_file() and (it / "parts").is_dir()), None)
 
 
 def _check_outside(path: Path, folder: Path) -> None:
-    real = folder.resolve()
-    for corpus in (real, *real.parents):
-        if (corpus / "manifest.json").is_file() and (corpus / "parts").is_dir():
-            raise CorpusError(f"{path}: is in the corpus {corpus}; choose a place outside it.")
+    if (corpus := corpus_around(folder)) is not None:
+        raise CorpusError(f"{path}: is in the corpus {corpus}; choose a place outside it.")
 
 
 def _is_of_kind(path: Path, kind: str) -> bool:
-    with path.open("rb") as file:
-        start = file.read(16)
-    if not start.startswith(KINDS[kind]):
-        return False
-    if not start.startswith(_HDF5):
-        return True
     try:
-        with h5py.File(path, "r", locking=False) as content:
-            return "features" in content
-    except OSError:
+        return KINDS[kind](path)
+    except Exception:  # noqa: BLE001  the readers of zip, HDF5 and Parquet raise many unrelated types for other files
         return False
+
+
+def _is_table(path: Path) -> bool:
+    if path.suffix == ".parquet":
+        from pyarrow import parquet
+
+        return b"records_with_missing_features" in parquet.read_metadata(path).metadata
+    with h5py.File(path, "r", locking=False) as content:
+        return {"features", "feature"} <= content.keys() and "sha256" in content.attrs
+
+
+def _is_model(path: Path) -> bool:
+    with zipfile.ZipFile(path) as archive:
+        return b'"raceway_model"' in archive.read("schema.json")
+
+
+def _is_marked(path: Path) -> bool:
+    with path.open("rb") as file:
+        head = file.read(_HEAD)
+        file.seek(max(0, path.stat().st_size - _TAIL))
+        ends = head + file.read()
+    return any(mark in ends for mark in _MARKS)
+
+
+KINDS: Mapping[str, Callable[[Path], bool]] = {
+    "feature table": _is_table,
+    "model": _is_model,
+    "page": _is_marked,
+    "picture": _is_marked,
+}
+"""Kinds of files that a result replaces, and whether Raceway wrote a file of this kind."""

@@ -10,6 +10,7 @@ from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.copying import choose
 from gen.corpus.files import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
 from gen.corpus.new import NewCorpus, new_corpus
+from gen.corpus.outputs import check_new
 from gen.errors import CorpusError
 from gen.exporting.columns import Export
 from gen.exporting.csv_files import write_csv
@@ -100,12 +101,12 @@ def copy(
     ------
     CorpusError
         If nothing is chosen, the sources do not fit together or hold the same records, one is unfinished or altered, a form needs a
-        package that is not installed, or the target exists, lies in a source or cannot be written.
+        package that is not installed, or the target exists, lies in a corpus or cannot be written.
     """
     paths = [Path(path) for path in ([sources] if isinstance(sources, str | Path) else sources)]
     target = Path(target)
     form = _form(target, to, codec)
-    _check_target(target, paths)
+    check_new(target)
     write = _writer(form, single=target.suffix in SUFFIXES)
     with choose(paths, where=where, split=split, channels=channels, rename=rename, float32=float32) as chosen:
         export = Export(chosen, counter(progress, chosen.count))
@@ -162,16 +163,3 @@ def _form(target: Path, to: str | None, codec: str | None) -> str:
     if package and find_spec(package) is None:
         raise CorpusError(f"{form}: needs {package}; pip install 'raceway[{extra}]', or choose another form.")
     return form
-
-
-def _check_target(target: Path, sources: Sequence[Path]) -> None:
-    """Refuse a target that holds something, or that is, contains or lies in one of the sources."""
-    place = target.resolve()
-    for source in sources:
-        own = source.resolve()
-        if place == own or place in own.parents or own in place.parents:
-            raise CorpusError(f"{target}: is, contains or lies in the source {source}; give another place.")
-    if target.is_symlink() or (target.exists() and not (target.is_dir() and not any(target.iterdir()))):
-        raise CorpusError(f"{target}: exists and is not an empty folder; give a new name, or remove it first.")
-    if target.suffix in (".nc", ".parquet") and target.exists():
-        raise CorpusError(f"{target}: is a folder; give the name of a new file.")

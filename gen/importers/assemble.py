@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from gen.corpus import NewCorpus, Publication, Variable, check_new_target, identity, make_dataset, new_corpus
+from gen.corpus import NewCorpus, Publication, Variable, check_new, identity, make_dataset, new_corpus
 from gen.errors import CorpusError
 from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
@@ -91,7 +91,7 @@ def import_recordings(
         If the output exists, the window is shorter than two samples, no file can be used, or writing fails.
     """
     output = output.absolute()
-    check_new_target(output)
+    check_new(output)
     samples = window * collection.fs
     length = round(samples) if math.isfinite(samples) else 0
     if length < 2:

@@ -148,9 +148,9 @@ def target_option(what: str) -> Decorator:
     """Make the option that names a new corpus, which lies in no other: a file if the name ends in .nc, else a folder."""
 
     def check(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
-        from gen.corpus import check_new_corpus  # not at the top: help needs nothing of gen
+        from gen.corpus import check_place  # not at the top: help needs nothing of gen
 
-        check_new_corpus(path)
+        check_place(path)
         return path
 
     return click.option("-o", "--output", type=A_PATH, required=True, metavar="TARGET", help=what, callback=check)
@@ -187,9 +187,9 @@ def file_option(
             raise click.BadParameter(f"{path} is a folder; give a file")
         if not path.parent.is_dir():
             raise click.BadParameter(f"there is no folder {path.parent}; create it first")
-        from gen.corpus import check_result_file  # not at the top: help needs nothing of gen
+        from gen.corpus import check_result  # not at the top: help needs nothing of gen
 
-        check_result_file(path, kind)
+        check_result(path, kind)
         return path
 
     return click.option("-o", "--output", type=A_PATH, required=required, metavar=metavar, help=what, callback=check)

@@ -22,6 +22,8 @@ from features.report.pictures import STYLE, WIDTH, Shown, draw_content, draw_env
 from gen.corpus import (
     FAULT_NAMES,
     card_folder,
+    check_card,
+    locked,
     open_corpus,
     read_manifest,
     remove_temporary_files,
@@ -56,16 +58,23 @@ def complete_card(path: Path, scores: Path | None = None) -> CardAdditions:
     CorpusError
         If the corpus is unfinished or altered, the scores are of another corpus, or a file cannot be written.
     """
-    manifest, folder = read_manifest(path), card_folder(path)
-    remove_temporary_files(folder)
+    check_card(path)
     with open_corpus(path) as corpus:
-        known = read_additions(folder, manifest)
-        taken = known.scores if scores is None else read_scores(scores, corpus)
-        pictures = _write_pictures(folder / PICTURES, corpus)
-    added = CardAdditions(parts=manifest.parts_sha256 or "", pictures=pictures, scores=taken)
-    write_additions(folder, added)
-    write_card(path)
-    write_croissant(path)
+        given = None if scores is None else read_scores(scores, corpus)
+        manifest, folder = read_manifest(path), card_folder(path)
+        with writing(folder):
+            folder.mkdir(exist_ok=True)
+        with locked(folder):
+            remove_temporary_files(folder)
+            known = read_additions(folder, manifest)
+            write_additions(
+                folder, known
+            )  # first, since it tells the folder of a card from one that holds something else
+            pictures = _write_pictures(folder / PICTURES, corpus)
+            added = CardAdditions(parts=known.parts, pictures=pictures, scores=given or known.scores)
+            write_additions(folder, added)
+            write_card(path)
+            write_croissant(path)
     return added
 
 

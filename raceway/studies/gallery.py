@@ -15,7 +15,7 @@ from features.indicators import Orders
 from features.report.envelopes import draw_envelopes, draw_waterfall
 from features.report.pictures import Shown, fault_lines, picture
 from gen import generate, open_corpus
-from gen.corpus import FAULTS, check_result_folder, write_durably, write_text_durably, writing
+from gen.corpus import FAULTS, make_result_folder, write_durably, write_text_durably
 from gen.physics.profile import share_at
 from gen.scenarios import Specimen, read_scenario
 from raceway.console.progress import progress
@@ -28,7 +28,8 @@ from raceway.studies.statements import Finding, findings, span
 _STATES = {"healthy": "H", "cracked": "C"}  # state of the bearing, and first letter of the paper's statements about it
 
 _PAGE = """<!doctype html>
-<html lang="en"><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Raceway: gallery</title>
+<html lang="en"><meta charset="utf-8"><meta name="generator" content="Raceway">
+<meta name="viewport" content="width=device-width"><title>Raceway: gallery</title>
 <style>
 body {{ font: 15px/1.5 sans-serif; color: #222; max-width: 66rem; margin: 2rem auto; padding: 0 1rem }}
 img {{ max-width: 100%; display: block; margin: 1rem 0 }}
@@ -55,9 +56,7 @@ class Section(NamedTuple):
 
 def write_gallery(output: Path) -> tuple[Path, list[Path]]:
     """Write the page, its pictures and the two corpora that they show into a folder; returns the page and the pictures."""
-    check_result_folder(output)
-    with writing(output):
-        output.mkdir(parents=True, exist_ok=True)
+    make_result_folder(output)
     sections = [*_paper(output), _every_fault(output), _run_up(output), _orbits(output), _sensor_faults(output)]
     page = output / "index.html"
     write_text_durably(_PAGE.format(sections="\n".join(map(_html, sections))), page)

@@ -8,9 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from features.report.pictures import picture
-from gen.corpus import check_result_folder, write_durably, write_text_durably, writing
+from gen.corpus import make_result_folder, write_durably, write_numbers
 from gen.errors import SimulationError
-from raceway.console.show import json_text
+from raceway.console.show import plain
 from raceway.studies.experiments import experiment, worded
 from raceway.studies.measures import (
     asymmetry,
@@ -173,9 +173,7 @@ def reproduced(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> list[Fi
     SimulationError
         If a system leaves the finite range.
     """
-    check_result_folder(folder)
-    with writing(folder):
-        folder.mkdir(parents=True, exist_ok=True)
+    make_result_folder(folder)
     found = []
     for name, preset in presets.items():
         made = run(preset)
@@ -184,5 +182,5 @@ def reproduced(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> list[Fi
         found += findings(name, made)
         for figure, drawn in (*draw_schematics(preset), *draw_figures(made)):
             write_durably(picture(drawn, "png"), folder / f"{name}-{figure}.png")
-    write_text_durably(json_text({"findings": [finding._asdict() for finding in found]}), folder / "findings.json")
+    write_numbers(plain({"findings": [finding._asdict() for finding in found]}), folder / "findings.json")
     return found

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 from distributed import LocalCluster
 
-from gen import sources
+from gen import copy, sources
 from gen.corpus import (
     FAULTS,
     SIGNAL,
@@ -195,7 +195,7 @@ def changed(before):
     return [path for path, stat in before.items() if path.exists() and path.stat().st_mtime_ns != stat.st_mtime_ns]
 
 
-@pytest.mark.parametrize("step", ["join_parts", "shutil.rmtree"])
+@pytest.mark.parametrize("step", ["corpus.finishing.join_parts", "generation.remove_parts"])
 def test_a_call_that_ends_in_one_of_the_last_steps_of_a_file_is_completed(
     recipe_file, single, tmp_path, monkeypatch, step
 ):
@@ -203,12 +203,40 @@ def test_a_call_that_ends_in_one_of_the_last_steps_of_a_file_is_completed(
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr(f"gen.corpus.finishing.{step}", killed)
+        patch.setattr(f"gen.{step}", killed)
         with pytest.raises(KeyboardInterrupt):
             generate(recipe_file, tmp_path / "c.nc")
     assert (tmp_path / "c.nc.parts").exists()
     assert generate(recipe_file, tmp_path / "c.nc").kept == 3
     assert_the_same_corpus(tmp_path / "c.nc", single)
+
+
+@pytest.mark.parametrize("step", [None, "corpus.finishing.join_parts", "generation.remove_parts"])
+def test_files_of_the_user_beside_the_parts_of_a_file_stay(recipe_file, single, tmp_path, monkeypatch, step):
+    target = tmp_path / "c.nc"
+    notes = [tmp_path / "c.nc.parts" / name for name in ("notes.txt", "parts/notes.txt")]
+    if step is None:
+        shutil.copyfile(single.path, target)
+        notes[1].parent.mkdir(parents=True)
+    else:
+        with monkeypatch.context() as patch:
+            patch.setattr(f"gen.{step}", lambda *_: 1 / 0)
+            with pytest.raises(ZeroDivisionError):
+                generate(recipe_file, target)
+    for note in notes:
+        note.write_text("mine")
+    generate(recipe_file, target)
+    assert validate_corpus(target) == []
+    assert {path for path in (tmp_path / "c.nc.parts").rglob("*") if path.is_file()} == set(notes)
+
+
+def test_a_copy_is_not_generated_again(recipe_file, whole, tmp_path):
+    (copied := tmp_path / "copied").mkdir()
+    copy(whole.path, copied)
+    before = files(copied)
+    with pytest.raises(CorpusError, match="holds a copy of a corpus, which is not generated again"):
+        generate(recipe_file, copied)
+    assert files(copied) == before
 
 
 def test_a_corpus_interrupted_before_its_first_part_was_done_is_completed_too(

@@ -173,9 +173,7 @@ def test_records_of_two_recipes_in_one_dataset_are_replayed_and_their_machines_k
 def test_a_folder_that_holds_something_is_left_as_it_is(ladder, tmp_path):
     (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
     for place in (tmp_path, tmp_path / "notes.txt"):
-        with pytest.raises(
-            CorpusError, match="exists and is not an empty folder; give a new folder, or remove this one first"
-        ):
+        with pytest.raises(CorpusError, match="exists and is not an empty folder; give a new name, or remove it first"):
             gen.write_corpus(ladder, place)
     assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
 

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gen.corpus import card_folder, open_corpus, read_manifest, sha256, validate_corpus
+from gen.corpus import card_folder, locked, open_corpus, read_manifest, sha256, validate_corpus
+from gen.errors import CorpusError
 from raceway.commands.publishing import card
 from raceway.studies import card_pictures
 from tests.kills import killed
@@ -196,3 +197,32 @@ def test_the_command_on_the_card_makes_the_same_parts_again(run, told, tiny_reci
     (line,) = block.partition("```")[0].splitlines()
     assert run(*shlex.split(line)[1:]).exit_code == 0
     assert read_manifest(tmp_path / "again").parts_sha256 == read_manifest(corpus).parts_sha256
+
+
+@pytest.mark.parametrize("foreign", ["README.md", "pictures/record-inner.png"])
+def test_a_folder_of_the_user_is_no_place_for_a_card(run, copied, foreign):
+    if copied.is_dir():
+        pytest.skip("the card of a folder is in it")
+    note = card_folder(copied) / foreign
+    note.parent.mkdir(parents=True)
+    note.write_text("mine")
+    before = contents(copied)
+    result = run("card", copied, "--license", "MIT")
+    assert "holds no data card of raceway; move it, or give the corpus another name." in result.stderr
+    assert contents(copied) == before
+
+
+def test_a_file_of_a_corpus_gets_no_card(run, copied):
+    if copied.is_file():
+        pytest.skip("a single file has no parts")
+    before = contents(copied)
+    result = run("card", copied / "parts" / "part-00000.nc", "--license", "MIT")
+    assert f"is a file of the corpus {copied.resolve()}; give that corpus." in result.stderr
+    assert contents(copied) == before
+
+
+def test_one_call_at_a_time_makes_a_card(copied):
+    folder = card_folder(copied)
+    folder.mkdir(exist_ok=True)
+    with locked(folder), pytest.raises(CorpusError, match="another raceway command is writing into it"):
+        card_pictures.complete_card(copied)

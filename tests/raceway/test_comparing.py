@@ -28,7 +28,7 @@ def test_the_auc_of_every_class_and_measure_is_printed_as_json(told, sets, tmp_p
     assert set(found["yardstick"]) == {"first", "second"}
     assert set(found["quantiles"]["outer"]["kurtosis"]) == {"synthetic", "real", "first", "second"}
     stored = json.loads((tmp_path / "out" / "comparison.json").read_text())
-    assert stored == {key: value for key, value in found.items() if key != "report"}
+    assert stored == {"generator": "Raceway"} | {key: value for key, value in found.items() if key != "report"}
     assert found["report"] == str(tmp_path / "out" / "report.html")
 
 

@@ -145,7 +145,7 @@ def test_bench_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, 
 def test_the_seed_paper_is_drawn_and_its_statements_are_listed(run, told, tmp_path):
     folder = tmp_path / "ophel"
     found = told("reproduce", "ophel2025", "--preset", "paper", "-o", folder)
-    assert found == json.loads((folder / "findings.json").read_text())
+    assert {"generator": "Raceway"} | found == json.loads((folder / "findings.json").read_text())
     assert sorted(path.name for path in folder.glob("*.png")) == [f"paper-figure{n}.png" for n in range(1, 7)]
     holding = [finding["id"] for finding in found["findings"] if finding["holds"]]
     shown = run("reproduce", "ophel2025", "--preset", "paper", "-o", folder).stdout

@@ -1,16 +1,20 @@
-"""No command writes over its input, into a corpus, or over a file of another kind; a result of the same kind is replaced."""
+"""No command writes over its input, into a corpus, or over a file that it did not make; an earlier result is replaced."""
 
 import shutil
+import zipfile
 from pathlib import Path
 
 import click
+import h5py
 import numpy as np
 import pytest
+import xarray as xr
 
 from features.baselines import save_model, train
+from features.report.examples import plot_record
 from features.table import feature_table
 from features.table_files import write_table
-from gen import copy
+from gen import copy, generate, write_corpus
 from gen.corpus import corpus_files, read_manifest
 from gen.errors import CorpusError
 from raceway.cli import cli
@@ -62,6 +66,21 @@ def all_commands(group: click.Group, *before: str) -> list[str]:
     return found
 
 
+def of_the_user(corpus: Path, folder: Path) -> list[Path]:
+    """Files of the formats of results that raceway did not make as results: HDF5, a zip with a model, Parquet, HTML and SVG."""
+    folder.mkdir()
+    names = [folder / name for name in ("a.nc", "a.zip", "a.parquet", "a.html", "a.svg")]
+    with h5py.File(names[0], "w") as file:
+        file["features"] = 1.0
+    with zipfile.ZipFile(names[1], "w") as archive:
+        archive.write(folder.parent / "model.skops", "model.skops")
+        archive.writestr("schema.json", "{}")
+    copy(corpus, names[2], where="specimen == 0")
+    names[3].write_text("<!doctype html>\n<title>Raceway</title>")
+    names[4].write_text("<?xml version='1.0'?><svg/>")
+    return names
+
+
 def test_every_command_with_an_output_is_tried():
     tried = {line.partition(" {")[0] for line in RESULTS} | {"reproduce"}
     assert set(all_commands(cli)) <= tried
@@ -86,6 +105,23 @@ def test_a_corpus_is_no_folder_for_other_results(run, places, line, tmp_path):
     assert contents(tmp_path) == before
 
 
+@pytest.mark.parametrize("name", ["results.json", "report.html", "index.html", "figure1.png"])
+@pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if name == "report"])
+def test_a_folder_with_pages_of_the_user_is_refused(run, places, line, name, tmp_path):
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / name).write_text("Raceway and I")
+    result = run(*line.format(**places).split(), "-o", tmp_path / "mine")
+    assert result.exit_code == 2, result.output
+    assert f"{name}: was not made by raceway; choose another folder, or move it first." in result.stderr
+    assert (tmp_path / "mine" / name).read_text() == "Raceway and I"
+
+
+@pytest.mark.parametrize("name", ["result.png", "result.svg", "result.pdf"])
+def test_pictures_of_all_formats_are_recognised(places, name, tmp_path):
+    for _ in range(2):
+        plot_record(places["corpus"], 1, tmp_path / name)
+
+
 @pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." in name])
 def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
     corpus, suffix = places["corpus"], Path(RESULTS[line]).suffix
@@ -97,10 +133,10 @@ def test_a_file_of_another_kind_is_not_replaced(run, places, line, tmp_path):
         places["recipe"],
         places["recording"],
     ]
-    for number, file in enumerate(files):
+    for number, file in enumerate([*files, *of_the_user(corpus, tmp_path / "own")]):
         shutil.copy(file, tmp_path / f"{number}{suffix}")
     before = contents(tmp_path)
-    for number in range(len(files)):
+    for number in range(len(files) + 5):
         result = run(*line.format(**places).split(), "-o", tmp_path / f"{number}{suffix}")
         assert result.exit_code == 2, result.output
         assert "; give another name, or remove it first." in result.stderr
@@ -125,4 +161,17 @@ def test_the_python_writers_keep_the_same_rule(places, tmp_path):
             save_model(train(table, "majority"), path)
     with pytest.raises(CorpusError, match="exists and is no model"):
         save_model(train(table, "majority"), places["recipe"])
+    assert contents(tmp_path) == before
+
+
+@pytest.mark.parametrize("place", ["corpus/parts/x.nc", "corpus/x", "index.nc"])
+def test_no_corpus_has_a_place_in_another_nor_the_name_of_an_index(places, tmp_path, place):
+    before = contents(tmp_path)
+    for write in (
+        lambda: copy(places["corpus"], tmp_path / place),
+        lambda: generate(places["recipe"], tmp_path / place),
+        lambda: write_corpus(xr.Dataset(), tmp_path / place),
+    ):
+        with pytest.raises(CorpusError, match=r"choose a place outside it|is the name of the index in a corpus"):
+            write()
     assert contents(tmp_path) == before

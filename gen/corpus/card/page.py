@@ -11,11 +11,25 @@ from gen.corpus.card.terms import citation, terms
 from gen.corpus.files import write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, corpus_files, read_manifest, recipe_text
+from gen.corpus.outputs import corpus_around
+from gen.errors import CorpusError
 
 
 def card_folder(path: Path) -> Path:
     """Folder of the data card of a corpus: its own, or for a single file ``NAME.nc`` the folder ``NAME.card`` beside it."""
     return path.with_suffix(".card") if path.is_file() else path
+
+
+def check_card(path: Path) -> None:
+    """Refuse a file of records that lies in a corpus, or has something else than its data card in the folder for it."""
+    folder = card_folder(path)
+    if folder == path:
+        return
+    if (corpus := corpus_around(path.parent)) is not None:
+        raise CorpusError(f"{path}: is a file of the corpus {corpus}; give that corpus.")
+    is_card = (folder / additions.CARD_NAME).exists() and corpus_around(folder) is None
+    if not is_card and any(folder.glob("[!.]*")):  # hidden files are those of a killed call
+        raise CorpusError(f"{folder}: holds no data card of raceway; move it, or give the corpus another name.")
 
 
 def data_card(path: Path | str) -> str:

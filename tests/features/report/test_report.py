@@ -197,7 +197,8 @@ def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatc
 
 
 def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, page, tmp_path):
-    assert write_report(corpus, results, tmp_path).read_text() == page
+    for _ in range(2):
+        assert write_report(corpus, results, tmp_path).read_text() == page
     held = json.loads((tmp_path / "results.json").read_text())
     assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "results.json"]
     assert held["baselines"]["ensemble"]["null"]["accuracy"] == results.baselines["ensemble"].null.accuracy

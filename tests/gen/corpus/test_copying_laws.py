@@ -167,7 +167,7 @@ def test_a_choice_of_nothing_is_refused_and_leaves_nothing(source, tmp_path, cho
 @pytest.mark.parametrize("target", ["source", "source/parts/x.nc", "source/inner", ".", "again/../source"])
 def test_a_copy_never_lies_in_its_source_nor_the_other_way_round(source, tmp_path, target):
     before = tree(source)
-    with pytest.raises(CorpusError, match="is, contains or lies in the source"):
+    with pytest.raises(CorpusError, match=r"exists and is not an empty folder|is in the corpus"):
         copy(source, tmp_path / target)
     assert tree(source) == before
 
@@ -178,9 +178,7 @@ def test_nothing_is_overwritten(source, tmp_path, target):
     (tmp_path / "table.nc").mkdir()
     for name in ("there.nc", "there.parquet", "there/note"):
         (tmp_path / name).write_text("mine")
-    with pytest.raises(
-        CorpusError, match=r"exists and is not an empty folder|is a folder; give the name of a new file"
-    ):
+    with pytest.raises(CorpusError, match=r"exists( and is not an empty folder)?; give a new name, or remove it first"):
         copy(source, tmp_path / target)
     assert (tmp_path / "there.nc").read_text() == (tmp_path / "there/note").read_text() == "mine"
 

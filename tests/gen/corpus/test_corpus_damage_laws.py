@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from gen.corpus import (
     SIGNAL,
-    check_new_target,
+    check_new,
     facts_of_parts,
     finish_corpus,
     open_corpus,
@@ -362,7 +362,7 @@ def test_a_pipe_or_a_folder_is_not_replaced_by_a_file(tmp_path):
 def test_no_corpus_is_written_over_anything(copied, file):
     for corpus in (copied, file):
         before = {path: path.read_bytes() for path in [*corpus.rglob("*"), corpus] if path.is_file()}
-        for refuse in (check_new_target, write_corpus):
+        for refuse in (check_new, write_corpus):
             with pytest.raises(CorpusError, match="exists"):
                 refuse(corpus)
         assert all(path.read_bytes() == content for path, content in before.items())
