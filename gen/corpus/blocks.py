@@ -10,7 +10,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.corpus.layout import is_bare_dimension, is_deflated, is_text, packing_of
+from gen.corpus.layout import is_bare_dimension, is_text
 from gen.corpus.open_files import close, opened, source_of
 from gen.corpus.part import inflated
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems
@@ -44,9 +44,7 @@ def read_channel(
     """
     source, rows = source_of(block.file), range(block.first, block.stop)
     with opened(source) as file:
-        stored = file.signal()
-        records, _, samples = stored.shape
-        packing, deflated = packing_of(stored), is_deflated(stored)
+        stored, (records, _, samples), packing, deflated = file.signal()
         read: Any = (
             stored_chunks(stored, rows, range(channel, channel + 1))
             if deflated
@@ -70,10 +68,8 @@ def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
     source, first, records = source_of(path), 0, 1
     while first < records:
         with opened(source) as file:
-            stored = file.signal()
-            records, channels, samples = stored.shape
+            stored, (records, channels, samples), _, deflated = file.signal()
             block = range(first, min(first + max(1, _BLOCK_SAMPLES // max(1, channels * samples)), records))
-            deflated = is_deflated(stored)
             read: Any = stored_chunks(stored, block, range(channels)) if deflated else stored[block.start : block.stop]
         if deflated:
             values = np.empty((len(block), channels, samples), np.int16)

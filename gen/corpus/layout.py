@@ -67,7 +67,7 @@ def _is_scale(scale: Any) -> bool:
     return bool(limits.smallest_normal <= scale <= limits.max / -MISSING_COUNT)
 
 
-def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
+def checked_shape(stored: h5py.Dataset) -> tuple[int, int, int]:
     """Shape of a signal after a check of its dimensions, type and size."""
     if stored.ndim != 3 or stored.dtype not in (np.dtype(np.int16), np.dtype(np.float32)):
         raise ValueError(f"{SIGNAL} is of type {stored.dtype} and shape {stored.shape}")
@@ -77,7 +77,7 @@ def checked_shape(stored: h5py.Dataset) -> tuple[int, ...]:
     # every record costs a chunk: a file with fewer chunks could claim any number of records
     if stored.chunks != (1, 1, samples) or stored.id.get_num_chunks() != records * channels:
         raise ValueError(f"{SIGNAL} is not stored as one chunk for each record and channel")
-    return stored.shape
+    return records, channels, samples
 
 
 def is_deflated(stored: h5py.Dataset) -> bool:

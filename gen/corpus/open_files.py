@@ -15,7 +15,7 @@ import netCDF4  # noqa: F401 - tells HDF5 where its zstd filter is
 
 from gen.corpus.files import Stamp, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
-from gen.corpus.layout import attributes_of, checked_shape
+from gen.corpus.layout import Packing, attributes_of, checked_shape, is_deflated, packing_of
 from gen.corpus.schema import SIGNAL
 from gen.errors import CorpusError
 
@@ -30,11 +30,22 @@ class Source(NamedTuple):
     stamp: Stamp
 
 
+class StoredSignal(NamedTuple):
+    """Signal of a file after its check; h5py reads shape, attributes and filters anew each time."""
+
+    dataset: h5py.Dataset
+    shape: tuple[int, int, int]
+    packing: Packing
+    deflated: bool
+    """Whether the chunks are streams for :func:`gen.corpus.part.inflated`."""
+
+
 class OpenFile(NamedTuple):
     """Handle of a file, and its datasets that have been checked."""
 
     handle: h5py.File
     checked: dict[str, h5py.Dataset]
+    signals: dict[str, StoredSignal]
 
     def dataset(self, name: str) -> h5py.Dataset:
         """Dataset whose values are in this file."""
@@ -42,13 +53,12 @@ class OpenFile(NamedTuple):
             self.checked[name] = own_dataset(self.handle, name)
         return self.checked[name]
 
-    def signal(self) -> h5py.Dataset:
-        """Signal of an allowed shape and type."""
-        if SIGNAL not in self.checked:
+    def signal(self) -> StoredSignal:
+        """Signal of an allowed shape, type and packing."""
+        if SIGNAL not in self.signals:
             stored = own_dataset(self.handle, SIGNAL)
-            checked_shape(stored)
-            self.checked[SIGNAL] = stored
-        return self.checked[SIGNAL]
+            self.signals[SIGNAL] = StoredSignal(stored, checked_shape(stored), packing_of(stored), is_deflated(stored))
+        return self.signals[SIGNAL]
 
 
 _open_files: OrderedDict[Source, OpenFile] = OrderedDict()
@@ -95,7 +105,7 @@ def _open_file(source: Source) -> OpenFile:
     if source not in _open_files:
         while len(_open_files) >= MOST_OPEN:
             _open_files.popitem(last=False)[1].handle.close()
-        _open_files[source] = OpenFile(h5py.File(source.path, "r", locking=False), {})
+        _open_files[source] = OpenFile(h5py.File(source.path, "r", locking=False), {}, {})
     _open_files.move_to_end(source)
     return _open_files[source]
 

@@ -4,8 +4,7 @@ Datasets hold paths instead of handles, so they can be pickled, sent to dask wor
 """
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -23,10 +22,8 @@ from gen.corpus.layout import (
     Packing,
     attributes_of,
     is_bare_dimension,
-    is_deflated,
     is_text,
     is_utf8,
-    packing_of,
     plain_attributes,
 )
 from gen.corpus.open_files import OpenFile, Source, close, opened, source_of
@@ -92,26 +89,19 @@ class _Signal(BackendArray):
 
     def _decode(self, part: int, records: range, channels: range, out: NDArray[Any]) -> None:
         """Decode consecutive records of a part into ``out``. Chunks are inflated without the lock, so that threads run in parallel."""
-        with self._stored(part) as stored:
-            if not is_deflated(stored):
+        with opened(self.parts[part]) as file:
+            stored, shape, packing, deflated = file.signal()
+            if (shape, packing) != ((self.starts[part + 1] - self.starts[part], *self.shape[1:]), self.packing):
+                raise CorpusError(
+                    f"{self.parts[part].path}: its signal has another shape or type than the corpus; do not trust this corpus."
+                )
+            if not deflated:
                 self.packing.decode(stored[records.start : records.stop, channels.start : channels.stop], out)
                 return
             chunks = stored_chunks(stored, records, channels)
         inflating = all_inflated(chunks, self.shape[2], self.parts[part].path)
         for place, counts in zip(np.ndindex(out.shape[:2]), inflating, strict=True):
             self.packing.decode(counts, out[place])
-
-    @contextmanager
-    def _stored(self, part: int) -> Iterator[h5py.Dataset]:
-        """Stored signal of a part; CorpusError unless it has the shape and packing of the corpus."""
-        with opened(self.parts[part]) as file:
-            stored = file.signal()
-            shape = int(self.starts[part + 1] - self.starts[part]), *self.shape[1:]
-            if (stored.shape, packing_of(stored)) != (shape, self.packing):
-                raise CorpusError(
-                    f"{self.parts[part].path}: its signal has another shape or type than the corpus; do not trust this corpus."
-                )
-            yield stored
 
 
 def _numbers_of(key: int | slice | NDArray[np.integer[Any]], size: int) -> NDArray[np.integer[Any]]:
@@ -137,11 +127,10 @@ class _Records(BackendEntrypoint):
         """Variables of one file with the signal of ``parts``; ``counts`` are their numbers of records."""
         source, sources = source_of(filename_or_obj), [source_of(path) for path in parts]
         with opened(sources[0]) as file:
-            stored = file.signal()
-            count, *row = stored.shape
-            packing, attributes = packing_of(stored), attributes_of(stored)
+            stored, (count, channels, samples), packing, _ = file.signal()
+            attributes = attributes_of(stored)
         counts = [count] if counts is None else counts
-        signal = _Signal(sources, counts, (row[0], row[1]), packing)
+        signal = _Signal(sources, counts, (channels, samples), packing)
         encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
         attributes.pop("coordinates", None)
         with opened(source) as file:
