@@ -20,6 +20,7 @@ from pathlib import Path
 
 from gen.errors import CorpusError
 
+INDEX_NAME, MANIFEST_NAME, RECIPE_NAME = "index.nc", "manifest.json", "recipe.yaml"
 Stamp = tuple[int, int]
 """Size and time of the last change [ns]; a file with a different stamp has changed."""
 

@@ -17,7 +17,16 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
 from gen.corpus.blocks import RecordBlock, blocks_of
-from gen.corpus.files import has_whole_bytes, plain_file, sha256, stored_checksum, write_text_durably
+from gen.corpus.files import (
+    INDEX_NAME,
+    MANIFEST_NAME,
+    RECIPE_NAME,
+    has_whole_bytes,
+    plain_file,
+    sha256,
+    stored_checksum,
+    write_text_durably,
+)
 from gen.corpus.open_files import file_facts
 from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
@@ -28,7 +37,6 @@ from gen.limits import check_limit
 
 Check = Literal["sha256", "size"]
 
-INDEX_NAME, MANIFEST_NAME, RECIPE_NAME = "index.nc", "manifest.json", "recipe.yaml"
 RECIPE_TEXT = "recipe_text"
 """Global attribute of a single file with its recipe, as ``recipe.yaml`` of a folder."""
 

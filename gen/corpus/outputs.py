@@ -6,10 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
 
-import h5py
-
-from gen.corpus.files import check_name, write_text_durably, writing
-from gen.corpus.manifest import INDEX_NAME
+from gen.corpus.files import INDEX_NAME, check_name, write_text_durably, writing
 from gen.errors import CorpusError
 
 GENERATOR = "Raceway"
@@ -113,6 +110,8 @@ def _is_table(path: Path) -> bool:
         from pyarrow import parquet
 
         return b"records_with_missing_features" in parquet.read_metadata(path).metadata
+    import h5py  # not at the top: a command that is refused needs no HDF5
+
     with h5py.File(path, "r", locking=False) as content:
         return {"features", "feature"} <= content.keys() and "sha256" in content.attrs
 
