@@ -151,7 +151,7 @@ class Cost(NamedTuple):
 
 def cost_of(recipe: Recipe) -> Cost:
     """Cost of the first part of a recipe, without the faults that are drawn again."""
-    scenarios = draw_scenarios(recipe, 0, min(recipe.corpus.records_per_part, recipe.n_records))
+    scenarios = draw_scenarios(recipe, 0, min(recipe.storage.records_per_part, recipe.n_records))
     groups = [group for group, _ in laid_out(scenarios)]
     return Cost(
         kernels=len({group.shape for group in groups}),
@@ -162,12 +162,12 @@ def cost_of(recipe: Recipe) -> Cost:
 
 def costs(recipe: Mapping[str, Any], mechanisms: Sequence[Mechanism]) -> Iterator[str]:
     """Markdown table of the cost of every variant, in the parts of the recipe and in smaller ones."""
-    sizes = (480, recipe["corpus"]["records_per_part"])
+    sizes = (480, recipe["storage"]["records_per_part"])
     yield "| variant | kernels | " + " | ".join(f"lane-steps, parts of {n} | lanes filled" for n in sizes) + " |"
     yield "|---|---:|" + "---:|---:|" * len(sizes)
     for variant, changes in variants(mechanisms).items():
         made = changed(recipe, changes)
-        found = [cost_of(Recipe.model_validate(changed(made, {"corpus.records_per_part": n}))) for n in sizes]
+        found = [cost_of(Recipe.model_validate(changed(made, {"storage.records_per_part": n}))) for n in sizes]
         cells = [f"{one.lane_steps:.1f} | {one.filled:.0%}" for one in found]
         yield f"| {variant} | {found[-1].kernels} | " + " | ".join(cells) + " |"
 

@@ -71,8 +71,9 @@ def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float, per_part
     """Costs of corpora with some numbers of parts, each of ``per_part`` records."""
     with tempfile.TemporaryDirectory() as temporary, _cluster(workers) as (address, scheduler):
         folder = Path(temporary)
-        largest = {"records_per_part": per_part, "records_per_specimen": per_part, "specimens_per_rig": 1}
-        recipe = variant(SHORT, folder / "parts.yaml", corpus=largest | {"rigs": max(*sizes, 2 * workers)})
+        largest = {"records_per_specimen": per_part, "specimens_per_rig": 1, "rigs": max(*sizes, 2 * workers)}
+        storage = {"records_per_part": per_part}
+        recipe = variant(SHORT, folder / "parts.yaml", corpus=largest, storage=storage)
         model = generation.generate(recipe, folder / "model", records=per_part).path
         made = partial(_made, model / "parts" / part_name(0), read_manifest(model).parts[0], task_s)
         with patch.object(generation, "_made", made):

@@ -57,8 +57,8 @@ def rows(
 def kernel_rate(recipe: Path | str, records: int) -> Rate:
     """Function that measures the record-steps per second of our kernel on the first records of a recipe."""
     checked = read_recipe(recipe)
-    once = checked.corpus.model_copy(update={"truth": "none"})  # no second run of a record without its fault
-    checked = checked.model_copy(update={"corpus": once})
+    once = checked.truth.model_copy(update={"twins": False})  # no second run of a record without its fault
+    checked = checked.model_copy(update={"truth": once})
     axis, scenarios = timeline(settings_of(checked)), draw_scenarios(checked, 0, records)
     batches = laid_out(scenarios)
     total = axis.integrated * sum(

@@ -21,7 +21,7 @@ from gen.generation import generate
 def rows(pairs: int = 9, *, parts: int = 50, records_per_part: int = 20) -> Iterator[Line]:
     """Lines of the table."""
     with tempfile.TemporaryDirectory() as folder:
-        recipe = variant(SHORT, Path(folder) / "parts.yaml", corpus={"records_per_part": records_per_part})
+        recipe = variant(SHORT, Path(folder) / "parts.yaml", storage={"records_per_part": records_per_part})
         corpus, file = (
             generate(recipe, Path(folder) / name, records=parts * records_per_part).path for name in ("c", "c.nc")
         )

@@ -58,7 +58,7 @@ def throughput_rows(pairs: int, recipe: Path = FULL, sizes: tuple[int, int] = SI
     small, large = sizes
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        recipes = {codec: variant(recipe, folder / f"{codec}.yaml", corpus={"codec": codec}) for codec in CODECS}
+        recipes = {codec: variant(recipe, folder / f"{codec}.yaml", storage={"codec": codec}) for codec in CODECS}
         recipes = {codec: variant(path, path, corpus={"specimens_per_rig": large}) for codec, path in recipes.items()}
 
         def made(path: Path, records: int) -> float:
@@ -90,8 +90,8 @@ def worker_rows(pairs: int, recipe: Path = FULL, records: int = 1024, records_pe
     """Two workers compared with one: wall time of the whole command."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary)
-        corpus = {"records_per_part": records_per_part, "specimens_per_rig": 256}
-        small = variant(recipe, folder / "small.yaml", corpus=corpus)
+        corpus, storage = {"specimens_per_rig": 256}, {"records_per_part": records_per_part}
+        small = variant(recipe, folder / "small.yaml", corpus=corpus, storage=storage)
 
         def speed(workers: int, wanted: int = records) -> float:
             with tempfile.TemporaryDirectory(dir=folder) as made:

@@ -101,7 +101,7 @@ def march(without: int, shape: Any, batch: Batch, n_steps: int, dt: float, filte
 
 def kernel_parts(recipe: Recipe) -> tuple[dict[str, float], int, Load]:
     """Time of each part for each lane and knot [s], mean over batches of the commonest kernel and step; its steps per knot; the load."""
-    scenarios = draw_scenarios(recipe, 0, min(recipe.corpus.records_per_part, recipe.n_records))
+    scenarios = draw_scenarios(recipe, 0, min(recipe.storage.records_per_part, recipe.n_records))
     in_lanes = laid_out(scenarios)
     (shape, n_steps), _ = Counter(group for group, _ in in_lanes).most_common(1)[0]
     every = [batch for group, batch in in_lanes if group == (shape, n_steps)]

@@ -29,7 +29,7 @@ def rows(pairs: int = 5, *, parts: int = 40, records_per_part: int = 64, seconds
         recipe = variant(
             SHORT,
             Path(folder) / "parts.yaml",
-            corpus={"records_per_part": records_per_part},
+            storage={"records_per_part": records_per_part},
             recording={"sample_rate_hz": 12800, "duration_s": seconds_each},
         )
         records = parts * records_per_part

@@ -26,7 +26,7 @@ def rows(pairs: int = 9, first_records: int = 3) -> Iterator[Line]:
 def command_rows(pairs: int) -> Iterator[Line]:
     """Short commands and imports, compared with the import of the libraries they need."""
     with tempfile.TemporaryDirectory() as folder:
-        recipe = variant(SHORT, Path(folder) / "short.yaml", corpus={"records_per_part": 20})
+        recipe = variant(SHORT, Path(folder) / "short.yaml", storage={"records_per_part": 20})
         corpus = str(generate(recipe, Path(folder) / "corpus", records=40).path)
         commands = {
             "help": ("-m", "raceway", "--help"),

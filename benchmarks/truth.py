@@ -13,9 +13,9 @@ from gen.part_task import make_parts
 from gen.recipe import Recipe, read_recipe
 
 SETTINGS = {
-    "none": {"truth": "none", "undetected": "keep"},
-    "full": {"truth": "full", "undetected": "keep"},
-    "redraw": {"truth": "full", "undetected": "redraw"},
+    "none": {"twins": False, "undetected": "keep"},
+    "full": {"twins": True, "undetected": "keep"},
+    "redraw": {"twins": True, "undetected": "redraw"},
 }
 
 
@@ -23,15 +23,15 @@ def rows(pairs: int = 7, records: int = 480, recipe: Path | str = "domain_random
     """Lines of the table."""
     checked = read_recipe(recipe, records=records)
     recipes = {
-        name: checked.model_copy(update={"corpus": checked.corpus.model_copy(update=keys)})
+        name: checked.model_copy(update={"truth": checked.truth.model_copy(update=keys)})
         for name, keys in SETTINGS.items()
     }
     for given in recipes.values():
         cpu_per_record(given)  # compiles the kernels, or loads them
     found = interleaved(pairs, **{name: lambda given=given: cpu_per_record(given) for name, given in recipes.items()})
     for name in ("full", "redraw"):
-        what = f"{checked.name}, {' and '.join(f'{key}: {value}' for key, value in SETTINGS[name].items())}"
-        yield row(f"truth {name}", what, "ms", found[name], "truth: none", found["none"])
+        what = f"{checked.name}, twins: true and undetected: {SETTINGS[name]['undetected']}"
+        yield row(f"truth {name}", what, "ms", found[name], "twins: false", found["none"])
 
 
 def cpu_per_record(recipe: Recipe) -> float:

@@ -19,7 +19,7 @@ from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
 
 FS, SECONDS, RESONANCE = 12_000, 4.0, 3000.0
-TURNING = {"kind": "uniform", "low": 0, "high": 360}
+TURNING = "uniform(0, 360)"
 DEEP = 280
 
 ROWS = {

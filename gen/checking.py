@@ -54,7 +54,7 @@ def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[in
     for place in groups:
         if scenarios[place].specimen.fault in new:
             first.setdefault(scenarios[place].specimen.fault, place)
-    span = CHECKED_PARTS * recipe.corpus.records_per_part
+    span = CHECKED_PARTS * recipe.storage.records_per_part
     done = scenarios[0].record.number
     wanted = CHECKED_SHARE * min(span, recipe.n_records - done) if done % span == 0 else 0
     chosen = _with_full_batches(list(first.values()), groups)
@@ -68,7 +68,7 @@ def checked_places(scenarios: list[Scenario], recipe: Recipe, groups: Mapping[in
 
 def has_checks(recipe: Recipe, numbers: range) -> bool:
     """Whether the step of any of the records of a part may be checked, by :func:`checked_places`."""
-    every = numbers.start % (CHECKED_PARTS * recipe.corpus.records_per_part) == 0
+    every = numbers.start % (CHECKED_PARTS * recipe.storage.records_per_part) == 0
     return every or any(number in numbers for number in first_records(recipe).values())
 
 

@@ -52,7 +52,7 @@ class Families:
 
     def __init__(self, recipe: Recipe) -> None:
         self.recipe = recipe
-        self._redraws = recipe.corpus.undetected == "redraw" and recipe.corpus.truth == "full"
+        self._redraws = recipe.truth.undetected == "redraw" and recipe.truth.twins
         # all records of a specimen are judged together, and those of a group have one level
         self.size = recipe.corpus.records_of_a_specimen if self._redraws else recipe.corpus.n_rungs
         self._tries: dict[int, int] = {}
@@ -86,7 +86,7 @@ class Families:
             if scenario.specimen.number not in again:
                 made.response.failures[place] = (
                     f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen "
-                    f"in it; {advice}, or choose corpus.undetected: keep."
+                    f"in it; {advice}, or choose truth.undetected: keep."
                 )
         return made, self._cut(self._with_hits(self._redrawn(again)), twins)
 

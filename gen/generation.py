@@ -7,7 +7,7 @@ of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are t
 
 import platform
 import threading
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Mapping
 from contextlib import AbstractContextManager, closing, contextmanager, nullcontext, suppress
 from dataclasses import dataclass
 from functools import partial
@@ -41,7 +41,7 @@ from gen.errors import ClusterError, CorpusError, RecipeError
 from gen.making import Crew
 from gen.part_task import Outcome, made_by, make_parts, units
 from gen.progress import Progress
-from gen.recipe import Recipe, find_recipe, read_recipe
+from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.sources import sources_sha256
 from gen.workers import stream, threads_of
 
@@ -68,7 +68,7 @@ class Generated:
 
 
 def generate(
-    recipe: Path | str,
+    recipe: Path | str | Mapping[str, Any] | Recipe,
     target: Path | str,
     *,
     workers: int = 1,
@@ -82,8 +82,8 @@ def generate(
 
     Parameters
     ----------
-    recipe : path or str
-        Recipe file, or name of a recipe that ships with Raceway.
+    recipe : path, str, mapping or Recipe
+        Recipe file, name of a recipe that ships with Raceway, the keys of a recipe, or a recipe that has been read.
     target : path
         Single file of the corpus if the name ends in ``.nc``, else its folder; created if it does not exist. It may hold the same corpus,
         unfinished or finished.
@@ -118,7 +118,8 @@ def generate(
     with client_of(scheduler, workers) as client, _claimed(folder):
         if folder is not target:
             remove_left_behind_of(target)
-        _prepare(folder, Path(find_recipe(recipe)), facts)
+        named = isinstance(recipe, str | Path)
+        _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts)
         outcomes = _all_parts(Tally(checked, progress), folder, workers, client, notice)
         found = _finish(target, folder, outcomes, facts)
         if folder is not target:
@@ -189,7 +190,7 @@ def _claimed(folder: Path) -> Iterator[None]:
         yield
 
 
-def _prepare(folder: Path, recipe_path: Path, facts: dict[str, Any]) -> None:
+def _prepare(folder: Path, text: bytes, facts: dict[str, Any]) -> None:
     """Check what the folder holds, and write the manifest of an unfinished corpus.
 
     The manifest is written first: it tells a corpus without any part from a folder that holds something else.
@@ -205,7 +206,7 @@ def _prepare(folder: Path, recipe_path: Path, facts: dict[str, Any]) -> None:
         elif any(folder.iterdir()):
             raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
         write_manifest(folder, facts_of_parts([], facts, complete=False))
-        write_durably(recipe_path.read_bytes(), folder / RECIPE_NAME)
+        write_durably(text, folder / RECIPE_NAME)
         (folder / "parts").mkdir(exist_ok=True)
 
 

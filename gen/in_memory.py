@@ -203,7 +203,7 @@ def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     def finished(made: MadePart) -> tuple[int, xr.Dataset, tuple[str, ...]]:
         return made.place, *dataset_of(made.records, made.step_error)
 
-    size, stop = recipe.corpus.records_per_part, recipe.n_records
+    size, stop = recipe.storage.records_per_part, recipe.n_records
     numbers = [range(first, min(first + size, stop)) for first in range(0, stop, size)]
     parts = sorted(made_parts(recipe, numbers, finished, crew=Crew(workers)), key=lambda part: part[0])
     failures = [text for *_, texts in parts for text in texts]

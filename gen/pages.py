@@ -1,43 +1,52 @@
 """Pages generated from the code: ``python -m gen.pages ROOT`` writes them.
 
-``recipes/schema.json`` and ``recipes/README.md`` come from the model of the recipe, ``docs/format.md`` from the schema of the corpus,
+``recipes/README.md`` comes from the model of the recipe, ``docs/format.md`` from the schema of the corpus,
 ``docs/catalogue.md`` from the catalogue of bearings, ``docs/limits.md`` from the limits.
 """
 
 import sys
 from pathlib import Path
-from typing import get_args
 
 from gen.corpus import format_page
 from gen.limits import limits_page
 from gen.physics.catalogue import catalogue_page
-from gen.recipe.distributions import DISTRIBUTIONS
+from gen.recipe.distributions import KINDS
 from gen.recipe.finding import recipe_purpose, shipped_recipes
 from gen.recipe.keys import Key, recipe_keys
-from gen.recipe.reading import recipe_schema
 
-_COMMON = {"kind", "share_of", "per", "scatter_percent"}  # keys of every distribution
+_EXAMPLES = {
+    "constant": "5",
+    "uniform": "uniform(1000, 3000)",
+    "loguniform": "loguniform(0.1, 2)",
+    "normal": "normal(14, 9, low=-14, high=32)",
+    "choice": "choice(7, 8, 9, weights=(1, 2, 1))",
+    "grid": "grid(500, 1000, 1500)",
+}
 
 _HEAD = """# Recipes
 
 A recipe is a YAML file. `raceway plan RECIPE` reports what it makes, `raceway generate RECIPE -o DIR` makes it, and
 `raceway recipes --keys PREFIX` prints the keys of this page. Keys end in their unit. Where the allowed value is a
-range alone, such as `[0, 10]`, the value is a number or a distribution:
+range alone, such as `[0, 10]`, the value is a number or a distribution. `raceway recipes --schema > recipe.schema.json`
+writes a schema with which editors complete and check keys; a recipe names it in its first line,
+`# yaml-language-server: $schema=recipe.schema.json`.
 """
 
-_DRAWING = """Three more keys belong to every distribution.
+_DRAWING = """A distribution is read like a call in Python, and never run. Within braces it needs quotes, as other text with commas:
+`{kind: outer, width_mm: "uniform(0.1, 2)"}`.
 
-**`share_of`** makes the drawn number a share of another quantity, named by its key; 1 is all of it, and units are
+**`* quantity`** makes the drawn number a share of another quantity, named by its key; 1 is all of it, and units are
 converted. Here the axial load is 40 to 100 % of the radial load of the same record, the contact angle is the one that
 clearance and grooves of the specimen allow, and a spall is 5 to 30 % as wide as the arc from ball to ball:
 
     operation:
-      load_n: {kind: loguniform, low: 60, high: 2000}
-      axial_load_n: {share_of: load_n, kind: uniform, low: 0.4, high: 1}
+      load_n: loguniform(60, 2000)
+      axial_load_n: uniform(0.4, 1) * load_n
     specimen:
-      contact_angle_deg: {share_of: free_contact_angle_deg, kind: constant, value: 1}
+      contact_angle_deg: 1 * free_contact_angle_deg
     faults:
-      - {kind: outer, width_mm: {share_of: ball_spacing_mm, kind: uniform, low: 0.05, high: 0.3}}
+      - kind: outer
+        width_mm: uniform(0.05, 0.3) * ball_spacing_mm
 
 A quantity can name those of its own section and those of a level above it, if both are of the same kind of unit:
 
@@ -58,18 +67,18 @@ with a contact angle on its drawing. `ball_spacing_mm` is the arc on the damaged
 smaller one, other than 0, cannot hold the rings together:
 
     operation:
-      load_n: {share_of: static_rating_n, kind: loguniform, low: 0.005, high: 0.3}
-      axial_load_n: {share_of: least_axial_load_n, kind: choice, values: [0, 1.1, 2]}
+      load_n: loguniform(0.005, 0.3) * static_rating_n
+      axial_load_n: choice(0, 1.1, 2) * least_axial_load_n
 
 **`per`** (in `operation` alone) draws one value for a rig or a specimen instead of one for each record, and
 **`scatter_percent`** lets its records deviate from it. A machine with one speed, held within 2 %:
 
     operation:
-      shaft_rpm: {kind: uniform, low: 900, high: 1800, per: rig, scatter_percent: 2}
+      shaft_rpm: uniform(900, 1800, per=rig, scatter_percent=2)
 
 The common value is pseudo-random with every `corpus.sampling`; a grid counts the rigs or specimens.
 
-None of these keys moves another value: each quantity keeps its own random numbers. The same holds for the conditions of
+None of these moves another value: each quantity keeps its own random numbers. The same holds for the conditions of
 one fault, such as `{kind: outer, width_mm: 1, operation: {load_n: 500}}`. Use these with care: a classifier can learn
 the load instead of the fault.
 
@@ -93,11 +102,8 @@ range, a parenthesis excludes it. `NAME` stands for a name of your choice.
 
 def readme() -> str:
     """Markdown page: the shipped recipes, the distributions, and every key with unit, range, default and meaning."""
-    lines = [_HEAD, "| distribution | keys | values |", "|---|---|---|"]
-    for distribution in DISTRIBUTIONS:
-        keys = ", ".join(f"`{name}`" for name in distribution.model_fields if name not in _COMMON)
-        kind = get_args(distribution.model_fields["kind"].annotation)[0]
-        lines.append(f"| `{kind}` | {keys} | {(distribution.__doc__ or '').splitlines()[0]} |")
+    lines = [_HEAD, "| distribution | values |", "|---|---|"]
+    lines += [f"| `{_EXAMPLES[kind]}` | {(model.__doc__ or '').splitlines()[0]} |" for kind, model in KINDS.items()]
     lines += ["", _DRAWING, "## Shipped recipes", "", "| name | purpose |", "|---|---|"]
     lines += [f"| `{name}` | {recipe_purpose(path)} |" for name, path in shipped_recipes().items()]
     lines += ["", "## Keys", "", _KEYS]
@@ -121,7 +127,6 @@ def _row(key: Key) -> str:
 
 
 PAGES = {
-    "recipes/schema.json": recipe_schema,
     "recipes/README.md": readme,
     "docs/format.md": format_page,
     "docs/catalogue.md": catalogue_page,

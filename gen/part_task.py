@@ -49,7 +49,7 @@ def units(recipe: Recipe, parts: range, workers: int) -> list[range]:
 
     A unit has as many parts as ``UNIT_SAMPLES`` allows, but there are at least as many units as workers, if there are parts enough.
     """
-    per_part = recipe.corpus.records_per_part * timeline(settings_of(recipe)).integrated
+    per_part = recipe.storage.records_per_part * timeline(settings_of(recipe)).integrated
     wanted = math.ceil(len(parts) * per_part / UNIT_SAMPLES)
     count = min(len(parts), math.ceil(wanted / workers) * workers)
     edges = [parts.start + place * len(parts) // count for place in range(count + 1)]
@@ -103,7 +103,7 @@ def _written(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
     if not dataset.sizes["record"]:
         return Outcome(PartRow(path.name, 0, 0, ""), kept=False, failures=failures)
     dataset.attrs |= part_attributes(recipe, failures)
-    return Outcome(write_part(dataset, path, recipe.corpus.codec), kept=False, failures=failures)
+    return Outcome(write_part(dataset, path, recipe.storage.codec), kept=False, failures=failures)
 
 
 def dataset_of(records: Records, step_error: NDArray[np.float64] | None = None) -> tuple[xr.Dataset, tuple[str, ...]]:

@@ -140,7 +140,7 @@ def _seconds_per_record(parts: list[tuple[list[Scenario], Groups]], recipe: Reci
         for group, places in groups.items()
     )
     _, steps, scenarios, places = max(candidates, key=lambda candidate: candidate[0])
-    pace = measured_pace([scenarios[place] for place in places[:LANES]], recipe.corpus.codec, samples * steps)
+    pace = measured_pace([scenarios[place] for place in places[:LANES]], recipe.storage.codec, samples * steps)
     if pace is None:
         return None
     lane_steps = samples * _lane_steps(parts, recipe)
@@ -162,7 +162,7 @@ def _lane_steps(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> i
 
 def some_ranges(recipe: Recipe) -> list[tuple[int, int]]:
     """Start and stop of the records that are drawn: all parts, or parts of ``most_drawn`` records together, spread over the corpus."""
-    size, most = recipe.corpus.records_per_part, most_drawn(recipe)
+    size, most = recipe.storage.records_per_part, most_drawn(recipe)
     parts = min(recipe.n_parts, max(1, most // size))
     firsts = [place * recipe.n_parts // parts * size for place in range(parts)]
     return [(first, min(first + min(size, most), recipe.n_records)) for first in firsts]
@@ -191,5 +191,5 @@ def _groups(scenarios: list[Scenario], recipe: Recipe, failures: list[str]) -> G
 def _bytes(recipe: Recipe) -> int:
     """Estimated size of the corpus [B]."""
     samples = recipe.n_records * recipe.n_samples * len(recipe.recording.channels)
-    of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * CODECS[recipe.corpus.codec].share
+    of_signals = samples * STORED_BYTES[recipe.recording.converter.kind] * CODECS[recipe.storage.codec].share
     return round(of_signals + recipe.n_records * BYTES_PER_RECORD) + (recipe.n_parts + 1) * BYTES_PER_FILE

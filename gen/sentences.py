@@ -16,6 +16,9 @@ def sentences(error: ValidationError, model: type[BaseModel]) -> list[str]:
     """One sentence for each wrong key or value of a ``model``; a key that is missing because it is misspelt counts once."""
     items = error.errors()
     meant = {(*item["loc"][:-1], _guess(item["loc"], model)) for item in items if item["type"] == "extra_forbidden"}
+    # the rest of a distribution in braces without quotes, {width_mm: uniform(1, 2)}; its beginning has an error too
+    rest = {item["loc"] for item in items if item["type"] == "extra_forbidden" and str(item["loc"][-1]).endswith(")")}
+    meant |= rest if len(rest) < len(items) else set()
     found: dict[str, None] = {}
     for place, item in enumerate(items):
         sentence = None if item["loc"] in meant else _sentence(item, model)
@@ -77,6 +80,8 @@ _ALLOWED = {
     "string_pattern_mismatch": "1 to 64 letters, digits, dots, dashes or underscores",
     "int_parsing": "a whole number",
     "float_parsing": "a number",
+    "bool_type": "true or false",
+    "bool_parsing": "true or false",
     "tuple_type": "a list",
     "model_type": "a section with keys of its own",
     "model_attributes_type": "a section with keys of its own",

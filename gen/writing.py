@@ -79,8 +79,8 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     stored.attrs |= part_attributes(recipe, failures)
     facts = facts_of(recipe, {"seed": None, "records": None})
     facts |= {"publication": recipe.publication.dated(), "failures": failures}
-    with new_corpus(target, codec=recipe.corpus.codec, recipe_text=recipe_text(recipe), **facts) as corpus:
-        _write_parts(stored, corpus, recipe.corpus.records_per_part)
+    with new_corpus(target, codec=recipe.storage.codec, recipe_text=recipe_text(recipe), **facts) as corpus:
+        _write_parts(stored, corpus, recipe.storage.records_per_part)
     return target
 
 

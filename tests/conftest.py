@@ -22,12 +22,12 @@ corpus: {rigs: 2, specimens_per_rig: 8, records_per_specimen: 3, records_per_par
 recording: {sample_rate_hz: 12000, duration_s: 0.1, settle_s: 0.05}
 bearing: {kind: catalogue, designations: ["6205"]}
 specimen: {waviness_nm: 20}
-operation: {shaft_rpm: {kind: uniform, low: 4500, high: 6000}}
+operation: {shaft_rpm: 'uniform(4500, 6000)'}
 faults:
   - {kind: healthy}
-  - {kind: inner, width_mm: {kind: uniform, low: 0.5, high: 1}}
-  - {kind: outer, width_mm: {kind: uniform, low: 0.5, high: 1}}
-  - {kind: ball, width_mm: {kind: uniform, low: 0.5, high: 1}}
+  - {kind: inner, width_mm: 'uniform(0.5, 1)'}
+  - {kind: outer, width_mm: 'uniform(0.5, 1)'}
+  - {kind: ball, width_mm: 'uniform(0.5, 1)'}
 """
 
 

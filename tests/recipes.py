@@ -20,7 +20,8 @@ EVERY_FAULT = [
 
 # every record, healthy or faulty, has waviness, jitter, a schedule, oil, play and a resonance: all share one kernel
 EVERYTHING = {
-    "corpus": {"rigs": 1, "specimens_per_rig": 16, "records_per_specimen": 2, "records_per_part": 16},
+    "corpus": {"rigs": 1, "specimens_per_rig": 16, "records_per_specimen": 2},
+    "storage.records_per_part": 16,
     "recording.channels": [{"name": "fan_end", "body": "sensor", "path": {"direct": 0.1}}],
     "machine.bow_n": 30,
     "machine.misalignment_n": 20,
@@ -30,7 +31,7 @@ EVERYTHING = {
     "specimen.contact_angle_deg": 10,
     "operation.axial_load_n": 300,
     "operation.load_wander_percent": 5,
-    "operation.temperature_celsius": {"kind": "uniform", "low": 20, "high": 90},
+    "operation.temperature_celsius": "uniform(20, 90)",
     "operation.inner_ring_hotter_k": 5,
     "operation.speed_profile": {"kind": "run_up", "from_percent": 50, "to_percent": 120, "lasting_s": 0.1},
     "operation.load_profile": {"kind": "steps", "levels_percent": [50, 100], "step_s": 0.02},

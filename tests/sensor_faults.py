@@ -4,18 +4,18 @@ SENSOR_FAULTS = {
     "loose_mount": {"probability": 1, "frequency_hz": 1500, "damping_percent": 4, "holding_m_s2": 8},
     "saturation": {"probability": 1, "limit_m_s2": 20, "knee_percent": 20, "recovery_s": 0.01},
     "mains_hum": {
-        "probability": 1, "frequency_hz": 60, "rms_m_s2": 2, "deviation_percent": {"kind": "uniform", "low": -1, "high": 1}
+        "probability": 1, "frequency_hz": 60, "rms_m_s2": 2, "deviation_percent": "uniform(-1, 1)"
     },
     "drift": {
-        "probability": 1, "wander_m_s2": 3, "settling_m_s2": {"kind": "uniform", "low": 5, "high": 10}, "settling_time_s": 0.05
+        "probability": 1, "wander_m_s2": 3, "settling_m_s2": "uniform(5, 10)", "settling_time_s": 0.05
     },
-    "dropped_samples": {"probability": 1, "count": 3, "gap_s": {"kind": "uniform", "low": 0.001, "high": 0.004}},
-    "gain_steps": {"probability": 1, "count": 2, "step_db": {"kind": "choice", "values": [-6, 6]}},
+    "dropped_samples": {"probability": 1, "count": 3, "gap_s": "uniform(0.001, 0.004)"},
+    "gain_steps": {"probability": 1, "count": 2, "step_db": "choice(-6, 6)"},
     "emi_bursts": {"probability": 1, "rate_hz": 200, "frequency_hz": 3000, "decay_s": 0.001, "peak_m_s2": 30},
 }  # fmt: skip
 
 GEAR_MESH = {
-    "probability": 1, "teeth": 20, "mate_teeth": 40, "count": 3, "level_db": {"kind": "uniform", "low": -6, "high": 6},
+    "probability": 1, "teeth": 20, "mate_teeth": 40, "count": 3, "level_db": "uniform(-6, 6)",
     "shaft_modulation": 0.4, "mate_modulation": 0.2, "phase_deg": 20,
 }  # fmt: skip
 

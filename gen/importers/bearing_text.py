@@ -8,7 +8,7 @@ from pydantic import ValidationError
 from gen.errors import CorpusError
 from gen.importers.mapping_values import Geometry, bearing_of
 from gen.physics.bearing import Bearing
-from gen.physics.catalogue import CATALOGUE
+from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.sentences import sentences
 
 
@@ -23,8 +23,9 @@ def bearing_from_text(text: str) -> Bearing:
     CorpusError
         If the text is neither.
     """
-    if text in CATALOGUE:
-        return CATALOGUE[text]
+    known = known_designation(text)
+    if known is not None:
+        return CATALOGUE[known]
     example = "n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938"
     if "=" not in text:
         near = difflib.get_close_matches(text, CATALOGUE, 1)

@@ -29,7 +29,10 @@ _NO_NUMBER = re.compile(r"[^\d\s.,;eE+-]")
 
 
 class UnusableError(Exception):
-    """Reason why a file cannot be used."""
+    """Reason why a file cannot be used; its text has no full stop, because a sentence about the file goes on after it."""
+
+    def __str__(self) -> str:
+        return super().__str__().removesuffix(".")
 
 
 def read_text(path: Path, column: int | str | None = None, delimiter: str | None = None) -> NDArray[np.float64]:

@@ -212,7 +212,7 @@ def _facts(file: File) -> Facts:
     try:
         return file.section.facts(file.groups, _measured(file))
     except ValidationError as error:
-        raise UnusableError(sentences(error, Facts)[0].removesuffix(".")) from None
+        raise UnusableError(sentences(error, Facts)[0]) from None
 
 
 def _recording(facts: Facts, signal: FloatArray, number: int, rig: int, specimen: int) -> Recording:

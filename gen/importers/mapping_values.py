@@ -11,7 +11,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Dis
 
 from gen.corpus import FAULTS, UNKNOWN
 from gen.physics.bearing import Bearing
-from gen.physics.catalogue import CATALOGUE
+from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.units import to_si
 
 if TYPE_CHECKING:
@@ -60,9 +60,10 @@ def _separates(mark: str) -> str:
 
 
 def _in_catalogue(name: str) -> str:
-    if name not in CATALOGUE:
+    known = known_designation(name)
+    if known is None:
         raise ValueError(f"{name} is not in the catalogue ({', '.join(CATALOGUE)}); give its geometry instead.")
-    return name
+    return known
 
 
 Text = Annotated[str, Field(min_length=1, max_length=5000), BeforeValidator(_as_text), AfterValidator(_printable)]

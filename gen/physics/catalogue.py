@@ -12,6 +12,7 @@ one way. For the same reason some rows have other fault orders than table A-9 pr
 """
 
 import math
+import re
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
@@ -169,6 +170,24 @@ class Printed(NamedTuple):
     """Size in the table."""
     orders: Orders
     remark: str = ""
+
+
+_MAKERS = r"(?:SKF|FAG|INA|NSK|NTN|SNR|KOYO|JTEKT|NACHI|TIMKEN|RHP|ZKL|KG|MRC)"
+# seals and shields, internal clearance, tolerance class, cage, groove for a snap ring, grease: none of them changes the balls
+_SUFFIX = r"[-/. ]?(?:2?RS[A-Z]?\d?|2?RZ|2?Z[ZR]?|LL[UBH]|DDU?|VV|C[1-5N]|P[4-6]|E?C[PJM]|E|J|M|MA|TN9?|TVP\d?|TVH|NR?|MT\d+|GJN|K)"
+
+
+def known_designation(text: str) -> str | None:
+    """Designation of the catalogue that a text on a bearing or a drawing means, without maker and suffixes; None if there is none.
+
+    >>> known_designation("SKF 6205-2RS1/C3"), known_designation("nu206 ecp"), known_designation("62059")
+    ('6205', 'NU206', None)
+    """
+    if text in CATALOGUE:
+        return text
+    plain = re.sub(rf"^{_MAKERS}[ -]*", "", " ".join(text.upper().split()))
+    fitting = (name for name in sorted(CATALOGUE, key=len, reverse=True) if plain.startswith(name.upper()))
+    return next((name for name in fitting if re.fullmatch(rf"(?:{_SUFFIX})*", plain[len(name) :])), None)
 
 
 PRINTED_OTHERWISE = {

@@ -3,6 +3,7 @@
 ============= ========================================================
 module        responsibility
 ============= ========================================================
+expressions   distributions as text: loguniform(0.1, 2)
 distributions distributions of drawn values
 section       base of all sections: bounds, unknown keys, meanings
 machine       bearing, machine, lubricant, specimen
@@ -13,6 +14,7 @@ gear          gear mesh in the background
 sensing       sensors, path, background, level, converter
 sensor_faults faults of mount, cable, amplifier and data transfer
 changes       keys of operation and level that one fault replaces
+fault_entries keys that all entries of faults have in common
 shares        quantities that are a share of another
 loads         loads that no bearing of the recipe can carry
 checks        keys that contradict each other, weights that cannot be met

@@ -62,10 +62,10 @@ def _rungs_problem(recipe: "Recipe", healthy: float, faulty: float) -> str | Non
 
 def _corpus_problem(recipe: "Recipe") -> str | None:
     corpus = recipe.corpus
-    if corpus.undetected == "redraw" and corpus.records_of_a_specimen > corpus.records_per_part:
+    if recipe.truth.undetected == "redraw" and corpus.records_of_a_specimen > recipe.storage.records_per_part:
         return (
-            f"corpus.undetected: redraw judges all {corpus.records_of_a_specimen} records of a specimen together, and a part has "
-            f"{corpus.records_per_part}; raise records_per_part, or choose keep."
+            f"truth.undetected: redraw judges all {corpus.records_of_a_specimen} records of a specimen together, and a part has "
+            f"{recipe.storage.records_per_part}; raise storage.records_per_part, or choose keep."
         )
     if recipe.n_records % corpus.n_rungs:
         return (

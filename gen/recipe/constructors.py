@@ -7,14 +7,16 @@ lists the keys with their units, ranges and defaults.
 from collections.abc import Sequence
 from typing import Any, TypeVar
 
-from pydantic import ValidationError
+from pydantic import BaseModel, ValidationError
 
 from gen.errors import RecipeError
+from gen.recipe.distributions import Choice, Grid, LogUniform, Normal, Uniform
+from gen.recipe.expressions import called
 from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
 from gen.recipe.section import Section, plain
 from gen.sentences import sentences
 
-_Of = TypeVar("_Of", bound=Section)
+_Of = TypeVar("_Of", bound=BaseModel)
 
 
 def healthy(**keys: Any) -> Healthy:
@@ -65,36 +67,42 @@ def compound(*parts: Section, **keys: Any) -> CompoundFault:
     return _checked(CompoundFault, "compound", {"parts": parts, **keys})
 
 
-def uniform(low: float, high: float, **keys: Any) -> dict[str, Any]:
+def uniform(low: float, high: float, **keys: Any) -> Uniform:
     """Any value from low to high, all equally likely.
 
-    All distributions also take ``share_of``, ``per`` and ``scatter_percent``; they are checked with the key that they are given for.
+    All distributions also take ``per`` and ``scatter_percent``, and are multiplied with the name of the quantity that they are a share of.
 
-    >>> uniform(1000, 3000)
-    {'kind': 'uniform', 'low': 1000, 'high': 3000}
+    >>> uniform(1000, 3000, per="rig"), uniform(0.1, 0.3) * "static_rating_n"
+    (uniform(1000, 3000, per=rig), uniform(0.1, 0.3) * static_rating_n)
     """
-    return {"kind": "uniform", "low": low, "high": high, **keys}
+    return _called(Uniform, (low, high), keys)
 
 
-def loguniform(low: float, high: float, **keys: Any) -> dict[str, Any]:
+def loguniform(low: float, high: float, **keys: Any) -> LogUniform:
     """Any value from low to high, all decades equally likely; low must be above 0."""
-    return {"kind": "loguniform", "low": low, "high": high, **keys}
+    return _called(LogUniform, (low, high), keys)
 
 
-def normal(mean: float, sd: float, low: float, high: float, **keys: Any) -> dict[str, Any]:
+def normal(mean: float, sd: float, low: float, high: float, **keys: Any) -> Normal:
     """A normal distribution truncated at low and high."""
-    return {"kind": "normal", "mean": mean, "sd": sd, "low": low, "high": high, **keys}
+    return _called(Normal, (mean, sd, low, high), keys)
 
 
-def choice(values: Sequence[float], weights: Sequence[float] | None = None, **keys: Any) -> dict[str, Any]:
+def choice(*values: float, weights: Sequence[float] | None = None, **keys: Any) -> Choice:
     """One of a few values, with weights if they are not equally likely."""
-    weighted = {} if weights is None else {"weights": weights}
-    return {"kind": "choice", "values": values, **weighted, **keys}
+    return _called(Choice, values, keys if weights is None else {"weights": tuple(weights), **keys})
 
 
-def grid(values: Sequence[float], **keys: Any) -> dict[str, Any]:
+def grid(*values: float, **keys: Any) -> Grid:
     """Values in turn, by the number of the rig, specimen or record."""
-    return {"kind": "grid", "values": values, **keys}
+    return _called(Grid, values, keys)
+
+
+def _called(model: type[_Of], values: Sequence[float], keys: dict[str, Any]) -> _Of:
+    try:
+        return called(model, plain(values), plain(keys))
+    except ValueError as error:
+        raise RecipeError(str(error)) from None
 
 
 def _checked(model: type[_Of], kind: str, keys: dict[str, Any]) -> _Of:

@@ -1,18 +1,28 @@
-"""Distributions that a recipe can name: each checks its keys and turns a number between 0 and 1 into a value.
+"""Distributions that a recipe can name: each checks its numbers and turns a number between 0 and 1 into a value.
 
 Values are drawn with the inverse distribution function. So random and quasi-random points are treated alike, and every distribution takes
-one number: to change the distribution of one key does not move the values of the others. With ``share_of`` the value is a share of another
-quantity: :mod:`gen.recipe.shares` says which quantities can be named, and :mod:`gen.scenarios.draws` multiplies when all are drawn.
+one number: to change the distribution of one key does not move the values of the others. ``uniform(0.4, 1) * load_n`` is a share of
+another quantity: :mod:`gen.recipe.shares` says which quantities can be named, and :mod:`gen.scenarios.draws` multiplies when all are drawn.
 """
 
 import functools
 import math
-import reprlib
 from bisect import bisect_right
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self, get_args
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, PrivateAttr, StringConstraints, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    StringConstraints,
+    model_serializer,
+    model_validator,
+)
+
+from gen.recipe.expressions import expression_of, read_expression
 
 Number = Annotated[float, Field(strict=True)]
 Support = tuple[float, float]
@@ -20,10 +30,13 @@ Support = tuple[float, float]
 
 
 class _Distribution(BaseModel):
+    arguments: ClassVar[tuple[str, ...]]
+    """Fields that are written without their names, in this order."""
+
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, use_attribute_docstrings=True)
 
     share_of: Annotated[str, StringConstraints(min_length=1, max_length=60)] | None = None
-    """Key of another quantity: the drawn number is then a share of the value of that quantity, and 1 is all of it."""
+    """Quantity behind the `*`: the drawn number is then a share of the value of that quantity, and 1 is all of it."""
     per: Literal["rig", "specimen", "record"] | None = None
     """What has one value in common; in `operation` alone, where each record has its own if this is left out."""
     scatter_percent: Annotated[Number, Field(ge=0, lt=100)] = 0.0
@@ -35,8 +48,26 @@ class _Distribution(BaseModel):
     @model_validator(mode="after")
     def _scattered_about_something(self) -> Self:
         if self.scatter_percent > 0 and self.per not in ("rig", "specimen"):
-            raise ValueError("scatter_percent: needs a value to scatter about; give per: rig or per: specimen.")
+            raise ValueError("scatter_percent needs a value to scatter about; give per=rig or per=specimen.")
         return self
+
+    def __mul__(self, quantity: str) -> Self:
+        """The distribution as a share of a quantity, by its key."""
+        return self.model_copy(update={"share_of": quantity})
+
+    @property
+    def written(self) -> str | float:
+        """The distribution as a recipe has it: a number if it is one value, else text."""
+        return expression_of(self)
+
+    @model_serializer(mode="plain")
+    def _as_written(self) -> str | float:
+        return self.written
+
+    def __str__(self) -> str:
+        return str(self.written)
+
+    __repr__ = __str__
 
     def draw(self, u: float) -> float:
         """Value at the quantile ``u`` in [0, 1)."""
@@ -71,10 +102,16 @@ class _Distribution(BaseModel):
 class Constant(_Distribution):
     """One value; a plain number is short for this."""
 
+    arguments: ClassVar[tuple[str, ...]] = ("value",)
     kind: Literal["constant"] = "constant"
     """Gives the same value to every item."""
     value: Number
     """Number that every item gets."""
+
+    @property
+    def written(self) -> str | float:
+        """The value, if nothing else is given."""
+        return self.value if self.model_fields_set <= {"kind", "value"} else expression_of(self)
 
     def draw(self, u: float) -> float:  # noqa: ARG002 - the same for every quantile
         """Return the value."""
@@ -86,6 +123,7 @@ class Constant(_Distribution):
 
 
 class _Interval(_Distribution):
+    arguments: ClassVar[tuple[str, ...]] = ("low", "high")
     low: Number
     """Smallest value that can be drawn."""
     high: Number
@@ -141,6 +179,7 @@ class LogUniform(_Interval):
 class Normal(_Interval):
     """A normal distribution truncated at low and high."""
 
+    arguments: ClassVar[tuple[str, ...]] = ("mean", "sd", "low", "high")
     kind: Literal["normal"]
     """Draws from a normal distribution without its tails."""
     mean: Number
@@ -160,6 +199,7 @@ class Normal(_Interval):
 class Choice(_Distribution):
     """One of a few values, with weights if they are not equally likely."""
 
+    arguments: ClassVar[tuple[str, ...]] = ("values",)
     kind: Literal["choice"]
     """Draws one number of a list."""
     values: Annotated[tuple[Number, ...], Field(min_length=1)]
@@ -189,6 +229,7 @@ class Choice(_Distribution):
 class Grid(_Distribution):
     """Values in turn, by item number; several grids of the same level enumerate all combinations."""
 
+    arguments: ClassVar[tuple[str, ...]] = ("values",)
     kind: Literal["grid"]
     """Cycles through a list by the number of the rig, specimen or record."""
     values: Annotated[tuple[Number, ...], Field(min_length=1)]
@@ -221,21 +262,27 @@ def _edges(weights: tuple[float, ...]) -> list[float]:
     return (np.cumsum(weights) / np.sum(weights)).tolist()
 
 
-def _from_number(value: Any) -> Any:
-    if value is None or isinstance(value, bool | str | list):
-        shown = reprlib.repr(value)  # pyright: ignore[reportUnknownArgumentType]
-        raise ValueError(
-            f"{shown} is neither a number nor a distribution; write 1.5 or {{kind: uniform, low: 1, high: 2}}."
-        )
-    return {"kind": "constant", "value": value} if isinstance(value, int | float) else value
+KINDS = {kind: model for model in DISTRIBUTIONS for kind in get_args(model.model_fields["kind"].annotation)}
+_TEXT = rf"^({'|'.join(KINDS)})\(.*\)( \* [a-z0-9_]+)?$|^[-+.0-9e]+ \* [a-z0-9_]+$"
+
+
+def _read(value: Any) -> Any:
+    if isinstance(value, _Distribution):
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        return {"kind": "constant", "value": value}
+    return read_expression(value, KINDS)
 
 
 Distribution = Annotated[
     Annotated[Constant | Uniform | LogUniform | Normal | Choice | Grid, Field(discriminator="kind")],
-    BeforeValidator(
-        _from_number, json_schema_input_type=float | Constant | Uniform | LogUniform | Normal | Choice | Grid
-    ),
+    BeforeValidator(_read, json_schema_input_type=float | Annotated[str, StringConstraints(pattern=_TEXT)]),
 ]
+
+
+def is_distribution(value: Any) -> bool:
+    """Whether a value is a distribution of one of the ``KINDS``."""
+    return isinstance(value, _Distribution)
 
 
 def within(low: float, high: float, *, open_low: bool = False, default: float | None = None) -> Any:

@@ -139,7 +139,7 @@ def _plain(annotation: Any, metadata: Iterable[Any]) -> str:
     choices = [argument for argument in arguments if isinstance(argument, str)]
     if choices:
         return ", ".join(choices)
-    name = {str: "text", int: "whole number", float: "number"}[annotation]
+    name = {str: "text", int: "whole number", float: "number", bool: "true or false"}[annotation]
     return name + _range(limits, " ({} characters)", "min_length", "max_length") + _bounds(limits)
 
 

@@ -65,7 +65,7 @@ def recipe_for(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | No
     given: dict[str, Any] = plain(keys)
     data: dict[str, Any] = {}
     for name in [name for name in given if name in Recipe.model_fields]:
-        data[name] = _section(name, given.pop(name))
+        data[name] = _copied(given.pop(name))
     for name, value in given.items():
         _set(data, name, value)
     faults = plain("healthy" if fault is None else fault)
@@ -75,7 +75,7 @@ def recipe_for(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | No
     data.setdefault("faults", faults)
     for name, value in DEFAULTS.items():
         if name in Recipe.model_fields:
-            data.setdefault(name, _section(name, value))
+            data.setdefault(name, value)
         else:
             section = data.setdefault(_places()[name][0].sections[0], {})
             if isinstance(section, dict):
@@ -88,11 +88,7 @@ def recipe_for(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | No
     return Recipe(**data)
 
 
-def _section(name: str, value: Any) -> Any:
-    """Value of a key of the recipe; a bearing can be given by its designation (a text or a number), or several by a list."""
-    if name == "bearing" and isinstance(value, str | int | list):
-        several = value if isinstance(value, list) else [value]
-        return {"kind": "catalogue", "designations": [str(one) if isinstance(one, int) else one for one in several]}
+def _copied(value: Any) -> Any:
     return dict(value) if isinstance(value, dict) else value
 
 
@@ -221,6 +217,6 @@ def _count(corpus: dict[str, Any], n_faults: int, n: int | None) -> None:
 
 def _title(data: Mapping[str, Any]) -> str:
     bearing = data["bearing"]
-    names = bearing.get("designations") if isinstance(bearing, dict) else None
-    named = ", ".join(map(str, names)) if isinstance(names, list) else "of given dimensions"
+    names = bearing.get("designations", "of given dimensions") if isinstance(bearing, dict) else bearing
+    named = ", ".join(map(str, names)) if isinstance(names, list) else names
     return f"Records of bearing {named}"[:200]

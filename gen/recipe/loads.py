@@ -46,13 +46,14 @@ def _strongest(bearing: CatalogueBearing | GeometryBearing) -> list[Bearing]:
     if isinstance(bearing, CatalogueBearing):
         return [bearing.bearing(name) for name in bearing.designations]
     fewest, most = (round(end) for end in bearing.n_balls.support())
-    pitch, share = to_si(bearing.pitch_diameter_mm.support()[1], "mm"), bearing.ball_share.support()[1]
+    pitch, given = to_si(bearing.pitch_diameter_mm.support()[1], "mm"), bearing.ball_diameter_mm
+    largest = given.own_support()[1] * pitch if given.share_of is not None else to_si(given.support()[1], "mm")
     low, high = bearing.contact_angle_deg.support()
     angle = to_si(0.0 if low <= 0 <= high else min(abs(low), abs(high)), "deg")
     shortest, longest = (to_si(end, "mm") for end in bearing.roller_length_mm.support())
     found: list[Bearing] = []
     for count in range(fewest, most + 1):
-        balls = Bearing(bearing.designation, count, pitch, bearing.largest_ball(count, pitch, share), angle)
+        balls = Bearing(bearing.designation, count, pitch, bearing.fitting_ball(count, pitch, largest), angle)
         found += [balls] if shortest == 0 else []
         found += [replace(balls, rolling_element="roller", roller_length=longest)] if longest > 0 else []
     return found

@@ -2,12 +2,13 @@
 
 import difflib
 import math
-from typing import Annotated, Literal, Self
+from collections.abc import Mapping
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, StrictInt, model_validator
+from pydantic import BeforeValidator, Field, StrictInt, field_validator, model_validator
 
 from gen.physics.bearing import Bearing
-from gen.physics.catalogue import CATALOGUE
+from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS
 from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Name, Section
@@ -16,6 +17,10 @@ from gen.units import to_si
 _KNOWN = tuple(
     name for name, bearing in CATALOGUE.items() if bearing.rolling_element == "ball" or bearing.roller_length
 )
+
+
+SMALLEST_BALL, LARGEST_BALL = 0.05, 0.45
+"""Diameters of balls over the pitch diameter."""
 
 
 class OwnBearing(Section):
@@ -34,12 +39,7 @@ class OwnBearing(Section):
 
     @model_validator(mode="after")
     def _fits(self) -> Self:
-        largest = min(0.45 * self.pitch_diameter_mm, 0.95 * math.pi * self.pitch_diameter_mm / self.n_balls)
-        if self.ball_diameter_mm > largest:
-            raise ValueError(
-                f"{self.n_balls} of {self.ball_diameter_mm:g} mm do not fit a pitch circle of {self.pitch_diameter_mm:g} mm; "
-                f"keep ball_diameter_mm below {largest:.4g}."
-            )
+        check_room(self.n_balls, self.ball_diameter_mm, self.pitch_diameter_mm)
         return self
 
     def bearing(self, designation: str) -> Bearing:
@@ -66,6 +66,14 @@ class CatalogueBearing(Section):
     """Names of bearings in `docs/catalogue.md` or in `entries`; each rig gets one of them, all equally likely."""
     entries: dict[Name, OwnBearing] = Field(default={})
     """Further bearings by name, for this recipe only."""
+
+    @field_validator("designations", mode="before")
+    @classmethod
+    def _without_suffixes(cls, names: Any) -> Any:
+        names = [names] if isinstance(names, str) else names
+        if not isinstance(names, list | tuple):
+            return names
+        return tuple((known_designation(name) or name) if isinstance(name, str) else name for name in names)
 
     @model_validator(mode="after")
     def _known(self) -> Self:
@@ -96,17 +104,62 @@ class GeometryBearing(Section):
     """Number of balls, or of rollers, rounded to a whole number; BPFO and BPFI grow with it."""
     pitch_diameter_mm: Distribution = within(5, 1000, open_low=True)
     """Diameter of the circle through the centres of the balls."""
-    ball_share: Distribution = within(0.05, 0.45)
-    """Diameter of a ball, or of a roller, over the pitch diameter; reduced where neighbouring balls would touch."""
+    ball_diameter_mm: Distribution = within(0, 500, open_low=True)
+    """Diameter of a ball, or of a roller: 0.05 to 0.45 of the pitch diameter; of a range, reduced where neighbouring balls would touch."""
     contact_angle_deg: Distribution = within(-40, 40, default=0.0)
     """Contact angle on the drawing; it enters the fault frequencies."""
     roller_length_mm: Distribution = within(0, 1000, default=0.0)
     """Length of a roller that touches the raceways; 0 for balls."""
 
+    @model_validator(mode="after")
+    def _fits(self) -> Self:
+        ball, pitch = self.ball_diameter_mm, self.pitch_diameter_mm
+        low, high = ball.own_support()
+        if ball.share_of != "pitch_diameter_mm":
+            low, high = low / pitch.support()[1], high / pitch.support()[0]
+        if low * (1 + 1e-9) < SMALLEST_BALL or high > LARGEST_BALL * (1 + 1e-9):
+            raise ValueError(
+                f"ball_diameter_mm: can be {low:.3g} to {high:.3g} of pitch_diameter_mm, and {SMALLEST_BALL:g} to {LARGEST_BALL:g} is "
+                f"allowed; a range that fits is uniform(0.15, 0.28) * pitch_diameter_mm."
+            )
+        if self.n_balls.support()[0] == self.n_balls.support()[1] and low == high:
+            check_room(round(self.n_balls.support()[0]), high * pitch.support()[0], pitch.support()[0])
+        return self
+
     @staticmethod
-    def largest_ball(n_balls: int, pitch: float, share: float) -> float:
-        """Ball diameter at a share of the pitch diameter, reduced where neighbours would leave no room for cage bars [m]."""
-        return min(share * pitch, 0.85 * math.pi * pitch / n_balls)
+    def fitting_ball(n_balls: int, pitch: float, ball: float) -> float:
+        """Ball diameter, reduced where neighbours would leave no room for cage bars [m]."""
+        return min(ball, 0.85 * math.pi * pitch / n_balls)
+
+
+def check_room(n_balls: int, ball_mm: float, pitch_mm: float) -> None:
+    """Raise ValueError if so many balls do not fit on the pitch circle."""
+    largest = min(LARGEST_BALL * pitch_mm, 0.95 * math.pi * pitch_mm / n_balls)
+    if ball_mm > largest * (1 + 1e-9):
+        raise ValueError(
+            f"{n_balls} of {ball_mm:g} mm do not fit a pitch circle of {pitch_mm:g} mm; keep ball_diameter_mm below {largest:.4g}."
+        )
+
+
+def _with_kind(value: Any) -> Any:
+    """A bearing with its kind, from a designation, a list of them, or dimensions."""
+    if isinstance(value, str | int | list | tuple):
+        several = value if isinstance(value, list | tuple) else [value]
+        return {"kind": "catalogue", "designations": [str(one) if type(one) is int else one for one in several]}
+    if (
+        isinstance(value, Mapping)
+        and "kind" not in value
+        and value.keys() & {"n_balls", "pitch_diameter_mm", "ball_diameter_mm"}
+    ):
+        return {"kind": "geometry", **value}
+    return value
+
+
+BearingSection = Annotated[
+    Annotated[CatalogueBearing | GeometryBearing, Field(discriminator="kind")],
+    BeforeValidator(_with_kind, json_schema_input_type=str | list[str] | CatalogueBearing | GeometryBearing),
+]
+"""Designation, list of designations, or dimensions; ``kind`` can be left out."""
 
 
 class Resonator(Section):

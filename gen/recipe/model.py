@@ -9,15 +9,16 @@ from itertools import pairwise
 from types import MappingProxyType
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, StrictInt, StringConstraints, ValidationError, model_validator
+from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, ValidationError, model_validator
 
 from gen.corpus import Codec
 from gen.errors import RecipeError
 from gen.limits import check_limit
 from gen.recipe.checks import recipe_problem
 from gen.recipe.distributions import Number
+from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault
-from gen.recipe.machine import CatalogueBearing, ContactSection, GeometryBearing, MachineSection, SpecimenSection
+from gen.recipe.machine import BearingSection, ContactSection, MachineSection, SpecimenSection
 from gen.recipe.operation import OperationSection, Table
 from gen.recipe.publication import PublicationSection
 from gen.recipe.section import Count, Name, Section, plain
@@ -42,8 +43,27 @@ class Split(Section):
     """Share of the specimens or rigs for testing; the rest is for training."""
 
 
+class TruthSection(Section):
+    """What is known of the faults of each record."""
+
+    twins: bool = True
+    """Simulates each record with a fault once more without it, to know what the fault adds to it; `false` takes less time."""
+    undetected: Literal["redraw", "keep", "healthy"] = "keep"
+    """What becomes of a record in which its fault cannot be seen. `keep`: it keeps its label. `redraw`: its level is drawn again, then the
+    fault of its specimen. `healthy`: it is labelled healthy. With `twins: false` all records keep their labels."""
+
+
+class StorageSection(Section):
+    """Files of the corpus."""
+
+    records_per_part: Annotated[StrictInt, Field(ge=1, le=100_000)] = 256
+    """Number of records in one file of the corpus. A part is simulated as a whole, so it sets the memory that is needed."""
+    codec: Codec = "zlib"
+    """Compression of the signal: `zlib` can be read everywhere, `zstd` needs a plugin for h5py and ncdump, `none` stores it as it is."""
+
+
 class CorpusSection(Section):
-    """Number of rigs, specimens and records, their split, and their storage."""
+    """Number of rigs, specimens and records, and their split."""
 
     rigs: Count
     """Number of machines; each has its own draws of bearing, machine, path and background."""
@@ -61,19 +81,10 @@ class CorpusSection(Section):
     fault_choice: Literal["by_weight", "in_turn"] = "by_weight"
     """`by_weight`: the classes have the shares of their weights, and entries of `faults` of one class are drawn by theirs. `in_turn`: the
     specimens take the entries of `faults` one after the other, by their number, so that each entry has as many; no weights then."""
-    records_per_part: Annotated[StrictInt, Field(ge=1, le=100_000)] = 256
-    """Number of records in one file of the corpus. A part is simulated as a whole, so it sets the memory that is needed."""
     sampling: Literal["random", "sobol", "halton"] = "random"
     """Random numbers that the draws come from: pseudo-random, or a low-discrepancy sequence that covers ranges more evenly."""
     split: Split = Split()
     """Division into training, validation and test records."""
-    truth: Literal["full", "none"] = "full"
-    """`full` simulates each record with a fault once more without it, to know what the fault adds to it; `none` takes less time."""
-    undetected: Literal["redraw", "keep", "healthy"] = "keep"
-    """What becomes of a record in which its fault cannot be seen. `keep`: it keeps its label. `redraw`: its level is drawn again, then the
-    fault of its specimen. `healthy`: it is labelled healthy. With `truth: none` all records keep their labels."""
-    codec: Codec = "zlib"
-    """Compression of the signal: `zlib` can be read everywhere, `zstd` needs a plugin for h5py and ncdump, `none` stores it as it is."""
 
     @property
     def n_rungs(self) -> int:
@@ -110,11 +121,12 @@ class Recipe(Section):
     publication: PublicationSection = PublicationSection()
     """Licence, creators and references; no record depends on them, and `raceway card` can change them later."""
     corpus: CorpusSection
-    """Size, split and storage of the corpus."""
+    """Size and split of the corpus."""
     recording: RecordingSection
     """Sample rate, duration, channels and converter of every record."""
-    bearing: Annotated[CatalogueBearing | GeometryBearing, Field(discriminator="kind")]
-    """Type of the bearing of each rig."""
+    bearing: BearingSection
+    """Type of the bearing of each rig: a designation such as "6205", a list of them, or dimensions such as
+    `{n_balls: 22, pitch_diameter_mm: 60, ball_diameter_mm: 6}`; the sections below say more."""
     machine: MachineSection = MachineSection()
     """Masses, springs and dampers of each rig, and its faults other than those of the bearing."""
     contact: ContactSection = ContactSection()
@@ -123,8 +135,12 @@ class Recipe(Section):
     """Clearance, conformity and waviness of each physical bearing."""
     operation: OperationSection
     """Speed, load, slip and temperature of each record."""
-    faults: Annotated[tuple[Fault, ...], Field(min_length=1)]
-    """Faults that specimens can have, one entry each, with weights."""
+    faults: Annotated[
+        tuple[Fault, ...],
+        Field(min_length=1),
+        BeforeValidator(fault_entries, json_schema_input_type=tuple[Fault, ...] | FaultList),
+    ]
+    """Faults that specimens can have, one entry each, with weights. `faults: {defaults: ..., entries: ...}` gives all entries some keys."""
     path: PathSection = PathSection()
     """Transfer path from bearing to sensor, common to all channels without their own."""
     background: BackgroundSection = BackgroundSection()
@@ -133,6 +149,10 @@ class Recipe(Section):
     """Level of bearing signal and background."""
     sensor_faults: SensorFaultsSection = SensorFaultsSection()
     """Faults of mount, cable, amplifier and data transfer; none if left out."""
+    truth: TruthSection = TruthSection()
+    """Twins of the records with a fault, and records in which it cannot be seen."""
+    storage: StorageSection = StorageSection()
+    """Size and compression of the files."""
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
 
@@ -179,7 +199,7 @@ class Recipe(Section):
     @property
     def n_parts(self) -> int:
         """Number of parts of the corpus."""
-        return -(-self.n_records // self.corpus.records_per_part)
+        return -(-self.n_records // self.storage.records_per_part)
 
     def specimen_of(self, record: int) -> int:
         """Number of the specimen of a record."""
@@ -195,7 +215,7 @@ class Recipe(Section):
 
     def records_of_part(self, part: int) -> range:
         """Numbers of the records of a part; the last part may have fewer than the others."""
-        return self._some_records(part, self.corpus.records_per_part)
+        return self._some_records(part, self.storage.records_per_part)
 
     def _some_records(self, place: int, size: int) -> range:
         return range(place * size, min((place + 1) * size, self.n_records))
@@ -234,9 +254,9 @@ class Recipe(Section):
         check_limit(
             "record_samples", samples, "recording: a record of all channels, settle_s included, has", ValueError
         )
-        records = min(self.n_records, corpus.records_per_part)
+        records = min(self.n_records, self.storage.records_per_part)
         needed = samples + _SAMPLES_OF_A_RECORD + _SAMPLES_OF_A_NUMBER * self._numbers_of_a_record()
-        check_limit("part_samples", records * needed, f"corpus.records_per_part: {records} records need", ValueError)
+        check_limit("part_samples", records * needed, f"storage.records_per_part: {records} records need", ValueError)
         return self
 
     def _numbers_of_a_record(self) -> int:

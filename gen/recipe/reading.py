@@ -10,18 +10,19 @@ from typing import Any
 from gen.errors import RecipeError
 from gen.recipe.finding import find_recipe
 from gen.recipe.model import Recipe
+from gen.recipe.section import plain
 from gen.yaml_files import read_yaml
 
 
 def read_recipe(
-    recipe: Path | str | Mapping[str, Any], *, seed: int | None = None, records: int | None = None
+    recipe: Path | str | Mapping[str, Any] | Recipe, *, seed: int | None = None, records: int | None = None
 ) -> Recipe:
     """Read and check a recipe.
 
     Parameters
     ----------
-    recipe : path, str or mapping
-        File, name of a recipe that ships with Raceway, or the keys of a recipe with their values.
+    recipe : path, str, mapping or Recipe
+        File, name of a recipe that ships with Raceway, the keys of a recipe with their values, or a recipe that has been read.
     seed, records : int, optional
         Replace those of the recipe.
 
@@ -31,6 +32,8 @@ def read_recipe(
         If the file is missing, is not YAML, or has wrong keys or values; one sentence for each of them.
     """
     overrides = {key: value for key, value in (("seed", seed), ("records", records)) if value is not None}
+    if isinstance(recipe, Recipe):
+        return Recipe(plain(recipe), **overrides) if overrides else recipe
     if isinstance(recipe, Mapping):
         return Recipe(recipe, **overrides)
     if not isinstance(recipe, str | Path):
@@ -58,7 +61,7 @@ def recipe_hash(recipe: Recipe) -> str:
 def corpus_identity(recipe: Recipe) -> str:
     """First 12 digits of the SHA-256 of the values that draws depend on: with the same ones, equal numbers are the same machine."""
     storage = {
-        "corpus": {"codec", "records_per_part"},
+        "storage": True,
         "publication": True,
         "records": True,
         "name": True,

@@ -6,7 +6,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, StrictInt, StringConstraints, ValidationInfo, field_validator
 
-from gen.recipe.distributions import Number, check_bounds
+from gen.recipe.distributions import Number, check_bounds, is_distribution
 
 Weight = Annotated[Number, Field(ge=0)]
 Count = Annotated[StrictInt, Field(ge=1)]
@@ -29,11 +29,15 @@ class Section(BaseModel):
 
 
 def plain(value: Any) -> Any:
-    """Value of a recipe as YAML would give it: NumPy numbers and arrays as numbers and lists, sections as the keys that were given.
+    """Value of a recipe as YAML would give it.
+
+    Arrays of NumPy become lists, distributions text, and sections the keys that were given.
 
     >>> plain({"widths": np.array([0.5, 1.0])})
     {'widths': [0.5, 1.0]}
     """
+    if is_distribution(value):
+        return value.written
     if isinstance(value, BaseModel):  # its kind names the section, also if it was not given
         own = sorted(type(value).model_fields, key=lambda name: name != "kind")
         given = [name for name in own if name in value.model_fields_set or name == "kind"]

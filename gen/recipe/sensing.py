@@ -208,7 +208,7 @@ class SnrLevel(Section):
     """Scales bearing signal and background per record."""
     faulty_db: Distribution = within(-60, 60)
     """Rms of what the fault adds over that of all else, background and bearing without the fault; for records with a fault. With
-    `corpus.truth: none` it is that of the whole bearing signal over the background."""
+    `truth.twins: false` it is that of the whole bearing signal over the background."""
     healthy_db: Distribution = within(-60, 60)
     """Rms of the bearing signal over that of the background, for healthy records."""
     rms_m_s2: Distribution = within(0, 1000, open_low=True, default=5.0)

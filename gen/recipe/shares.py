@@ -133,9 +133,9 @@ def _misplaced(recipe: "Recipe", with_shares: set[int]) -> str | None:
         for key, found in quantities(section).items():
             at = f"{place}.{key}"
             if found.share_of is not None and id(section) not in with_shares and not operating:
-                return f"{at}.share_of: there are shares in {_HAVE_SHARES} alone; give the quantity a range of its own."
+                return f"{at}: there are shares in {_HAVE_SHARES} alone; give the quantity a range of its own."
             if found.per is not None and not operating:
-                return f"{at}.per: the level of a draw can be chosen for quantities of operation alone; leave it out."
+                return f"{at}: the level of a draw can be chosen for quantities of operation alone; leave per out."
     return None
 
 
@@ -174,7 +174,7 @@ def _is_rounding(end: float, bounds: dict[str, Any]) -> bool:
 def _name_problem(recipe: "Recipe", scope: _Scope, key: str, named: str) -> str | None:
     """Error sentence if a quantity cannot be a share of the one that it names, else None."""
     own = quantities(scope.section)
-    unit, at = unit_suffix(key), f"{scope.place}.{key}.share_of"
+    unit, at = unit_suffix(key), f"{scope.place}.{key}"
     if key in _COUNTS or unit in _WITHOUT_SHARES:
         found = "count" if key in _COUNTS else f"value in {UNITS[unit].symbol}"
         return f"{at}: a {found} has no share; give it a range of its own."
@@ -205,9 +205,7 @@ def _loop(scope: _Scope, key: str) -> str | None:
     while (named := _DEPENDS_ON.get(share := own[chain[-1]].share_of, share)) in own:
         if named == key:
             round_trip = ", which is a share of ".join([*chain[1:], key])
-            return (
-                f"{scope.place}.{key}.share_of: {key} is a share of {round_trip}; give one of them a range of its own."
-            )
+            return f"{scope.place}.{key}: {key} is a share of {round_trip}; give one of them a range of its own."
         if named in chain:
             return None  # a loop that the key is not part of
         chain.append(named)

@@ -14,6 +14,7 @@ from gen.recipe.section import plain
 _LONGEST = 100  # characters of a list or mapping on one line
 _WORDS = ("null", "true", "false", "yes", "no", "on", "off", "y", "n")  # the last six are booleans in YAML 1.1
 _WORD = re.compile(r"[a-z][a-z0-9_]*")
+_EXPRESSION = re.compile(r"[a-z]+\([\w.,()= +-]*\)( \* \w+)?|[\d.e+-]+ \* \w+")  # needs no quotes outside of braces
 
 
 def write_recipe(recipe: Recipe, path: Path | str) -> None:
@@ -33,16 +34,7 @@ def write_recipe(recipe: Recipe, path: Path | str) -> None:
 
 def recipe_text(recipe: Recipe) -> str:
     """YAML text of a recipe: the keys that were given, one section below the other."""
-    return "".join(_lines(_short(plain(recipe)), ""))
-
-
-def _short(value: Any) -> Any:
-    """Values with constants as plain numbers."""
-    if isinstance(value, dict):
-        if value.keys() == {"kind", "value"} and value["kind"] == "constant":
-            return value["value"]
-        return {key: _short(item) for key, item in value.items()}
-    return [_short(item) for item in value] if isinstance(value, list) else value
+    return "".join(_lines(plain(recipe), ""))
 
 
 def _lines(section: Mapping[str, Any], indent: str) -> list[str]:
@@ -54,7 +46,8 @@ def _lines(section: Mapping[str, Any], indent: str) -> list[str]:
         elif isinstance(value, list) and len(value) > 1 and isinstance(value[0], dict):
             lines += [f"{indent}{_name(key)}:\n", *(f"{indent}  - {_flow(item)}\n" for item in value)]
         else:
-            lines.append(f"{indent}{_name(key)}: {whole}\n")
+            bare = isinstance(value, str) and _EXPRESSION.fullmatch(value)
+            lines.append(f"{indent}{_name(key)}: {value if bare else whole}\n")
     return lines
 
 

@@ -100,7 +100,7 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
     known = known_of(recipe.machine, machine)
     resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator, known)
-    bearing = _draw_bearing(recipe, draws, number)
+    bearing = _draw_bearing(recipe, draws)
     level = draws.section(recipe.level)
     channels = []
     for channel in recipe.recording.channels:
@@ -138,23 +138,18 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     )
 
 
-def _draw_bearing(recipe: Recipe, draws: Draws, rig: int) -> Bearing:
+def _draw_bearing(recipe: Recipe, draws: Draws) -> Bearing:
     chosen = recipe.bearing
     if isinstance(chosen, CatalogueBearing):
         return chosen.bearing(chosen.designations[int(draws.u() * len(chosen.designations))])
     drawn = draws.section(chosen)
     n_balls = round(drawn["n_balls"])
-    ball = chosen.largest_ball(n_balls, drawn["pitch_diameter"], drawn["ball_share"])
-    if drawn["ball_share"] > 0.6 or ball <= 0:
-        raise RecipeError(
-            f"rig {rig}: ball_share {drawn['ball_share']:g} leaves no room for the balls; keep it below 0.45."
-        )
     rollers = drawn["roller_length"]
     return Bearing(
         designation=chosen.designation,
         n_balls=n_balls,
         pitch_diameter=drawn["pitch_diameter"],
-        ball_diameter=ball,
+        ball_diameter=chosen.fitting_ball(n_balls, drawn["pitch_diameter"], drawn["ball_diameter"]),
         contact_angle=drawn["contact_angle"],
         rolling_element="roller" if rollers > 0 else "ball",
         roller_length=rollers or None,

@@ -75,8 +75,8 @@ class Settings:
     """Name of each channel."""
     full_scale: Annotated[float, Field(gt=0)] | None
     """Largest acceleration of the converter [m s-2]; None without one."""
-    truth: Literal["full", "none"]
-    """``full`` if records with a fault are also simulated without it."""
+    twins: bool
+    """Whether records with a fault are also simulated without it."""
     undetected: Literal["redraw", "keep", "healthy"]
     """``healthy`` if a record in which its fault cannot be seen is labelled healthy."""
 

@@ -23,8 +23,8 @@ def settings_of(recipe: Recipe) -> Settings:
         oversampling=recording.oversampling,
         channels=tuple(channel.name for channel in recording.channels),
         full_scale=None if converter.kind == "float32" else converter.full_scale_m_s2,
-        truth=recipe.corpus.truth,
-        undetected=recipe.corpus.undetected,
+        twins=recipe.truth.twins,
+        undetected=recipe.truth.undetected,
     )
 
 

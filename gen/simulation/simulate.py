@@ -46,7 +46,7 @@ class Response:
     """Kernel input of each record, None for a record that is not possible."""
     truth: list[Truth]
     twins: Twins | None
-    """None with ``corpus.truth: none``."""
+    """None with ``truth.twins: false``."""
 
 
 class Run(NamedTuple):
@@ -60,7 +60,7 @@ class Run(NamedTuple):
     own: Integration | None
     """None if no such machine is possible."""
     twin: Integration | None
-    """Without the fault; None for a record without a fault, and with ``corpus.truth: none``."""
+    """Without the fault; None for a record without a fault, and with ``truth.twins: false``."""
 
 
 def simulate(scenarios: list[Scenario]) -> Response:
@@ -116,7 +116,7 @@ def runs_of(scenarios: list[Scenario], known_twins: Mapping[int, Integration] | 
 def response_of(runs: Sequence[Run]) -> Response:
     """Response and truth of scenarios that have been integrated."""
     settings = common_settings([run.scenario for run in runs])
-    axis, full = timeline(settings), settings.truth == "full"
+    axis, full = timeline(settings), settings.twins
     acceleration = np.empty((len(runs), len(settings.channels), axis.returned), np.float32)
     healthy = np.empty_like(acceleration) if full else acceleration
     oversampling, phases, failures = np.zeros(len(runs), np.int64), np.full(len(runs), np.nan), {}
@@ -155,11 +155,11 @@ def integrations(scenarios: Iterable[Scenario]) -> int:
 
 
 def _has_twin(scenario: Scenario) -> bool:
-    return scenario.settings.truth == "full" and scenario.specimen.fault != "healthy"
+    return scenario.settings.twins and scenario.specimen.fault != "healthy"
 
 
 def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput | None:
-    """Kernel input of a record as it was without its fault; None if it has none, and with ``corpus.truth: none``."""
+    """Kernel input of a record as it was without its fault; None if it has none, and with ``truth.twins: false``."""
     specimen = scenario.specimen
     if not _has_twin(scenario):
         return None

@@ -42,8 +42,11 @@ WORTH_WORKERS = 1000  # records; starting a local cluster takes about as long as
     metavar="[PREFIX]",
     help="List recipe keys that begin with PREFIX instead.",
 )
+@click.option(
+    "--schema", is_flag=True, help="Print the JSON schema of recipes instead, for editors that complete and check keys."
+)
 @json_option
-def recipes(prefix: str | None, as_json: bool) -> None:
+def recipes(prefix: str | None, schema: bool, as_json: bool) -> None:
     """List the shipped recipes, or the keys of recipes.
 
     Give any of the names where a command wants a RECIPE. To write your own, copy the nearest one and change it. For each key, --keys
@@ -53,7 +56,13 @@ def recipes(prefix: str | None, as_json: bool) -> None:
       raceway recipes --keys
       raceway recipes --keys machine
       raceway recipes --keys faults.width_mm --json
+      raceway recipes --schema > recipe.schema.json
     """
+    if schema:
+        from gen.recipe import recipe_schema
+
+        show.text(recipe_schema().rstrip())
+        return
     if prefix is not None:
         _show_keys(prefix, as_json)
         return

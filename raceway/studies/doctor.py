@@ -117,7 +117,7 @@ def _memory() -> Finding:
     except (ValueError, OSError):  # a system that does not tell
         return Finding("free memory", "not known")
     enough = free > 1e9
-    advice = "" if enough else "a worker needs half a gigabyte: use --workers 1, or lower corpus.records_per_part."
+    advice = "" if enough else "a worker needs half a gigabyte: use --workers 1, or lower storage.records_per_part."
     return Finding("free memory", f"{free / 1e9:.1f} GB", "fine" if enough else "note", advice)
 
 
@@ -163,7 +163,7 @@ def _codecs(plugins: str | None) -> Iterator[Finding]:
 
     with netCDF4.Dataset("in memory", "w", memory=1024) as file:
         writes = bool(file.has_zstd_filter())
-    advice = "corpus.codec: zstd cannot be written or read here; zlib works everywhere. Install netCDF4 again for its plugins."
+    advice = "storage.codec: zstd cannot be written or read here; zlib works everywhere. Install netCDF4 again for its plugins."
     yield Finding("codec zlib", "built in")
     yield Finding(
         "codec zstd", "plugin found" if writes else "no plugin", "fine" if writes else "note", "" if writes else advice

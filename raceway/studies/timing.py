@@ -57,7 +57,7 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
         If the recipe cannot be simulated.
     """
     checked = read_recipe(recipe)
-    wanted = min(records or checked.corpus.records_per_part, checked.n_records)
+    wanted = min(records or checked.storage.records_per_part, checked.n_records)
     scenarios = draw_scenarios(checked, 0, wanted)
     response = simulate(scenarios)  # compiles the kernels that are not compiled yet
     if len(response.failures) == wanted:
@@ -111,7 +111,7 @@ def _integrate(in_lanes: list[tuple[Group, Batch]], recipe: Recipe) -> None:
 
 
 def _write(measured: Any, recipe: Recipe, response: Response, path: Path) -> None:
-    write_part(part_dataset(measured, response), path, recipe.corpus.codec)
+    write_part(part_dataset(measured, response), path, recipe.storage.codec)
 
 
 def machine() -> dict[str, Any]:

@@ -62,8 +62,7 @@ def test_a_mechanism_that_only_some_rigs_have_doubles_the_kernels():
     """More kernels share the same records, so that more of the last batches have free lanes."""
     shipped = YAML(typ="safe").load(find_recipe("quickstart"))
     all_rigs, some_rigs = (
-        cost_of(Recipe.model_validate(changed(shipped, {"machine.looseness_um": play})))
-        for play in (5, {"kind": "choice", "values": [0, 5]})
+        cost_of(Recipe.model_validate(changed(shipped, {"machine.looseness_um": play}))) for play in (5, "choice(0, 5)")
     )
     assert some_rigs.kernels == 2 * all_rigs.kernels
     assert some_rigs.lane_steps > all_rigs.lane_steps

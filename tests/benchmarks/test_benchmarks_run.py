@@ -89,8 +89,9 @@ def test_a_cold_start_is_compared_with_a_warm_one(few_short):
 
 def test_the_lanes_of_a_whole_corpus_are_counted(few_short, tmp_path):
     """All batches, that of the check by half the step too, hold the twelve records of the only part."""
-    corpus = {"rigs": 1, "specimens_per_rig": 1, "records_per_specimen": 12, "records_per_part": 12}
-    (found,) = lanes.rows((variant(few_short, tmp_path / "twelve.yaml", corpus=corpus),))
+    corpus = {"rigs": 1, "specimens_per_rig": 1, "records_per_specimen": 12}
+    storage = {"records_per_part": 12}
+    (found,) = lanes.rows((variant(few_short, tmp_path / "twelve.yaml", corpus=corpus, storage=storage),))
     assert found.what == "lanes at work, all 12 records of twelve"
     assert found.value == pytest.approx(12 / LANES)
 

@@ -26,20 +26,20 @@ recording:
   duration_s: 0.1
   channels: [{name: sensor, body: {sensor: 1, housing: 2}}]
 bearing: {kind: catalogue, designations: ["6205"]}
-machine: {bow_n: {kind: uniform, low: 10, high: 20}}
+machine: {bow_n: 'uniform(10, 20)'}
 specimen:
-  diametral_clearance_um: {kind: uniform, low: -4, high: 12}
-  contact_angle_deg: {share_of: free_contact_angle_deg, kind: constant, value: 1}
+  diametral_clearance_um: uniform(-4, 12)
+  contact_angle_deg: 1 * free_contact_angle_deg
 operation:
-  shaft_rpm: {kind: normal, mean: 1750, sd: 100, low: 1500, high: 2000, per: rig, scatter_percent: 2}
-  load_n: &load {share_of: bow_n, kind: uniform, low: 2, high: 4}
-  slip_percent: {share_of: speed_wander_percent, kind: uniform, low: 0.5, high: 2}
+  shaft_rpm: normal(1750, 100, per=rig, scatter_percent=2, low=1500, high=2000)
+  load_n: &load uniform(2, 4) * bow_n
+  slip_percent: uniform(0.5, 2) * speed_wander_percent
   speed_profile: {kind: steps, levels_percent: [50, 100], step_s: 0.01}
 faults:
   - {kind: healthy, weight: 4}
-  - &inner {kind: inner, width_mm: 0.5, angle_deg: {kind: choice, values: [0, 90], weights: [1, 3]}, operation: {load_n: *load}}
+  - &inner {kind: inner, width_mm: 0.5, angle_deg: 'choice(0, 90, weights=(1, 3))', operation: {load_n: *load}}
   - {<<: *inner, kind: outer}
-  - {kind: compound, parts: [{kind: cage}, {kind: ball, width_mm: {kind: loguniform, low: 0.1, high: 1}}]}
+  - {kind: compound, parts: [{kind: cage}, {kind: ball, width_mm: 'loguniform(0.1, 1)'}]}
 background: {tones: {probability: 0.5, count: 2, frequency_hz: 100, level_db: -10}}
 """
 
@@ -48,8 +48,8 @@ SCALARS = (
     "9" * 5000, "0x_", "0b", "0o17", "-_", "1_0", "2001-99-99", "2001-01-01", "12:30:45", "2147483648", "9223372036854775808",
     "true", "no", "null", "~", "''", "[]", "{}", "[[]]", "{a: 1}", "*inner", "*nowhere", "&x [*x]", "!!binary aGk=", "!!set {a}",
     "!!float 1", "!!python/name:os.system", '"\\ud800"', '"\\0"', '"\\UFFFFFFFF"', "\u202e", "\U0001f529", "'\u0000'", "=", "<<",
-    "{<<: 1}", "6205", "grid", "{kind: grid, values: [1, 2]}", "{kind: uniform, low: 0, high: 1e308}",
-    "{kind: normal, mean: 0, sd: 1e-300, low: -1, high: 1}", "{kind: choice, values: [1], weights: [1e308]}", "geometry", "compound",
+    "{<<: 1}", "6205", "grid", "grid(1, 2)", "uniform(0, 1e+308)",
+    "normal(0, 1e-300, low=-1, high=1)", "choice(1, weights=(1e+308,))", "geometry", "compound",
 )  # fmt: skip
 FORMS = (
     "0", "1", "{i}", "{more}", "{half}", "{twice}", "-{i}", "{n}e-3", "{n}e3", "1e-300", "1e300",

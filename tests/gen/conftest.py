@@ -10,6 +10,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from gen.recipe import Recipe
+from gen.recipe.section import plain
 
 RecipeWith = Callable[..., Recipe]
 
@@ -21,9 +22,9 @@ SMALL: dict[str, Any] = {
         "rigs": 3,
         "specimens_per_rig": 4,
         "records_per_specimen": 2,
-        "records_per_part": 8,
         "split": {"by": "specimen", "test": 0.25},
     },
+    "storage": {"records_per_part": 8},
     "recording": {
         "sample_rate_hz": 12000,
         "duration_s": 0.1,
@@ -32,28 +33,28 @@ SMALL: dict[str, Any] = {
     },
     "bearing": {"kind": "catalogue", "designations": ["6205"]},
     "machine": {
-        "shaft_mass_kg": {"kind": "loguniform", "low": 2, "high": 8},
-        "support_frequency_hz": {"kind": "uniform", "low": 200, "high": 500},
-        "resonator": {"frequency_hz": {"kind": "uniform", "low": 2500, "high": 3500}},
+        "shaft_mass_kg": "loguniform(2, 8)",
+        "support_frequency_hz": "uniform(200, 500)",
+        "resonator": {"frequency_hz": "uniform(2500, 3500)"},
     },
-    "specimen": {"diametral_clearance_um": {"kind": "uniform", "low": -4, "high": 12}, "waviness_nm": 20},
+    "specimen": {"diametral_clearance_um": "uniform(-4, 12)", "waviness_nm": 20},
     "operation": {
-        "shaft_rpm": {"kind": "uniform", "low": 1500, "high": 2000},
-        "load_n": {"kind": "loguniform", "low": 100, "high": 1000},
+        "shaft_rpm": "uniform(1500, 2000)",
+        "load_n": "loguniform(100, 1000)",
         "mean_slip_percent": 0.5,
         "spin_wander_percent": 0.5,
     },
     "faults": [
         {"kind": "healthy"},
-        {"kind": "inner", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": 0, "high": 360}},
-        {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -40, "high": 40}},
+        {"kind": "inner", "width_mm": 0.5, "angle_deg": "uniform(0, 360)"},
+        {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-40, 40)"},
         {"kind": "ball", "width_mm": 0.5, "axis_wander_deg": 4},
     ],
-    "path": {"direct": 0.3, "modes": {"count": 2, "frequency_hz": {"kind": "uniform", "low": 500, "high": 5000}, "damping_percent": 3}},
+    "path": {"direct": 0.3, "modes": {"count": 2, "frequency_hz": "uniform(500, 5000)", "damping_percent": 3}},
     "background": {
-        "slope": {"kind": "uniform", "low": 0, "high": 1},
+        "slope": "uniform(0, 1)",
         "harmonics": {"probability": 0.8, "count": 3, "level_db": -10},
-        "tones": {"probability": 0.8, "count": 2, "frequency_hz": {"kind": "loguniform", "low": 50, "high": 4000}, "level_db": -10},
+        "tones": {"probability": 0.8, "count": 2, "frequency_hz": "loguniform(50, 4000)", "level_db": -10},
         "impulses": {"probability": 0.5, "rate_hz": 20, "level_db": 10},
     },
 }  # fmt: skip
@@ -83,7 +84,7 @@ def write_recipe() -> Callable[..., Path]:
 
     def write(path: Path, changes: dict[str, Any] | None = None) -> Path:
         stream = io.StringIO()
-        YAML(typ="safe", pure=True).dump(small_with(changes or {}), stream)
+        YAML(typ="safe", pure=True).dump(plain(small_with(changes or {})), stream)
         path.write_text(stream.getvalue(), encoding="utf-8")
         return path
 

@@ -124,7 +124,7 @@ def test_the_sample_needs_every_kernel_of_a_shipped_recipe(name):
     every = {
         input_shape(outlined_input(some, timeline(settings_of(recipe))))
         for scenario in draw_scenarios(recipe, 0, 480)
-        for some in [scenario, scenario.without_fault()][: 2 if recipe.corpus.truth == "full" else 1]
+        for some in [scenario, scenario.without_fault()][: 2 if recipe.truth.twins else 1]
     }
     assert set(needed_shapes(recipe)) == every
 
@@ -139,7 +139,7 @@ def test_kernels_are_compiled_for_the_types_of_the_arguments_they_are_called_wit
 
 
 def test_each_kernel_is_announced_with_how_many_there_are(recipe_with, monkeypatch):
-    recipe = recipe_with({"operation.jitter_deg": {"kind": "grid", "values": [0, 0.3]}})
+    recipe = recipe_with({"operation.jitter_deg": "grid(0, 0.3)"})
     said, loaded = [], []
     monkeypatch.setattr(compilation, "is_compiled", lambda _: False)
     monkeypatch.setattr(compilation, "load_kernel", loaded.append)

@@ -15,11 +15,11 @@ from gen.simulation.hits import felt_places
 from gen.simulation.simulate import simulate
 
 FLOAT = FloatConverter(kind="float32")
-OUTER = {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -180, "high": 180}}
+OUTER = {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-180, 180)"}
 LEVEL = {
     "kind": "snr",
-    "faulty_db": {"kind": "uniform", "low": -15, "high": 10},
-    "healthy_db": {"kind": "uniform", "low": -15, "high": 10},
+    "faulty_db": "uniform(-15, 10)",
+    "healthy_db": "uniform(-15, 10)",
 }
 TRAINING = {
     "level": LEVEL,
@@ -35,7 +35,7 @@ def labelled(made):
 
 @pytest.fixture(scope="module")
 def redrawing(recipe_with):
-    recipe = recipe_with(TRAINING | {"corpus.undetected": "redraw"})
+    recipe = recipe_with(TRAINING | {"truth.undetected": "redraw"})
     return recipe, made_records(recipe, range(recipe.n_records))
 
 
@@ -47,7 +47,7 @@ def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
     assert (made.measured.detectable[kept] == 1).all()
     assert any(scenario.specimen.fault_try for scenario in made.measured.scenarios)
     assert any(scenario.record.level_try for scenario in made.measured.scenarios)
-    assert recipe.corpus.undetected == "redraw"
+    assert recipe.truth.undetected == "redraw"
 
 
 def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing):
@@ -155,9 +155,7 @@ def test_a_record_is_the_same_whether_its_fault_is_known_apart_or_not(recipe_wit
         "path.modulation": {"probability": 1, "first": 0.5, "second": 0.2},
         "level": {"kind": "physical", "background_m_s2": 0.1, "gain": 3},
     }
-    whole, apart = (
-        made_records(recipe_with(changes | {"corpus.truth": truth}), range(8)) for truth in ("none", "full")
-    )
+    whole, apart = (made_records(recipe_with(changes | {"truth.twins": truth}), range(8)) for truth in ("none", "full"))
     assert (apart.measured.fault_snr > 0).any()
     for row in range(8):
         np.testing.assert_allclose(
@@ -187,7 +185,7 @@ def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
 
 
 def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with):
-    recipe = recipe_with({"corpus.truth": "none"})
+    recipe = recipe_with({"truth.twins": False})
     made = made_records(recipe, range(8))
     assert made.response.twins is None
     healthy = np.array([scenario.specimen.fault == "healthy" for scenario in made.measured.scenarios])
@@ -199,7 +197,7 @@ def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with
 def hidden(recipe_with, undetected):
     unloaded = {"kind": "outer", "width_mm": 0.5, "angle_deg": 170}
     changes = {"faults": [unloaded], "corpus.specimens_per_rig": 1, "specimen.diametral_clearance_um": 30}
-    recipe = recipe_with(changes | {"corpus.undetected": undetected})
+    recipe = recipe_with(changes | {"truth.undetected": undetected})
     return recipe, made_records(recipe, range(2))
 
 
@@ -221,7 +219,7 @@ def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(
 
 
 def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
-    recipe = recipe_with({"corpus.truth": "none", "corpus.undetected": "healthy"})
+    recipe = recipe_with({"truth.twins": False, "truth.undetected": "healthy"})
     made = made_records(recipe, range(8))
     faults = [FAULTS.index(scenario.specimen.fault) for scenario in made.measured.scenarios]
     assert any(faults)
@@ -245,7 +243,7 @@ LADDER = {
 
 @pytest.fixture(scope="module", params=["keep", "redraw"])
 def ladders(recipe_with, request):
-    recipe = recipe_with(LADDER | {"corpus.undetected": request.param})
+    recipe = recipe_with(LADDER | {"truth.undetected": request.param})
     return recipe, made_records(recipe, range(18))
 
 
@@ -280,8 +278,8 @@ def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
 
 
 def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with):
-    quiet = LEVEL | {"faulty_db": {"kind": "uniform", "low": -40, "high": 10}}
-    recipe = recipe_with(LADDER | {"level": quiet, "corpus.undetected": "redraw"})
+    quiet = LEVEL | {"faulty_db": "uniform(-40, 10)"}
+    recipe = recipe_with(LADDER | {"level": quiet, "truth.undetected": "redraw"})
     made = made_records(recipe, range(18))
     tried = 0
     for group in groups_of(made):
@@ -295,8 +293,8 @@ def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with)
 
 def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_of_its_group(recipe_with):
     """Of the widest spalls at the edge of the load zone, half the width may lie outside."""
-    angles = {"kind": "uniform", "low": 20, "high": 180}
-    changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "corpus.undetected": "redraw"}
+    angles = "uniform(20, 180)"
+    changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "truth.undetected": "redraw"}
     recipe = recipe_with(LADDER | {"corpus.rungs": [0.1, 1], "corpus.rigs": 6} | changes)
     made = made_records(recipe, range(recipe.n_records))
     tries = {one.specimen.number: one.specimen.fault_try for one in made.measured.scenarios}
@@ -334,7 +332,7 @@ def test_a_group_is_not_cut_by_a_part(ladders):
 
 def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
     """The background of a machine and the gain of its sensor are the same at every severity, and both are stored."""
-    level = {"kind": "physical", "gain": {"kind": "uniform", "low": 0.5, "high": 2}, "background_m_s2": 0.2}
+    level = {"kind": "physical", "gain": "uniform(0.5, 2)", "background_m_s2": 0.2}
     rungs, width = [0.25, 0.5, 0.75, 1], {"kind": "outer", "width_mm": 0.4}
     recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
     made = made_records(recipe, range(16))

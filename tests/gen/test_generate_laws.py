@@ -443,7 +443,7 @@ def test_a_scheduler_that_does_not_answer_is_refused_before_anything_is_written(
 @pytest.mark.parametrize("where", ["this process", "a cluster"])
 def test_progress_moves_within_a_part_and_ends_once_at_the_whole(write_recipe, tmp_path, monkeypatch, where):
     """Two batches of one part: the first is reported before the part is written."""
-    recipe = write_recipe(tmp_path / "one.yaml", {"corpus.records_per_part": 24})
+    recipe = write_recipe(tmp_path / "one.yaml", {"storage.records_per_part": 24})
     done, written = [], []
     from gen.part_task import write_part
 
@@ -479,7 +479,7 @@ def test_records_that_diverge_are_left_out_and_named_and_the_rest_is_a_valid_cor
 ):
     """One step per sample: the second of three rigs, a whole part, has a resonance that Runge-Kutta cannot hold."""
     monkeypatch.setattr("gen.simulation.steps.COARSEST_STEP", math.inf)
-    resonance = {"kind": "grid", "values": [1500, 5900]}
+    resonance = "grid(1500, 5900)"
     recipe = write_recipe(
         tmp_path / "r.yaml", {"recording.oversampling": 1, "machine.resonator.frequency_hz": resonance}
     )

@@ -304,9 +304,9 @@ def test_scenarios_that_do_not_fit_each_other_are_refused(ladder, changed, sente
 
 def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder):
     one, other, *_ = gen.scenarios_of(ladder)
-    other = replace(other, settings=replace(other.settings, seed=6, truth="none"))
+    other = replace(other, settings=replace(other.settings, seed=6, twins=False))
     with pytest.raises(
-        SimulationError, match=r"scenarios\[1\]: its settings are not those of scenarios\[0\] \(seed, truth\); simulate"
+        SimulationError, match=r"scenarios\[1\]: its settings are not those of scenarios\[0\] \(seed, twins\); simulate"
     ):
         gen.simulate_scenarios([one, other])
 

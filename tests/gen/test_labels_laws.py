@@ -197,7 +197,7 @@ def test_signal_ratio_and_clipped_samples_are_those_that_were_measured(recipe_wi
 
 
 def test_a_record_knows_its_place(recipe_with):
-    recipe = recipe_with({"machine.load_angle_deg": {"kind": "uniform", "low": -100, "high": -80}})
+    recipe = recipe_with({"machine.load_angle_deg": "uniform(-100, -80)"})
     scenarios, found = draw_scenarios(recipe), labels(recipe)
     assert found["recording"].values.tolist() == list(range(24))
     assert found["specimen"].values.tolist() == [number // 2 for number in range(24)]
@@ -214,7 +214,7 @@ def test_a_record_has_the_identity_that_its_numbers_have_in_every_corpus_of_the_
     found = labels(recipe_with({}))
     corpora = {text.partition("/")[0] for text in found["identity"].values}
     assert corpora == {
-        corpus_identity(recipe_with({"corpus.records_per_part": 5, "title": "Another title", "records": 9}))
+        corpus_identity(recipe_with({"storage.records_per_part": 5, "title": "Another title", "records": 9}))
     }
     assert corpora != {corpus_identity(recipe_with({"seed": 8}))}
     numbers = [tuple(map(int, text.split("/")[1:])) for text in found["identity"].values]

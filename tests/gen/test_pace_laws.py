@@ -53,8 +53,8 @@ def test_a_refused_kernel_can_be_compiled_afterwards(tmp_path, monkeypatch):
 def test_a_batch_of_too_many_steps_is_not_timed(compiled, monkeypatch):
     recipe = read_recipe(compiled)
     scenarios = draw_scenarios(recipe, 0, 2)
-    found = pace.measured_pace(scenarios, recipe.corpus.codec, 1000)
+    found = pace.measured_pace(scenarios, recipe.storage.codec, 1000)
     assert found is not None
     assert np.all(np.array(found) > 0)
     monkeypatch.setattr(pace, "LARGEST_SAMPLE", pace.LANES * 1000 - 1)
-    assert pace.measured_pace(scenarios, recipe.corpus.codec, 1000) is None
+    assert pace.measured_pace(scenarios, recipe.storage.codec, 1000) is None

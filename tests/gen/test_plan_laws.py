@@ -18,7 +18,7 @@ from gen.recipe import read_recipe
 @settings(deadline=None)
 @given(per_part=st.integers(1, 20_000), rigs=st.integers(1, 5000))
 def test_the_parts_a_plan_looks_at_are_in_the_corpus_and_do_not_overlap(recipe_with, per_part, rigs):
-    recipe = recipe_with({"corpus.records_per_part": per_part, "corpus.rigs": rigs})
+    recipe = recipe_with({"storage.records_per_part": per_part, "corpus.rigs": rigs})
     ranges = some_ranges(recipe)
     assert all(0 <= first < stop <= recipe.n_records for first, stop in ranges)
     assert all(stop <= following for (_, stop), (following, _) in pairwise(ranges))
@@ -27,7 +27,7 @@ def test_the_parts_a_plan_looks_at_are_in_the_corpus_and_do_not_overlap(recipe_w
 
 
 def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
-    path = write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500, "corpus.records_per_part": 250})
+    path = write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500, "storage.records_per_part": 250})
     planned = plan(path)
     assert (planned.records, planned.rigs, planned.specimens, planned.drawn) == (20_000, 2500, 10_000, 5000)
     assert sum(planned.splits.values()) == pytest.approx(20_000, abs=3)
@@ -52,7 +52,7 @@ def test_the_time_of_a_plan_counts_every_lane_that_generation_integrates(write_r
         counted.append(n_steps * (n_settle + n_out) * LANES)
         return integrate(shape, lanes, dt, n_steps, taps, n_settle, n_out)
 
-    path = write_recipe(tmp_path / "r.yaml", {"corpus.records_per_part": 20})
+    path = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 20})
     monkeypatch.setattr("gen.simulation.batches.integrate", count)
     generate(path, tmp_path / "corpus")
     monkeypatch.setattr("gen.plan.measured_pace", lambda *_: Pace(lane_step=1.0, record=0.0))
@@ -85,7 +85,7 @@ def test_the_time_of_a_plan_contains_the_time_to_draw_every_record(write_recipe,
 
 @pytest.mark.parametrize("per_part", [1, 5, 24])
 def test_the_size_of_a_plan_has_one_overhead_for_each_part_and_one_for_the_index(recipe_with, per_part):
-    recipe = recipe_with({"corpus.records_per_part": per_part})
-    lean = recipe_with({"corpus.records_per_part": 1000})
+    recipe = recipe_with({"storage.records_per_part": per_part})
+    lean = recipe_with({"storage.records_per_part": 1000})
     assert plan_bytes(recipe) - plan_bytes(lean) == (recipe.n_parts - 1) * BYTES_PER_FILE
     assert plan_bytes(lean) > 2 * BYTES_PER_FILE

@@ -29,7 +29,7 @@ def test_seed_and_size_given_in_the_call_do_not_matter(write_recipe, tmp_path):
 
 
 def test_a_record_that_was_tampered_with_is_not_what_replay_makes(write_recipe, tmp_path):
-    floating = {"recording.converter": {"kind": "float32"}, "corpus.codec": "none", "records": 8}
+    floating = {"recording.converter": {"kind": "float32"}, "storage.codec": "none", "records": 8}
     made = generate(write_recipe(tmp_path / "r.yaml", floating), tmp_path / "c")
     with edited(made.path / "parts" / part_name(0)) as part:
         part[SIGNAL][3, 0, 100] += 1e-4

@@ -33,12 +33,12 @@ def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for
     """Also where records before them were left out, so that their places in the corpus are not their numbers."""
     level = {
         "kind": "snr",
-        "faulty_db": {"kind": "uniform", "low": -25, "high": 10},
-        "healthy_db": {"kind": "uniform", "low": -15, "high": 10},
+        "faulty_db": "uniform(-25, 10)",
+        "healthy_db": "uniform(-15, 10)",
     }
-    outer = {"kind": "outer", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": -180, "high": 180}}
+    outer = {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-180, 180)"}
     hidden = {"kind": "ball", "width_mm": 0.1, "level": {"faulty_db": -60}}
-    changes = {"level": level, "faults": [outer, hidden], "recording.duration_s": 0.25, "corpus.undetected": "redraw"}
+    changes = {"level": level, "faults": [outer, hidden], "recording.duration_s": 0.25, "truth.undetected": "redraw"}
     generated = generate(write_recipe(tmp_path / "r.yaml", changes), tmp_path / "corpus")
     assert generated.failures
     with open_corpus(tmp_path / "corpus") as corpus:

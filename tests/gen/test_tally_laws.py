@@ -8,7 +8,7 @@ from gen.generation import Tally
 
 @given(per_part=st.integers(1, 50), records=st.integers(1, 24))
 def test_the_parts_hold_every_record_once(recipe_with, per_part, records):
-    recipe = recipe_with({"corpus.records_per_part": per_part, "records": records})
+    recipe = recipe_with({"storage.records_per_part": per_part, "records": records})
     numbers = [number for part in range(recipe.n_parts) for number in recipe.records_of_part(part)]
     assert numbers == list(range(recipe.n_records))
     assert recipe.n_records == records

@@ -20,7 +20,7 @@ SILENT = {
     "level": {"kind": "physical", "gain": 1e-3, "background_m_s2": 0},
 }
 # of three machines the second exceeds the range of the converter by far
-ONE_LOUD_RIG = {"level": {"kind": "physical", "gain": {"kind": "grid", "values": [1, 1000, 1]}}}
+ONE_LOUD_RIG = {"level": {"kind": "physical", "gain": "grid(1, 1000, 1)"}}
 
 
 def part_counts(folder):

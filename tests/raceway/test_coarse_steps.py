@@ -14,7 +14,7 @@ SENTENCE = re.compile(
 def fast(tiny_recipe, tmp_path_factory):
     """Recipe of a shaft that turns so fast that a ball passes a spall within a few steps."""
     path = tmp_path_factory.mktemp("fast") / "fast.yaml"
-    path.write_text(tiny_recipe.read_text().replace("{kind: uniform, low: 4500, high: 6000}", "60000"))
+    path.write_text(tiny_recipe.read_text().replace("uniform(4500, 6000)", "60000"))
     return path
 
 

@@ -101,7 +101,7 @@ def test_large_corpora_get_a_worker_per_core_and_small_ones_at_most_the_threads_
 def test_a_plan_counts_the_records_that_cannot_be_simulated(run, told, tiny_recipe, tmp_path):
     text = tiny_recipe.read_text().replace("waviness_nm: 20", "waviness_nm: 20, contact_angle_deg: 10")
     loose = tmp_path / "loose.yaml"
-    loose.write_text(text.replace("operation: {", "operation: {axial_load_n: {kind: uniform, low: 10, high: 200}, "))
+    loose.write_text(text.replace("operation: {", "operation: {axial_load_n: 'uniform(10, 200)', "))
     planned = told("plan", loose)
     assert 0 < planned["left_out"] < planned["records"] == planned["drawn"] == 48
     assert sum(planned["steps_per_sample"].values()) == 48 - planned["left_out"]

@@ -20,7 +20,7 @@ def _visible_faults(corpus: xr.Dataset) -> list[str]:
     if counts is None:
         return []
     if counts.unjudged == counts.records:
-        return ["", "What the faults add to the records is not known: `corpus.truth` of the recipe is `none`."]
+        return ["", "What the faults add to the records is not known: `truth.twins` of the recipe is `false`."]
     seen = (
         f"Of {counts.records} records labelled with a fault, the fault can be seen in {counts.detectable} (`detectable`): its line in the "
         f"squared envelope of some band would be a false alarm of noise with a probability below one in a thousand."

@@ -23,8 +23,8 @@ def levelled(recipe_with):
     """A recipe whose levels follow a signal-to-noise ratio, and its scenarios."""
     level = {
         "kind": "snr",
-        "faulty_db": {"kind": "uniform", "low": -10, "high": 25},
-        "healthy_db": {"kind": "uniform", "low": -20, "high": 10},
+        "faulty_db": "uniform(-10, 25)",
+        "healthy_db": "uniform(-20, 10)",
         "rms_m_s2": 1.0,
     }
     recipe = recipe_with(FLOAT | {"level": level, "recording.duration_s": 1.0})

@@ -19,9 +19,9 @@ from tests.paths import ROOT
 TOLERANCE = 1e-3
 LEVEL = {
     "kind": "snr",
-    "faulty_db": {"kind": "uniform", "low": -15, "high": 25},
-    "healthy_db": {"kind": "uniform", "low": -20, "high": 10},
-    "rms_m_s2": {"kind": "loguniform", "low": 0.2, "high": 50},
+    "faulty_db": "uniform(-15, 25)",
+    "healthy_db": "uniform(-20, 10)",
+    "rms_m_s2": "loguniform(0.2, 50)",
 }
 LINES = {  # a background of nothing but lines of the shaft, on a noise that is far below them
     "background.harmonics": {"probability": 1, "count": 4, "level_db": 30},

@@ -125,7 +125,7 @@ def test_a_record_whose_axial_load_cannot_be_carried_is_named_and_left_out(write
     changes = {
         "specimen.contact_angle_deg": 15,
         "operation.load_n": 300,
-        "operation.axial_load_n": {"kind": "grid", "values": [200, 50]},
+        "operation.axial_load_n": "grid(200, 50)",
     }
     recipe = write_recipe(tmp_path / "r.yaml", changes)
     reason = "an axial load of 50 N is too small to hold its rings together; give at least 100.5 N."

@@ -147,8 +147,8 @@ def test_numbers_and_arrays_of_numpy_are_taken_as_numbers():
         ),
         (lambda: gen.distributed(site="ball"), "distributed fault: site: "),
         (
-            lambda: gen.cage(knock_n={"kind": "unifrm"}),
-            "cage fault: knock_n.kind: 'unifrm' is not one of constant, uniform",
+            lambda: gen.cage(knock_n="unifrm(1, 2)"),
+            "cage fault: knock_n: 'unifrm' is no distribution; did you mean uniform?",
         ),
         (lambda: gen.healthy(width_mm=1), "healthy fault: width_mm: no such key; "),
     ],
@@ -159,7 +159,7 @@ def test_a_wrong_fault_is_one_sentence_at_its_call(make, sentence):
 
 def test_one_fault_can_be_used_for_several_bearings():
     """The range of a share is that of the bearing; no recipe changes that of another."""
-    shared = gen.outer(width_mm=gen.uniform(0.05, 0.1, share_of="ball_spacing_mm"))
+    shared = gen.outer(width_mm=gen.uniform(0.05, 0.1) * "ball_spacing_mm")
     first = gen.recipe_for(shared, bearing="6205")
     before = first.faults[0].width_mm.support()
     gen.recipe_for(shared, bearing="6210")
@@ -171,8 +171,8 @@ def test_distributions_by_calls_are_those_of_a_recipe():
         gen.uniform(1, 2),
         gen.loguniform(1, 2),
         gen.normal(1.5, 1, 1, 2),
-        gen.choice([1, 2], [1, 3]),
-        gen.grid([1, 2], per="rig"),
+        gen.choice(1, 2, weights=(1, 3)),
+        gen.grid(1, 2, per="rig"),
     ]
     kinds = [type(gen.recipe_for(shaft_rpm=call).operation.shaft_rpm).__name__ for call in calls]
     assert kinds == ["Uniform", "LogUniform", "Normal", "Choice", "Grid"]

@@ -17,20 +17,20 @@ OWN = {"n_balls": 9, "pitch_diameter_mm": 39.04, "ball_diameter_mm": 7.94}
 SEVERAL = {"kind": "catalogue", "designations": ["6205", "6309"]}
 GEOMETRY = {
     "kind": "geometry",
-    "n_balls": {"kind": "choice", "values": [7, 9]},
-    "pitch_diameter_mm": {"kind": "uniform", "low": 30, "high": 39.04},
-    "ball_share": {"kind": "uniform", "low": 0.15, "high": 7.94 / 39.04},
+    "n_balls": "choice(7, 9)",
+    "pitch_diameter_mm": "uniform(30, 39.04)",
+    "ball_diameter_mm": f"uniform(0.15, {7.94 / 39.04}) * pitch_diameter_mm",
 }
 STEPS = {"kind": "steps", "levels_percent": [200, 50], "step_s": 0.01}
-RISING = {"kind": "ramp", "from_percent": {"kind": "uniform", "low": 50, "high": 250}, "to_percent": 100}
-SLANTED = {"specimen.contact_angle_deg": {"kind": "uniform", "low": 5, "high": 10}, "operation.load_n": 10}
+RISING = {"kind": "ramp", "from_percent": "uniform(50, 250)", "to_percent": 100}
+SLANTED = {"specimen.contact_angle_deg": "uniform(5, 10)", "operation.load_n": 10}
 
 
 @pytest.mark.parametrize(
     ("changes", "key", "bearing"),
     [
         ({"operation.load_n": 1e7}, "load_n", "6205"),
-        ({"operation.load_n": {"kind": "uniform", "low": LIMIT + 1, "high": 1e5}}, "load_n", "6205"),
+        ({"operation.load_n": f"uniform({LIMIT + 1}, 1e5)"}, "load_n", "6205"),
         ({"operation.load_n": 64_000, "bearing": SEVERAL}, "load_n", "6309"),
         ({"operation.load_n": 15_900, "bearing": GEOMETRY}, "load_n", "geometry"),
         ({"operation.load_n": 8000, "operation.load_profile": {"kind": "table", "times_s": [0, 1], "percent": [1, 200]}}, "load_n", "6205"),
@@ -48,7 +48,7 @@ def test_a_recipe_whose_every_load_crushes_every_bearing_is_refused_when_it_is_r
 @pytest.mark.parametrize(
     "changes",
     [
-        {"operation.load_n": {"kind": "uniform", "low": LIMIT - 1, "high": 1e5}},
+        {"operation.load_n": f"uniform({LIMIT - 1}, 1e5)"},
         {"operation.load_n": 16_000, "bearing": SEVERAL},
         {"operation.load_n": 15_700, "bearing": GEOMETRY},
         {"operation.load_n": 7000, "operation.load_profile": STEPS},
@@ -62,7 +62,7 @@ def test_a_recipe_some_of_whose_draws_may_be_borne_is_read(recipe_with, changes)
 
 @pytest.mark.parametrize(("load", "borne"), [(LIMIT / 2 + 1, True), (LIMIT - 1, True), (LIMIT + 1, False)])
 def test_a_record_is_borne_up_to_twice_the_static_rating(recipe_with, load, borne):
-    recipe = recipe_with({"operation.load_n": {"kind": "choice", "values": [load, 100], "weights": [1, 0]}})
+    recipe = recipe_with({"operation.load_n": f"choice({load}, 100, weights=(1, 0))"})
     scenario = draw_scenarios(recipe, 0, 1)[0]
     if borne:
         assert kernel_input(scenario, timeline(settings_of(recipe))).machine.load_y == pytest.approx(-load)
@@ -75,7 +75,7 @@ def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tm
     """Grids follow the number of the record: one record of four is 100 N too heavy."""
     path = write_recipe(
         tmp_path / "r.yaml",
-        {"operation.load_n": {"kind": "grid", "values": [500, LIMIT + 100, 500, 500]}, "records": 4},
+        {"operation.load_n": f"grid(500, {LIMIT + 100}, 500, 500)", "records": 4},
     )
     made = generate(path, tmp_path / "corpus")
     assert made.records == 3
@@ -89,13 +89,13 @@ def test_a_single_record_beyond_the_limit_is_left_out_and_named(write_recipe, tm
 
 def test_a_recipe_of_which_no_record_can_be_borne_has_no_plan(write_recipe, tmp_path):
     """The bearing could carry the smallest load, but the records of the corpus do not draw it."""
-    grid = {"operation.load_n": {"kind": "grid", "values": [LIMIT + 100, LIMIT + 200, 500]}, "records": 2}
+    grid = {"operation.load_n": f"grid({LIMIT + 100}, {LIMIT + 200}, 500)", "records": 2}
     with pytest.raises(SimulationError, match="record 0: an equivalent static load"):
         plan(write_recipe(tmp_path / "r.yaml", grid))
 
 
 def test_the_heaviest_moment_of_a_load_profile_counts(recipe_with):
-    profile = {"kind": "ramp", "from_percent": 100, "to_percent": {"kind": "grid", "values": [100, 250]}}
+    profile = {"kind": "ramp", "from_percent": 100, "to_percent": "grid(100, 250)"}
     recipe = recipe_with({"operation.load_n": 7000, "operation.load_profile": profile})
     first, second = draw_scenarios(recipe, 0, 2)
     kernel_input(first, timeline(settings_of(recipe)))

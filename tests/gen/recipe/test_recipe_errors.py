@@ -21,14 +21,14 @@ recording:
   channels: [{name: sensor, angle_deg: 90}]
 bearing: {kind: catalogue, designations: ["6205"]}
 machine: {shaft_mass_kg: 5}
-operation: {shaft_rpm: {kind: uniform, low: 1500, high: 1800}}
+operation: {shaft_rpm: 'uniform(1500, 1800)'}
 faults:
   - {kind: healthy, weight: 1}
   - {kind: outer, width_mm: 0.5}
 """
 
 LOADS = "axial_load_n, bow_n, misalignment_n, static_rating_n, least_axial_load_n"
-RPM = "{kind: uniform, low: 1500, high: 1800}"
+RPM = "'uniform(1500, 1800)'"
 OUTER = "{kind: outer, width_mm: 0.5}"
 
 TABLE = [
@@ -39,15 +39,16 @@ TABLE = [
     ("shaft_mass_kg", "colour", "machine.colour: no such key; allowed are "),
     ("rigs: 2, ", "", "corpus.rigs: is missing; give it."),
     (", width_mm: 0.5", "", "faults[1].width_mm: is missing; give it."),
-    ("low: 1500, ", "", "operation.shaft_rpm.low: is missing; give it."),
+    ("1500, ", "", "operation.shaft_rpm: high of uniform(low, high): is missing; give it."),
     # values
     ("0.5}", "0.0}", "faults[1].width_mm: 0 is not in (0, 60]; for a bearing without a fault use kind: healthy."),
     ("0.5}", "-1}", "faults[1].width_mm: -1 is not in (0, 60]"),
-    ("0.5}", "wide}", "faults[1].width_mm: 'wide' is neither a number nor a distribution; write 1.5 or {kind: uniform"),
+    ("0.5}", "wide}", "faults[1].width_mm: 'wide' is neither a number nor a distribution; write 1.5, uniform(1, 2) or "),
     ("0.5}", "1,5}", "faults[1]: 5 is not a key; keys are words, and decimals have a point, not a comma."),
-    ("0.5}", "true}", "faults[1].width_mm: True is neither a number nor a distribution; write 1.5 or {kind: uniform"),
+    ("0.5}", "true}", "faults[1].width_mm: True is neither a number nor a distribution; write 1.5, uniform(1, 2) or "),
     ("0.5}", "[1, 2]}", "faults[1].width_mm: [1, 2] is neither a number nor a distribution;"),
-    ("0.5}", "{low: 1, high: 2}}", "faults[1].width_mm: this needs a kind, such as kind: uniform."),
+    ("0.5}", "{low: 1, high: 2}}", "faults[1].width_mm: {'high': 2, 'low': 1} is neither a number nor a distribution;"),
+    ("0.5}", "uniform(1, 2)}", "faults[1].width_mm: 'uniform(1' ends too early; within braces a distribution needs quotes."),
     ("0.5}", ".nan}", "faults[1].width_mm.value: nan is not allowed here; it must be a finite number."),
     ("rigs: 2", "rigs: 0", "corpus.rigs: 0 is not allowed here; it must be greater than or equal to 1."),
     ("rigs: 2", "rigs: 2.5", "corpus.rigs: 2.5 is not allowed here; it must be a whole number."),
@@ -58,16 +59,17 @@ TABLE = [
     ("name: whole", "name: a/b", "name: 'a/b' is not allowed here; it must be 1 to 64 letters, digits, dots, dashes or underscores."),
     ("angle_deg: 90", "angle_deg: 400", "recording.channels[0].angle_deg: 400 is not in [-360, 360]."),
     # distributions
-    ("low: 1500, high: 1800", "low: 1800, high: 1500", "operation.shaft_rpm: low 1800.0 is above high 1500.0; swap them."),
-    ("kind: uniform, low: 1500", "kind: loguniform, low: 0", "operation.shaft_rpm: low 0.0 is not above 0;"),
-    ("kind: uniform", "kind: gaussian", "operation.shaft_rpm.kind: 'gaussian' is not one of constant, uniform, loguniform"),
-    ("kind: uniform, low: 1500, high: 1800", "kind: choice, values: []", "operation.shaft_rpm.values: is empty; give at least one."),
+    ("1500, 1800", "1800, 1500", "operation.shaft_rpm: low 1800.0 is above high 1500.0; swap them."),
+    ("uniform(1500", "loguniform(0", "operation.shaft_rpm: low 0.0 is not above 0;"),
+    ("uniform", "gaussian", "operation.shaft_rpm: 'gaussian' is no distribution; choose from constant, uniform, loguniform"),
+    ("uniform", "unifrom", "operation.shaft_rpm: 'unifrom' is no distribution; did you mean uniform?"),
+    ("uniform(1500, 1800)", "choice()", "operation.shaft_rpm: values of choice(values): is missing; give it."),
     (
-        "kind: uniform, low: 1500, high: 1800",
-        "kind: choice, values: [1, 2], weights: [1]",
+        "uniform(1500, 1800)",
+        "choice(1, 2, weights=(1,))",
         "operation.shaft_rpm: 1 weights for 2 values; give one each, not all 0.",
     ),
-    ("low: 1500", "low: 0", "operation.shaft_rpm: 0 is not in [1, 100000]."),
+    ("1500", "0", "operation.shaft_rpm: 0 is not in [1, 100000]."),
     # choices
     ("kind: outer", "kind: gear", "faults[1].kind: 'gear' is not one of healthy, inner, outer, ball, cage, distributed, compound."),
     ('["6205"]', '["6299"]', "bearing.designations: '6299' is neither in the catalogue nor in entries; did you mean "),
@@ -104,7 +106,7 @@ TABLE = [
     ('["6205"]}', '["6205"], entries: {a b: {n_balls: 9, pitch_diameter_mm: 50, ball_diameter_mm: 9}}}',
      "bearing.entries.a b: 'a b' is not allowed here; it must be 1 to 64 letters"),
     ('["6205"]', "[NU205]", "bearing.designations: 'NU205' is neither in the catalogue nor in entries; did you mean NU206"),
-    ('catalogue, designations: ["6205"]', "geometry, n_balls: 9, pitch_diameter_mm: 39, ball_share: 0.2, roller_length_mm: -1",
+    ('catalogue, designations: ["6205"]', "geometry, n_balls: 9, pitch_diameter_mm: 39, ball_diameter_mm: 7.8, roller_length_mm: -1",
      "bearing.roller_length_mm: -1 is not in [0, 1000]."),
     # traces and roughness
     ("0.5}", "0.5, profile: trace}", "faults[1].profile: trace and trace_um belong together; give both or neither."),
@@ -186,58 +188,54 @@ TABLE = [
     ("machine: {shaft_mass_kg: 5}", "contact: {lubricant: {viscosity_100_mm2_s: 80}}",
      "rig 0: oil of 68 mm2/s at 40 C has no lower viscosity at 100 C; keep viscosity_100_mm2_s below viscosity_40_mm2_s."),
     # shares
-    (RPM, RPM + ", load_n: {share_of: thrust, kind: uniform, low: 0, high: 1}",
-     f"operation.load_n.share_of: there is no quantity 'thrust'; allowed are {LOADS}."),
-    (RPM, RPM + ", axial_load_n: {share_of: laod_n, kind: uniform, low: 0, high: 1}",
-     "operation.axial_load_n.share_of: there is no quantity 'laod_n'; did you mean load_n?"),
-    (RPM, RPM + ", load_n: {share_of: shaft_rpm, kind: uniform, low: 0, high: 1}",
-     f"operation.load_n.share_of: shaft_rpm is of another kind than load_n; allowed are {LOADS}."),
-    (RPM, RPM + ", load_n: {share_of: load_n, kind: uniform, low: 0, high: 1}",
-     "operation.load_n.share_of: load_n is a share of load_n; give one of them a range of its own."),
-    (RPM, RPM + ", load_n: {share_of: axial_load_n, kind: constant, value: 1}, "
-     "axial_load_n: {share_of: least_axial_load_n, kind: constant, value: 2}",
-     "operation.load_n.share_of: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
-    ("machine: {shaft_mass_kg: 5}", "machine: {bow_n: {share_of: static_rating_n, kind: constant, value: 1}}",
-     "machine.bow_n.share_of: static_rating_n is not known here; allowed are misalignment_n."),
-    (RPM, RPM + ", load_n: {share_of: axial_load_n, kind: constant, value: 1}, axial_load_n: {share_of: load_n, kind: constant, value: 1}",
-     "operation.load_n.share_of: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
+    (RPM, RPM + ", load_n: 'uniform(0, 1) * thrust'",
+     f"operation.load_n: there is no quantity 'thrust'; allowed are {LOADS}."),
+    (RPM, RPM + ", axial_load_n: 'uniform(0, 1) * laod_n'",
+     "operation.axial_load_n: there is no quantity 'laod_n'; did you mean load_n?"),
+    (RPM, RPM + ", load_n: 'uniform(0, 1) * shaft_rpm'",
+     f"operation.load_n: shaft_rpm is of another kind than load_n; allowed are {LOADS}."),
+    (RPM, RPM + ", load_n: 'uniform(0, 1) * load_n'",
+     "operation.load_n: load_n is a share of load_n; give one of them a range of its own."),
+    (RPM, RPM + ", load_n: '1 * axial_load_n', "
+     "axial_load_n: '2 * least_axial_load_n'",
+     "operation.load_n: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
+    ("machine: {shaft_mass_kg: 5}", "machine: {bow_n: '1 * static_rating_n'}",
+     "machine.bow_n: static_rating_n is not known here; allowed are misalignment_n."),
+    (RPM, RPM + ", load_n: '1 * axial_load_n', axial_load_n: '1 * load_n'",
+     "operation.load_n: load_n is a share of axial_load_n, which is a share of load_n; give one of them a range of its own."),
     ("shaft_mass_kg: 5",
-     ("load_angle_deg: {kind: uniform, low: -100, high: -10}, "
-      "misalignment_angle_deg: {share_of: load_angle_deg, kind: uniform, low: 2, high: 4}"),
+     ("load_angle_deg: 'uniform(-100, -10)', "
+      "misalignment_angle_deg: 'uniform(2, 4) * load_angle_deg'"),
      "machine.misalignment_angle_deg: as a share of load_angle_deg it can be -400, which is not in [-360, 360]."),
-    (RPM, RPM + ", load_n: {share_of: bow_n, kind: constant, value: 1}",
+    (RPM, RPM + ", load_n: '1 * bow_n'",
      "operation.load_n: as a share of bow_n it can be 0, which is not in [1, "),
-    (RPM, RPM + ", temperature_celsius: {share_of: load_n, kind: constant, value: 1}",
-     "operation.temperature_celsius.share_of: a value in degC has no share; give it a range of its own."),
-    (
-        RPM,
-        RPM + ", load_n: {share_of: 3, kind: constant, value: 1}",
-        "operation.load_n.share_of: 3 is not allowed here; it must be text, in quotes if it is a number.",
-    ),
-    ("shaft_mass_kg: 5", "bow_n: {share_of: load_n, kind: constant, value: 1}",
-     "machine.bow_n.share_of: load_n is drawn after bow_n, not with it or before it; allowed are misalignment_n."),
-    ("machine: {shaft_mass_kg: 5}", "specimen: {contact_angle_deg: {share_of: jitter_deg, kind: constant, value: 1}}",
-     "specimen.contact_angle_deg.share_of: jitter_deg is drawn after contact_angle_deg, not with it or before it; allowed are "),
-    ("machine: {shaft_mass_kg: 5}", "specimen: {contact_angle_deg: {share_of: free_contact_angle_deg, kind: constant, value: 5}}",
+    (RPM, RPM + ", temperature_celsius: '1 * load_n'",
+     "operation.temperature_celsius: a value in degC has no share; give it a range of its own."),
+    (RPM, RPM + ", load_n: '1 * 3'", "operation.load_n: '1 * 3' is neither a number nor a distribution;"),
+    ("shaft_mass_kg: 5", "bow_n: '1 * load_n'",
+     "machine.bow_n: load_n is drawn after bow_n, not with it or before it; allowed are misalignment_n."),
+    ("machine: {shaft_mass_kg: 5}", "specimen: {contact_angle_deg: '1 * jitter_deg'}",
+     "specimen.contact_angle_deg: jitter_deg is drawn after contact_angle_deg, not with it or before it; allowed are "),
+    ("machine: {shaft_mass_kg: 5}", "specimen: {contact_angle_deg: '5 * free_contact_angle_deg'}",
      "specimen 0: contact_angle_deg: a share of 5 of free_contact_angle_deg gives 50.9, which is not in [0, 30]; change the range"),
-    ("machine: {shaft_mass_kg: 5}", "path: {direct: {share_of: load_n, kind: constant, value: 1}}",
-     "path.direct.share_of: there are shares in bearing, machine, machine.resonator, contact.lubricant, "),
-    (OUTER, "{kind: outer, width_mm: 1, n_spalls: {share_of: width_mm, kind: constant, value: 1}}",
-     "faults[1].n_spalls.share_of: a count has no share; give it a range of its own."),
-    (OUTER, "{kind: ball, width_mm: {share_of: ball_spacing_mm, kind: constant, value: 1}}",
-     "faults[1].width_mm.share_of: ball_spacing_mm is not known here; allowed are depth_um, roughness_um, "),
-    (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: outer, width_mm: {share_of: lod_n, kind: constant, value: 1}}]}",
-     "faults[1].parts[1].width_mm.share_of: there is no quantity 'lod_n'; allowed are depth_um, "),
+    ("machine: {shaft_mass_kg: 5}", "path: {direct: '1 * load_n'}",
+     "path.direct: there are shares in bearing, machine, machine.resonator, contact.lubricant, "),
+    (OUTER, "{kind: outer, width_mm: 1, n_spalls: '1 * width_mm'}",
+     "faults[1].n_spalls: a count has no share; give it a range of its own."),
+    (OUTER, "{kind: ball, width_mm: '1 * ball_spacing_mm'}",
+     "faults[1].width_mm: ball_spacing_mm is not known here; allowed are depth_um, roughness_um, "),
+    (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: outer, width_mm: '1 * lod_n'}]}",
+     "faults[1].parts[1].width_mm: there is no quantity 'lod_n'; allowed are depth_um, "),
     # conditions per rig, and of one fault
-    (RPM, "{kind: uniform, low: 1500, high: 1800, per: machine}",
-     "operation.shaft_rpm.per: 'machine' is not allowed here; it must be 'rig', 'specimen' or 'record'."),
-    (RPM, "{kind: uniform, low: 1500, high: 1800, scatter_percent: 2}",
-     "operation.shaft_rpm.scatter_percent: needs a value to scatter about; give per: rig or per: specimen."),
-    (RPM, "{kind: uniform, low: 1, high: 1800, per: rig, scatter_percent: 2}", "operation.shaft_rpm: 0.98 is not in [1, 100000]."),
-    (RPM, "{kind: uniform, low: 1, high: 1800, per: rig, scatter_percent: 100}",
-     "operation.shaft_rpm.scatter_percent: 100 is not allowed here; it must be less than 100."),
-    ("shaft_mass_kg: 5", "shaft_mass_kg: {kind: constant, value: 5, per: rig}",
-     "machine.shaft_mass_kg.per: the level of a draw can be chosen for quantities of operation alone; leave it out."),
+    (RPM, "'uniform(1500, 1800, per=machine)'",
+     "operation.shaft_rpm: per of uniform(low, high): 'machine' is not allowed here; it must be 'rig', 'specimen' or 'record'."),
+    (RPM, "'uniform(1500, 1800, scatter_percent=2)'",
+     "operation.shaft_rpm: scatter_percent needs a value to scatter about; give per=rig or per=specimen."),
+    (RPM, "'uniform(1, 1800, per=rig, scatter_percent=2)'", "operation.shaft_rpm: 0.98 is not in [1, 100000]."),
+    (RPM, "'uniform(1, 1800, per=rig, scatter_percent=100)'",
+     "operation.shaft_rpm: scatter_percent of uniform(low, high): 100 is not allowed here; it must be less than 100."),
+    ("shaft_mass_kg: 5", "shaft_mass_kg: 'constant(5, per=rig)'",
+     "machine.shaft_mass_kg: the level of a draw can be chosen for quantities of operation alone; leave per out."),
     ("0.5}", "0.5, operation: {load_n: 0}}", "faults[1].operation.load_n: 0 is not in [1, 1e+07]."),
     ("0.5}", "0.5, operation: {load: 3}}", "faults[1].operation.load: no such key; did you mean load_n?"),
     ("0.5}", "0.5, operation: {load_n: heavy}}", "faults[1].operation.load_n: 'heavy' is neither a number nor a distribution;"),
@@ -250,8 +248,8 @@ TABLE = [
     ("0.5}", "0.5, operation: {temperature_celsius: 9}}", "faults[1].operation.temperature_celsius: has no effect without oil; "),
     ("0.5}", "0.5, operation: {speed_profile: {kind: spline}}}",
      "faults[1].operation.speed_profile.kind: 'spline' is not one of ramp, run_up, steps, table."),
-    ("0.5}", "0.5, operation: {load_n: {share_of: shaft_rpm, kind: constant, value: 1}}}",
-     "faults[1].operation.load_n.share_of: shaft_rpm is of another kind than load_n; allowed are "),
+    ("0.5}", "0.5, operation: {load_n: '1 * shaft_rpm'}}",
+     "faults[1].operation.load_n: shaft_rpm is of another kind than load_n; allowed are "),
     ("0.5}", "0.5, level: {faulty_db: 3}}",
      "faults[1].level: works with level.kind: snr alone, because a physical level is that of the rig;"),
     ("0.5}", "0.5, level: {gain: 3}}", "faults[1].level.gain: no such key; allowed are faulty_db, healthy_db, rms_m_s2."),
@@ -260,11 +258,11 @@ TABLE = [
     # rungs
     ("rigs: 2", "rigs: 2, rungs: [1]", "corpus.rungs: 1 is too few; give at least 2."),
     (
-        "rigs: 2",
-        "rigs: 2, records_per_part: 1, undetected: redraw",
-        "corpus.undetected: redraw judges all 2 records of a specimen together, and a part has 1; raise records_per_part, or choose keep.",
+        "machine:",
+        "storage: {records_per_part: 1}\ntruth: {undetected: redraw}\nmachine:",
+        "truth.undetected: redraw judges all 2 records of a specimen together, and a part has 1; raise storage.records_per_part, or",
     ),
-    ("rigs: 2", "rigs: 2, truth: some", "corpus.truth: 'some' is not allowed here; it must be 'full' or 'none'."),
+    ("machine:", "truth: {twins: some}\nmachine:", "truth.twins: 'some' is not allowed here; it must be true or false."),
     ("rigs: 2", "rigs: 2, rungs: 2", "corpus.rungs: 2 is not allowed here; it must be a list."),
     ("rigs: 2", "rigs: 2, rungs: [0, 1, 0.5]", "corpus.rungs: 0.5 after 1 does not rise; sort them, each once."),
     ("rigs: 2", "rigs: 2, rungs: [0, 1, 1]", "corpus.rungs: 1 after 1 does not rise; sort them, each once."),
@@ -283,7 +281,7 @@ TABLE = [
     ("12000\n  duration_s: 0.1", "200000\n  duration_s: 600",
      "recording: a record of all channels, settle_s included, has 120040000 samples, and the limit is 25000000;"),
     ("12000\n  duration_s: 0.1\n", "20000\n  duration_s: 600\n",
-     "corpus.records_per_part: 16 records need 192128000 samples, and the limit is 150000000;"),
+     "storage.records_per_part: 16 records need 192128000 samples, and the limit is 150000000;"),
     # files that are no recipes
     ("name: whole", "name: [whole", "is not valid YAML ("),
     ("name: whole", "name: whole\nname: twice", "is not valid YAML ("),
@@ -381,7 +379,8 @@ def test_a_corpus_that_ends_early_is_checked_as_a_whole(tmp_path):
 def test_long_profiles_count_for_every_record_of_a_part(tmp_path):
     times, shares = [n / 1e5 for n in range(9000)], [100] * 9000
     profile = f"speed_profile: {{kind: table, times_s: {times}, percent: {shares}}}"
-    many = WHOLE.replace("records_per_specimen: 2", "records_per_specimen: 200, records_per_part: 1600")
+    many = WHOLE.replace("records_per_specimen: 2", "records_per_specimen: 200")
+    many = many.replace("machine:", "storage: {records_per_part: 1600}\nmachine:")
     assert "1600 records need " in sentence_of(tmp_path, many.replace(RPM, f"{RPM}, {profile}"))
 
 

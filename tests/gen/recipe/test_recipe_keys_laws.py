@@ -79,7 +79,13 @@ def test_every_key_of_a_shipped_recipe_is_listed(name):
         if not key.startswith("recording.channels.body.")
     }
     # a part has the keys of a fault, and the changes of a fault those of the sections that they change
-    places = (("faults.parts.", "faults."), ("faults.level.", "level."), ("faults.operation.", "operation."))
+    places = (
+        ("faults.entries", "faults"),
+        ("faults.defaults", "faults"),
+        ("faults.parts.", "faults."),
+        ("faults.level.", "level."),
+        ("faults.operation.", "operation."),
+    )
     for inside, listed_as in places:
         used = {key.replace(inside, listed_as) for key in used}
     assert used - listed == set()

@@ -5,16 +5,13 @@ from itertools import product
 import numpy as np
 import pytest
 
+from gen import uniform
 from gen.recipe import Recipe, recipe_hash
 from gen.scenarios import draw_scenarios
 from gen.units import split_unit
 from tests.gen.conftest import small_with
 
 SAMPLINGS = ("random", "sobol", "halton")
-
-
-def uniform(low, high, **more):
-    return {"kind": "uniform", "low": low, "high": high, **more}
 
 
 def drawn_values(scenario):
@@ -71,7 +68,7 @@ def test_the_scatter_widens_the_support(recipe_with):
 
 
 def test_a_common_value_is_a_share_of_the_quantity_of_each_record(recipe_with):
-    axial = uniform(0.1, 0.6, per="rig", share_of="load_n")
+    axial = uniform(0.1, 0.6, per="rig") * "load_n"
     scenarios = draw_scenarios(recipe_with({"specimen.contact_angle_deg": 10, "operation.axial_load_n": axial}))
     shares = {}
     for scenario in scenarios:
@@ -84,10 +81,10 @@ def test_a_common_value_is_a_share_of_the_quantity_of_each_record(recipe_with):
 def test_grids_of_a_rig_enumerate_all_combinations_with_those_of_its_machine(recipe_with):
     changes = {
         "corpus.rigs": 12,
-        "machine.shaft_mass_kg": {"kind": "grid", "values": [2, 3]},
-        "operation.shaft_rpm": {"kind": "grid", "values": [600, 900, 1200], "per": "rig"},
-        "operation.load_n": {"kind": "grid", "values": [100, 200], "per": "rig"},
-        "operation.slip_percent": {"kind": "grid", "values": [1, 2]},
+        "machine.shaft_mass_kg": "grid(2, 3)",
+        "operation.shaft_rpm": "grid(600, 900, 1200, per=rig)",
+        "operation.load_n": "grid(100, 200, per=rig)",
+        "operation.slip_percent": "grid(1, 2)",
     }
     scenarios = draw_scenarios(recipe_with(changes))
     rigs = {}
@@ -111,9 +108,9 @@ def changed(**outer):
 
 SNR = {"kind": "snr", "faulty_db": uniform(-5, 5), "healthy_db": 0, "rms_m_s2": uniform(1, 2)}
 GRIDS = {
-    "operation.slip_percent": {"kind": "grid", "values": [1, 2]},
-    "operation.jitter_deg": {"kind": "grid", "values": [0.1, 0.2, 0.3]},
-    "operation.speed_profile": {"kind": "ramp", "from_percent": uniform(50, 60), "to_percent": {"kind": "grid", "values": [90, 95, 99]}},
+    "operation.slip_percent": "grid(1, 2)",
+    "operation.jitter_deg": "grid(0.1, 0.2, 0.3)",
+    "operation.speed_profile": {"kind": "ramp", "from_percent": uniform(50, 60), "to_percent": "grid(90, 95, 99)"},
     "operation.load_profile": {"kind": "ramp", "from_percent": uniform(50, 60), "to_percent": uniform(90, 99)},
     "level": SNR,
 }  # fmt: skip
@@ -122,7 +119,7 @@ GRIDS = {
 @pytest.mark.parametrize("sampling", SAMPLINGS)
 @pytest.mark.parametrize(
     "value",
-    [7.0, uniform(5, 9), {"kind": "grid", "values": [5, 9]}, uniform(5, 9, per="rig", scatter_percent=1)],
+    [7.0, uniform(5, 9), "grid(5, 9)", uniform(5, 9, per="rig", scatter_percent=1)],
     ids=["number", "uniform", "grid", "per rig"],
 )
 @pytest.mark.parametrize("key", ["load_n", "slip_percent", "mean_slip_percent"])
@@ -162,7 +159,7 @@ def test_a_changed_profile_moves_no_other_draw(recipe_with):
 
 
 def test_a_changed_level_is_of_its_fault_alone(recipe_with):
-    level = {"faulty_db": uniform(20, 30), "rms_m_s2": {"kind": "grid", "values": [7, 8]}}
+    level = {"faulty_db": uniform(20, 30), "rms_m_s2": "grid(7, 8)"}
     without = draw_scenarios(recipe_with(GRIDS | {"faults": changed()}))
     drawn = draw_scenarios(recipe_with(GRIDS | {"faults": changed(level=level)}))
     for one, other in zip(drawn, without, strict=True):

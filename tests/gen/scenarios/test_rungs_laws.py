@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import gen
 from features.baselines.splits import grouped_splits
 from gen.corpus import FAULTS, open_corpus
 from gen.generation import generate
@@ -137,7 +138,7 @@ def test_the_conditions_of_faulty_specimens_cover_their_ranges(recipe_with, samp
 def test_grids_run_through_all_their_values_on_faulty_specimens(recipe_with):
     speeds = [600, 900]
     changes = {"corpus.rungs": (0, 1), "corpus.records_per_specimen": 1, "faults": MANY_HEALTHY}
-    recipe = recipe_with(changes | {"operation.shaft_rpm": {"kind": "grid", "values": speeds}})
+    recipe = recipe_with(changes | {"operation.shaft_rpm": gen.grid(*speeds)})
     groups = groups_of(draw_scenarios(recipe)).values()
     assert {round(60 * group[0].record.conditions["shaft"]) for group in groups} == set(speeds)
 
@@ -162,7 +163,8 @@ def test_the_text_of_a_rung_gives_its_scenario_back(recipe_with):
 
 def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_path):
     changes = {
-        "corpus": {"rigs": 1, "specimens_per_rig": 4, "records_per_specimen": 1, "rungs": [0, 0.5, 1], "records_per_part": 4},
+        "corpus": {"rigs": 1, "specimens_per_rig": 4, "records_per_specimen": 1, "rungs": [0, 0.5, 1]},
+        "storage": {"records_per_part": 4},
         "faults": [{"kind": "healthy"}, {"kind": "inner", "width_mm": 0.5}],
     }  # fmt: skip
     path = write_recipe(tmp_path / "r.yaml", changes)

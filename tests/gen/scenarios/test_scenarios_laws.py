@@ -9,6 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+import gen
 from gen.errors import RecipeError
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, draw_scenarios, scenario_texts, settings_of, stream
@@ -45,7 +46,13 @@ def test_rigs_specimens_records_and_parts_are_numbered_without_gaps(rigs, per_ri
     rungs = None if n_rungs is None else [rung / n_rungs for rung in range(1, n_rungs + 1)]
     numbers = {"rigs": rigs, "specimens_per_rig": per_rig, "records_per_specimen": per_specimen}
     recipe = Recipe(
-        small_with({"corpus": {**numbers, "records_per_part": per_part, "rungs": rungs}, "records": n * (n_rungs or 1)})
+        small_with(
+            {
+                "corpus": {**numbers, "rungs": rungs},
+                "storage": {"records_per_part": per_part},
+                "records": n * (n_rungs or 1),
+            }
+        )
     )
     every = list(range(recipe.n_records))
     assert [number for part in range(recipe.n_parts) for number in recipe.records_of_part(part)] == every
@@ -130,7 +137,7 @@ def test_no_specimen_or_rig_is_on_both_sides_of_a_split(recipe_with, by):
 @pytest.mark.parametrize(("share", "expected"), [(0.05, 0), (0.15, 1), (0.2, 2), (0.3, 2), (0.45, 4)])
 def test_a_single_rig_sets_aside_the_whole_number_of_specimens_nearest_to_the_share(recipe_with, share, expected):
     split = {"by": "specimen", "test": share}
-    corpus = {"rigs": 1, "specimens_per_rig": 8, "records_per_specimen": 1, "records_per_part": 8, "split": split}
+    corpus = {"rigs": 1, "specimens_per_rig": 8, "records_per_specimen": 1, "split": split}
     splits = [scenario.specimen.split for scenario in draw_scenarios(recipe_with({"corpus": corpus}))]
     assert splits.count("test") == expected == round(8 * share)
 
@@ -163,9 +170,9 @@ def test_quasi_random_records_fill_the_range_of_a_value_evenly(recipe_with, samp
     changes = {
         "corpus.sampling": sampling,
         "corpus.rigs": 8,
-        "operation.shaft_rpm": {"kind": "uniform", "low": 0.1, "high": 64},
+        "operation.shaft_rpm": "uniform(1, 64)",
     }
-    drawn = draw_scenarios(recipe_with(changes | {"operation.shaft_rpm.low": 1}))
+    drawn = draw_scenarios(recipe_with(changes))
     quantiles = [(scenario.record.conditions["shaft"] * 60 - 1) / 63 for scenario in drawn]
     assert len(quantiles) == 64
     assert Counter(int(64 * u) for u in quantiles) == dict.fromkeys(range(64), 1)
@@ -183,9 +190,9 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
         {
             "corpus.specimens_per_rig": 3,
             "corpus.records_per_specimen": 6,
-            "operation.shaft_rpm": {"kind": "grid", "values": rpm},
-            "operation.load_n": {"kind": "grid", "values": load},
-            "specimen.diametral_clearance_um": {"kind": "grid", "values": clearance},
+            "operation.shaft_rpm": gen.grid(*rpm),
+            "operation.load_n": gen.grid(*load),
+            "specimen.diametral_clearance_um": gen.grid(*clearance),
         }
     )
     combinations: dict[int, list[tuple[float, float]]] = {}

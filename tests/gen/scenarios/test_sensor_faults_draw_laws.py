@@ -88,9 +88,7 @@ def test_faults_of_installations_come_by_rig_and_faults_that_come_and_go_by_reco
 
 def test_each_channel_has_a_mount_of_its_own(recipe_with):
     channels = [{"name": name, "body": "sensor"} for name in "abc"]
-    sections = {
-        "loose_mount": {**SENSOR_FAULTS["loose_mount"], "frequency_hz": {"kind": "uniform", "low": 500, "high": 900}}
-    }
+    sections = {"loose_mount": {**SENSOR_FAULTS["loose_mount"], "frequency_hz": "uniform(500, 900)"}}
     for scenario in drawn(recipe_with, sections, **{"recording.channels": channels}):
         mounts = scenario.rig.sensor_faults.loose_mounts
         assert len({mount["frequency"] for mount in mounts}) == 3

@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gen import uniform
 from gen.errors import RecipeError
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
@@ -24,12 +25,8 @@ SAMPLINGS = ("random", "sobol", "halton")
 SLANTED = {"specimen.contact_angle_deg": 10}
 
 
-def uniform(low, high, **more):
-    return {"kind": "uniform", "low": low, "high": high, **more}
-
-
 def share(of, low, high):
-    return uniform(low, high, share_of=of)
+    return uniform(low, high) * of
 
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
@@ -97,7 +94,12 @@ def test_a_share_can_name_quantities_of_every_level_above(recipe_with):
 
 
 def test_the_dimensions_of_a_bearing_by_geometry_can_be_shares(recipe_with):
-    geometry = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": uniform(30, 60), "ball_share": 0.2}
+    geometry = {
+        "kind": "geometry",
+        "n_balls": 9,
+        "pitch_diameter_mm": uniform(30, 60),
+        "ball_diameter_mm": "0.2 * pitch_diameter_mm",
+    }
     geometry["roller_length_mm"] = share("pitch_diameter_mm", 0.3, 0.3)
     for scenario in draw_scenarios(recipe_with({"bearing": geometry})):
         assert scenario.rig.bearing.roller_length == pytest.approx(0.3 * scenario.rig.bearing.pitch_diameter)
@@ -135,7 +137,13 @@ def test_the_contact_angle_of_a_specimen_is_that_of_its_clearance_and_grooves(re
 
 def test_a_bearing_with_a_contact_angle_on_its_drawing_has_no_free_angle(recipe_with):
     free = {"specimen.contact_angle_deg": share("free_contact_angle_deg", 1, 1)}
-    geometry = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": 39, "ball_share": 0.2, "contact_angle_deg": 15}
+    geometry = {
+        "kind": "geometry",
+        "n_balls": 9,
+        "pitch_diameter_mm": 39,
+        "ball_diameter_mm": 7.8,
+        "contact_angle_deg": 15,
+    }
     for scenario in draw_scenarios(recipe_with(free | {"bearing": geometry})):
         assert scenario.specimen.properties["contact_angle"] == 0
 
@@ -172,7 +180,7 @@ def test_a_load_can_be_a_share_of_the_static_rating_of_the_bearing(recipe_with):
 @pytest.mark.parametrize("of_drawing", [0, 25])
 def test_a_share_above_1_of_the_least_axial_load_holds_the_rings_together(recipe_with, of_drawing):
     """1.25 tan(contact angle) of the radial load, at any contact angle; just below it the machine is not possible."""
-    bearing = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": 39, "ball_share": 0.2}
+    bearing = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": 39, "ball_diameter_mm": 7.8}
     changes = {
         "bearing": bearing | {"contact_angle_deg": of_drawing},
         "specimen.contact_angle_deg": uniform(5, 15),

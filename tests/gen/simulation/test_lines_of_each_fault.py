@@ -27,7 +27,7 @@ STEADY = {
     "corpus.records_per_specimen": 1,
     "specimen.diametral_clearance_um": 10,
     "specimen.waviness_nm": 10,
-    "operation.load_n": {"kind": "loguniform", "low": 200, "high": 600},
+    "operation.load_n": "loguniform(200, 600)",
     "operation.mean_slip_percent": 0,
     "operation.slip_percent": 0,
     "operation.speed_wander_percent": 0,
@@ -35,9 +35,9 @@ STEADY = {
     "operation.spin_wander_percent": 0,
     "faults": [
         {"kind": "healthy"},
-        {"kind": "inner", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": 0, "high": 360}},
+        {"kind": "inner", "width_mm": 0.5, "angle_deg": "uniform(0, 360)"},
         {"kind": "outer", "width_mm": 0.5},
-        {"kind": "ball", "width_mm": 0.5, "angle_deg": {"kind": "uniform", "low": 0, "high": 360}},
+        {"kind": "ball", "width_mm": 0.5, "angle_deg": "uniform(0, 360)"},
     ],
     "path": {"direct": 1.0},
     "background": {"slope": 0.5},
@@ -142,7 +142,7 @@ def test_one_percent_of_slip_moves_the_lines_of_the_races_as_the_cage_lags(recip
 
 
 def test_a_wider_spall_is_louder(recipe_with):
-    widths = {"kind": "grid", "values": [0.18, 0.36, 0.53, 1.0]}
+    widths = "grid(0.18, 0.36, 0.53, 1)"
     ladder = {"faults": [{"kind": "outer", "width_mm": widths}], "corpus.rigs": 3}
     recipe = recipe_with(STEADY | ladder)
     scenarios = draw_scenarios(recipe)

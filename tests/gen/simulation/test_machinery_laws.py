@@ -104,7 +104,7 @@ ROLLERS = {
         "kind": "geometry",
         "n_balls": 13,
         "pitch_diameter_mm": 46.5,
-        "ball_share": 9 / 46.5,
+        "ball_diameter_mm": 9,
         "roller_length_mm": 10,
     },
 }

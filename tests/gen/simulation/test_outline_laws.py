@@ -105,7 +105,7 @@ def test_shape_and_steps_of_a_record_with_everything_are_those_of_the_whole_reco
 @pytest.mark.parametrize(
     "changes",
     [
-        {"operation.load_n": {"kind": "grid", "values": [20_000, 500]}},
+        {"operation.load_n": "grid(20000, 500)"},
         {"operation.axial_load_n": 1, "specimen.contact_angle_deg": 10},
         {"contact.lubricant": {"viscosity_40_mm2_s": 2000, "viscosity_100_mm2_s": 200}, "operation.shaft_rpm": 60_000},
     ],
@@ -135,7 +135,7 @@ def test_a_plan_builds_no_whole_record_outside_its_timed_sample(write_recipe, tm
 
 
 def test_a_plan_with_dear_loads_draws_fewer_records_and_says_so(write_recipe, tmp_path):
-    changes = {"corpus.rigs": 300, "corpus.records_per_part": 100, "operation.load_wander_percent": 1}
+    changes = {"corpus.rigs": 300, "storage.records_per_part": 100, "operation.load_wander_percent": 1}
     planned = plan(write_recipe(tmp_path / "r.yaml", changes))
     assert (planned.records, planned.drawn) == (2400, 1500)
     assert sum(planned.steps_per_sample.values()) == pytest.approx(2400, abs=2)

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+import gen
 from gen import CorpusError, RecipeError, draw_scenarios, generate, simulate
 from gen.scenarios import settings_of
 from gen.simulation.inputs import kernel_input
@@ -15,7 +16,7 @@ def test_a_record_does_not_depend_on_whether_its_neighbours_have_waviness(recipe
     recipe = recipe_with(
         {
             "faults": [{"kind": "inner", "width_mm": 0.5}],
-            "specimen.waviness_nm": {"kind": "choice", "values": [0, 500]},
+            "specimen.waviness_nm": "choice(0, 500)",
         }
     )
     scenarios = draw_scenarios(recipe)
@@ -42,7 +43,7 @@ def test_a_path_that_lets_nothing_through_is_refused(recipe_with):
 
 def test_a_grid_goes_on_from_specimen_to_specimen(recipe_with):
     speeds = [600, 900, 1200, 1500]
-    recipe = recipe_with({"operation.shaft_rpm": {"kind": "grid", "values": speeds}})
+    recipe = recipe_with({"operation.shaft_rpm": gen.grid(*speeds)})
     found = [60 * scenario.record.conditions["shaft"] for scenario in draw_scenarios(recipe)]
     assert found == pytest.approx([speeds[number % 4] for number in range(len(found))])
 

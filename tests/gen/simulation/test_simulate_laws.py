@@ -140,7 +140,7 @@ def test_a_record_that_diverges_is_named_and_leaves_the_others_as_they_are(recip
     changes = {
         "corpus.rigs": 2,
         "recording.oversampling": 1,
-        "machine.resonator.frequency_hz": {"kind": "grid", "values": [1500, 5900]},
+        "machine.resonator.frequency_hz": "grid(1500, 5900)",
     }
     recipe = recipe_with(changes)
     scenarios = draw_scenarios(recipe)

@@ -26,7 +26,7 @@ ROUGH = {
     "recording.oversampling": 1,
     "recording.sample_rate_hz": 24000,
     "machine.shaft_mass_kg": 2,
-    "specimen.waviness_nm": {"kind": "grid", "values": [10] * 4 + [10_000] * 4 + [10] * 4},
+    "specimen.waviness_nm": "grid(10, 10, 10, 10, 10000, 10000, 10000, 10000, 10, 10, 10, 10)",
     "operation.load_n": 20,
 }
 
@@ -63,16 +63,16 @@ def test_at_half_the_step_ordinary_records_change_by_less_than_a_thousandth(chec
 
 def checked_records(recipe):
     """Scenarios whose step is checked, part by part, if no two share a batch."""
-    size = recipe.corpus.records_per_part
+    size = recipe.storage.records_per_part
     parts = [draw_scenarios(recipe, first, first + size) for first in range(0, recipe.n_records, size)]
     return [[part[place] for place in checked_places(part, recipe, {n: n for n in range(len(part))})] for part in parts]
 
 
 LAYOUTS = {
-    "every class in part 0": {"corpus.records_per_part": 64, "corpus.records_per_specimen": 1},
-    "one class in a part": {"corpus.records_per_part": 4, "corpus.records_per_specimen": 40},
-    "one record in a part": {"corpus.records_per_part": 1, "corpus.records_per_specimen": 3},
-    "parts across specimens": {"corpus.records_per_part": 5, "corpus.records_per_specimen": 7},
+    "every class in part 0": {"storage.records_per_part": 64, "corpus.records_per_specimen": 1},
+    "one class in a part": {"storage.records_per_part": 4, "corpus.records_per_specimen": 40},
+    "one record in a part": {"storage.records_per_part": 1, "corpus.records_per_specimen": 3},
+    "parts across specimens": {"storage.records_per_part": 5, "corpus.records_per_specimen": 7},
     "fewer classes on a rig than there are": {"corpus.specimens_per_rig": 2, "corpus.records_per_specimen": 3},
 }
 
@@ -85,17 +85,17 @@ def test_every_class_and_a_hundredth_of_the_records_are_tried_whatever_the_layou
     assert len(classes) == len(recipe.faults)
     assert {scenario.specimen.fault for part in checked for scenario in part} == classes
     spans = Counter(
-        scenario.record.number // (CHECKED_PARTS * recipe.corpus.records_per_part)
+        scenario.record.number // (CHECKED_PARTS * recipe.storage.records_per_part)
         for part in checked
         for scenario in part
     )
-    held = Counter(number // (CHECKED_PARTS * recipe.corpus.records_per_part) for number in range(recipe.n_records))
+    held = Counter(number // (CHECKED_PARTS * recipe.storage.records_per_part) for number in range(recipe.n_records))
     assert all(0.01 * held[span] <= spans[span] <= 1 + 0.01 * held[span] + len(classes) for span in held)
     assert sum(spans.values()) <= len(held) + 0.01 * recipe.n_records + len(classes)
 
 
 def test_batches_are_filled_with_their_like_and_count(recipe_with):
-    recipe = recipe_with({"corpus.rigs": 500, "corpus.records_per_part": 100})
+    recipe = recipe_with({"corpus.rigs": 500, "storage.records_per_part": 100})
     scenarios = draw_scenarios(recipe, 3200, 3300)  # no class has its first record here: all have it on the first rig
     assert checked_places(scenarios, recipe, dict.fromkeys(range(100))) == [*range(LANES)]  # of 8
     by_turns = {place: place % 20 for place in range(100)}
@@ -106,7 +106,7 @@ def test_batches_are_filled_with_their_like_and_count(recipe_with):
 
 
 def test_a_class_whose_first_record_failed_is_tried_at_the_next(recipe_with):
-    recipe = recipe_with({"corpus.records_per_part": 24})
+    recipe = recipe_with({"storage.records_per_part": 24})
     scenarios = draw_scenarios(recipe)
     faults = [scenario.specimen.fault for scenario in scenarios]
     failed = faults.index("inner")
@@ -136,7 +136,7 @@ def test_rigs_beyond_the_first_specimens_of_all_classes_are_not_looked_at(recipe
 
 
 def test_a_part_of_which_nothing_is_to_be_checked_is_not_run_again(recipe_with):
-    recipe = recipe_with({"corpus.records_per_part": 2})
+    recipe = recipe_with({"storage.records_per_part": 2})
     scenarios = draw_scenarios(recipe, 10, 12)
     response = simulate(scenarios)
     assert np.isnan(step_errors(scenarios, recipe, response)).all()
@@ -225,6 +225,12 @@ def test_oil_too_thick_for_the_formulas_leaves_the_record_out(recipe_with):
 
 
 def test_a_contact_too_steep_for_a_radial_bearing_is_refused(recipe_with):
-    bearing = {"kind": "geometry", "n_balls": 9, "pitch_diameter_mm": 39, "ball_share": 0.2, "contact_angle_deg": 40}
+    bearing = {
+        "kind": "geometry",
+        "n_balls": 9,
+        "pitch_diameter_mm": 39,
+        "ball_diameter_mm": 7.8,
+        "contact_angle_deg": 40,
+    }
     with pytest.raises(RecipeError, match=r"^specimen 0: a contact angle of 60 degrees"):
         draw_scenarios(recipe_with({"bearing": bearing, "specimen.contact_angle_deg": 20}), 0, 1)

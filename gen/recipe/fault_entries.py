@@ -1,0 +1,67 @@
+"""``faults`` with ``defaults``: keys that all entries have unless they give them, so that nothing is written twice."""
+
+import difflib
+from collections.abc import Mapping
+from typing import Any, get_args
+
+from pydantic import ConfigDict
+
+from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Fault, Healthy, RaceFault
+from gen.recipe.section import Section
+
+_OF_KIND = {
+    kind: model
+    for model in (Healthy, RaceFault, BallFault, CageFault, DistributedFault, CompoundFault)
+    for kind in get_args(model.model_fields["kind"].annotation)
+}
+
+
+class FaultList(Section):
+    """Entries of ``faults``, and the keys that they have in common."""
+
+    model_config = ConfigDict(title="faults with defaults")
+
+    defaults: dict[str, Any]
+    """Keys of entries; each entry whose kind has the key takes it, unless it gives another value."""
+    entries: tuple[Fault, ...]
+    """Faults that specimens can have."""
+
+
+def fault_entries(value: Any) -> Any:
+    """Entries of ``faults`` with their defaults filled in; a list of entries is returned as it is.
+
+    >>> fault_entries({"defaults": {"width_mm": 1, "depth_um": 50}, "entries": [{"kind": "inner", "width_mm": 2}, {"kind": "healthy"}]})
+    [{'depth_um': 50, 'kind': 'inner', 'width_mm': 2}, {'kind': 'healthy'}]
+    """
+    if not isinstance(value, Mapping):
+        return value
+    if value.keys() != {"defaults", "entries"} or not isinstance(value["defaults"], Mapping):
+        raise ValueError("has the keys defaults (keys that entries have in common) and entries (a list), or is a list.")
+    defaults, entries = value["defaults"], value["entries"]
+    if not isinstance(entries, list | tuple) or not all(isinstance(entry, Mapping) for entry in entries):
+        return entries
+    taken: set[str] = set()
+    found = [_filled(dict(entry), defaults, taken) for entry in entries]
+    unknown = next((key for key in defaults if key not in taken), None)
+    if unknown is not None:
+        known = {key for entry in entries for key in _keys(entry)}
+        near = difflib.get_close_matches(str(unknown), known, 1)
+        raise ValueError(
+            f"defaults: {unknown} is a key of no entry" + (f"; did you mean {near[0]}?" if near else "; leave it out.")
+        )
+    return found
+
+
+def _filled(entry: dict[str, Any], defaults: Mapping[str, Any], taken: set[str]) -> dict[str, Any]:
+    if isinstance(entry.get("parts"), list | tuple):
+        entry["parts"] = [
+            _filled(dict(part), defaults, taken) if isinstance(part, Mapping) else part for part in entry["parts"]
+        ]
+    own = {key: value for key, value in defaults.items() if key in _keys(entry)}
+    taken.update(own)
+    return {**own, **entry}
+
+
+def _keys(entry: Mapping[str, Any]) -> set[str]:
+    model = _OF_KIND.get(str(entry.get("kind")))
+    return set() if model is None else set(model.model_fields) - {"kind", "parts"}
