@@ -5,7 +5,7 @@ import logging
 import os
 import re
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, NoReturn
 
 import click
@@ -18,7 +18,6 @@ from raceway.commands import (
     diagnosing,
     doctor,
     feature_tables,
-    gallery,
     importing,
     models,
     publishing,
@@ -27,13 +26,40 @@ from raceway.commands import (
 from raceway.console.ending import NoReader, exit_code
 from raceway.console.signals import listen_for_signals
 
+GROUPS: Mapping[str, tuple[click.Command, ...]] = {
+    "Make corpora": (
+        corpora.recipes,
+        corpora.plan,
+        corpora.generate,
+        importing.import_,
+        copying.copy,
+        publishing.card,
+    ),
+    "Look at them": (corpora.info, corpora.validate, corpora.replay, feature_tables.plot, comparing.compare),
+    "Learn from them": (
+        feature_tables.features,
+        models.train,
+        models.evaluate,
+        benchmarking.benchmark,
+        diagnosing.diagnose,
+    ),
+    "Raceway itself": (doctor.doctor, reproduce.reproduce),
+}
+"""Commands in the order of the work."""
+
 
 class Raceway(click.Group):
-    """A group that lists its commands in the order of the work; :mod:`raceway.console.ending` gives the exit code."""
+    """The group of all commands; :mod:`raceway.console.ending` gives the exit code."""
 
-    def list_commands(self, ctx: click.Context) -> list[str]:  # noqa: ARG002
-        """Names of the commands, in the order they were added."""
-        return list(self.commands)
+    def format_commands(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:  # noqa: ARG002
+        """List the commands in their groups."""
+        widest = max(len(command.name or "") for commands in GROUPS.values() for command in commands)
+        for title, commands in GROUPS.items():
+            with formatter.section(title):
+                limit = formatter.width - 6 - widest
+                formatter.write_dl(
+                    [((one.name or "").ljust(widest), one.get_short_help_str(limit)) for one in commands]
+                )
 
     def main(self, args: Sequence[str] | None = None, prog_name: str | None = None, **extra: Any) -> NoReturn:  # type: ignore[override]
         """Run a command line and exit."""
@@ -98,29 +124,9 @@ def keep_examples(command: click.Command) -> None:
         keep_examples(inner)
 
 
-for command in (
-    corpora.recipes,
-    corpora.plan,
-    corpora.generate,
-    importing.import_,
-    corpora.validate,
-    corpora.info,
-    corpora.replay,
-    copying.copy,
-    feature_tables.plot,
-    feature_tables.features,
-    models.train,
-    models.evaluate,
-    diagnosing.diagnose,
-    benchmarking.benchmark,
-    comparing.compare,
-    publishing.card,
-    benchmarking.bench,
-    reproduce.reproduce,
-    gallery.gallery,
-    doctor.doctor,
-):
-    cli.add_command(command)
+for commands in GROUPS.values():
+    for command in commands:
+        cli.add_command(command)
 keep_examples(cli)
 
 

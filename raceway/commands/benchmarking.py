@@ -1,4 +1,4 @@
-"""Commands that measure: the scores of all baselines on a corpus, and the speed of this machine."""
+"""The command that measures the scores of all baselines on a corpus."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -18,11 +18,10 @@ from raceway.console.options import (
     corpus_path,
     json_option,
     pages_option,
-    recipe_argument,
     speed_option,
     worker_options,
 )
-from raceway.console.progress import compilation_noticed, progress
+from raceway.console.progress import progress
 
 if TYPE_CHECKING:
     from features.baselines import Baseline, Results
@@ -108,7 +107,7 @@ def benchmark(
 ) -> None:
     """Measure the scores of all baselines on DIR.
 
-    (raceway bench measures speed.) Cross-validation keeps all records of a specimen on one side of each split, and all of a rig, bearing
+    Cross-validation keeps all records of a specimen on one side of each split, and all of a rig, bearing
     type, speed range, fault width or fault shape with --track. Two controls are shown beside each score: a split of random records,
     which leaks, and labels permuted among specimens, which must score at chance. With --test, models trained on all of DIR are also
     scored on DIR2; --speed concerns DIR2 alone, --channel DIR alone (of DIR2 the first channel is taken).
@@ -189,49 +188,3 @@ def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:
     tested = any(baseline.test is not None for baseline in baselines.values())
     header = ("baseline", "score", "95 %", "leaky split", "null labels", *(("other corpus",) if tested else ()))
     show.table(header, ((name, *figures(baseline)) for name, baseline in baselines.items()))
-
-
-@click.command()
-@recipe_argument
-@click.option(
-    "--records",
-    type=click.IntRange(1, 16_384),
-    metavar="N",
-    help="Number of records to time; by default those of one part.",
-)
-@json_option
-def bench(recipe: str, records: int | None, as_json: bool) -> None:
-    """Measure the speed of this machine on RECIPE.
-
-    (raceway benchmark measures scores.) One worker makes the first part of the corpus several times, stage by stage, and discards it;
-    the medians of the CPU time are shown. Integration steps are counted for records, settling time included, and not for empty lanes.
-
-      raceway bench quickstart
-    """
-    from gen.recipe import find_recipe
-
-    find_recipe(recipe)
-    from raceway.studies.timing import bench as run
-
-    with compilation_noticed():
-        found = run(recipe, records)
-    if as_json:
-        show.as_json(found)
-        return
-    show.text(
-        f"{found.recipe}: {show.counted(found.records, 'record')}, median of {show.counted(found.repeats, 'run')} on "
-        f"{found.machine['processor']}",
-        "",
-    )
-    show.table(
-        ("stage", "ms per record"),
-        ((name, f"{1e3 * s / found.records:.3g}") for name, s in found.stage_seconds.items()),
-    )
-    show.text("")
-    show.facts(
-        {
-            "kernel": f"{found.kernel_record_steps_per_second / 1e6:,.3g} million record-steps/s",
-            "corpus": f"{found.records_per_second:,.3g} records/s",
-            "features": f"{found.features_records_per_second:,.3g} records/s",
-        }
-    )

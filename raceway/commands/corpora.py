@@ -138,7 +138,7 @@ def _show_plan(planned: "Plan", recipe: str) -> None:
             "size": f"about {show.size(planned.bytes)}",
             "steps": f"{steps[0]} to {steps[-1]} per sample" if len(steps) > 1 else f"{steps[0]} per sample",
             "kernels": f"{planned.kernels}; each is compiled once per machine",
-            "time": f"not known yet; raceway bench {shlex.quote(recipe)} compiles the kernels and measures the speed"
+            "time": f"not known yet; raceway doctor --speed {shlex.quote(recipe)} compiles the kernels and measures the speed"
             if seconds is None
             else f"about {show.duration(seconds)} with one worker, from a sample measured now",
         }

@@ -5,11 +5,19 @@ import click
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import json_option
+from raceway.console.progress import compilation_noticed
 
 
 @click.command()
+@click.option("--speed", "recipe", metavar="RECIPE", help="Measure the speed of this machine on a recipe instead.")
+@click.option(
+    "--records",
+    type=click.IntRange(1, 16_384),
+    metavar="N",
+    help="Number of records to time with --speed; by default those of one part.",
+)
 @json_option
-def doctor(as_json: bool) -> int:
+def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
     """Show what this machine and installation can do.
 
     Versions, cores, memory and disk, compiled kernels, codecs, optional packages, readers of other projects, and the speed of the kernel
@@ -17,9 +25,18 @@ def doctor(as_json: bool) -> int:
 
     Exits with 1 if something that Raceway needs is missing; a line that begins with "note" is no fault.
 
+    With --speed one worker makes the first part of a corpus several times, stage by stage, and discards it; the medians of the CPU time
+    are shown. Integration steps are counted for records, settling time included, and not for empty lanes.
+
       raceway doctor
       raceway doctor --json
+      raceway doctor --speed quickstart
     """
+    if recipe is not None:
+        _show_speed(recipe, records, as_json)
+        return DONE
+    if records is not None:
+        raise click.UsageError("--records is for --speed; give both, or leave it out.")
     from raceway.studies.doctor import findings
 
     found = []
@@ -35,3 +52,33 @@ def doctor(as_json: bool) -> int:
             "", "Everything that Raceway needs is here." if not problems else f"{show.counted(problems, 'problem')}."
         )
     return FOUND_WANTING if problems else DONE
+
+
+def _show_speed(recipe: str, records: int | None, as_json: bool) -> None:
+    from gen.recipe import find_recipe
+
+    find_recipe(recipe)
+    from raceway.studies.timing import bench
+
+    with compilation_noticed():
+        found = bench(recipe, records)
+    if as_json:
+        show.as_json(found)
+        return
+    show.text(
+        f"{found.recipe}: {show.counted(found.records, 'record')}, median of {show.counted(found.repeats, 'run')} on "
+        f"{found.machine['processor']}",
+        "",
+    )
+    show.table(
+        ("stage", "ms per record"),
+        ((name, f"{1e3 * s / found.records:.3g}") for name, s in found.stage_seconds.items()),
+    )
+    show.text("")
+    show.facts(
+        {
+            "kernel": f"{found.kernel_record_steps_per_second / 1e6:,.3g} million record-steps/s",
+            "corpus": f"{found.records_per_second:,.3g} records/s",
+            "features": f"{found.features_records_per_second:,.3g} records/s",
+        }
+    )

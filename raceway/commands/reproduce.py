@@ -1,24 +1,29 @@
-"""``raceway reproduce``: run the seed paper again, draw its figures and measure its statements."""
+"""``raceway reproduce``: the figures and statements of the seed paper, and a page of pictures of simulated signals."""
 
 import math
+import time
 from pathlib import Path
 
 import click
 
 from raceway.console import show
 from raceway.console.options import json_option, pages_option
+from raceway.console.progress import compilation_noticed
 
 
-@click.command()
-@click.argument("paper", type=click.Choice(["ophel2025"]))
+@click.group()
+def reproduce() -> None:
+    """Run the seed paper again, or draw a gallery of signals."""
+
+
+@reproduce.command()
 @pages_option("OUT", "Folder for the figures and findings.json.")
 @click.option("--preset", metavar="NAME", help="Run this parameter set only.")
 @click.option(
     "--change", "changes", multiple=True, metavar="CONSTANT=VALUE", help="Replace a constant, in SI units; repeatable."
 )
 @json_option
-def reproduce(
-    paper: str,  # noqa: ARG001 - there is one paper so far
+def ophel2025(
     output: Path,
     preset: str | None,
     changes: tuple[str, ...],
@@ -65,6 +70,28 @@ def reproduce(
             f"{name}: {sum(f.holds for f in mine)} of {len(mine)} statements hold.",
             f"  Of the {len(fitted)} that its constants were fitted to, {sum(f.holds for f in fitted)} hold.",
         )
+
+
+@reproduce.command()
+@pages_option("OUT", "Folder for index.html, its pictures, and the two small corpora they show.")
+@json_option
+def gallery(output: Path, as_json: bool) -> None:
+    """Draw one page of simulated signals.
+
+    The page has the seed paper's figures beside its statements, the envelope spectrum of every kind of fault (recipe every_fault), run-ups
+    as waterfalls with the shaft orders drawn in (recipe run_up), and every fault of the measuring chain (recipe dirty_sensors).
+
+      raceway reproduce gallery -o gallery
+    """
+    from raceway.studies.gallery import write_gallery
+
+    start = time.monotonic()
+    with compilation_noticed():
+        page, pictures = write_gallery(output)
+    if as_json:
+        show.as_json({"page": page, "pictures": pictures})
+        return
+    show.text(f"{page}: {show.counted(len(pictures), 'picture')}, in {show.duration(time.monotonic() - start)}.")
 
 
 def _constants(changes: tuple[str, ...]) -> dict[str, float]:

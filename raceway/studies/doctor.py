@@ -19,7 +19,7 @@ from raceway.console.options import cores
 State = Literal["fine", "note", "problem"]
 
 PUBLISHED = {"amd-26-2": 48e6}
-"""Record-steps per second and core of the kernel, as ``raceway bench quickstart`` measures them, by processor (docs/performance.md)."""
+"""Record-steps per second and core of the kernel, as ``raceway doctor --speed quickstart`` measures them, by processor."""
 SLOW = 0.7  # of the published figure; a shared machine changes its speed by a third from minute to minute
 TIMED_RECORDS = 112
 LEAST_DISK = 5e9  # bytes; the quickstart takes 30 MB, domain_randomised 300 MB
@@ -205,7 +205,7 @@ def _speed() -> Finding:
 
     missing = sum(not is_compiled(shape) for shape in needed_shapes(read_recipe("quickstart")))
     if missing:
-        advice = f"{missing} kernels of quickstart are not compiled; raceway bench quickstart compiles them, in about 10 s each."
+        advice = f"{missing} kernels of quickstart are not compiled; raceway doctor --speed quickstart compiles them, in about 10 s each."
         return Finding("speed of the kernel", "not measured", "note", advice)
     from raceway.studies.timing import bench
 

@@ -15,7 +15,7 @@ from features.table_files import read_table
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.limits import VARIABLE
 from gen.simulation.simulate import response_of
-from raceway.cli import cli
+from raceway.cli import GROUPS, cli
 from raceway.commands import models
 
 
@@ -71,7 +71,7 @@ def test_help_and_version_load_no_heavy_library():
 SIMULATOR = {"numba", "distributed", "scipy.stats", "sklearn", "matplotlib"}
 
 
-@pytest.mark.parametrize("line", ["recipes", "plan quikstart", "generate quikstart -o new", "bench quikstart"])
+@pytest.mark.parametrize("line", ["recipes", "plan quikstart", "generate quikstart -o new", "doctor --speed quikstart"])
 def test_a_list_of_recipes_and_a_misspelt_name_load_no_simulator(line):
     assert loaded(line.split(), SIMULATOR | {"xarray", "netCDF4", "scipy"}) == set()
 
@@ -133,7 +133,7 @@ def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
 def test_a_plan_without_a_measured_time_names_the_command_that_measures_it(run, tiny_recipe, monkeypatch):
     monkeypatch.setattr("gen.plan.measured_pace", lambda *_: None)
     shown = run("plan", tiny_recipe).stdout
-    assert f"not known yet; raceway bench {tiny_recipe} compiles the kernels and measures the speed" in shown
+    assert f"not known yet; raceway doctor --speed {tiny_recipe} compiles the kernels and measures the speed" in shown
 
 
 def test_a_plan_writes_nothing(run, tiny_recipe, tmp_path, monkeypatch):
@@ -316,11 +316,26 @@ def test_recordings_are_imported_and_counted(run, told, tmp_path):
 
 def test_bench_times_every_stage(run, told, tiny_recipe, monkeypatch):
     monkeypatch.setattr("raceway.studies.timing.REPEATS", 1)
-    found = told("bench", tiny_recipe, "--records", 6)
+    found = told("doctor", "--speed", tiny_recipe, "--records", 6)
     assert set(found["stage_seconds"]) == {"draw", "lay_out", "integrate", "measure", "write", "features"}
     assert found["kernel_record_steps_per_second"] == pytest.approx(
         found["record_steps"] / found["stage_seconds"]["integrate"]
     )
     assert found["record_steps"] % 6 == 0
     assert found["records_per_second"] > 0
-    assert "million record-steps/s" in run("bench", tiny_recipe, "--records", 6).stdout
+    assert "million record-steps/s" in run("doctor", "--speed", tiny_recipe, "--records", 6).stdout
+
+
+@pytest.mark.parametrize("name", ["features", "gen"])
+def test_a_file_that_hides_a_package_of_raceway_is_named(tmp_path, name):
+    (tmp_path / f"{name}.py").write_text("")
+    done = subprocess.run(
+        [sys.executable, "-m", "raceway", "recipes"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stderr.count("\n")) == (2, 1)
+    assert f"{name}.py: hides a package of Raceway" in done.stderr
+
+
+def test_every_command_is_listed_in_one_group():
+    listed = [command for commands in GROUPS.values() for command in commands]
+    assert len(listed) == len(cli.commands) == 18

@@ -4,7 +4,7 @@ from gen.corpus import check_result_folder
 
 
 def test_the_gallery_shows_the_paper_every_fault_and_the_run_ups(tmp_path, told):
-    found = told("gallery", "-o", tmp_path / "gallery")
+    found = told("reproduce", "gallery", "-o", tmp_path / "gallery")
     check_result_folder(tmp_path / "gallery")  # which may be written again
     page = (tmp_path / "gallery" / "index.html").read_text()
     names = [path.rpartition("/")[2] for path in found["pictures"]]

@@ -134,11 +134,11 @@ def test_features_count_the_records_that_lack_some(told, run, tiny_corpus, tmp_p
 
 def test_bench_names_the_machine_and_the_number_of_runs(run, told, tiny_recipe, monkeypatch):
     monkeypatch.setattr("raceway.studies.timing.REPEATS", 1)
-    found = told("bench", tiny_recipe, "--records", 1)
+    found = told("doctor", "--speed", tiny_recipe, "--records", 1)
     assert (found["records"], found["repeats"]) == (1, 1)
     assert found["features_records_per_second"] == pytest.approx(1 / found["stage_seconds"]["features"])
     assert found["machine"].keys() == {"processor", "cores", "python", "raceway", "numba", "numpy", "scipy"}
-    shown = run("bench", tiny_recipe, "--records", 1).stdout
+    shown = run("doctor", "--speed", tiny_recipe, "--records", 1).stdout
     assert shown.startswith(f"tiny: 1 record, median of 1 run on {found['machine']['processor']}\n")
 
 
