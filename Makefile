@@ -6,7 +6,7 @@ OUT ?= out/quickstart
 export OMP_NUM_THREADS ?= 1
 FLOORS := .venv-floors
 # the fast half: everything that needs no kernel of the full model
-FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/test_yaml_files_laws.py \
+FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/support/test_yaml_files_laws.py \
 	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
 .PHONY: quickstart test lint generated bench thorough floors clean

@@ -27,6 +27,7 @@ from gen import generate
 from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe, find_recipe
+from gen.recipe.fault_entries import fault_entries
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import integrations, laid_out
 
@@ -75,6 +76,8 @@ def variants(mechanisms: Sequence[Mechanism]) -> dict[str, Changes]:
 def changed(recipe: Mapping[str, Any], changes: Changes) -> dict[str, Any]:
     """Copy of a recipe with some changes."""
     made = copy.deepcopy(dict(recipe))
+    if any(path.startswith("faults.") for path in changes):
+        made["faults"] = fault_entries(made["faults"])
     for path, value in changes.items():
         section, *keys = path.split(".")
         if path == "faults.+":

@@ -28,9 +28,9 @@ from distributed import Client, Scheduler, Worker
 
 from benchmarks.pairs import Line, Row
 from benchmarks.pipeline import SHORT, variant
-from gen import generation
 from gen.corpus import PartRow, part_name, read_manifest
-from gen.part_task import Outcome
+from gen.generation import corpus as making
+from gen.generation.parts import Outcome
 
 PARTS = (100, 10_000)
 WORKERS = 64
@@ -74,17 +74,17 @@ def simulated_runs(sizes: tuple[int, ...], workers: int, task_s: float, per_part
         largest = {"records_per_specimen": per_part, "specimens_per_rig": 1, "rigs": max(*sizes, 2 * workers)}
         storage = {"records_per_part": per_part}
         recipe = variant(SHORT, folder / "parts.yaml", corpus=largest, storage=storage)
-        model = generation.generate(recipe, folder / "model", records=per_part).path
+        model = making.generate(recipe, folder / "model", records=per_part).path
         made = partial(_made, model / "parts" / part_name(0), read_manifest(model).parts[0], task_s)
-        with patch.object(generation, "_made", made):
+        with patch.object(making, "_made", made):
             first = 2 * workers * per_part
-            generation.generate(recipe, folder / "first", records=first, scheduler=address)  # loads libraries
+            making.generate(recipe, folder / "first", records=first, scheduler=address)  # loads libraries
             return [_cost(recipe, folder / str(size), size, per_part, address, scheduler) for size in sizes]
 
 
 def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, scheduler: psutil.Process) -> Cost:
     ending = []
-    finish = vars(generation)["_finish"]
+    finish = vars(making)["_finish"]
 
     def timed(*given: Any) -> Any:
         start = time.process_time()
@@ -93,8 +93,8 @@ def _cost(recipe: Path, folder: Path, parts: int, per_part: int, address: str, s
         return done
 
     before = time.process_time(), _cpu_seconds(scheduler)
-    with patch.object(generation, "_finish", timed):
-        generation.generate(recipe, folder, records=parts * per_part, scheduler=address)
+    with patch.object(making, "_finish", timed):
+        making.generate(recipe, folder, records=parts * per_part, scheduler=address)
     driver, of_scheduler = time.process_time() - before[0] - ending[0], max(_cpu_seconds(scheduler) - before[1], TICK_S)
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e3
     return Cost(parts, driver / parts, of_scheduler / parts, ending[0] / parts, memory)
@@ -104,13 +104,13 @@ def _made(
     model: Path,
     row: PartRow,
     task_s: float,
-    tally: generation.Tally,
+    tally: making.Tally,
     directory: Path,
     _workers: int,
     client: Client,
 ) -> Generator[tuple[int, Outcome]]:
     """Stand-in for the making of parts by tasks that wait."""
-    from gen.cluster import run_tasks
+    from gen.support.cluster import run_tasks
 
     task = partial(_linked, model, row, task_s, directory.resolve(), tally.recipe)
     yield from run_tasks(client, task, range(tally.recipe.n_parts), meanwhile=tally.show)

@@ -13,7 +13,7 @@ from unittest import mock
 import numpy as np
 
 from benchmarks.pairs import Line, row
-from gen.generation import generate
+from gen.generation.corpus import generate
 from gen.physics.kernel import integrate
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import Batch

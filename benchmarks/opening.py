@@ -15,7 +15,7 @@ import xarray as xr
 from benchmarks.pairs import Line, interleaved, row, seconds
 from benchmarks.pipeline import SHORT, variant
 from gen.corpus import SIGNAL, open_corpus
-from gen.generation import generate
+from gen.generation.corpus import generate
 
 
 def rows(pairs: int = 9, *, parts: int = 50, records_per_part: int = 20) -> Iterator[Line]:

@@ -13,7 +13,7 @@ from ruamel.yaml import YAML
 
 from benchmarks.kernel import FULL, integrate_every
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row, run_python, seconds
-from gen.generation import generate
+from gen.generation.corpus import generate
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.simulate import laid_out
@@ -28,7 +28,7 @@ SCALES = (1000, 20_000)
 _COST = """
 import json, sys, time
 from pathlib import Path
-from gen.generation import generate
+from gen.generation.corpus import generate
 recipe, folder, records = sys.argv[1], Path(sys.argv[2]), int(sys.argv[3])
 generate(recipe, folder / "first", records=1)
 start = time.process_time()

@@ -14,7 +14,7 @@ import xarray as xr
 from benchmarks.pairs import Line, interleaved, row, seconds
 from benchmarks.pipeline import SHORT, variant
 from gen.corpus import SIGNAL, corpus_files, files, open_corpus
-from gen.generation import generate
+from gen.generation.corpus import generate
 
 BLOCK = 64  # records read at a time
 PROCESSES = 4

@@ -14,7 +14,6 @@ import numpy as np
 from scipy.stats import kurtosis
 
 from benchmarks.visibility import DEEP, TURNING, FloatArray, reference_recipe
-from gen.errors import SimulationError
 from gen.physics.bearing import Bearing
 from gen.physics.rotor import Machine, as_columns, ball_forces, rest
 from gen.recipe import find_recipe, read_recipe
@@ -23,6 +22,7 @@ from gen.simulation.damage import largest_drop_over
 from gen.simulation.inputs import bare_inputs, only
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
+from gen.support.errors import SimulationError
 
 WIDTHS = (0.1, 0.2, 0.3, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0)
 LOADS = (100, 300, 1000, 2000)

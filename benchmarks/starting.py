@@ -11,7 +11,7 @@ from pathlib import Path
 from benchmarks.kernel import FULL
 from benchmarks.pairs import Line, interleaved, process_seconds, row
 from benchmarks.pipeline import SHORT, variant
-from gen.generation import generate
+from gen.generation.corpus import generate
 
 IMPORTS = ("gen", "gen.corpus", "features")
 ALTERNATIVE = "import xarray, netCDF4"

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from benchmarks.pairs import Line, interleaved, row
-from gen.part_task import make_parts
+from gen.generation.parts import make_parts
 from gen.recipe import Recipe, read_recipe
 
 SETTINGS = {

@@ -27,26 +27,6 @@ report           figures of records, corpora and scores, and one page with all o
 ================ =================================================================================
 """
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-from gen.lazy import lazy_names
-
-if TYPE_CHECKING:
-    from features.auditing import audit_splits
-    from features.baselines import evaluate
-    from features.speed import shaft_speed
-    from features.table import feature_table
-    from features.waveforms import open_waveforms
-
-__all__ = ["audit_splits", "evaluate", "feature_table", "open_waveforms", "shaft_speed"]
-
-__getattr__, __dir__ = lazy_names(
-    __name__,
-    {
-        "features.auditing": ("audit_splits",),
-        "features.baselines": ("evaluate",),
-        "features.speed": ("shaft_speed",),
-        "features.table": ("feature_table",),
-        "features.waveforms": ("open_waveforms",),
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import xarray as xr
 
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 
 def channel_number(corpus: xr.Dataset, channel: int | str, where: Path | str) -> int:

@@ -32,8 +32,8 @@ from features.recording_speeds import (
 )
 from features.signal.rows import FloatArray
 from gen.corpus import DRAWS, RecordBlock, open_corpus, read_channel, record_blocks
-from gen.progress import Progress, counter
-from gen.workers import run
+from gen.support.progress import Progress, counter
+from gen.support.workers import run
 
 if TYPE_CHECKING:
     from distributed import Client
@@ -148,7 +148,7 @@ def _features_of_block(
 def _run(
     compute: Callable[[Item], Result], items: Sequence[Item], report: Callable[[int], None], **workers: Any
 ) -> Generator[tuple[int, Result]]:
-    """Yield the number of each item and its result as they are completed; ``workers`` are options of `gen.workers.run`."""
+    """Yield the number of each item and its result as they are completed; ``workers`` are options of `gen.support.workers.run`."""
     with closing(run(partial(_numbered, compute), enumerate(items), **workers)) as results:
         for result in results:
             yield result

@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from gen.corpus import LIBRARY_LOCK, check_result, whole_or_not_at_all
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 DIGEST = "sha256"
 ROW_GROUP = 8192  # records that are copied to columns together

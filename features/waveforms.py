@@ -18,7 +18,7 @@ from numpy.typing import DTypeLike, NDArray
 from features.channels import channel_number
 from features.signal.orders import resample_to_orders
 from gen.corpus import DRAWS, SIGNAL, open_corpus
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 BLOCK = 256  # records that are decoded at a time
 

@@ -8,11 +8,11 @@ import sys
 from pathlib import Path
 
 from gen.corpus import format_page
-from gen.limits import limits_page
 from gen.physics.catalogue import catalogue_page
 from gen.recipe.distributions import KINDS
 from gen.recipe.finding import recipe_purpose, shipped_recipes
 from gen.recipe.keys import Key, recipe_keys
+from gen.support.limits import limits_page
 
 _EXAMPLES = {
     "constant": "5",

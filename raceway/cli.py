@@ -111,7 +111,7 @@ def cli(limits: tuple[str, ...]) -> None:
       _RACEWAY_COMPLETE=fish_source raceway | source      in config.fish
     """
     if limits:
-        from gen.limits import VARIABLE, parse_limits
+        from gen.support.limits import VARIABLE, parse_limits
 
         parse_limits(",".join(limits))
         os.environ[VARIABLE] = ",".join(filter(None, (os.environ.get(VARIABLE), *limits)))  # workers inherit it

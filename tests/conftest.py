@@ -18,7 +18,8 @@ TINY = """\
 name: tiny
 title: Tiny corpus
 seed: 3
-corpus: {rigs: 2, specimens_per_rig: 8, records_per_specimen: 3, records_per_part: 12, split: {test: 0.25}}
+corpus: {rigs: 2, specimens_per_rig: 8, records_per_specimen: 3, split: {test: 0.25}}
+storage: {records_per_part: 12}
 recording: {sample_rate_hz: 12000, duration_s: 0.1, settle_s: 0.05}
 bearing: {kind: catalogue, designations: ["6205"]}
 specimen: {waviness_nm: 20}

@@ -11,7 +11,7 @@ import h5py
 from gen.corpus.files import append_checksum, remove_checksum
 from gen.corpus.index import corpus_attributes
 from gen.corpus.unicode_text import write_unicode
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 
 @contextmanager

@@ -33,8 +33,8 @@ from features.baselines.splits import Case, control_cases, grouped_case, score_s
 from features.baselines.tracks import TRACKS, Track
 from features.waveforms import Waveforms
 from gen.corpus import FAULTS, write_numbers
-from gen.errors import CorpusError
-from gen.progress import Progress
+from gen.support.errors import CorpusError
+from gen.support.progress import Progress
 
 BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 """Baselines that are scored on several tracks, because all would take several times as long."""

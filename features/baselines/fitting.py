@@ -14,8 +14,8 @@ from features.baselines.estimators import Estimator, class_probabilities, make_e
 from features.baselines.own import Maker
 from features.baselines.records import FloatArray, IntArray
 from features.baselines.tracks import Split
-from gen.progress import Progress
-from gen.workers import MOST_THREADS, run
+from gen.support.progress import Progress
+from gen.support.workers import MOST_THREADS, run
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -21,8 +21,8 @@ from sklearn.exceptions import InconsistentVersionWarning
 from skops.io.exceptions import UntrustedTypesFoundException
 
 from gen.corpus import write_durably
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 TRUSTED = (
     "features.baselines.estimators.EnvelopeRule",

@@ -41,8 +41,8 @@ from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
 from gen.corpus import UNKNOWN_CODE, check_result
-from gen.errors import CorpusError
-from gen.progress import Progress
+from gen.support.errors import CorpusError
+from gen.support.progress import Progress
 
 FORMAT = 4
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")

@@ -18,7 +18,7 @@ from sklearn.base import BaseEstimator, clone
 
 from features.baselines.records import FloatArray, IntArray
 from gen.corpus import FAULTS
-from gen.errors import RacewayError
+from gen.support.errors import RacewayError
 
 
 class EstimatorError(RacewayError):

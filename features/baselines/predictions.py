@@ -16,7 +16,7 @@ from features.baselines.records import FloatArray, IntArray, feature_rows, title
 from features.baselines.references import relative_to
 from features.recording_speeds import recording_numbers
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     from pandas import DataFrame

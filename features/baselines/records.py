@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from features.recording_speeds import recording_numbers
 from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     from pandas import DataFrame

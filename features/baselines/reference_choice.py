@@ -17,7 +17,7 @@ from features.indicators import Orders
 from features.recording_speeds import recording_numbers
 from features.recording_table import recording_table
 from gen.corpus import UNKNOWN_CODE, open_corpus
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 FILE = "recording_file"  # attribute of the table of a reference recording
 SAME_SPEED = 0.02  # relative: speeds within it are one speed, as in the search for lines

@@ -24,7 +24,7 @@ from features.faults import HEALTHY
 from features.indicators import NAMES
 from features.recording_speeds import recording_numbers
 from gen.corpus import FAULTS, UNKNOWN_CODE
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)
 ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))

@@ -22,7 +22,7 @@ from sklearn.model_selection import StratifiedGroupKFold
 from features.baselines.records import FloatArray, IntArray, Records, check_classes
 from features.faults import HEALTHY
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 Track = Literal["specimen", "rig", "bearing", "speed", "severity", "shape"]
 TRACKS: tuple[Track, ...] = get_args(Track)

@@ -34,7 +34,7 @@ from features.signal.rows import FloatArray
 from features.signal.speed import TOLERANCE
 from features.speed import shaft_speed
 from gen.corpus import FAULTS, UNKNOWN_CODE
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     import xarray as xr

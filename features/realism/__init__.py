@@ -12,13 +12,6 @@ comparison a synthetic corpus against real ones, and each real one against the o
 ========== =========================================================================
 """
 
-from typing import TYPE_CHECKING
+import lazy_loader
 
-from gen.lazy import lazy_names
-
-if TYPE_CHECKING:
-    from features.realism.comparison import Comparison, compare
-
-__all__ = ["Comparison", "compare"]
-
-__getattr__, __dir__ = lazy_names(__name__, {"features.realism.comparison": ("Comparison", "compare")})
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -14,7 +14,7 @@ from features.realism.measures import MEASURES, NAMES
 from features.realism.windows import Common, Windows, common_ground, measured_windows
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 FEWEST = 10  # windows of a class, below which a set is not compared in it
 SHARES = (0.05, 0.5, 0.95)

@@ -14,7 +14,7 @@ from features.indicators import Orders
 from features.realism.measures import NAMES, band_limited, measured
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 BLOCK = 32  # windows read and measured together
 SHORTEST = 0.05  # s

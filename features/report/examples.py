@@ -12,7 +12,7 @@ from features.faults import COMBS, LOOKS
 from features.indicators import Orders, feature_names, indicators
 from features.report.pictures import PictureFormat, Shown, draw_record, picture
 from gen.corpus import FAULT_NAMES, SIGNAL, check_result, open_corpus, write_durably
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 CANDIDATES = 15  # records of a class among which its example is chosen
 

@@ -14,8 +14,8 @@ from gen.corpus.layout import is_bare_dimension, is_text
 from gen.corpus.open_files import close, opened, source_of
 from gen.corpus.part import inflated
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 _BLOCK_SAMPLES = 10_000_000
 _BLOCK_RECORDS = 256

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from gen.corpus.schema import SPLITS, class_names
 from gen.corpus.where import Column, nearest, records_where
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 
 def chosen_records(

@@ -26,8 +26,8 @@ from gen.corpus.manifest import COUNTED, Manifest, read_manifest, recipe_text
 from gen.corpus.publication import Publication
 from gen.corpus.schema import SIGNAL
 from gen.corpus.where import nearest
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 _MOST_IN_BLOCK = 1024  # records; scenarios are text of some kilobytes a record
 _SPAN = 8  # times the records of a block; variables are read with those of the records between the chosen ones

@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 INDEX_NAME, MANIFEST_NAME, RECIPE_NAME = "index.nc", "manifest.json", "recipe.yaml"
 Stamp = tuple[int, int]

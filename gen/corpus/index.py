@@ -33,7 +33,7 @@ from gen.corpus.reading import open_part, open_records
 from gen.corpus.schema import SIGNAL, schema_problems
 from gen.corpus.simulated import SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 _OF_CORPUS = ("Conventions", "raceway_format", "history", "source")
 _CHUNK_RECORDS = 256  # records whose text forms one chunk

@@ -12,7 +12,7 @@ from gen.corpus.choice import channel_names, per_record
 from gen.corpus.schema import SIGNAL, class_names, listed_flags
 from gen.corpus.signals import VERDICTS, judge
 from gen.corpus.simulated import unknown_value
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 NUMBERS = ("rig", "specimen", "recording", "pair")
 """Variables that get new numbers when corpora are joined."""

@@ -11,8 +11,8 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 PACKING = ("scale_factor", "add_offset", "_FillValue")
 """Attributes by which readers decode a signal; only the signal may have them."""

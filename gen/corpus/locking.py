@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 
 @contextmanager

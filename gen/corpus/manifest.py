@@ -32,8 +32,8 @@ from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
 from gen.corpus.schema import FORMAT
 from gen.corpus.signals import Count, SignalCounts, summed
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 Check = Literal["sha256", "size"]
 

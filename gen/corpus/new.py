@@ -19,7 +19,7 @@ from gen.corpus.finishing import finish_corpus, finish_file
 from gen.corpus.manifest import RECIPE_NAME
 from gen.corpus.outputs import check_new
 from gen.corpus.part import PartRow, part_name, write_part
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 
 class NewCorpus:

@@ -17,7 +17,7 @@ from gen.corpus.files import Stamp, stamp
 from gen.corpus.hdf5 import LIBRARY_LOCK, own_dataset
 from gen.corpus.layout import Packing, attributes_of, checked_shape, is_deflated, packing_of
 from gen.corpus.schema import SIGNAL
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 MOST_OPEN = 64
 """Largest number of open files. A process can open 256 or more; closing one file and opening another takes 0.4 ms."""

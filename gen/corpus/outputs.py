@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from gen.corpus.files import INDEX_NAME, check_name, write_text_durably, writing
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 GENERATOR = "Raceway"
 """Name that pages, pictures and numbers have among their facts."""

@@ -12,7 +12,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, StringConstraints, ValidationError
 
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 EPOCH = "SOURCE_DATE_EPOCH"
 """Environment variable with a time [s since 1970, UTC] that replaces that of the clock in reproducible files."""

@@ -28,8 +28,8 @@ from gen.corpus.layout import (
 )
 from gen.corpus.open_files import OpenFile, Source, close, opened, source_of
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 
 class _Column(BackendArray):

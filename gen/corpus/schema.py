@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     import xarray as xr

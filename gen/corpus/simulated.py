@@ -1,6 +1,6 @@
 """Variables that a simulated corpus holds beside those of every corpus.
 
-:mod:`gen.labels` fills them; ``docs/format.md`` lists them.
+:mod:`gen.generation.labels` fills them; ``docs/format.md`` lists them.
 """
 
 from collections.abc import Mapping

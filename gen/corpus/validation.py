@@ -24,7 +24,7 @@ from gen.corpus.manifest import (
 )
 from gen.corpus.open_files import file_facts
 from gen.corpus.signals import VERDICTS, SignalCounts, counted, described, judge
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 _MADE_BY = ("recipe_sha256", "sources_sha256")
 """Facts by which the parts of a generated corpus belong together; parts of a copy have none."""

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 MOST_CHARACTERS = 4000
 DEEPEST = 50

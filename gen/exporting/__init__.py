@@ -16,21 +16,7 @@ forms         all forms; ``copy``
 ============= =================================================================
 """
 
-from typing import TYPE_CHECKING
-
-from gen.lazy import lazy_names
-
-if TYPE_CHECKING:
-    from gen.exporting.forms import FORMS, Copied, copy
-    from gen.exporting.items import LabelledRecords, torch_dataset
-
-__all__ = ["FORMS", "Copied", "LabelledRecords", "copy", "torch_dataset"]
+import lazy_loader
 
 # xarray and netCDF4 take 0.3 s to load
-__getattr__, __dir__ = lazy_names(
-    __name__,
-    {
-        "gen.exporting.forms": ("FORMS", "Copied", "copy"),
-        "gen.exporting.items": ("LabelledRecords", "torch_dataset"),
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -11,7 +11,6 @@ from gen.corpus.copying import choose
 from gen.corpus.files import remove_left_behind_of, whole_folder_or_none, whole_or_not_at_all
 from gen.corpus.new import NewCorpus, new_corpus
 from gen.corpus.outputs import check_new
-from gen.errors import CorpusError
 from gen.exporting.columns import Export
 from gen.exporting.csv_files import write_csv
 from gen.exporting.huggingface import write_huggingface
@@ -19,7 +18,8 @@ from gen.exporting.matlab_files import write_mat
 from gen.exporting.parquet_files import write_parquet, write_parquet_file
 from gen.exporting.wav_files import write_wav
 from gen.exporting.zarr_store import write_store, write_zarr
-from gen.progress import Progress, counter
+from gen.support.errors import CorpusError
+from gen.support.progress import Progress, counter
 
 _PART_BYTES = 16_000_000  # of single precision
 

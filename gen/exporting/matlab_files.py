@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.copying import Block
-from gen.errors import CorpusError
 from gen.exporting.columns import Export
 from gen.exporting.tables import label_table
+from gen.support.errors import CorpusError
 
 FILE_BYTES = 32_000_000
 """Largest size of the signals of a file in single precision."""

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 
 from gen.corpus.schema import SIGNAL
-from gen.errors import CorpusError
 from gen.exporting.columns import Export
 from gen.exporting.tables import label_table, record_file
+from gen.support.errors import CorpusError
 
 _BLOCK_BYTES = 8_000_000  # of single precision
 _MOST_CHANNELS = 65_535

@@ -27,27 +27,7 @@ An importer lists its files with a function that reads each (:class:`~gen.import
 after the other. A file that cannot be used is skipped as a whole, with a sentence.
 """
 
-from typing import TYPE_CHECKING
-
-from gen.lazy import lazy_names
-
-if TYPE_CHECKING:
-    from gen.importers.assemble import Import
-    from gen.importers.cwru import import_cwru
-    from gen.importers.generic import import_generic
-    from gen.importers.mfpt import import_mfpt
-    from gen.importers.signals import Signal, read_signal
-
-__all__ = ["Import", "Signal", "import_cwru", "import_generic", "import_mfpt", "read_signal"]
+import lazy_loader
 
 # a single recording needs neither dask nor the corpus format
-__getattr__, __dir__ = lazy_names(
-    __name__,
-    {
-        "gen.importers.assemble": ("Import",),
-        "gen.importers.cwru": ("import_cwru",),
-        "gen.importers.generic": ("import_generic",),
-        "gen.importers.mfpt": ("import_mfpt",),
-        "gen.importers.signals": ("Signal", "read_signal"),
-    },
-)
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

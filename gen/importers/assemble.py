@@ -14,11 +14,11 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.corpus import NewCorpus, Publication, Variable, check_new, identity, make_dataset, new_corpus
-from gen.errors import CorpusError
 from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
-from gen.limits import check_limit
-from gen.progress import Progress
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
+from gen.support.progress import Progress
 
 _PART_RECORDS = 256
 _PART_BYTES = 64_000_000

@@ -5,11 +5,11 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from gen.errors import CorpusError
 from gen.importers.mapping_values import Geometry, bearing_of
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
-from gen.sentences import sentences
+from gen.support.errors import CorpusError
+from gen.support.sentences import sentences
 
 
 def bearing_from_text(text: str) -> Bearing:

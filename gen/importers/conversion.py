@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from gen.importers.files import FloatArray
-from gen.units import STANDARD_GRAVITY
+from gen.support.units import STANDARD_GRAVITY
 
 Unit = Literal["g", "m/s2", "V", "mV"]
 VOLTAGES = ("V", "mV")

@@ -16,15 +16,15 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 
 from gen.corpus import Variable
-from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.files import FloatArray, UnusableError, one_column
 from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.importers.resampling import resampled
 from gen.physics.catalogue import CATALOGUE
-from gen.progress import Progress
-from gen.units import HORSEPOWER, MIL, STANDARD_GRAVITY, rpm_to_hertz
+from gen.support.errors import CorpusError
+from gen.support.progress import Progress
+from gen.support.units import HORSEPOWER, MIL, STANDARD_GRAVITY, rpm_to_hertz
 
 Subset = Literal["all", "wang"]
 

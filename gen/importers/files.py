@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.limits import check_limit
+from gen.support.limits import check_limit
 
 FloatArray = NDArray[np.floating]
 

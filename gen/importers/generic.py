@@ -14,7 +14,6 @@ import numpy as np
 from pydantic import ValidationError
 
 from gen.corpus import UNKNOWN
-from gen.errors import CorpusError
 from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.assumptions import assumptions
 from gen.importers.conversion import accelerations, doubts
@@ -27,9 +26,10 @@ from gen.importers.matlab import read_number
 from gen.importers.recordings import Candidate, Recording
 from gen.importers.resampling import resampled
 from gen.importers.signals import read_values
-from gen.progress import Progress
-from gen.sentences import sentences
-from gen.units import rpm_to_hertz, to_si
+from gen.support.errors import CorpusError
+from gen.support.progress import Progress
+from gen.support.sentences import sentences
+from gen.support.units import rpm_to_hertz, to_si
 
 _NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
 _SPALLS = {"healthy": 0, "cage": 0, "compound": 2, UNKNOWN: -1}

@@ -7,13 +7,13 @@ from typing import NamedTuple
 
 from pydantic import ValidationError
 
-from gen.errors import CorpusError
 from gen.importers.mapping import MappingFile
 from gen.importers.mapping_keys import Facts
 from gen.importers.paths import fill_in, match_path
 from gen.importers.recordings import name_of, some_files
 from gen.importers.section import Section
-from gen.sentences import sentences
+from gen.support.errors import CorpusError
+from gen.support.sentences import sentences
 
 
 class File(NamedTuple):

@@ -10,12 +10,12 @@ from typing import Annotated, Self
 
 from pydantic import Field, ValidationError, model_validator
 
-from gen.errors import CorpusError
 from gen.importers.mapping_keys import FileKeys
 from gen.importers.mapping_values import Hertz, Name, Text
 from gen.importers.section import Section, sections_of
-from gen.sentences import sentences
-from gen.yaml_files import read_yaml
+from gen.support.errors import CorpusError
+from gen.support.sentences import sentences
+from gen.support.yaml_files import read_yaml
 
 
 class MappingFile(FileKeys):

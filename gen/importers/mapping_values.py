@@ -12,7 +12,7 @@ from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Dis
 from gen.corpus import FAULTS, UNKNOWN
 from gen.physics.bearing import Bearing
 from gen.physics.catalogue import CATALOGUE, known_designation
-from gen.units import to_si
+from gen.support.units import to_si
 
 if TYPE_CHECKING:
     FaultClass = str

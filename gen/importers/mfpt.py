@@ -18,8 +18,8 @@ from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.importers.resampling import resampled
 from gen.physics.catalogue import CATALOGUE
-from gen.progress import Progress
-from gen.units import POUND_FORCE, STANDARD_GRAVITY
+from gen.support.progress import Progress
+from gen.support.units import POUND_FORCE, STANDARD_GRAVITY
 
 FS = 48_828.0
 

@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import FAULTS, SPLITS, UNKNOWN, UNKNOWN_CODE
-from gen.errors import CorpusError
 from gen.importers.files import FloatArray, UnusableError, reason_of
-from gen.limits import check_limit, limit
 from gen.physics.bearing import Bearing, orders
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit, limit
 
 _LARGEST_ACCELERATION = 1e7  # m s-2, ten times the range of shock accelerometers
 _AS_RECORDED = ("rig", "specimen", "shaft_rate", "load", "n_spalls", "width", "depth", "angle")

@@ -3,10 +3,10 @@
 from pathlib import Path
 from typing import NamedTuple
 
-from gen.errors import CorpusError
 from gen.importers.conversion import Scale, Unit, accelerations, doubts, unit_problem, volts_per_acceleration
 from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text, read_wav, reason_of
 from gen.importers.matlab import read_matlab
+from gen.support.errors import CorpusError
 
 TEXT = (".csv", ".txt", ".tsv", ".dat")
 SUFFIXES = (".mat", ".npy", ".wav", *TEXT)

@@ -23,7 +23,7 @@ from gen.measurement.rattle import rattling
 from gen.measurement.rig import base_excited
 from gen.scenarios import Mode, Purpose, Scenario
 from gen.scenarios.model import Drawn
-from gen.units import decibel_to_ratio
+from gen.support.units import decibel_to_ratio
 
 FloatArray = NDArray[np.floating]
 

@@ -9,12 +9,12 @@ from typing import Any, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from gen.errors import RecipeError
 from gen.recipe.distributions import Choice, Grid, LogUniform, Normal, Uniform
 from gen.recipe.expressions import called
 from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Healthy, RaceFault
 from gen.recipe.section import Section, plain
-from gen.sentences import sentences
+from gen.support.errors import RecipeError
+from gen.support.sentences import sentences
 
 _Of = TypeVar("_Of", bound=BaseModel)
 

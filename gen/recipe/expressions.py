@@ -12,7 +12,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from gen.sentences import sentences
+from gen.support.sentences import sentences
 
 MOST_CHARACTERS = 20_000
 _EXAMPLES = "write 1.5, uniform(1, 2) or uniform(0.1, 0.2) * load_n."

@@ -31,7 +31,7 @@ def fault_entries(value: Any) -> Any:
     """Entries of ``faults`` with their defaults filled in; a list of entries is returned as it is.
 
     >>> fault_entries({"defaults": {"width_mm": 1, "depth_um": 50}, "entries": [{"kind": "inner", "width_mm": 2}, {"kind": "healthy"}]})
-    [{'depth_um': 50, 'kind': 'inner', 'width_mm': 2}, {'kind': 'healthy'}]
+    [{'width_mm': 2, 'depth_um': 50, 'kind': 'inner'}, {'kind': 'healthy'}]
     """
     if not isinstance(value, Mapping):
         return value

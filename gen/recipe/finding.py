@@ -4,7 +4,7 @@ import difflib
 from importlib.resources import files
 from pathlib import Path
 
-from gen.errors import RecipeError
+from gen.support.errors import RecipeError
 
 
 def shipped_recipes() -> dict[str, Path]:

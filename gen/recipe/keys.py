@@ -11,12 +11,12 @@ from typing import Annotated, Any, NamedTuple, get_args, get_origin
 from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 
-from gen.errors import RecipeError
 from gen.recipe.changes import Changes
 from gen.recipe.distributions import DISTRIBUTIONS, interval
 from gen.recipe.model import Recipe
 from gen.recipe.section import Section
-from gen.units import UNITS, unit_suffix
+from gen.support.errors import RecipeError
+from gen.support.units import UNITS, unit_suffix
 
 
 class Key(NamedTuple):

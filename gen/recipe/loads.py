@@ -7,7 +7,7 @@ from gen.physics.bearing import Bearing
 from gen.physics.rating import LEAST_SAFETY, equivalent_load, static_rating
 from gen.recipe.machine import CatalogueBearing, GeometryBearing, SpecimenSection
 from gen.recipe.operation import OperationSection, ProfileSection, Steps, Table
-from gen.units import percent_to_share, to_si
+from gen.support.units import percent_to_share, to_si
 
 
 def load_problem(

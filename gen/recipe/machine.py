@@ -12,7 +12,7 @@ from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.physics.extent import MAX_BALLS
 from gen.recipe.distributions import Distribution, Number, within
 from gen.recipe.section import Name, Section
-from gen.units import to_si
+from gen.support.units import to_si
 
 _KNOWN = tuple(
     name for name, bearing in CATALOGUE.items() if bearing.rolling_element == "ball" or bearing.roller_length

@@ -12,8 +12,6 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, StrictInt, StringConstraints, ValidationError, model_validator
 
 from gen.corpus import Codec
-from gen.errors import RecipeError
-from gen.limits import check_limit
 from gen.recipe.checks import recipe_problem
 from gen.recipe.distributions import Number
 from gen.recipe.fault_entries import FaultList, fault_entries
@@ -25,7 +23,9 @@ from gen.recipe.section import Count, Name, Section, plain
 from gen.recipe.sensing import BackgroundSection, PathSection, PhysicalLevel, RecordingSection, SnrLevel
 from gen.recipe.sensor_faults import SensorFaultsSection
 from gen.recipe.shares import changed_operation, with_products
-from gen.sentences import sentences
+from gen.support.errors import RecipeError
+from gen.support.limits import check_limit
+from gen.support.sentences import sentences
 
 _NO_KEYS: Mapping[str, Any] = MappingProxyType({})
 # memory of a record beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace

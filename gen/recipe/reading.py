@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from gen.errors import RecipeError
 from gen.recipe.finding import find_recipe
 from gen.recipe.model import Recipe
 from gen.recipe.section import plain
-from gen.yaml_files import read_yaml
+from gen.support.errors import RecipeError
+from gen.support.yaml_files import read_yaml
 
 
 def read_recipe(

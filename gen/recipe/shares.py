@@ -13,7 +13,7 @@ from gen.recipe.distributions import DISTRIBUTIONS, Support, interval, is_within
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.operation import OperationSection
 from gen.recipe.section import Section
-from gen.units import UNITS, unit_suffix
+from gen.support.units import UNITS, unit_suffix
 
 if TYPE_CHECKING:
     from gen.recipe.model import Recipe

@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 from gen.corpus import write_text_durably
-from gen.errors import RecipeError
 from gen.recipe.model import Recipe
 from gen.recipe.section import plain
+from gen.support.errors import RecipeError
 
 _LONGEST = 100  # characters of a list or mapping on one line
 _WORDS = ("null", "true", "false", "yes", "no", "on", "off", "y", "n")  # the last six are booleans in YAML 1.1

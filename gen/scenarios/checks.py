@@ -3,11 +3,11 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from gen.errors import RecipeError, SimulationError
-from gen.limits import check_limit
 from gen.physics.extent import MAX_BALLS
 from gen.scenarios.faults import check_fits
 from gen.scenarios.model import Scenario
+from gen.support.errors import RecipeError, SimulationError
+from gen.support.limits import check_limit
 
 
 def check_scenario(scenario: Scenario) -> None:

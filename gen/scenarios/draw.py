@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
-from gen.errors import RecipeError
 from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import (
     FREE_ANGLE,
@@ -46,7 +45,8 @@ from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
 from gen.scenarios.records import Source, draw_record, record_points, source_of
 from gen.scenarios.sensor_faults import draw_gear, draw_rig_sensor_faults
-from gen.units import decibel_to_ratio, percent_to_share
+from gen.support.errors import RecipeError
+from gen.support.units import decibel_to_ratio, percent_to_share
 
 STEEPEST_CONTACT = math.radians(45)
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.errors import RecipeError
 from gen.recipe import Recipe, Section, quantities
 from gen.recipe.distributions import Grid, interval, is_within
 from gen.scenarios.model import Drawn, Rig
-from gen.units import split_unit
+from gen.support.errors import RecipeError
+from gen.support.units import split_unit
 
 Derived = Callable[[Callable[[str], float]], float]
 """Value of a derived quantity, from a function that gives the values of the section by key [SI]."""

@@ -2,7 +2,6 @@
 
 from dataclasses import replace
 
-from gen.errors import RecipeError
 from gen.physics.bearing import Bearing, ball_spacing
 from gen.recipe import (
     BALL_SPACING,
@@ -16,7 +15,8 @@ from gen.recipe import (
 )
 from gen.scenarios.draws import Draws, Known
 from gen.scenarios.model import Spall, Specimen, Wear
-from gen.units import to_si
+from gen.support.errors import RecipeError
+from gen.support.units import to_si
 
 _WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # largest width of a spall over the radius of its surface
 

@@ -19,7 +19,7 @@ from gen.scenarios.operating import Common, Level, Operating, common_numbers, dr
 from gen.scenarios.points import points_of
 from gen.scenarios.sensor_faults import draw_record_sensor_faults
 from gen.scenarios.settings import settings_of
-from gen.units import percent_to_share
+from gen.support.units import percent_to_share
 
 
 class Source(NamedTuple):

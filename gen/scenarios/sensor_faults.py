@@ -11,7 +11,7 @@ import numpy as np
 from gen.recipe import Recipe, Section
 from gen.scenarios.draws import Draws
 from gen.scenarios.model import Drawn, Gear, Purpose, RecordSensorFaults, RigSensorFaults, stream
-from gen.units import decibel_to_ratio, to_si
+from gen.support.units import decibel_to_ratio, to_si
 
 
 def draw_rig_sensor_faults(recipe: Recipe, rig: int) -> RigSensorFaults | None:

@@ -4,9 +4,9 @@ import functools
 from collections.abc import Sequence
 from dataclasses import fields
 
-from gen.errors import SimulationError
 from gen.recipe import Recipe, corpus_identity
 from gen.scenarios.model import Scenario, Settings
+from gen.support.errors import SimulationError
 
 
 @functools.lru_cache(maxsize=16)

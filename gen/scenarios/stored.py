@@ -5,8 +5,8 @@ from collections.abc import Sequence
 
 from pydantic import TypeAdapter, ValidationError
 
-from gen.errors import CorpusError
 from gen.scenarios.model import Scenario
+from gen.support.errors import CorpusError
 
 _SCENARIO = TypeAdapter(Scenario)
 _LONGEST_PLACE = 100

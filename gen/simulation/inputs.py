@@ -8,7 +8,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from gen.errors import SimulationError
 from gen.physics.impact import hertz_time, rolling_mass
 from gen.physics.inputs import KernelInput, at_rest
 from gen.scenarios import Scenario
@@ -16,6 +15,7 @@ from gen.simulation.damage import spall_inputs, waviness_of
 from gen.simulation.machine import check_load, heaviest_ball_load, machine_of, with_axial_loads
 from gen.simulation.motion import Start, schedule_of, start_of, turning_of
 from gen.simulation.timeline import Timeline
+from gen.support.errors import SimulationError
 
 _FIRST_COORDINATE = {"shaft": 0, "housing": 2, "sensor": 4}
 

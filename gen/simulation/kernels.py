@@ -18,10 +18,10 @@ import numba
 import numpy as np
 from numba.core.caching import FunctionCache
 
-from gen.lazy import garbage_kept
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate_lanes
 from gen.physics.kernel.layout import Batch, Shape
+from gen.support.garbage import garbage_kept
 
 DIMENSIONS = {"schedule": 3, "tables": 2, "strikes": 3}
 """Dimensions of the arrays of a batch that have more than one."""

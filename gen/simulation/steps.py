@@ -5,11 +5,11 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from gen.errors import SimulationError
 from gen.physics.inputs import KernelInput
 from gen.physics.rotor import highest_angular_frequency, highest_damping_rate, likely_stiffness
 from gen.recipe import MAX_OVERSAMPLING
 from gen.scenarios import Settings
+from gen.support.errors import SimulationError
 
 FloatArray = NDArray[np.float64]
 

@@ -10,12 +10,11 @@ feature_tables a picture of one record, and features of all
 models         a model trained, and scored on another corpus
 references     healthy records that the tested ones are compared with
 diagnosing     a diagnosis of one recording
-benchmarking   scores of all baselines, and the speed of this machine
+benchmarking   scores of all baselines
 comparing      synthetic records against real ones
 publishing     the data card with terms of use, pictures and scores
-reproduce      the seed paper run again
-doctor         what this machine and installation can do
-gallery        a page of pictures of simulated signals
+reproduce      the seed paper run again, and a page of pictures of simulated signals
+doctor         what this machine and installation can do, and its speed
 ============== ================================================================
 
 Heavy libraries are imported inside the commands, so that help and version are printed at once. A command that takes a recipe looks for

@@ -26,8 +26,8 @@ from raceway.console.progress import compilation_noticed, notice, progress
 from raceway.console.signals import if_interrupted
 
 if TYPE_CHECKING:
-    from gen.generation import Generated
-    from gen.plan import Plan
+    from gen.generation.corpus import Generated
+    from gen.generation.plan import Plan
     from gen.recipe import Recipe
 
 WORTH_WORKERS = 1000  # records; starting a local cluster takes about as long as generating these
@@ -110,7 +110,7 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
     from gen.recipe import find_recipe
 
     find_recipe(recipe)
-    from gen.plan import plan as plan_recipe
+    from gen.generation.plan import plan as plan_recipe
 
     planned = plan_recipe(recipe, seed=seed, records=records)
     if as_json:
@@ -181,7 +181,7 @@ def generate(
     """
     from gen.corpus import complaint
     from gen.recipe import read_recipe
-    from gen.workers import share_one_heap
+    from gen.support.workers import share_one_heap
 
     share_one_heap()
     wanted = read_recipe(recipe, seed=seed, records=records)
@@ -232,7 +232,7 @@ def _coarse_steps(corpus: Path) -> str | None:
 def _kept(corpus: Path, recipe: "Recipe") -> str:
     """Remove the unfinished files of the workers, and return a sentence about the parts that are kept."""
     from gen.corpus import is_single_file, read_manifest, remove_left_behind
-    from gen.errors import RacewayError
+    from gen.support.errors import RacewayError
 
     corpus = corpus.with_name(f"{corpus.name}.parts") if is_single_file(corpus) else corpus
     remove_left_behind(corpus / "parts", "part-*.nc")
@@ -245,7 +245,7 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
 
 
 def _default_workers(recipe: "Recipe") -> int:
-    from gen.workers import MOST_THREADS
+    from gen.support.workers import MOST_THREADS
 
     if recipe.n_parts < 2 or recipe.n_records <= WORTH_WORKERS:
         return min(cores(), MOST_THREADS)

@@ -169,7 +169,7 @@ def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing", path: Path
     from features.diagnosis import Recorded
     from features.indicators import Orders
     from gen.physics.bearing import orders
-    from gen.units import rpm_to_hertz
+    from gen.support.units import rpm_to_hertz
 
     nominal = Orders(*(np.asarray(order) for order in orders(bearing)))
     return Recorded(values, fs, rpm_to_hertz(rpm), nominal, str(path))

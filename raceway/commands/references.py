@@ -76,7 +76,7 @@ def reference_table(
     """Feature table of a reference of the corpus whose own feature table is ``table``; the speed of a recording is believed."""
     from features.baselines.reference_choice import check_durations, recording_reference
     from gen.importers.signals import read_signal
-    from gen.units import rpm_to_hertz
+    from gen.support.units import rpm_to_hertz
 
     if path.is_file():
         signal = read_signal(path, variable=reference_variable, column=reference_column, rate=reference_rate)

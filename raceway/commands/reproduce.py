@@ -13,7 +13,13 @@ from raceway.console.progress import compilation_noticed
 
 @click.group()
 def reproduce() -> None:
-    """Run the seed paper again, or draw a gallery of signals."""
+    """Run the seed paper again, or draw a gallery of signals.
+
+    Both write pages and pictures into a folder; docs/errata.md and docs/model.md explain them.
+
+      raceway reproduce ophel2025 -o ophel
+      raceway reproduce gallery -o gallery
+    """
 
 
 @reproduce.command()

@@ -69,8 +69,8 @@ def _verdict(error: BaseException) -> tuple[int, str]:
 
 
 def _is_foreseen(error: BaseException) -> bool:
-    """Whether ``gen`` or ``features`` raised the error on purpose; their errors exist only if ``gen.errors`` is loaded."""
-    errors = sys.modules.get("gen.errors")
+    """Whether ``gen`` or ``features`` raised the error on purpose; their errors exist only if ``gen.support.errors`` is loaded."""
+    errors = sys.modules.get("gen.support.errors")
     return errors is not None and isinstance(error, errors.RacewayError)
 
 

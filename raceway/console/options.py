@@ -46,7 +46,7 @@ class Team(NamedTuple):
 
     def options(self, records: int = FEW_RECORDS) -> dict[str, Any]:
         """Arguments ``workers`` and ``scheduler`` of a function that works on parts of so many records in all."""
-        from gen.workers import MOST_THREADS  # not at the top: help needs nothing of gen
+        from gen.support.workers import MOST_THREADS  # not at the top: help needs nothing of gen
 
         usual = cores() if records > FEW_RECORDS else min(cores(), MOST_THREADS)
         return {"workers": self.workers or usual, "scheduler": self.scheduler}

@@ -41,8 +41,8 @@ from gen.corpus.card.additions import (
     read_additions,
     write_additions,
 )
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 DPI = 110
 COLOURS = 48  # of a picture: lines, text and shades look the same, and the file has half the size

@@ -199,7 +199,7 @@ def _readers() -> Iterator[Finding]:
 
 def _speed() -> Finding:
     """Speed of the kernel on quickstart, if its kernels are compiled, against the published figure."""
-    from gen.compilation import needed_shapes
+    from gen.generation.compilation import needed_shapes
     from gen.recipe import read_recipe
     from gen.simulation.kernels import is_compiled
 

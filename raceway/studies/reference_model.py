@@ -17,7 +17,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from raceway.console.options import USUAL, Team, cores
 from raceway.console.progress import compilation_noticed, notice, progress
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from features.report.pictures import picture
 from gen.corpus import make_result_folder, write_durably, write_numbers
-from gen.errors import SimulationError
+from gen.support.errors import SimulationError
 from raceway.console.show import plain
 from raceway.studies.experiments import experiment, worded
 from raceway.studies.measures import (

@@ -18,8 +18,7 @@ from typing import Any
 
 from features.table import block_features
 from gen.corpus import RecordBlock, write_part
-from gen.errors import SimulationError
-from gen.labels import part_dataset
+from gen.generation.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.physics.kernel.layout import Batch
 from gen.recipe import Recipe, read_recipe
@@ -27,6 +26,7 @@ from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.batches import Group, integrate_batch
 from gen.simulation.simulate import Response, integrations, laid_out, simulate
 from gen.simulation.timeline import timeline
+from gen.support.errors import SimulationError
 
 STAGES = ("draw", "lay_out", "integrate", "measure", "write", "features")
 REPEATS = 5

@@ -26,7 +26,7 @@ from benchmarks.__main__ import table
 from benchmarks.pairs import Row, Skipped, row
 from benchmarks.pipeline import variant
 from benchmarks.profile import PARTS, REST, kernel_parts
-from gen.generation import generate
+from gen.generation.corpus import generate
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
 from gen.recipe import read_recipe

@@ -9,7 +9,7 @@ from features.band import DEFAULT_BAND, ENERGY_EDGES, Band, checked_band
 from features.baselines import evaluate, load_model, save_model, train
 from features.baselines.predictions import predict
 from features.indicators import Orders, feature_names, indicators
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.tone_corpora import write_corpus
 
 FS, RATE, HIGH_BAND = 25_600.0, 25.0, Band(300.0, 9000.0)

@@ -29,7 +29,7 @@ from gen.corpus import (
     record_blocks,
     write_part,
 )
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 FS, SAMPLES, RECORDS, PARTS = 12_000.0, 3000, 5, 3
 SNR = Variable("snr", "f8", "1", "latent", "ratio of signal to background in decibels")

@@ -16,7 +16,7 @@ from features import open_waveforms
 from features.baselines import controls, cross_validate
 from features.waveforms import _samples_in_turns
 from gen.corpus import UNKNOWN_CODE
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.tone_corpora import FS, TONES, write_corpus
 
 

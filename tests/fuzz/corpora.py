@@ -17,7 +17,7 @@ import numpy as np
 
 from features.table import feature_table
 from gen.corpus import SIGNAL, data_card, open_corpus, validate_corpus
-from gen.errors import RacewayError
+from gen.support.errors import RacewayError
 from raceway.console.summary import describe
 from tests.corpora import write_corpus
 

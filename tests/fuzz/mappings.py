@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 from pydantic import ValidationError
 
-from gen.errors import RacewayError
 from gen.importers.mapping import read_mapping
 from gen.importers.mapping_values import bearing_of
 from gen.importers.paths import match_path
 from gen.physics.bearing import orders
+from gen.support.errors import RacewayError
 from tests.fuzz import recipes
 
 SEEDS = {

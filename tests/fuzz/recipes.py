@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from gen.errors import RacewayError
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios
+from gen.support.errors import RacewayError
 
 RECORDS = 3  # drawn of a recipe that is valid
 
@@ -20,7 +20,8 @@ name: small
 title: A small corpus
 seed: 3
 corpus:
-  {rigs: 3, specimens_per_rig: 4, records_per_specimen: 2, records_per_part: 8, rungs: [0, 0.5, 1], split: {by: specimen, test: 0.25}}
+  {rigs: 3, specimens_per_rig: 4, records_per_specimen: 2, rungs: [0, 0.5, 1], split: {by: specimen, test: 0.25}}
+storage: {records_per_part: 8}
 recording:
   sample_rate_hz: 12000
   duration_s: 0.1
@@ -53,15 +54,13 @@ SCALARS = (
 )  # fmt: skip
 FORMS = (
     "0", "1", "{i}", "{more}", "{half}", "{twice}", "-{i}", "{n}e-3", "{n}e3", "1e-300", "1e300",
-    "{{kind: uniform, low: {half}, high: {n}}}",
-    "{{kind: uniform, low: {n}, high: {n}}}", "{{kind: loguniform, low: 1e-300, high: {n}}}", "{{kind: grid, values: [{n}, {half}]}}",
-    "{{kind: normal, mean: {n}, sd: 1e-300, low: {half}, high: {twice}}}", "{{kind: normal, mean: 1e300, sd: 1e300, low: {n}, high: {n}}}",
-    "{{kind: normal, mean: 0, sd: 1, low: {half}, high: {twice}}}", "{{kind: choice, values: [{n}, {half}], weights: [1e308, 1e308]}}",
-    "{{kind: choice, values: [{n}, {n}], weights: [5e-324, 0]}}",
-    "{{kind: constant, value: {n}, share_of: load_n}}", "{{kind: uniform, low: {half}, high: {n}, per: rig, scatter_percent: 9}}",
-    "{{kind: constant, value: {n}}}",
+    "'uniform({half}, {n})'", "'uniform({n}, {n})'", "'loguniform(1e-300, {n})'", "'grid({n}, {half})'",
+    "'normal({n}, 1e-300, low={half}, high={twice})'", "'normal(1e300, 1e300, low={n}, high={n})'",
+    "'normal(0, 1, low={half}, high={twice})'", "'choice({n}, {half}, weights=(1e308, 1e308))'",
+    "'choice({n}, {n}, weights=(5e-324, 0))'", "'{n} * load_n'", "'uniform({half}, {n}, per=rig, scatter_percent=9)'", "'constant({n})'",
+    "'uniform({n}'", "'uniform(({n},), [{half}])'", "'(lambda: {n})()'", "'uniform({n}, {n}) * load_n * load_n'",
 )  # fmt: skip
-NUMBER = re.compile(rb"(?<=[ \[])-?[0-9.]+(?=[,}\]\n])")
+NUMBER = re.compile(rb"(?<=[ \[(])-?[0-9.]+(?=[,}\])\n])")
 WORD = re.compile(rb"[A-Za-z0-9_.\"'+-]+")
 VALUE = re.compile(rb"(?<=: )[^,\]\[{}\n]+")
 

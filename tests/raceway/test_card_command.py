@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from gen.corpus import card_folder, locked, open_corpus, read_manifest, sha256, validate_corpus
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from raceway.commands.publishing import card
 from raceway.studies import card_pictures
 from tests.kills import killed

@@ -13,8 +13,8 @@ import pytest
 from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.table_files import read_table
 from gen.corpus import FAULTS, SIGNAL, open_corpus
-from gen.limits import VARIABLE
 from gen.simulation.simulate import response_of
+from gen.support.limits import VARIABLE
 from raceway.cli import GROUPS, cli
 from raceway.commands import models
 
@@ -131,7 +131,7 @@ def test_a_plan_counts_what_generate_makes(run, told, tiny_recipe, tiny_corpus):
 
 
 def test_a_plan_without_a_measured_time_names_the_command_that_measures_it(run, tiny_recipe, monkeypatch):
-    monkeypatch.setattr("gen.plan.measured_pace", lambda *_: None)
+    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: None)
     shown = run("plan", tiny_recipe).stdout
     assert f"not known yet; raceway doctor --speed {tiny_recipe} compiles the kernels and measures the speed" in shown
 
@@ -188,7 +188,7 @@ def test_a_record_that_diverges_is_named_and_left_out(run, told, tiny_recipe, tm
         failures = {place: f"record {number} diverged." for place, number in enumerate(numbers) if number % 12 == 0}
         return replace(response_of(runs), failures=failures)
 
-    monkeypatch.setattr("gen.families.response_of", first_diverges)
+    monkeypatch.setattr("gen.generation.undetected.response_of", first_diverges)
     result = run("generate", tiny_recipe, "-o", tmp_path / "corpus", "--records", 24)
     assert result.exit_code == 0
     assert "left out: record 0 diverged.\nleft out: record 12 diverged.\n" in result.stderr

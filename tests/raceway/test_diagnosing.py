@@ -21,17 +21,18 @@ RECIPE = """\
 name: recordings
 title: Recordings
 seed: {seed}
-corpus: {{rigs: {rigs}, specimens_per_rig: 4, records_per_specimen: {records}, records_per_part: 48}}
+corpus: {{rigs: {rigs}, specimens_per_rig: 4, records_per_specimen: {records}}}
+storage: {{records_per_part: 48}}
 recording: {{sample_rate_hz: 12000, duration_s: {duration}, settle_s: 0.05, converter: {{kind: float32}}}}
 bearing: {{kind: catalogue, designations: ["6205"]}}
 specimen: {{waviness_nm: 20}}
-operation: {{shaft_rpm: {'uniform(1700, 1800)'}}}
-background: {{slope: {'uniform(0, 1)'}}}
+operation: {{shaft_rpm: 'uniform(1700, 1800)'}}
+background: {{slope: 'uniform(0, 1)'}}
 faults:
   - {{kind: healthy}}
-  - {{kind: inner, width_mm: {'uniform(0.5, 1)'}}}
-  - {{kind: outer, width_mm: {'uniform(0.5, 1)'}}}
-  - {{kind: ball, width_mm: {'uniform(0.5, 1)'}}}
+  - {{kind: inner, width_mm: 'uniform(0.5, 1)'}}
+  - {{kind: outer, width_mm: 'uniform(0.5, 1)'}}
+  - {{kind: ball, width_mm: 'uniform(0.5, 1)'}}
 """
 LINE_ORDERS = {"inner": 5.4152, "outer": 3.5848, "ball": 4.7135}
 

@@ -134,7 +134,7 @@ TABLE = [
     ("plan {straight}", "operation.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."),
     ("generate {straight} -o {begun}", "operation.axial_load_n: needs a contact angle; "),
     ("plan {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
-    ("bench {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
+    ("doctor --speed {coming_loose}", "record 0: an axial load of 10 N is too small to hold its rings together; give at least 66.12 N."),
     ("generate {wide} -o {begun}", "a spall of 6 mm does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     # corpora
     ("info {nowhere}", "nowhere: no such folder or file; give a corpus: a folder with manifest.json, or one .nc file."),

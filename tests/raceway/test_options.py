@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import pytest
 
 from features.band import DEFAULT_BAND
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from raceway.console.options import cores
 
 
@@ -77,7 +77,7 @@ def test_import_passes_on_the_subset(run, given, tmp_path):
 
 
 def test_generate_passes_on_scheduler_workers_seed_and_size(run, given, tiny_recipe, tmp_path):
-    options = given("gen.generation.generate")
+    options = given("gen.generate")
     run("generate", tiny_recipe, "-o", tmp_path / "new", "--workers", 3, "--scheduler", "tcp://a:1", "--seed", 5)
     assert (options["workers"], options["scheduler"], options["seed"], options["records"]) == (3, "tcp://a:1", 5, None)
 
@@ -93,7 +93,7 @@ def test_large_corpora_get_a_worker_per_core_and_small_ones_at_most_the_threads_
     text = tiny_recipe.read_text().replace("rigs: 2", f"rigs: {records // 24 + 1}")
     recipe = tmp_path / "large.yaml"
     recipe.write_text(text.replace("records_per_part: 12", f"records_per_part: {per_part}"))
-    options = given("gen.generation.generate")
+    options = given("gen.generate")
     run("generate", recipe, "-o", tmp_path / "new", "--records", records)
     assert options["workers"] == workers
 

@@ -16,7 +16,7 @@ from features.table import feature_table
 from features.table_files import write_table
 from gen import copy, generate, write_corpus
 from gen.corpus import corpus_files, read_manifest
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from raceway.cli import cli
 
 # every command with -o by the line that comes before it, and the name of its result; a folder has no suffix
@@ -29,7 +29,7 @@ RESULTS = {
     "replay {corpus} --record 1": "record.nc",
     "benchmark {corpus}": "report",
     "compare {corpus} {corpus}": "report",
-    "gallery": "report",
+    "reproduce gallery": "report",
     "reproduce ophel2025": "report",
     "generate {recipe}": "new",
     "import generic {raw}": "new",

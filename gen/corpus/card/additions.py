@@ -12,8 +12,8 @@ from pydantic import ValidationError
 from gen.corpus.card.markdown import plain_text, table
 from gen.corpus.files import plain_file, write_text_durably
 from gen.corpus.manifest import Manifest, Strict, first_problem
-from gen.errors import CorpusError
-from gen.limits import check_limit
+from gen.support.errors import CorpusError
+from gen.support.limits import check_limit
 
 CARD_NAME = "card.json"
 PICTURES = "pictures"

@@ -12,7 +12,7 @@ from gen.corpus.files import write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, corpus_files, read_manifest, recipe_text
 from gen.corpus.outputs import corpus_around
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 
 def card_folder(path: Path) -> Path:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from gen.corpus.card.markdown import plain_text, table
 from gen.corpus.schema import DRAWS, FAULT_NAMES, SIGNAL
-from gen.units import unit_suffix
+from gen.support.units import unit_suffix
 
 FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.intp]

@@ -27,7 +27,7 @@ from features.baselines.splits import control_cases, grouped_case, permuted_labe
 from features.baselines.tracks import check_disjoint, check_taught, grouped_splits
 from features.faults import CLASSES, COMBS, EVIDENCE
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 NAMES = (*EVIDENCE, *(f"whitened_line_{n}" for n in range(3)), "raw_kurtosis", "raw_crest_factor")
 GROUPS = ("lines",) * 8 + ("shape",) * 2

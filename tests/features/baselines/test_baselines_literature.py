@@ -13,8 +13,8 @@ from features.faults import COMBS
 from features.indicators import Orders, feature_names, indicators
 from features.table import feature_table
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
 from gen.importers import import_cwru, import_mfpt
+from gen.support.errors import CorpusError
 from tests.paths import REAL
 
 

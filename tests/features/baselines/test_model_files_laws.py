@@ -13,7 +13,7 @@ from sklearn.base import BaseEstimator
 
 from features.baselines import ESTIMATORS, estimators, load_model, predict, save_model, train
 from features.baselines.model_file import TRUSTED
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.model_files import Archive, make_table, write_models
 from tests.paths import ROOT
 

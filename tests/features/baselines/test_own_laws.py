@@ -12,7 +12,7 @@ from features.baselines import EstimatorError, benchmark, cross_validate, evalua
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import OwnClassifier
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table, records_of
 
 CODES = np.array([0, 1, 2, 4] * 3)

@@ -16,8 +16,8 @@ from features.indicators import Orders
 from features.recording_speeds import recording_numbers
 from features.recording_table import recording_table
 from gen.corpus import UNKNOWN_CODE
-from gen.errors import CorpusError
 from gen.importers import import_generic
+from gen.support.errors import CorpusError
 from raceway.cli import cli
 
 LINES = (*EVIDENCE, "raw_kurtosis")

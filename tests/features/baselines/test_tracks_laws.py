@@ -12,7 +12,7 @@ from features.baselines.records import SHAPES, records_of
 from features.baselines.splits import control_cases, grouped_case, permuted_labels
 from features.baselines.tracks import held_out_groups, ranges, track_splits
 from gen.corpus import FAULTS
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import few_trees as few_trees
 from tests.features.baselines.test_baselines_laws import make_table
 

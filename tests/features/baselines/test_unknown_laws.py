@@ -24,8 +24,8 @@ from features.realism.windows import common_ground, measured_windows
 from features.report.examples import draw_examples
 from features.report.page import write_report
 from gen.corpus import FAULT_NAMES, UNKNOWN_CODE, open_corpus, validate_corpus
-from gen.errors import CorpusError
 from gen.importers import import_generic
+from gen.support.errors import CorpusError
 from raceway.cli import cli
 from raceway.commands import models
 from raceway.console.summary import describe

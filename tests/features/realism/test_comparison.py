@@ -7,7 +7,7 @@ from features.realism import compare
 from features.realism import windows as windows_module
 from features.realism.measures import NAMES
 from features.realism.windows import common_ground, measured_windows
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.pulses import write_pulses
 
 

@@ -27,7 +27,7 @@ from features.report.pictures import (
 )
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 FS = 10_000.0
 ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}

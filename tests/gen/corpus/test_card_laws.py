@@ -18,8 +18,8 @@ from gen.corpus.card.origin import rebuilding
 from gen.corpus.card.ranges import FEWEST, Groups, quantity_ranges, some_records, variable_ranges
 from gen.corpus.card.terms import citation
 from gen.corpus.manifest import Manifest, Overrides
-from gen.errors import CorpusError
-from gen.units import UNITS
+from gen.support.errors import CorpusError
+from gen.support.units import UNITS
 from tests.tone_corpora import write_corpus
 
 

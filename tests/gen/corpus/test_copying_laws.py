@@ -9,7 +9,7 @@ import gen
 from gen import copy, generate, open_corpus, validate_corpus
 from gen.corpus import SIGNAL, Publication, open_part, publish, read_manifest
 from gen.corpus.layout import stored_signal
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests import corpora
 from tests.kills import killed
 

@@ -22,7 +22,7 @@ from gen.corpus import (
     write_manifest,
     write_part,
 )
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_corpus, write_parts
 from tests.disks import full_disk
 from tests.tampering import edit_manifest, edited, seal

@@ -28,7 +28,7 @@ from gen.corpus import (
     write_part,
 )
 from gen.corpus.part import deflated
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.corpora import EXTRA, FS, SIZES, columns, dataset, physical, write_corpus, write_parts
 
 law = settings(deadline=None, max_examples=10)

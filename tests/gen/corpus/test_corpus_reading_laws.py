@@ -27,7 +27,7 @@ from gen.corpus import (
     stored_columns,
     validate_corpus,
 )
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.corpora import physical, write_corpus
 
 MANY = (1,) * 90

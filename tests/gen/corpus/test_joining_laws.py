@@ -9,7 +9,7 @@ import gen
 from gen import copy, generate, open_corpus, validate_corpus
 from gen.corpus import SCHEMA, SIGNAL, Publication, identity, make_dataset, new_corpus, publish, read_manifest
 from gen.corpus.joining import NUMBERS, new_numbers
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests import corpora, tone_corpora
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from gen.corpus import new_corpus, remove_left_behind_of, temporary_beside
 from gen.corpus.files import _HOST
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 
 
 @pytest.fixture

@@ -17,8 +17,8 @@ from gen.corpus import (
     write_part,
 )
 from gen.corpus.schema import signal_attributes
-from gen.errors import CorpusError
 from gen.recipe.sensing import Converter
+from gen.support.errors import CorpusError
 from tests.corpora import dataset, write_corpus, write_parts
 
 law = settings(deadline=None, max_examples=100)

@@ -21,7 +21,7 @@ from gen.corpus import (
     validate_corpus,
     write_croissant,
 )
-from gen.generation import generate
+from gen.generation.corpus import generate
 from gen.importers import import_generic
 
 FACTS = {

@@ -21,8 +21,8 @@ from gen.corpus import (
 )
 from gen.corpus.manifest import facts_of_parts
 from gen.corpus.publication import checked_doi, checked_orcid
-from gen.errors import CorpusError, RecipeError
 from gen.recipe import read_recipe, recipe_hash
+from gen.support.errors import CorpusError, RecipeError
 from tests import corpora, kills
 from tests.paths import ROOT
 

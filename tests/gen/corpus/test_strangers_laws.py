@@ -12,7 +12,7 @@ from features.table import feature_table
 from gen.corpus import SIGNAL, open_corpus, part_name, read_manifest, validate_corpus
 from gen.corpus.card.additions import CardAdditions, CardPicture, write_additions
 from gen.corpus.part import deflated
-from gen.errors import CorpusError, RacewayError
+from gen.support.errors import CorpusError, RacewayError
 from tests.corpora import write_corpus
 from tests.tampering import edit_manifest, edited, seal
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from gen import open_corpus
 from gen.corpus.choice import chosen_channels, chosen_records
 from gen.corpus.where import DEEPEST, MOST_CHARACTERS, Column, records_where
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests import corpora
 
 RATE = np.array([10.0, 20.0, 30.0, np.nan, -5.0])

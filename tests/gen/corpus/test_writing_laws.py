@@ -6,7 +6,7 @@ import os
 import pytest
 
 from gen.corpus import whole_folder_or_none, whole_or_not_at_all, writing
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.disks import full_disk
 
 

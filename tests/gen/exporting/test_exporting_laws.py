@@ -19,10 +19,10 @@ from scipy.io import wavfile
 
 import gen
 from gen.corpus import SIGNAL, Publication, copying, new_corpus, open_corpus, publish, stored_signal
-from gen.errors import CorpusError
 from gen.exporting import FORMS, matlab_files, parquet_files
 from gen.exporting.columns import plain_names
 from gen.exporting.tables import cell_text
+from gen.support.errors import CorpusError
 from tests.corpora import COUNTS_PER_UNIT, FS, dataset, write_corpus, write_parts
 from tests.kills import killed
 

@@ -10,7 +10,7 @@ import pytest
 
 import gen
 from gen.corpus import SIGNAL, SPLITS, open_corpus, part_name
-from gen.errors import CorpusError
+from gen.support.errors import CorpusError
 from tests.corpora import write_corpus
 
 HAS_TORCH = importlib.util.find_spec("torch") is not None

@@ -10,9 +10,9 @@ import scipy.io
 import scipy.signal
 
 from gen.corpus import FAULTS, open_corpus, validate_corpus
-from gen.errors import CorpusError
 from gen.importers import import_cwru
 from gen.importers.cwru import SPECIMENS
+from gen.support.errors import CorpusError
 
 G = 9.80665
 

@@ -3,8 +3,8 @@
 import pytest
 
 from gen.corpus import FAULTS, UNKNOWN
-from gen.errors import CorpusError
 from gen.importers.mapping import read_mapping
+from gen.support.errors import CorpusError
 
 TOP = "bearing: '6205'\nunit: g\nsample_rate_hz: 12000\nshaft_rpm: 1800\nspecimen: a\nfiles:\n"
 

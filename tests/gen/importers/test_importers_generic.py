@@ -9,13 +9,13 @@ import pytest
 import scipy.io
 
 from gen.corpus import FAULTS, open_corpus, validate_corpus
-from gen.errors import CorpusError
 from gen.importers import import_generic
 from gen.importers.mapping import read_mapping
 from gen.importers.mapping_keys import FileKeys
 from gen.importers.mapping_values import Geometry, bearing_of
 from gen.recipe.keys import recipe_keys
-from gen.units import unit_suffix
+from gen.support.errors import CorpusError
+from gen.support.units import unit_suffix
 from tests.paths import ROOT
 
 SIGNAL = np.random.default_rng(1).normal(size=2100)

@@ -12,11 +12,11 @@ import pytest
 import scipy.io
 
 from gen.corpus import validate_corpus
-from gen.errors import CorpusError
 from gen.importers import import_cwru, import_generic
 from gen.importers.files import UnusableError, one_column, read_numpy, read_text
 from gen.importers.matlab import read_matlab
-from gen.limits import VARIABLE
+from gen.support.errors import CorpusError
+from gen.support.limits import VARIABLE
 
 SIGNAL = np.random.default_rng(1).normal(size=(1, 3000))
 

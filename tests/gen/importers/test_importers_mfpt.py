@@ -6,8 +6,8 @@ import scipy.io
 import scipy.signal
 
 from gen.corpus import FAULTS, open_corpus, validate_corpus
-from gen.errors import CorpusError
 from gen.importers import import_mfpt
+from gen.support.errors import CorpusError
 
 FS = 48_828
 

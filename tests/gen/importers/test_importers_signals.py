@@ -9,8 +9,8 @@ import pytest
 import scipy.io
 from scipy.io import wavfile
 
-from gen.errors import CorpusError
 from gen.importers import read_signal
+from gen.support.errors import CorpusError
 
 X = np.random.default_rng(3).uniform(-0.9, 0.9, 600)
 GRAVITY = 9.80665

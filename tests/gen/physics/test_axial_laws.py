@@ -9,14 +9,14 @@ from hypothesis import strategies as st
 from scipy.optimize import root
 
 from gen.corpus import open_corpus
-from gen.errors import RecipeError
-from gen.generation import generate
+from gen.generation.corpus import generate
+from gen.generation.plan import plan
 from gen.physics.axial import HALF_LOADED, axial_approach, check_axial_load
 from gen.physics.hertz import LINE_EXPONENT
 from gen.physics.rotor import as_columns, ball_angles
-from gen.plan import plan
 from gen.scenarios import draw_scenarios
 from gen.simulation.simulate import simulate
+from gen.support.errors import RecipeError
 from tests.strategies import RIG
 
 law = settings(deadline=None, max_examples=40)

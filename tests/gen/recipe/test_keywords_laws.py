@@ -8,9 +8,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import gen
-from gen.errors import RecipeError
 from gen.recipe import Recipe, plain, read_recipe, recipe_hash, recipe_text, shipped_recipes
 from gen.recipe.keywords import _places
+from gen.support.errors import RecipeError
 
 OUTER = gen.outer(width_mm=0.5)
 law = settings(deadline=None, max_examples=40)

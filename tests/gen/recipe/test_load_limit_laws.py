@@ -2,15 +2,15 @@
 
 import pytest
 
-from gen.errors import RecipeError, SimulationError
-from gen.generation import generate
+from gen.generation.corpus import generate
+from gen.generation.plan import plan
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import LEAST_SAFETY, computed_rating, static_rating
-from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
+from gen.support.errors import RecipeError, SimulationError
 
 LIMIT = CATALOGUE["6205"].static_rating / LEAST_SAFETY
 OWN = {"n_balls": 9, "pitch_diameter_mm": 39.04, "ball_diameter_mm": 7.94}

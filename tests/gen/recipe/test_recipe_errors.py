@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
-from gen.errors import RacewayError, RecipeError
-from gen.plan import plan
+from gen.generation.plan import plan
 from gen.recipe import read_recipe
+from gen.support.errors import RacewayError, RecipeError
 
 WHOLE = """\
 name: whole

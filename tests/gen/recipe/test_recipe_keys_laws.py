@@ -5,13 +5,13 @@ import re
 
 import pytest
 
-from gen.errors import RecipeError
 from gen.recipe import find_recipe, shipped_recipes
 from gen.recipe.distributions import DISTRIBUTIONS
 from gen.recipe.keys import recipe_keys
 from gen.recipe.reading import recipe_schema
-from gen.units import UNITS
-from gen.yaml_files import read_yaml
+from gen.support.errors import RecipeError
+from gen.support.units import UNITS
+from gen.support.yaml_files import read_yaml
 
 KEYS = recipe_keys()
 SAY_NOTHING = {"a", "an", "the", "of", "in", "and", "or", "per", "to", "is", "for", "value", "number"}

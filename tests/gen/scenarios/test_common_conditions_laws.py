@@ -8,7 +8,7 @@ import pytest
 from gen import uniform
 from gen.recipe import Recipe, recipe_hash
 from gen.scenarios import draw_scenarios
-from gen.units import split_unit
+from gen.support.units import split_unit
 from tests.gen.conftest import small_with
 
 SAMPLINGS = ("random", "sobol", "halton")

@@ -10,10 +10,10 @@ import xarray as xr
 import gen
 from features.baselines.splits import grouped_splits
 from gen.corpus import FAULTS, open_corpus
-from gen.generation import generate
+from gen.generation.corpus import generate
+from gen.generation.plan import plan
+from gen.generation.replaying import replay, stored_scenario
 from gen.measurement.measure import measure
-from gen.plan import plan
-from gen.replaying import replay, stored_scenario
 from gen.scenarios import draw_scenarios, read_scenario, scenario_texts, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate

@@ -10,11 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import gen
-from gen.errors import RecipeError
 from gen.recipe import Recipe
 from gen.scenarios import Purpose, draw_scenarios, scenario_texts, settings_of, stream
 from gen.simulation.inputs import kernel_input
 from gen.simulation.timeline import timeline
+from gen.support.errors import RecipeError
 from tests.gen.conftest import small_with
 
 SAMPLINGS = ("random", "sobol", "halton")

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from gen.errors import RecipeError
 from gen.scenarios import draw_scenarios
+from gen.support.errors import RecipeError
 from tests.sensor_faults import GEAR_MESH, SENSOR_FAULTS, rarely
 
 OF_RECORDS = ("drift", "dropped_samples", "gain_steps", "emi_bursts")

@@ -8,7 +8,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen import uniform
-from gen.errors import RecipeError
 from gen.physics.bearing import ball_spacing
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.rating import static_rating
@@ -18,7 +17,8 @@ from gen.recipe.operation import OperationSection
 from gen.recipe.shares import quantities
 from gen.scenarios import draw_scenarios
 from gen.simulation.machine import machine_of
-from gen.units import split_unit
+from gen.support.errors import RecipeError
+from gen.support.units import split_unit
 
 law = settings(deadline=None, max_examples=25)
 SAMPLINGS = ("random", "sobol", "halton")

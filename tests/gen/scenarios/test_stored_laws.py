@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from gen.errors import CorpusError
 from gen.recipe import Recipe, read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios, read_scenario, scenario_texts
 from gen.simulation.simulate import simulate
+from gen.support.errors import CorpusError
 from tests.gen.conftest import small_with
 from tests.paths import ROOT
 from tests.recipes import EVERYTHING

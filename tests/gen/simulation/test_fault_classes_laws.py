@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from gen.corpus import FAULTS, SIGNAL, open_corpus, read_manifest, validate_corpus
-from gen.generation import generate
+from gen.generation.corpus import generate
+from gen.generation.replaying import replay
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.layout import make_shape
 from gen.recipe import read_recipe
-from gen.replaying import replay
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, read_scenario, settings_of
 from gen.simulation.damage import largest_drop_over
 from gen.simulation.inputs import kernel_input

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.labels import part_dataset
+from gen.generation.labels import part_dataset
 from gen.measurement.measure import measure
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import LINE_EXPONENT, POINT_EXPONENT, load_deflection_factor

@@ -5,9 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from gen.errors import SimulationError
+from gen.generation.plan import plan
 from gen.physics.kernel.batch import input_shape
-from gen.plan import plan
 from gen.recipe import read_recipe, shipped_recipes
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
@@ -15,6 +14,7 @@ from gen.simulation.motion import schedule_of
 from gen.simulation.outline import outlined_input
 from gen.simulation.steps import steps_per_sample
 from gen.simulation.timeline import timeline
+from gen.support.errors import SimulationError
 from tests.recipes import EVERYTHING
 
 percents = st.floats(10, 1000)
@@ -128,7 +128,7 @@ def test_a_plan_builds_no_whole_record_outside_its_timed_sample(write_recipe, tm
     def refused(*_args):
         raise AssertionError
 
-    monkeypatch.setattr("gen.plan.measured_pace", lambda *_: None)
+    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: None)
     for name in ("spall_inputs", "waviness_of", "schedule_of"):
         monkeypatch.setattr(f"gen.simulation.inputs.{name}", refused)
     assert plan(write_recipe(tmp_path / "r.yaml", EVERYTHING)).steps_per_sample.keys()

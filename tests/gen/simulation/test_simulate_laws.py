@@ -5,13 +5,13 @@ import math
 import numpy as np
 import pytest
 
-from gen.errors import SimulationError
 from gen.physics.rotor import highest_angular_frequency, likely_stiffness
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
 from gen.simulation.steps import FINE_STEP, steps_per_sample
 from gen.simulation.timeline import timeline
+from gen.support.errors import SimulationError
 from tests.lanes import march_lanes
 from tests.reference import decimation_taps, slow_motion, waviness
 from tests.responses import truth

@@ -5,10 +5,9 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from gen.checking import CHECKED_PARTS, checked_places, step_changes, step_checks
 from gen.corpus import FAULTS, open_corpus, read_manifest, validate_corpus
-from gen.errors import RecipeError, SimulationError
-from gen.generation import generate
+from gen.generation.corpus import generate
+from gen.generation.step_checks import CHECKED_PARTS, checked_places, step_changes, step_checks
 from gen.physics.kernel.compiling import LANES
 from gen.physics.rotor import highest_angular_frequency
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens, settings_of
@@ -17,6 +16,7 @@ from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
 from gen.simulation.steps import COARSEST_STEP, FINE_STEP
 from gen.simulation.timeline import timeline
+from gen.support.errors import RecipeError, SimulationError
 from tests.lanes import march_lanes
 from tests.reference import contact_stiffness, contacts, slow_motion
 

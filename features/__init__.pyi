@@ -1,0 +1,5 @@
+from .auditing import audit_splits as audit_splits
+from .baselines import evaluate as evaluate
+from .speed import shaft_speed as shaft_speed
+from .table import feature_table as feature_table
+from .waveforms import open_waveforms as open_waveforms

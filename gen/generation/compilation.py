@@ -1,0 +1,118 @@
+"""Kernels of a recipe compiled before its first record, several at once where cores are free.
+
+A kernel takes about 10 s to compile, once per machine. Numba compiles one at a time in a process, so several take as many processes. A
+kernel that no record of the sample needs is compiled when the first record needs it.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from gen.measurement.measure import compile_mixing
+from gen.measurement.sensor_faults import compile_rattle
+from gen.physics.kernel.batch import input_shape
+from gen.physics.kernel.layout import Shape
+from gen.recipe import Recipe
+from gen.scenarios import Scenario, draw_scenarios, settings_of
+from gen.simulation.kernels import is_compiled, load_kernel
+from gen.simulation.outline import outlined_inputs
+from gen.simulation.timeline import timeline
+from gen.support.garbage import garbage_kept
+
+SAMPLE = 48
+"""Number of records from the first on, and of others spread over the corpus, whose kernels are compiled."""
+MOST_AT_ONCE = 8  # processes; each takes 0.4 GB
+POLL_S = 0.02
+
+# the thread ends this process with the one that started it, even if that was killed: then its end of the pipe closes
+_COMPILE_ONE = """
+import json, os, sys, threading
+threading.Thread(target=lambda: os._exit(bool(os.read(0, 1)) + 1), daemon=True).start()
+from gen.physics.kernel.layout import Shape
+from gen.simulation.kernels import load_kernel
+load_kernel(Shape(*((None,) * count for count in json.loads(sys.argv[1]))))
+"""
+
+
+def compile_kernels(recipe: Recipe, report: Callable[[str], None] = lambda _: None) -> None:
+    """Compile the kernels of a recipe into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
+    with garbage_kept():
+        compile_mixing(draw_scenarios(recipe, 0, 1)[0])
+        if recipe.sensor_faults.loose_mount is not None:
+            compile_rattle()
+        missing = [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
+    cores = min(len(os.sched_getaffinity(0)), MOST_AT_ONCE)
+    sentences = (
+        f"compiling kernel {number} of {len(missing)} ({described(shape)}) for this machine"
+        for number, shape in enumerate(missing, 1)
+    )
+    if len(missing) > 1 and cores > 1:
+        _compile_in_processes(missing, cores, lambda: report(next(sentences)))
+        return
+    for shape in missing:
+        report(next(sentences))
+        load_kernel(shape)
+
+
+def needed_shapes(recipe: Recipe) -> list[Shape]:
+    """Shapes of the kernels that the records of a sample need, in the order of the records."""
+    chosen: dict[Any, Scenario] = {}
+    for scenario in _sample(recipe):
+        # records of one specimen whose conditions are zero or not zero alike have the same kernel
+        record = scenario.record
+        conditions = tuple(name for name, value in record.conditions.items() if value)
+        profiles = (record.speed_profile is None, record.load_profile is None)
+        chosen.setdefault((scenario.specimen.number, scenario.specimen.fault, conditions, profiles), scenario)
+    scenarios = list(chosen.values())
+    if recipe.truth.twins:
+        scenarios = [one for scenario in scenarios for one in (scenario, scenario.without_fault())]
+    # a record of which no machine is possible is left out when its part is made
+    outlines, _ = outlined_inputs(scenarios, timeline(settings_of(recipe)))
+    return list(dict.fromkeys(input_shape(given) for given in outlines if given is not None))
+
+
+def _sample(recipe: Recipe) -> Iterator[Scenario]:
+    yield from draw_scenarios(recipe, 0, SAMPLE)
+    for number in range(SAMPLE, recipe.n_records, -(-recipe.n_records // SAMPLE)):
+        yield from draw_scenarios(recipe, number, number + 1)
+
+
+def described(shape: Shape) -> str:
+    """Number of balls and channels of a kernel, and its parts.
+
+    >>> from gen.physics.kernel.layout import make_shape
+    >>> described(make_shape(9, 1, resonator=True, spalled=True))
+    '9 balls, 1 channel, resonator, spalled'
+    """
+    channels = f"{len(shape.channels)} channel{'s' if len(shape.channels) > 1 else ''}"
+    parts = [field for field in Shape._fields[2:] if getattr(shape, field)]
+    return ", ".join([f"{len(shape.balls)} balls", channels, *parts])
+
+
+def _compile_in_processes(shapes: list[Shape], at_once: int, starting: Callable[[], None]) -> None:
+    """Compile the kernels of shapes, ``at_once`` at a time; one that fails is compiled when a record needs it."""
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or str(Path.cwd()) for path in sys.path)}
+    running: list[subprocess.Popen[bytes]] = []
+    try:
+        for shape in shapes:
+            while sum(process.poll() is None for process in running) >= at_once:
+                time.sleep(POLL_S)
+            starting()
+            command = [sys.executable, "-c", _COMPILE_ONE, json.dumps([len(field) for field in shape])]
+            silent = subprocess.DEVNULL
+            running.append(
+                subprocess.Popen(  # noqa: S603 - this Python
+                    command, stdin=subprocess.PIPE, stdout=silent, stderr=silent, env=environment
+                )
+            )
+        for process in running:
+            process.wait()
+    finally:
+        for process in running:
+            process.kill()
+            process.communicate()

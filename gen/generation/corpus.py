@@ -1,0 +1,310 @@
+"""Generate a corpus from a recipe, part by part, on one machine or many.
+
+One task draws, simulates, measures and writes some parts and returns their rows of the manifest. The same call completes an interrupted
+corpus: a part that is in the folder is kept if it is whole and was made from the same recipe by the same sources and libraries. The parts
+of a single file ``NAME.nc`` lie in the folder ``NAME.nc.parts`` until all are there.
+"""
+
+import platform
+import threading
+from collections.abc import Callable, Generator, Iterator, Mapping
+from contextlib import AbstractContextManager, closing, contextmanager, nullcontext, suppress
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, cast
+
+from gen.corpus import (
+    MANIFEST_NAME,
+    RECIPE_NAME,
+    SignalCounts,
+    check_place,
+    corpus_files,
+    facts_of_parts,
+    file_facts,
+    finish_corpus,
+    finish_file,
+    is_single_file,
+    locked,
+    part_name,
+    read_manifest,
+    remove_left_behind_of,
+    remove_parts,
+    remove_temporary_files,
+    row_of,
+    write_durably,
+    write_manifest,
+    writing,
+)
+from gen.generation.compilation import compile_kernels
+from gen.generation.parts import Outcome, made_by, make_parts, units
+from gen.generation.scheduling import Crew
+from gen.generation.sources import sources_sha256
+from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
+from gen.support.errors import ClusterError, CorpusError, RecipeError
+from gen.support.progress import Progress
+from gen.support.workers import stream, threads_of
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+    from gen.corpus import Manifest
+
+
+@dataclass(frozen=True)
+class Generated:
+    """Result of :func:`generate`."""
+
+    path: Path
+    """Folder or single file of the corpus."""
+    records: int
+    parts: int
+    kept: int
+    """Number of parts that were kept from an earlier call."""
+    failures: tuple[str, ...]
+    """One sentence for each record that is left out because it could not be simulated."""
+    signals: SignalCounts
+    """Number of records that cannot be used."""
+
+
+def generate(
+    recipe: Path | str | Mapping[str, Any] | Recipe,
+    target: Path | str,
+    *,
+    workers: int = 1,
+    scheduler: str | None = None,
+    seed: int | None = None,
+    records: int | None = None,
+    progress: Progress | None = None,
+    notice: Callable[[str], None] = lambda _: None,
+) -> Generated:
+    """Generate a corpus, or complete an interrupted one.
+
+    Parameters
+    ----------
+    recipe : path, str, mapping or Recipe
+        Recipe file, name of a recipe that ships with Raceway, the keys of a recipe, or a recipe that has been read.
+    target : path
+        Single file of the corpus if the name ends in ``.nc``, else its folder; created if it does not exist. It may hold the same corpus,
+        unfinished or finished.
+    workers : int
+        Number of parts that are made at a time: 1 in this thread, some in threads of this process, more in processes on this machine.
+    scheduler : str, optional
+        Address of a dask scheduler whose workers see the folder under the same path; replaces ``workers``.
+    seed, records : int, optional
+        Replace the seed and the number of records of the recipe.
+    progress : callable, optional
+        Called in this thread with the number of records done and of all records. The last record of a part counts when the part is
+        written, every other record when it is simulated.
+    notice : callable, optional
+        Called with a sentence when a kernel is about to be compiled.
+
+    Raises
+    ------
+    RecipeError, SimulationError
+        If the recipe cannot be simulated.
+    CorpusError
+        If the target holds something else, or a corpus that other sources of Raceway began, or a file cannot be written.
+    ClusterError
+        If the scheduler does not answer or has no workers, before anything is written; or if the cluster is lost.
+    """
+    checked = read_recipe(recipe, seed=seed, records=records)
+    target = Path(target)
+    check_place(target)
+    folder = target.with_name(f"{target.name}.parts") if is_single_file(target) else target
+    facts = facts_of(checked, {"seed": seed, "records": records})
+    if is_single_file(target) and target.exists():
+        return _finished_before(target, folder, checked, facts)
+    with client_of(scheduler, workers) as client, _claimed(folder):
+        if folder is not target:
+            remove_left_behind_of(target)
+        named = isinstance(recipe, str | Path)
+        _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts)
+        outcomes = _all_parts(Tally(checked, progress), folder, workers, client, notice)
+        found = _finish(target, folder, outcomes, facts)
+        if folder is not target:
+            remove_parts(folder, map(part_name, range(checked.n_parts)))
+        return found
+
+
+def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
+    """Fields of the manifest that say where a generated corpus comes from."""
+    return {
+        "title": recipe.title,
+        **made_by(recipe),
+        "overrides": overrides,
+        "publication": recipe.publication,
+    }
+
+
+def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, Any]) -> Generated:
+    """Result of a corpus in a single file that an earlier call has finished."""
+    corpus_files(file)
+    manifest = read_manifest(file)
+    _check_same(file, manifest, facts)
+    with suppress(CorpusError):  # not left by a call that was killed between the last two steps
+        left = read_manifest(folder)
+        if not left.complete and left.recipe_sha256 == manifest.recipe_sha256:
+            with locked(folder):
+                remove_parts(folder, map(part_name, range(recipe.n_parts)))
+    return Generated(file, manifest.records, recipe.n_parts, recipe.n_parts, manifest.failures, manifest.signals)
+
+
+def _all_parts(
+    tally: "Tally", folder: Path, workers: int, client: "Client | None", notice: Callable[[str], None]
+) -> list[Outcome]:
+    """Make the parts of a tally that are missing; outcomes of all of them in their order."""
+    recipe = tally.recipe
+    if client is None and not all((folder / "parts" / part_name(part)).exists() for part in tally.parts):
+        compile_kernels(recipe, notice)
+    outcomes: dict[int, Outcome] = {}
+    with closing(_made(tally, folder, workers, client)) as made:
+        for part, outcome in made:
+            outcomes[part] = outcome
+            tally.note(part, len(recipe.records_of_part(part)))
+            tally.show()
+    return [outcomes[number] for number in sorted(outcomes)]
+
+
+def _finish(target: Path, folder: Path, outcomes: list[Outcome], facts: dict[str, Any]) -> Generated:
+    """Write index, manifest and data card of the finished parts, or a single file of them."""
+    rows = [outcome.row for outcome in outcomes if outcome.row.records]
+    if not rows:
+        raise CorpusError(f"{target}: no record could be simulated; {outcomes[0].failures[0]}")
+    failures = tuple(sentence for outcome in outcomes for sentence in outcome.failures)
+    facts = facts | {"publication": facts["publication"].dated(), "failures": failures}
+    whole = target == folder
+    signals = finish_corpus(folder, rows, **facts) if whole else finish_file(folder, rows, target, **facts)
+    kept = sum(outcome.kept for outcome in outcomes)
+    return Generated(target, sum(row.records for row in rows), len(rows), kept, failures, signals)
+
+
+@contextmanager
+def _claimed(folder: Path) -> Iterator[None]:
+    """Create the folder and lock it against other calls."""
+    if folder.exists() and not folder.is_dir():
+        raise CorpusError(f"{folder}: is a file; give a folder, or a file that ends in .nc, for the corpus.")
+    with writing(folder):
+        folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder):
+        yield
+
+
+def _prepare(folder: Path, text: bytes, facts: dict[str, Any]) -> None:
+    """Check what the folder holds, and write the manifest of an unfinished corpus.
+
+    The manifest is written first: it tells a corpus without any part from a folder that holds something else.
+    """
+    with writing(folder):
+        remove_temporary_files(folder)
+        if (folder / MANIFEST_NAME).exists():
+            manifest = read_manifest(folder)
+            _check_same(folder, manifest, facts)
+            _check_generated(folder, manifest)
+            if not facts["publication"].stored:
+                facts["publication"] = manifest.publication  # given after the corpus was made
+        elif any(folder.iterdir()):
+            raise CorpusError(f"{folder}: is not empty and holds no corpus; choose another folder.")
+        write_manifest(folder, facts_of_parts([], facts, complete=False))
+        write_durably(text, folder / RECIPE_NAME)
+        (folder / "parts").mkdir(exist_ok=True)
+
+
+def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> None:
+    """Refuse to complete a corpus of another recipe, or one that other sources or libraries began: its records would not go together."""
+    if manifest.recipe_sha256 is None:
+        raise CorpusError(
+            f"{place}: holds a corpus that was not generated from a recipe as a whole; choose another name."
+        )
+    if manifest.recipe_sha256 != facts["recipe_sha256"]:
+        raise CorpusError(f"{place}: holds a corpus of another recipe, seed or size; choose another name.")
+    began = manifest.versions | {"sources": (manifest.sources_sha256 or "unknown")[:12]}
+    now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
+    other = [name for name in now if began.get(name) != now[name]]
+    if other:
+        was, installed = (", ".join(f"{name} {found.get(name, 'none')}" for name in other) for found in (began, now))
+        raise CorpusError(
+            f"{place}: was begun with {was}; {installed} is installed and can give other samples: install the former to "
+            "complete it, or choose another name."
+        )
+
+
+def _check_generated(folder: Path, manifest: "Manifest") -> None:
+    """Refuse a copy: its parts have other records than those that are generated, and would be made again."""
+    whole = next(filter(row_of, (folder / "parts" / row.name for row in manifest.parts)), None)
+    if whole is not None and "recipe_sha256" not in file_facts(whole)[0]:
+        raise CorpusError(f"{folder}: holds a copy of a corpus, which is not generated again; choose another name.")
+
+
+class Tally:
+    """Number of records that are done; it is changed by the thread that listens to the workers too."""
+
+    def __init__(self, recipe: Recipe, progress: Progress | None) -> None:
+        self.recipe = recipe
+        self.parts = range(recipe.n_parts)
+        self._progress = progress
+        self._of_parts = dict.fromkeys(self.parts, 0)
+        self._all = sum(len(recipe.records_of_part(part)) for part in self.parts)
+        self._done = 0  # their sum, which takes longer to compute the more parts there are
+        self._lock = threading.Lock()
+
+    def note(self, part: int, records: int) -> None:
+        """Set the count of a part; a task that dask repeats does not lower it."""
+        with self._lock:
+            added = max(0, records - self._of_parts[part])
+            self._of_parts[part] += added
+            self._done += added
+
+    def show(self) -> None:
+        """Call ``progress`` with the number of records done, once it is not 0."""
+        if self._progress is not None and self._done:
+            self._progress(self._done, self._all)
+
+    def note_and_show(self, part: int, records: int) -> None:
+        """Set the count of a part and call ``progress``."""
+        self.note(part, records)
+        self.show()
+
+
+def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Client | None]":
+    """Client of the scheduler at an address; None if no address is given, but a number of workers that must be 1 or more."""
+    if workers < 1:
+        raise RecipeError(f"workers: {workers} is not allowed; use 1 or more.")
+    if scheduler is None:
+        return nullcontext()
+    from gen.support import cluster  # distributed takes 0.3 s to load, and work in this process does not need it
+
+    return cluster.client_of(scheduler)
+
+
+def _made(tally: Tally, folder: Path, workers: int, client: "Client | None") -> Generator[tuple[int, Outcome]]:
+    """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
+    recipe, parts = tally.recipe, tally.parts
+    of_this_process = Crew(threads_of(workers))
+    processes = workers // of_this_process.threads
+    if client is None and processes == 1:
+        report = tally.note_and_show if workers == 1 else tally.note
+        for some in units(recipe, parts, 1):
+            yield from make_parts(recipe, some, folder, report, tally.show, of_this_process)
+        return
+    from gen.support.cluster import local_client
+
+    with local_client(processes) if client is None else nullcontext(client) as cluster:
+        crew, count = of_this_process, processes
+        if client is not None:
+            threads: list[int] = list(cast("Any", client).nthreads().values())
+            crew, count = Crew(1, 1 / max(threads, default=1)), max(sum(threads), 1)
+        task = partial(_unit, recipe, folder.resolve(), crew, sources_sha256())
+        yield from stream(task, units(recipe, parts, count), scheduler=cluster, report=tally.note, meanwhile=tally.show)
+
+
+def _unit(
+    recipe: Recipe, folder: Path, crew: Crew, sources: str, report: Callable[[int, int], None], parts: range
+) -> Iterator[tuple[int, Outcome]]:
+    """Make some parts on a worker, if it has the sources of the process that asks for them."""
+    if sources_sha256() != sources:
+        raise ClusterError(
+            f"worker {platform.node()}: has other sources of raceway ({sources_sha256()[:12]}) than this process ({sources[:12]}); install "
+            f"the same version on every worker."
+        )
+    return make_parts(recipe, parts, folder, report, crew=crew)

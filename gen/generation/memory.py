@@ -1,0 +1,224 @@
+"""Records made in memory, as one xarray Dataset: from keys, or from scenarios made by hand.
+
+The Dataset has the variables of a corpus, so that :func:`gen.write_corpus` makes a corpus of it. Records are drawn, simulated and measured
+as :func:`gen.generate` does it, so the same recipe gives the same records either way.
+"""
+
+import json
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from gen.corpus import DRAWS
+from gen.generation.parts import dataset_of, library_versions, part_attributes
+from gen.generation.scheduling import Crew, MadePart, made_parts
+from gen.generation.undetected import made_from
+from gen.recipe import Recipe, plain, recipe_for
+from gen.recipe.keywords import FaultLike
+from gen.scenarios import Rig, Scenario, check_scenario, read_scenario, scenario_texts
+from gen.support.errors import CorpusError, RecipeError, SimulationError
+
+RECIPE = "recipe_json"  # attribute of a Dataset of all records of a recipe
+
+
+def record(fault: FaultLike | None = None, **keys: Any) -> xr.Dataset:
+    """One record of a bearing, simulated in memory.
+
+    Parameters
+    ----------
+    fault : section, dict or str
+        From :func:`gen.healthy`, :func:`gen.inner`, :func:`gen.outer`, :func:`gen.ball`, :func:`gen.cage`, :func:`gen.distributed` or
+        :func:`gen.compound`; or an entry of ``faults`` of a recipe.
+    **keys
+        Keys of a recipe by their own names, such as ``bearing="6205"``, ``shaft_rpm=1480``, ``load_n=500``, ``sample_rate_hz=25600``,
+        ``duration_s=1``, ``seed=1``; or whole sections, such as ``machine={...}`` and ``channels=[...]``. Numbers can be distributions
+        (:func:`gen.uniform`). Keys that are left out have the defaults of a recipe; bearing, speed, sample rate and duration then are
+        6205, 1500 rpm, 25.6 kHz and 1 s.
+
+    Returns
+    -------
+    Dataset
+        ``acceleration (channel, elapsed_time)`` [m s-2], and one value of each variable of a corpus.
+
+    Raises
+    ------
+    RecipeError
+        If a key is unknown or a value is not allowed; one sentence for each of them.
+    SimulationError
+        If the record cannot be simulated.
+
+    Examples
+    --------
+    >>> found = record(outer(width_mm=0.8), bearing="6205", shaft_rpm=1480)  # doctest: +SKIP
+    >>> found.acceleration.plot()  # doctest: +SKIP
+    """
+    recipe = recipe_for(fault, **{"name": "record", **keys})
+    if recipe.n_records != 1:
+        raise RecipeError(
+            f"the keys ask for {recipe.n_records} records; gen.record makes one, gen.records makes several."
+        )
+    return _made(recipe, 1).isel(record=0)
+
+
+def records(
+    fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, *, workers: int = 1, **keys: Any
+) -> xr.Dataset:
+    """Records of one or several faults, simulated in memory.
+
+    Parameters
+    ----------
+    fault : section, dict, str or list of them
+        One fault or several, as for :func:`gen.record`.
+    n : int
+        Number of records of each fault. Each record has a bearing (``specimen``) of its own in one machine (``rig``), unless ``keys``
+        give ``rigs``, ``specimens_per_rig``, ``records_per_specimen`` or ``rungs``. The faults take turns.
+    workers : int
+        Number of threads.
+    **keys
+        Keys of a recipe, as for :func:`gen.record`.
+
+    Returns
+    -------
+    Dataset
+        ``acceleration (record, channel, elapsed_time)`` [m s-2], and the variables of a corpus, shape (record,). A record that cannot be
+        simulated is left out with a warning.
+
+    Raises
+    ------
+    RecipeError
+        If a key is unknown or a value is not allowed; one sentence for each of them.
+    SimulationError
+        If no record can be simulated.
+    """
+    if type(workers) is not int or workers < 1:
+        raise RecipeError(f"workers: {workers!r} is not allowed; use 1 or more.")
+    return _made(recipe_for(fault, n, **keys), workers)
+
+
+def simulate_scenarios(scenarios: Sequence[Scenario]) -> xr.Dataset:
+    """Records of scenarios, such as drawn ones changed with :func:`dataclasses.replace`.
+
+    Parameters
+    ----------
+    scenarios : sequence of Scenario
+        From :func:`gen.draw_scenarios`, :func:`gen.scenarios_of` or :func:`gen.stored_scenario`, changed or not. Random processes such as
+        noise follow from the numbers of rig, specimen and record, so scenarios with the same numbers have the same noise. A measured
+        scenario of a pair or ladder keeps its ``record.gains``; without them, the largest severity sets the level.
+
+    Returns
+    -------
+    Dataset
+        As from :func:`gen.records`, without a recipe; each record has its scenario.
+
+    Raises
+    ------
+    RecipeError
+        If values of a scenario do not fit each other, or scenarios do not fit each other.
+    SimulationError
+        If scenarios have different settings, or no record can be simulated.
+    """
+    made, failures = dataset_of(made_from(_checked(scenarios)))
+    return _decoded([made], failures, {"versions": json.dumps(library_versions())})
+
+
+def recipe_of(dataset: xr.Dataset) -> Recipe:
+    """Recipe that a Dataset of records was made from.
+
+    Raises
+    ------
+    CorpusError
+        If the Dataset carries none.
+    """
+    if not isinstance(dataset, xr.Dataset):
+        raise CorpusError(
+            f"{type(dataset).__name__} given in place of a Dataset; give one from gen.record or gen.records."
+        )
+    if RECIPE not in dataset.attrs:
+        raise CorpusError(
+            f"the Dataset has no attribute {RECIPE}; give one from gen.record or gen.records, with its attributes."
+        )
+    try:
+        return Recipe(**json.loads(dataset.attrs[RECIPE]))
+    except (ValueError, TypeError):
+        raise CorpusError(
+            f"the attribute {RECIPE} of the Dataset is not the JSON text of a recipe; make the records again."
+        ) from None
+
+
+def scenarios_of(dataset: xr.Dataset) -> list[Scenario]:
+    """Scenario of each record of a Dataset, with every drawn value.
+
+    Raises
+    ------
+    CorpusError
+        If the Dataset has no scenarios.
+    """
+    if not isinstance(dataset, xr.Dataset) or DRAWS not in dataset:
+        raise CorpusError(
+            f"the Dataset has no variable {DRAWS}, so it holds no scenarios; give one from gen.record or gen.records."
+        )
+    return [read_scenario(str(text)) for text in np.atleast_1d(dataset[DRAWS].values)]
+
+
+def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
+    """Scenarios as they are stored; RecipeError if one cannot be simulated, or does not fit another."""
+    if not isinstance(scenarios, Sequence) or isinstance(scenarios, str | bytes):
+        raise RecipeError(f"scenarios: {type(scenarios).__name__} given; give a list of scenarios.")
+    rigs: dict[int, tuple[int, Rig]] = {}
+    rungs: dict[int, int] = {}
+    found = []
+    for place, given in enumerate(scenarios):
+        try:
+            scenario = read_scenario(scenario_texts([given])[0])
+            check_scenario(scenario)
+        except RecipeError as error:
+            raise RecipeError(f"scenarios[{place}]: {error}") from None
+        except (CorpusError, TypeError, AttributeError) as error:
+            reason = str(error).removeprefix("stored scenario: ").partition("; ")[0]
+            raise RecipeError(
+                f"scenarios[{place}]: is no scenario ({reason}); change drawn ones with dataclasses.replace, in finite numbers and text."
+            ) from None
+        first, rig = rigs.setdefault(scenario.rig.number, (place, scenario.rig))
+        if rig != scenario.rig:
+            raise RecipeError(
+                f"scenarios[{place}]: rig {rig.number} is not that of scenarios[{first}]; give another machine another number."
+            )
+        record = scenario.record
+        if record.pair >= 0 and record.gains is None:
+            if record.rung <= rungs.get(record.pair, -1):
+                raise RecipeError(
+                    f"scenarios[{place}]: rung {record.rung} of pair {record.pair} does not rise; sort them, each once."
+                )
+            rungs[record.pair] = record.rung  # the last, with the largest severity, sets the level of the pair
+        found.append(scenario)
+    return found
+
+
+def _made(recipe: Recipe, workers: int) -> xr.Dataset:
+    """Records of a recipe, made in parts as those of a corpus."""
+
+    def finished(made: MadePart) -> tuple[int, xr.Dataset, tuple[str, ...]]:
+        return made.place, *dataset_of(made.records, made.step_error)
+
+    size, stop = recipe.storage.records_per_part, recipe.n_records
+    numbers = [range(first, min(first + size, stop)) for first in range(0, stop, size)]
+    parts = sorted(made_parts(recipe, numbers, finished, crew=Crew(workers)), key=lambda part: part[0])
+    failures = [text for *_, texts in parts for text in texts]
+    attributes = part_attributes(recipe, failures) | {RECIPE: json.dumps(plain(recipe))}
+    return _decoded([part for _, part, _ in parts], failures, attributes)
+
+
+def _decoded(parts: list[xr.Dataset], failures: Sequence[str], attributes: dict[str, str]) -> xr.Dataset:
+    """Records of all parts in m s-2."""
+    dataset = parts[0] if len(parts) == 1 else xr.concat(parts, "record", data_vars="minimal", coords="minimal")
+    if not dataset.sizes["record"]:
+        raise SimulationError(failures[0])
+    decoded = xr.decode_cf(dataset, decode_times=False).load()
+    decoded.attrs |= attributes
+    if failures:
+        left_out = f"{len(failures)} of {len(failures) + dataset.sizes['record']} records are left out"
+        warnings.warn(f"{left_out}; the first: {failures[0]}", stacklevel=4)
+    return decoded

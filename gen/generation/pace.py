@@ -1,0 +1,83 @@
+"""Pace of this machine: how long some records of a recipe take, from the drawn scenario to the written part.
+
+The records are made as :func:`gen.generate` makes them, in this process and into a temporary folder. Kernels that are not compiled yet are
+not compiled for this: that takes longer than many a corpus.
+"""
+
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from numba.core import event
+
+from gen.corpus import Codec, write_part
+from gen.generation.labels import part_dataset
+from gen.measurement.measure import measure
+from gen.physics.kernel.compiling import LANES
+from gen.scenarios import Scenario
+from gen.simulation.batches import filled_lanes
+from gen.simulation.simulate import integrations, simulate
+
+LARGEST_SAMPLE = 30e6  # steps of all lanes, about 2 s
+REPEATS = 2  # the first run also loads the kernels from the cache
+
+
+class Pace(NamedTuple):
+    """Seconds per unit of work, with one process."""
+
+    lane_step: float
+    """Integration of one step of one lane, with the preparation of its record [s]."""
+    record: float
+    """Measurement, labels and writing of one record [s]."""
+
+
+class _NotCompiledError(Exception):
+    """A kernel is not in numba's cache on disk."""
+
+
+class _Refusal(event.Listener):
+    """Stops the compilation of every kernel that is kept in the cache on disk."""
+
+    def on_start(self, event: Any) -> None:
+        if event.data["dispatcher"].stats.cache_path is not None:
+            raise _NotCompiledError
+
+    def on_end(self, event: Any) -> None:
+        """Do nothing."""
+
+
+@contextmanager
+def _compilation_refused() -> Iterator[None]:
+    with event.install_listener("numba:compile", _Refusal()):
+        yield
+
+
+def measured_pace(scenarios: list[Scenario], codec: Codec, steps: int) -> Pace | None:
+    """Time the records of one batch, each of ``steps`` integration steps.
+
+    None if a kernel is not compiled yet, or if the batch has more than ``LARGEST_SAMPLE`` steps.
+    """
+    if LANES * steps > LARGEST_SAMPLE:
+        return None
+    try:
+        with _compilation_refused():
+            runs = [_timed(scenarios, codec) for _ in range(REPEATS)]
+    except _NotCompiledError:
+        return None
+    integration, rest = (min(times) for times in zip(*runs, strict=True))
+    return Pace(integration / (filled_lanes(integrations(scenarios)) * steps), rest / len(scenarios))
+
+
+def _timed(scenarios: list[Scenario], codec: Codec) -> tuple[float, float]:
+    """Seconds of the simulation, and of measurement, labels and writing."""
+    start = time.perf_counter()
+    response = simulate(scenarios)
+    simulated = time.perf_counter()
+    measured = measure(response.acceleration, scenarios, response.twins)
+    with tempfile.TemporaryDirectory() as folder:
+        dataset = part_dataset(measured, response)
+        write_part(dataset, Path(folder) / "part-00000.nc", codec)
+    return simulated - start, time.perf_counter() - simulated

@@ -1,0 +1,312 @@
+"""Records of several parts made together, so that the batches of the kernel are full.
+
+Parts are drawn block after block, and every integration waits until its batch is full: those of records, of their twins, of faults drawn
+again and of step checks. Only as many records as fit ``WINDOW_BYTES`` are under way; if all of them wait, the oldest get a batch with idle
+lanes. A record does not depend on its batch, so the parts are those that would be made one by one.
+"""
+
+from bisect import bisect_right
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
+from functools import partial
+from threading import Condition
+from typing import Generic, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from gen.generation.step_checks import has_checks, step_changes, step_checks
+from gen.generation.undetected import Families, Family, Records, picked
+from gen.recipe import Recipe
+from gen.scenarios import settings_of
+from gen.simulation.batches import Integration, Waiting, integrate_together
+from gen.simulation.timeline import timeline
+from gen.support.workers import stream
+
+WINDOW_BYTES = 64e6  # of a process: signals, scenarios and kernel inputs of the records under way
+_RECORD_BYTES = 16_000  # of a record besides its signal
+_DRAWN, _JUDGED = 128, 64  # records in a block; functions that take many records at once need some
+
+Report = Callable[[int, int], None]
+
+
+class Crew(NamedTuple):
+    """What a task may use of its process."""
+
+    threads: int = 1
+    """Number of threads that work on the same records."""
+    share: float = 1.0
+    """Share of the memory for records under way."""
+
+
+ALONE = Crew()
+
+
+class MadePart(NamedTuple):
+    """Records of one part."""
+
+    place: int
+    """Of the part among those that are made."""
+    records: Records
+    step_error: NDArray[np.float64]
+    """As from :func:`gen.generation.step_checks.step_changes`."""
+
+
+Result = TypeVar("Result")
+
+
+@dataclass(eq=False)
+class _Part:
+    """A part under way."""
+
+    place: int
+    numbers: range
+    checked: bool
+    rows: dict[int, tuple[Records, int]] = field(default_factory=dict)
+    """Final records: each by its number, as a place in records that were measured together."""
+    simulated: int = 0
+
+
+@dataclass(eq=False)
+class _Pending:
+    """A call that follows when some integrations are done."""
+
+    left: int
+    then: Callable[[], None]
+
+
+def made_records(recipe: Recipe, numbers: range) -> Records:
+    """Make the records with the given numbers."""
+    (records,) = made_parts(recipe, [numbers], lambda made: made.records)
+    return records
+
+
+def made_parts(
+    recipe: Recipe,
+    parts: Sequence[range],
+    finish: Callable[[MadePart], Result],
+    report: Report = lambda _place, _count: None,
+    meanwhile: Callable[[], None] = lambda: None,
+    crew: Crew = ALONE,
+) -> Iterator[Result]:
+    """Make the records of parts; yields the result of ``finish`` for each, in the order in which they are complete.
+
+    Parameters
+    ----------
+    recipe : Recipe
+        The recipe.
+    parts : sequence of range
+        Numbers of the records of each part, in rising order.
+    finish : callable
+        Called with each part, in the thread that completes it.
+    report : callable
+        Called with the place of a part and the number of its records that are simulated.
+    meanwhile : callable
+        Called in this thread now and then while several threads work.
+    crew : Crew
+        Threads that work on these records; one is this thread.
+    """
+    making = _Making(recipe, parts, finish, WINDOW_BYTES * crew.share)
+    threads = range(crew.threads)
+    yield from stream(making.work, threads, workers=len(threads), report=report, meanwhile=meanwhile)
+
+
+class _Making(Generic[Result]):
+    """Records under way, on which threads work step by step; everything else than the work itself is done under a lock."""
+
+    def __init__(
+        self, recipe: Recipe, parts: Sequence[range], finish: Callable[[MadePart], Result], window: float
+    ) -> None:
+        self._recipe, self._finish = recipe, finish
+        self._families = Families(recipe)
+        self._waiting: Waiting[_Pending] = Waiting()
+        self._parts = [_Part(place, numbers, has_checks(recipe, numbers)) for place, numbers in enumerate(parts)]
+        self._blocks = deque(_blocks(parts, self._families))
+        self._window = window / _bytes_of_a_record(recipe)
+        self._under_way = 0
+        self._ready: list[Family] = []
+        self._complete: deque[_Part] = deque()
+        self._checked: deque[MadePart] = deque()
+        self._change = Condition()
+        self._steps = self._growing = 0
+        """Steps that threads do now, and those of them that may bring further integrations."""
+        self._over = False
+
+    def work(self, report: Report, _thread: int) -> Iterator[Result]:
+        """Do steps until every part is complete."""
+        try:
+            while (step := self._next_step()) is not None:
+                yield from step(report)
+                with self._change:
+                    self._steps -= 1
+                    self._change.notify_all()
+        finally:
+            with self._change:
+                self._over = True
+                self._change.notify_all()
+
+    def _next_step(self) -> Callable[[Report], Iterable[Result]] | None:
+        with self._change:
+            while not self._over:
+                step = self._chosen()
+                if step is not None:
+                    self._steps += 1
+                    return step
+                if not self._steps:
+                    break
+                self._change.wait()
+            return None
+
+    def _chosen(self) -> Callable[[Report], Iterable[Result]] | None:
+        """The next step: what completes parts, then full batches, then new records; a batch with idle lanes if nothing else is left."""
+        if self._checked:
+            return partial(self._write, self._checked.popleft())
+        if self._complete:
+            return partial(self._check_steps, self._complete.popleft())
+        if sum(len(family.scenarios) for family in self._ready) >= _JUDGED:
+            return self._judging()
+        if self._waiting.has_full_batch():
+            return partial(self._integrate, self._waiting.fullest())
+        if self._blocks and self._under_way < self._window:
+            return self._drawing()
+        if self._ready:
+            return self._judging()
+        if self._waiting and not self._growing:
+            return partial(self._integrate, self._waiting.oldest() if self._blocks else self._waiting.fullest())
+        return self._drawing() if self._blocks and not self._steps else None
+
+    def _drawing(self) -> Callable[[Report], Iterable[Result]]:
+        self._growing += 1
+        numbers = self._blocks.popleft()
+        self._under_way += sum(self._part_of(number) is not None for number in numbers)
+        return partial(self._draw, numbers)
+
+    def _judging(self) -> Callable[[Report], Iterable[Result]]:
+        self._growing += 1
+        families, self._ready = self._ready, []
+        return partial(self._judge, sorted(families, key=lambda family: family.scenarios[0].record.number))
+
+    def _draw(self, numbers: range, report: Report) -> Iterable[Result]:
+        """Draw the next records."""
+        families = self._families.drawn(numbers)
+        waits = [(family.integrations, partial(self._simulated, family, report)) for family in families]
+        with self._change:
+            self._growing -= 1
+            for integrations, then in waits:
+                self._wait(integrations, then)
+        return ()
+
+    def _integrate(self, taken: list[tuple[Integration, _Pending]], _report: Report) -> Iterable[Result]:
+        """Integrate one batch."""
+        integrate_together([one for one, _ in taken], timeline(settings_of(self._recipe)))
+        with self._change:
+            for _, pending in taken:
+                pending.left -= 1
+                if not pending.left:
+                    pending.then()
+        return ()
+
+    def _judge(self, families: list[Family], _report: Report) -> Iterable[Result]:
+        """Measure and judge families; those that are final go to their parts."""
+        made, again = self._families.judged(families)
+        made = Records(replace(made.response, twins=None), made.measured)
+        redrawn = {one.record.number for family in again for one in family.scenarios}
+        waits = [(family.integrations, partial(self._integrated, family)) for family in again]
+        # copies, so that no part holds the accelerations of another
+        pieces = [
+            (
+                part,
+                [number for _, number in rows],
+                picked([(made if part.checked else _light(made), place) for place, _ in rows]),
+            )
+            for part, rows in self._final(made, redrawn)
+        ]
+        with self._change:
+            self._growing -= 1
+            for part, numbers, piece in pieces:
+                part.rows |= {number: (piece, place) for place, number in enumerate(numbers)}
+                if len(part.rows) == len(part.numbers):
+                    self._complete.append(part)
+            for integrations, then in waits:
+                self._wait(integrations, then)
+        return ()
+
+    def _final(self, made: Records, redrawn: set[int]) -> list[tuple[_Part, list[tuple[int, int]]]]:
+        """Place and number of the records of each part that are not drawn again."""
+        found: dict[_Part, list[tuple[int, int]]] = {}
+        for place, scenario in enumerate(made.measured.scenarios):
+            number = scenario.record.number
+            part = None if number in redrawn else self._part_of(number)
+            if part is not None:
+                found.setdefault(part, []).append((place, number))
+        return list(found.items())
+
+    def _check_steps(self, part: _Part, report: Report) -> Iterable[Result]:
+        """Let the step checks of a part wait whose records are final, or write it if it has none."""
+        records = picked([part.rows[number] for number in part.numbers])
+        part.rows.clear()
+        scenarios, response = records.measured.scenarios, records.response
+        finer = step_checks(scenarios, self._recipe, response) if part.checked else {}
+
+        def then() -> None:
+            errors = step_changes(finer, response, self._recipe)
+            self._checked.append(MadePart(part.place, _light(records), errors))
+
+        if finer:
+            with self._change:
+                self._wait(list(finer.values()), then)
+            return ()
+        return self._write(MadePart(part.place, _light(records), step_changes({}, response, self._recipe)), report)
+
+    def _write(self, made: MadePart, _report: Report) -> Iterable[Result]:
+        result = self._finish(made)
+        with self._change:
+            self._under_way -= len(made.records.measured.scenarios)
+        return (result,)
+
+    def _wait(self, integrations: Sequence[Integration], then: Callable[[], None]) -> None:
+        """Call ``then`` when integrations are done."""
+        if integrations:
+            self._waiting.add(integrations, _Pending(len(integrations), then))
+        else:
+            then()
+
+    def _simulated(self, family: Family, report: Report) -> None:
+        """A family is integrated for the first time."""
+        self._integrated(family)
+        for scenario in family.scenarios:
+            part = self._part_of(scenario.record.number)
+            if part is not None:
+                part.simulated += 1
+                report(part.place, min(part.simulated, len(part.numbers) - 1))
+
+    def _integrated(self, family: Family) -> None:
+        self._ready.append(family)
+
+    def _part_of(self, number: int) -> _Part | None:
+        """The part that a record belongs to; None for one that is only judged with others."""
+        place = bisect_right(self._parts, number, key=lambda part: part.numbers.start) - 1
+        return self._parts[place] if place >= 0 and number in self._parts[place].numbers else None
+
+
+def _blocks(parts: Sequence[range], families: Families) -> Iterator[range]:
+    """Numbers of the records that are drawn together: of whole families, none twice."""
+    size, drawn = max(_DRAWN // families.size, 1) * families.size, 0
+    for part in parts:
+        needed = families.numbers(part)
+        for first in range(max(needed.start, drawn), needed.stop, size):
+            drawn = min(first + size, needed.stop)
+            yield range(first, drawn)
+
+
+def _bytes_of_a_record(recipe: Recipe) -> int:
+    stored = 2 if recipe.recording.converter.kind == "adc" else 4
+    return _RECORD_BYTES + stored * recipe.n_samples * len(recipe.recording.channels)
+
+
+def _light(made: Records) -> Records:
+    """Records without their accelerations and inputs."""
+    count = len(made.measured.scenarios)
+    response = replace(made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=[None] * count)
+    return Records(response, made.measured)

@@ -1,0 +1,16 @@
+"""What all stages use: errors, limits, units, YAML, progress, and independent tasks on the cores of this machine or on a cluster.
+
+========== ==================================================================
+module     responsibility
+========== ==================================================================
+errors     one exception class per stage; each carries one sentence
+garbage    cheaper making of many objects
+progress   progress of a long call
+limits     how much a file from elsewhere may ask for
+units      units of recipes and mapping files, turned into SI
+yaml_files recipes and mapping files, read within the limits
+sentences  an error sentence for each wrong key or value of these files
+cluster    independent tasks on dask
+workers    independent tasks in this thread, threads, processes or a cluster
+========== ==================================================================
+"""

@@ -1,0 +1,235 @@
+"""Laws of labels: the labels of a record equal the values of the recipe, each computed by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from gen.corpus import FAULTS, SPLITS
+from gen.generation.labels import part_dataset, sensor_flag_columns
+from gen.measurement.measure import measure
+from gen.measurement.sensor_faults import SensorFlags
+from gen.recipe import corpus_identity
+from gen.scenarios import draw_scenarios, read_scenario, settings_of
+from gen.simulation.timeline import timeline
+from tests.responses import response_of
+
+FS = 12_000.0
+BALL, PITCH, Z = 7.94e-3, 39.04e-3, 9  # 6205
+STEADY = {
+    "operation.shaft_rpm": 1800, "operation.load_n": 400, "operation.speed_wander_percent": 0, "operation.mean_slip_percent": 0,
+    "operation.slip_percent": 0, "operation.spin_wander_percent": 0, "specimen.diametral_clearance_um": 10,
+}  # fmt: skip
+INNER = {"kind": "inner", "width_mm": 0.4, "angle_deg": 20}
+OUTER = {"kind": "outer", "width_mm": 0.8, "angle_deg": 15}
+CAGE = {"kind": "cage", "pitch_error_deg": 4, "knock_n": 30}
+
+
+def labels(recipe, **given):
+    """Labels of all records of a recipe whose bodies are at rest; labels do not depend on the motion."""
+    scenarios = draw_scenarios(recipe)
+    response = response_of(scenarios, recipe)
+    return part_dataset(measure(response.acceleration, scenarios), response, **given)
+
+
+@pytest.fixture
+def labels_with(recipe_with):
+    return lambda changes: labels(recipe_with(STEADY | changes))
+
+
+def first(found, name):
+    return found[name].values[0]
+
+
+@pytest.mark.parametrize(("percent", "labelled"), [(2, 30.6), (-2, 29.4), (0, 30.0)])
+def test_a_tachometer_that_reads_too_high_labels_too_high_a_rate(labels_with, percent, labelled):
+    found = labels_with({"operation.label_error_percent": percent})
+    assert found["shaft_rate"].values == pytest.approx(labelled)
+    assert found["true_shaft_rate"].values == pytest.approx(30.0)
+    assert found["first_shaft_rate"].values == pytest.approx(30.0)
+    assert found["last_shaft_rate"].values == pytest.approx(30.0)
+
+
+def test_a_run_up_is_labelled_with_its_mean_and_its_ends(labels_with):
+    """The label error changes the labelled mean, and not the truth."""
+    speed, load = ({"kind": "ramp", "from_percent": 50, "to_percent": percent} for percent in (100, 150))
+    found = labels_with(
+        {"operation.label_error_percent": 2, "operation.speed_profile": speed, "operation.load_profile": load}
+    )
+    assert first(found, "shaft_rate") == pytest.approx(30 * 0.75 * 1.02)
+    assert first(found, "true_shaft_rate") == pytest.approx(22.5)
+    assert (first(found, "first_shaft_rate"), first(found, "last_shaft_rate")) == pytest.approx((15.0, 30.0))
+    assert first(found, "load") == pytest.approx(400)
+
+
+def test_the_orders_are_nominal_and_the_true_ones_have_the_slip(labels_with):
+    found = labels_with({"operation.mean_slip_percent": 1})
+    gamma = BALL / PITCH
+    ftf, bsf = (1 - gamma) / 2, PITCH / (2 * BALL) * (1 - gamma**2)
+    expected = {"ftf": ftf, "bpfo": Z * ftf, "bpfi": Z * (1 - ftf), "bsf": bsf}
+    slipping = {"ftf": 0.99 * ftf, "bpfo": Z * 0.99 * ftf, "bpfi": Z * (1 - 0.99 * ftf), "bsf": bsf}
+    for name in expected:
+        assert found[name].values == pytest.approx(expected[name])
+        assert found[f"true_{name}"].values == pytest.approx(slipping[name])
+
+
+def test_the_contact_angle_of_a_specimen_is_in_the_true_orders_alone(labels_with):
+    """The nominal geometry is that of the drawing."""
+    straight, slanted = labels_with({}), labels_with({"specimen.contact_angle_deg": 20})
+    gamma = BALL * math.cos(math.radians(20)) / PITCH
+    assert slanted["bpfo"].values == pytest.approx(first(straight, "bpfo"))
+    assert slanted["true_bpfo"].values == pytest.approx(Z * (1 - gamma) / 2)
+
+
+@pytest.mark.parametrize(("site", "angle"), [("inner", 15), ("ball", 15), ("outer", -45)])
+def test_the_angle_of_an_outer_spall_counts_from_x_and_not_from_the_load(labels_with, site, angle):
+    found = labels_with({"faults": [OUTER | {"kind": site}], "machine.load_angle_deg": -60})
+    assert found["angle"].values == pytest.approx(math.radians(angle))
+
+
+@pytest.mark.parametrize(
+    ("site", "passed"),
+    [
+        ("inner", math.pi * (PITCH - BALL) / Z),
+        ("outer", math.pi * (PITCH + BALL) / Z),
+        ("ball", math.pi * BALL),
+    ],
+)
+def test_the_width_is_also_labelled_as_a_share_of_the_way_from_ball_to_ball_or_round_a_ball(labels_with, site, passed):
+    found = labels_with({"faults": [OUTER | {"kind": site}]})
+    assert found["width_share"].values == pytest.approx(0.8e-3 / passed)
+
+
+@pytest.mark.parametrize("site", ["inner", "outer", "ball"])
+def test_the_largest_drop_is_that_of_the_depth_where_a_ball_reaches_the_floor(labels_with, site):
+    wide = {"kind": site, "width_mm": 3, "depth_um": 5}
+    narrow = {"kind": site, "width_mm": 0.1, "depth_um": 5}  # a ball drops into it by a fraction of a micrometre
+    assert labels_with({"faults": [wide]})["largest_drop"].values == pytest.approx(5e-6)
+    assert 0 < first(labels_with({"faults": [narrow]}), "largest_drop") < 1e-6
+
+
+def test_several_faults_are_labelled_by_the_widest_spall_and_by_all_parts(labels_with):
+    deep = INNER | {"depth_um": 300}
+    found = labels_with({"faults": [{"kind": "compound", "parts": [deep, OUTER | {"depth_um": 2}, CAGE]}]})
+    assert FAULTS[first(found, "fault")] == "compound"
+    assert first(found, "parts") == "inner+outer+cage"
+    assert first(found, "n_spalls") == 2
+    assert first(found, "width") == pytest.approx(0.8e-3)
+    assert first(found, "depth") == pytest.approx(2e-6)
+    assert first(found, "largest_drop") == pytest.approx(2e-6)
+    assert first(found, "pitch_error") == pytest.approx(math.radians(4))
+    assert first(found, "knock") == 30
+    assert first(found, "wear") == 0
+
+
+def test_spalls_of_one_part_are_one_part(labels_with):
+    found = labels_with({"faults": [OUTER | {"n_spalls": 3}]})
+    assert (first(found, "n_spalls"), first(found, "parts"), FAULTS[first(found, "fault")]) == (3, "outer", "outer")
+
+
+def test_a_worn_race_is_no_spall(labels_with):
+    found = labels_with({"faults": [{"kind": "distributed", "site": "outer", "waviness_um": 0.3}]})
+    assert FAULTS[first(found, "fault")] == first(found, "parts") == "outer"
+    assert first(found, "wear") == pytest.approx(0.3e-6)
+    assert [first(found, name) for name in ("n_spalls", "width", "depth", "largest_drop", "width_share")] == [0] * 5
+    assert np.isnan(first(found, "angle"))
+
+
+def test_a_healthy_bearing_has_no_part_that_is_damaged(labels_with):
+    found = labels_with({"faults": [{"kind": "healthy"}]})
+    assert FAULTS[first(found, "fault")] == "healthy"
+    assert first(found, "parts") == ""
+    names = ("n_spalls", "width", "depth", "largest_drop", "width_share", "wear", "pitch_error", "knock")
+    assert [first(found, name) for name in names] == [0] * 8
+    assert np.isnan(first(found, "angle"))
+
+
+def test_the_temperature_is_labelled_where_there_is_oil(labels_with):
+    oiled = {"contact.lubricant": {}, "operation.temperature_celsius": 55}
+    assert labels_with(oiled)["temperature"].values == pytest.approx(55)
+    assert np.isnan(labels_with({})["temperature"].values).all()
+
+
+def test_both_clearances_are_diametral(labels_with):
+    """A hotter inner ring reduces the operating clearance, and not the clearance as built."""
+    cold, warm = labels_with({}), labels_with({"operation.inner_ring_hotter_k": 10})
+    for found in (cold, warm):
+        assert found["diametral_clearance"].values == pytest.approx(10e-6)
+    assert cold["operating_clearance"].values == pytest.approx(10e-6)
+    outer = (PITCH + BALL) / 2
+    assert warm["operating_clearance"].values == pytest.approx(10e-6 - 2 * 10 * 12.5e-6 * outer)
+
+
+def test_loads_along_and_across_the_shaft_are_not_mixed_up(labels_with):
+    found = labels_with({"operation.axial_load_n": 350, "specimen.contact_angle_deg": 10})
+    assert (first(found, "axial_load"), first(found, "load")) == pytest.approx((350, 400))
+
+
+def test_a_record_without_a_machine_has_no_operating_clearance(recipe_with):
+    recipe = recipe_with(STEADY | {"records": 2})
+    scenarios = draw_scenarios(recipe)
+    response = response_of(scenarios, recipe, impossible=[0])
+    found = part_dataset(measure(response.acceleration, scenarios), response)
+    assert np.isnan(found["operating_clearance"].values).tolist() == [True, False]
+
+
+def test_what_the_run_found_stands_beside_its_record(recipe_with):
+    recipe = recipe_with({"records": 4})
+    errors = np.array([np.nan, 1e-4, 2e-4, np.nan])
+    found = labels(recipe, step_error=errors)
+    assert found["oversampling"].values.tolist() == [2, 3, 4, 5]
+    np.testing.assert_array_equal(found["step_phase"].values, np.linspace(0.1, 0.3, 4))
+    np.testing.assert_array_equal(found["step_error"].values, errors)
+    assert np.isnan(labels(recipe)["step_error"].values).all()
+
+
+def test_signal_ratio_and_clipped_samples_are_those_that_were_measured(recipe_with):
+    recipe = recipe_with({"records": 3, "recording.converter": {"kind": "adc", "full_scale_m_s2": 2.0}})
+    scenarios, n = draw_scenarios(recipe), timeline(settings_of(recipe)).lead + recipe.n_samples
+    hiss = 4 * np.random.default_rng(0).standard_normal((3, 1, n)).astype(np.float32)
+    measured = measure(hiss, scenarios)
+    found = part_dataset(measured, response_of(scenarios, recipe))
+    np.testing.assert_array_equal(found["snr"].values, measured.snr)
+    np.testing.assert_array_equal(found["clipped"].values, measured.clipped)
+    np.testing.assert_array_equal(found["acceleration"].values, measured.signal)
+    assert measured.clipped.all()
+    assert found["acceleration"].attrs["scale_factor"] == pytest.approx(2.0 / 32767)
+
+
+def test_a_record_knows_its_place(recipe_with):
+    recipe = recipe_with({"machine.load_angle_deg": "uniform(-100, -80)"})
+    scenarios, found = draw_scenarios(recipe), labels(recipe)
+    assert found["recording"].values.tolist() == list(range(24))
+    assert found["specimen"].values.tolist() == [number // 2 for number in range(24)]
+    assert found["rig"].values.tolist() == [number // 8 for number in range(24)]
+    assert found["source"].values.tolist() == [f"small/{number}" for number in range(24)]
+    assert found["bearing"].values.tolist() == ["6205"] * 24
+    assert [SPLITS[code] for code in found["split"].values] == [scenario.specimen.split for scenario in scenarios]
+    assert [FAULTS[code] for code in found["fault"].values] == [scenario.specimen.fault for scenario in scenarios]
+    for scenario, text in zip(scenarios, found["draws"].values, strict=True):
+        assert read_scenario(text) == scenario
+
+
+def test_a_record_has_the_identity_that_its_numbers_have_in_every_corpus_of_the_same_draws(recipe_with):
+    found = labels(recipe_with({}))
+    corpora = {text.partition("/")[0] for text in found["identity"].values}
+    assert corpora == {
+        corpus_identity(recipe_with({"storage.records_per_part": 5, "title": "Another title", "records": 9}))
+    }
+    assert corpora != {corpus_identity(recipe_with({"seed": 8}))}
+    numbers = [tuple(map(int, text.split("/")[1:])) for text in found["identity"].values]
+    wanted = [found[name].values.tolist() for name in ("rig", "specimen", "recording", "pair")]
+    assert numbers == list(zip(*wanted, strict=True))
+
+
+def test_a_gear_is_labelled_by_its_teeth(labels_with):
+    gear = {"probability": 1, "teeth": 23, "mate_teeth": 47, "count": 2, "level_db": 0}
+    assert labels_with({"background.gear_mesh": gear})["gear_mesh"].values.tolist() == [23] * 24
+    assert labels_with({})["gear_mesh"].values.tolist() == [0] * 24
+
+
+def test_every_sensor_flag_becomes_a_variable_and_is_0_without_sensor_faults(labels_with):
+    found, names = labels_with({}), SensorFlags._fields
+    assert all((found[name].values == 0).all() for name in names)
+    columns = sensor_flag_columns([SensorFlags(), SensorFlags(*range(1, len(names) + 1))])
+    assert columns == {name: [0, value] for value, name in enumerate(names, start=1)}

@@ -1,0 +1,359 @@
+"""Laws of records made in memory and of the corpora written from them: the same records as from a recipe, whole, and made again from it."""
+
+import shutil
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import gen
+from gen.corpus import SIGNAL
+from gen.recipe import plain
+from gen.support.errors import CorpusError, RecipeError, SimulationError
+from tests.kills import killed
+
+# the kernel of the small recipes
+SHORT = {"waviness_nm": 20, "sample_rate_hz": 12000, "duration_s": 0.1, "settle_s": 0.06, "seed": 5}
+OUTER, INNER = gen.outer(width_mm=0.8), gen.inner(width_mm=0.4)
+QUICK = gen.read_recipe("quickstart")
+SNR = {"kind": "snr", "faulty_db": 3, "healthy_db": 3}
+
+
+@pytest.fixture(scope="module")
+def ladder():
+    """Three records of each of two faults, in two parts."""
+    return gen.records([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
+
+
+def with_width(one, width):
+    return replace(one, specimen=replace(one.specimen, spalls=(replace(one.specimen.spalls[0], width=width),)))
+
+
+def same_but_source(one, other):
+    """Whether two Datasets of recipes with different names are the same; sources and settings have the name."""
+    return one.drop_vars(["source", "draws"]).identical(other.drop_vars(["source", "draws"]))
+
+
+def replayed(directory):
+    with gen.open_corpus(directory) as corpus:
+        records = corpus.sizes["record"]
+    return all(gen.replay(directory, record).identical for record in range(records))
+
+
+def test_one_record_is_the_only_one_of_records():
+    one = gen.record(OUTER, **SHORT)
+    assert one[SIGNAL].dims == ("channel", "elapsed_time")
+    assert one["bpfo"].dims == ()
+    alone = gen.records(OUTER, **SHORT).isel(record=0)
+    assert same_but_source(one.drop_attrs(deep=False), alone.drop_attrs(deep=False))
+
+
+def test_records_do_not_depend_on_the_number_of_threads(ladder):
+    again = gen.records([OUTER, INNER], 3, workers=2, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
+    assert again.identical(ladder)
+
+
+def test_the_corpus_of_a_whole_dataset_is_that_of_its_recipe_byte_by_byte(ladder, tmp_path):
+    written = gen.write_corpus(ladder, tmp_path / "written")
+    gen.generate(written / "recipe.yaml", tmp_path / "generated")
+    names = ["manifest.json", "index.nc", "recipe.yaml", "README.md", "parts/part-00000.nc", "parts/part-00001.nc"]
+    for name in names:
+        assert (written / name).read_bytes() == (tmp_path / "generated" / name).read_bytes()
+    assert gen.validate_corpus(written) == []
+    with gen.open_corpus(written) as corpus:
+        assert np.array_equal(corpus[SIGNAL].values, ladder[SIGNAL].values)
+
+
+def saved(dataset, folder):
+    dataset.to_netcdf(folder / "saved.nc")
+    return xr.open_dataset(folder / "saved.nc")
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda ladder, _: ladder.isel(record=[4, 1]),
+        lambda ladder, _: ladder.isel(record=2),
+        lambda ladder, _: ladder.sortby("width").isel(record=slice(2)),
+        lambda ladder, _: xr.concat([ladder.isel(record=[5, 3]), ladder.isel(record=0)], "record"),
+        lambda ladder, _: ladder.isel(record=[3]).transpose("elapsed_time", "channel", "record"),
+        lambda ladder, folder: saved(ladder.isel(record=[2]), folder),
+    ],
+    ids=["some", "one", "sorted", "joined", "transposed", "saved"],
+)
+def test_every_record_of_a_dataset_that_was_cut_or_joined_is_replayed(ladder, tmp_path, changed):
+    directory = gen.write_corpus(changed(ladder, tmp_path), tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+
+
+def test_records_in_floating_point_are_written_as_they_are(tmp_path):
+    made = gen.records(OUTER, 2, converter={"kind": "float32"}, **SHORT)
+    directory = gen.write_corpus(made, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+
+
+def test_further_variables_are_written(ladder, tmp_path):
+    attributes = {"long_name": "name of the shift", "role": "provenance"}
+    shifts, grades = [f"shift {n}" for n in range(6)], np.arange(6.0)
+    more = ladder.assign(shift=("record", shifts, attributes), grade=("record", grades, attributes | {"units": "m"}))
+    directory = gen.write_corpus(more, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    with gen.open_corpus(directory) as corpus:
+        assert corpus["shift"].values.tolist() == shifts
+        assert corpus["grade"].values.tolist() == grades.tolist()
+        assert corpus["grade"].attrs["units"] == "m"
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        (
+            lambda ladder: ladder.isel(elapsed_time=slice(100)),
+            "acceleration has channels sensor and 100 samples, the records sensor and 1200",
+        ),
+        (
+            lambda ladder: ladder.assign(acceleration=1.001 * ladder[SIGNAL]),
+            "acceleration of record 0 is not as the converter gave it",
+        ),
+        (
+            lambda ladder: ladder.assign(acceleration=ladder[SIGNAL] * np.nan),
+            "acceleration of record 0 is not as the converter gave it",
+        ),
+        (
+            lambda ladder: ladder.isel(record=[1, 1]),
+            "records 0 and 1 of the Dataset have the same scenario; give each record once.",
+        ),
+        (lambda ladder: ladder.isel(record=[]), "the Dataset has no record; give at least one."),
+        (lambda ladder: ladder.drop_vars("snr"), "the Dataset has no variable snr; keep all that gen.records gives."),
+        (
+            lambda ladder: ladder.drop_vars("draws"),
+            "the Dataset has no variable draws, so it holds no scenarios; give one from",
+        ),
+        (
+            lambda ladder: ladder.assign_attrs(recipe_json="{"),
+            "the attribute recipe_json of the Dataset is not the JSON text of a recipe",
+        ),
+        (
+            lambda ladder: ladder.assign_attrs(recipe_json="[1]"),
+            "the attribute recipe_json of the Dataset is not the JSON text of a recipe",
+        ),
+        (
+            lambda ladder: ladder.assign(mine=("record", np.arange(6))),
+            "mine: needs one value for each record and the attributes long_name and",
+        ),
+        (
+            lambda ladder: xr.concat([ladder, gen.records(OUTER, converter={"kind": "float32"}, **SHORT)], "record"),
+            "record 6 of the Dataset has full_scale None, and record 0 has 500.0; write each kind as a corpus of its own.",
+        ),
+    ],
+)
+def test_a_dataset_that_cannot_be_made_again_is_refused(ladder, tmp_path, changed, sentence):
+    with pytest.raises(CorpusError, match=r".") as caught:
+        gen.write_corpus(changed(ladder), tmp_path / "corpus")
+    assert sentence in str(caught.value)
+    assert not any(tmp_path.iterdir())
+
+
+def test_records_of_two_recipes_in_one_dataset_are_replayed_and_their_machines_keep_apart(ladder, tmp_path):
+    other = gen.records(OUTER, 4, bearing="6206", level=SNR, rungs=[0, 1], **SHORT | {"seed": 6})
+    both = xr.concat([other.isel(record=[3]), ladder.isel(record=[4, 1]), other.isel(record=[0])], "record")
+    directory = gen.write_corpus(both, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert not (directory / "recipe.yaml").exists()
+    assert replayed(directory)
+    with gen.open_corpus(directory) as corpus:
+        assert corpus["rig"].values.tolist() == [0, 1, 1, 0]
+        assert corpus["pair"].values.tolist() == [0, -1, -1, 1]
+        assert corpus["identity"].values.tolist() == both["identity"].values.tolist()
+
+
+def test_a_folder_that_holds_something_is_left_as_it_is(ladder, tmp_path):
+    (tmp_path / "notes.txt").write_text("mine", encoding="utf-8")
+    for place in (tmp_path, tmp_path / "notes.txt"):
+        with pytest.raises(CorpusError, match="exists and is not an empty folder; give a new name, or remove it first"):
+            gen.write_corpus(ladder, place)
+    assert [path.name for path in tmp_path.iterdir()] == ["notes.txt"]
+
+
+def test_a_relative_and_an_empty_folder_are_taken(ladder, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "empty").mkdir()
+    assert gen.write_corpus(ladder.isel(record=[0]), "empty") == tmp_path / "empty"
+    assert gen.validate_corpus("empty") == []
+
+
+def test_a_killed_write_leaves_a_whole_corpus_or_none(ladder, tmp_path):
+    directory = tmp_path / "corpus"
+    for _ in killed(lambda: gen.write_corpus(ladder, directory), moments=5):
+        assert not directory.exists() or gen.validate_corpus(directory) == []
+        for left in tmp_path.iterdir():
+            assert left == directory or left.name.startswith(".")
+            shutil.rmtree(left)
+
+
+@pytest.mark.parametrize("order", [[1], [5, 4, 3, 2, 1, 0]], ids=["some", "in another order"])
+def test_the_corpus_of_a_choice_has_no_recipe(ladder, tmp_path, order):
+    directory = gen.write_corpus(ladder.isel(record=order), tmp_path / "corpus")
+    assert not (directory / "recipe.yaml").exists()
+    gen.write_recipe(gen.recipe_of(ladder), tmp_path / "recipe.yaml")
+    with pytest.raises(CorpusError, match="choose another name"):
+        gen.generate(tmp_path / "recipe.yaml", directory)
+    assert gen.validate_corpus(directory) == []
+
+
+def test_a_record_that_cannot_be_simulated_is_an_error_or_left_out_with_a_warning(tmp_path):
+    crushing = {"load_n": gen.grid([500, 30_000]), "bearing": "6205"}
+    with pytest.warns(UserWarning, match=r"1 of 3 records are left out; the first: record 1: .*static rating"):
+        found = gen.records(OUTER, 3, **SHORT, **crushing)
+    assert found["recording"].values.tolist() == [0, 2]
+    directory = gen.write_corpus(found, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+    gen.generate(directory / "recipe.yaml", tmp_path / "generated")
+    assert (directory / "manifest.json").read_bytes() == (tmp_path / "generated" / "manifest.json").read_bytes()
+
+
+def test_gen_record_makes_one_record_alone():
+    with pytest.raises(
+        RecipeError, match=r"the keys ask for 4 records; gen\.record makes one, gen\.records makes several"
+    ):
+        gen.record(OUTER, rigs=2, specimens_per_rig=2)
+    with pytest.raises(RecipeError, match="workers: 0 is not allowed; use 1 or more"):
+        gen.records(OUTER, workers=0)
+    with pytest.raises(SimulationError):
+        gen.record(OUTER, shaft_rpm=100_000, oversampling=1, **SHORT)
+
+
+def test_drawn_scenarios_give_the_records_of_their_recipe(ladder):
+    scenarios = gen.scenarios_of(ladder)
+    assert scenarios == gen.draw_scenarios(gen.recipe_of(ladder))
+    again = gen.simulate_scenarios(scenarios)
+    assert (
+        again.drop_vars("step_error")
+        .drop_attrs(deep=False)
+        .identical(ladder.drop_vars("step_error").drop_attrs(deep=False))
+    )
+
+
+def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_path):
+    recipe = gen.recipe_for([OUTER, INNER], 3, rungs=[0, 0.5, 1], level=SNR, **SHORT)
+    scenarios = gen.draw_scenarios(recipe)
+    faster = [
+        replace(one, record=replace(one.record, conditions=one.record.conditions | {"shaft": 61.0}))
+        for one in scenarios
+    ]
+    made = gen.simulate_scenarios(faster[3:] + faster[:3])
+    assert np.allclose(made["true_shaft_rate"], 61, rtol=0.02)
+    directory = gen.write_corpus(made.isel(record=[2, 0, 1, 5, 4, 3]), tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert replayed(directory)
+    stored = gen.stored_scenario(directory, 1)
+    assert replace(stored, record=replace(stored.record, gains=None)) == faster[3]
+    with pytest.raises(RecipeError, match=r"scenarios\[1\]: rung 0 of pair 0 does not rise; sort them, each once"):
+        gen.simulate_scenarios([faster[1], faster[0]])
+    assert replayed(gen.write_corpus(made.isel(record=[0, 1]), tmp_path / "cut"))
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        (
+            lambda one: replace(one, rig=replace(one.rig, gain=2.0)),
+            r"scenarios\[1\]: rig 0 is not that of scenarios\[0\]; give another machine",
+        ),
+        (
+            lambda one: replace(one, rig=replace(one.rig, channels=())),
+            r"need one entry for each of 1 settings\.channels",
+        ),
+        (
+            lambda one: replace(one, rig=replace(one.rig, bearing=replace(one.rig.bearing, n_balls=10))),
+            r"scenarios\[1\]: rig\.bearing and specimen\.bearing must have the same n_balls, \d+ at most",
+        ),
+        (
+            lambda one: replace(one, record=replace(one.record, snr=3.0)),
+            r"record\.snr and record\.rms must both be given, or both be None",
+        ),
+        (
+            lambda one: replace(one, settings=replace(one.settings, samples=10**9)),
+            r"scenarios\[1\]: a record of all channels, settings\.settle included, has 1000000720 samples, and the limit",
+        ),
+        (
+            lambda one: replace(one, specimen=replace(one.specimen, fault="outer")),
+            "the damage of the specimen is inner; change",
+        ),
+        (lambda one: with_width(one, 0.0), "width and depth of a spall must be above 0"),
+        (lambda one: with_width(one, 0.3), "specimen 1: a spall of 300 mm does not fit the inner radius of"),
+        (
+            lambda one: replace(one, settings=replace(one.settings, seed="x")),
+            r"scenarios\[1\]: is no scenario \(settings\.seed: .*; change drawn ones with",
+        ),
+        (
+            lambda one: replace(one, record=replace(one.record, conditions={"shaft": float("nan")})),
+            r"scenarios\[1\]: is no scenario \(",
+        ),
+    ],
+)
+def test_scenarios_that_do_not_fit_each_other_are_refused(ladder, changed, sentence):
+    scenarios = gen.scenarios_of(ladder)
+    with pytest.raises(RecipeError, match=sentence):
+        gen.simulate_scenarios([scenarios[0], changed(scenarios[1])])
+
+
+def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder):
+    one, other, *_ = gen.scenarios_of(ladder)
+    other = replace(other, settings=replace(other.settings, seed=6, twins=False))
+    with pytest.raises(
+        SimulationError, match=r"scenarios\[1\]: its settings are not those of scenarios\[0\] \(seed, twins\); simulate"
+    ):
+        gen.simulate_scenarios([one, other])
+
+
+@pytest.mark.parametrize(
+    ("conditions", "sentence"),
+    [
+        (lambda drawn: {"shaft": drawn["shaft"]}, r"cannot be simulated \(KeyError: 'load'\); keep all of them"),
+        (lambda drawn: drawn | {"shaft": 0.0}, r"cannot be simulated \(ZeroDivisionError"),
+    ],
+)
+def test_missing_and_absurd_drawn_values_are_one_sentence(ladder, conditions, sentence):
+    one = gen.scenarios_of(ladder)[0]
+    changed = replace(one, record=replace(one.record, conditions=conditions(one.record.conditions)))
+    with pytest.raises(SimulationError, match=sentence):
+        gen.simulate_scenarios([changed])
+
+
+def test_no_scenarios_are_no_records():
+    with pytest.raises(SimulationError, match="scenarios: there are none; give at least one"):
+        gen.simulate_scenarios([])
+
+
+def test_the_dataset_carries_the_recipe_as_it_was_given(ladder):
+    assert plain(gen.recipe_of(ladder)) == plain(
+        gen.recipe_for([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "error", "sentence"),
+    [
+        (lambda _: gen.write_corpus(None, "corpus"), CorpusError, "NoneType given in place of a Dataset"),
+        (lambda _: gen.recipe_of({}), CorpusError, "dict given in place of a Dataset"),
+        (lambda _: gen.scenarios_of(3), CorpusError, "so it holds no scenarios; give one from"),
+        (lambda some: gen.simulate_scenarios(some[0]), RecipeError, "scenarios: Scenario given; give a list"),
+        (lambda _: gen.simulate_scenarios(None), RecipeError, "scenarios: NoneType given; give a list"),
+        (lambda _: gen.simulate_scenarios("x"), RecipeError, "scenarios: str given; give a list"),
+        (lambda _: gen.simulate_scenarios([1]), RecipeError, r"scenarios\[0\]: is no scenario"),
+        (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
+        (lambda _: gen.write_recipe({}, "recipe.yaml"), RecipeError, r"recipe: dict given; give a gen\.Recipe"),
+        (lambda _: gen.read_publication([1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
+    ],
+)
+def test_an_argument_of_another_type_is_one_sentence(call, error, sentence, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(error, match=sentence) as caught:
+        call(gen.draw_scenarios(QUICK, 0, 1))
+    assert str(caught.value).endswith(".")
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,91 @@
+"""Laws of a plan: it counts a small corpus exactly, and estimates a large one from parts spread over it."""
+
+from itertools import pairwise
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gen.generation.corpus import generate
+from gen.generation.pace import Pace
+from gen.generation.plan import BYTES_PER_FILE, MOST_DRAWN, plan, some_ranges
+from gen.generation.plan import _bytes as plan_bytes
+from gen.physics.kernel.compiling import LANES
+from gen.physics.kernel.integrate import integrate
+from gen.recipe import read_recipe
+
+
+@settings(deadline=None)
+@given(per_part=st.integers(1, 20_000), rigs=st.integers(1, 5000))
+def test_the_parts_a_plan_looks_at_are_in_the_corpus_and_do_not_overlap(recipe_with, per_part, rigs):
+    recipe = recipe_with({"storage.records_per_part": per_part, "corpus.rigs": rigs})
+    ranges = some_ranges(recipe)
+    assert all(0 <= first < stop <= recipe.n_records for first, stop in ranges)
+    assert all(stop <= following for (_, stop), (following, _) in pairwise(ranges))
+    drawn = sum(stop - first for first, stop in ranges)
+    assert drawn == recipe.n_records or 0 < drawn <= MOST_DRAWN
+
+
+def test_a_large_corpus_is_counted_from_a_part_of_it(write_recipe, tmp_path):
+    path = write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500, "storage.records_per_part": 250})
+    planned = plan(path)
+    assert (planned.records, planned.rigs, planned.specimens, planned.drawn) == (20_000, 2500, 10_000, 5000)
+    assert sum(planned.splits.values()) == pytest.approx(20_000, abs=3)
+    assert planned.classes == pytest.approx(dict.fromkeys(("healthy", "inner", "outer", "ball"), 5000), rel=0.02)
+
+
+@pytest.mark.parametrize(("key", "factor"), [("corpus.rigs", 3), ("recording.duration_s", 1)])
+def test_more_records_take_more_time_and_room(write_recipe, tmp_path, monkeypatch, key, factor):
+    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: Pace(lane_step=1e-8, record=1e-4))
+    small = plan(write_recipe(tmp_path / "small.yaml"))
+    large = plan(write_recipe(tmp_path / "large.yaml", {key: 9 if factor == 3 else 1.0}))
+    assert large.records == factor * small.records
+    assert large.bytes > 1.3 * small.bytes
+    assert large.estimated_seconds > 1.3 * small.estimated_seconds
+
+
+def test_the_time_of_a_plan_counts_every_lane_that_generation_integrates(write_recipe, tmp_path, monkeypatch):
+    """One second per step of a lane: the lanes of all batches, filled across parts, and those of the check at half the step."""
+    counted = []
+
+    def count(shape, lanes, dt, n_steps, taps, n_settle, n_out):
+        counted.append(n_steps * (n_settle + n_out) * LANES)
+        return integrate(shape, lanes, dt, n_steps, taps, n_settle, n_out)
+
+    path = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 20})
+    monkeypatch.setattr("gen.simulation.batches.integrate", count)
+    generate(path, tmp_path / "corpus")
+    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: Pace(lane_step=1.0, record=0.0))
+    assert plan(path).estimated_seconds == pytest.approx(sum(counted), rel=1e-6)
+
+
+def test_what_a_plan_refuses_generate_refuses_with_the_same_sentence(write_recipe, tmp_path):
+    path = write_recipe(tmp_path / "stiff.yaml", {"recording.oversampling": 1})
+    sentences = []
+    for make in (plan, lambda recipe: generate(recipe, tmp_path / "corpus")):
+        with pytest.raises(Exception, match="too fast for a step") as caught:
+            make(path)
+        sentences.append(str(caught.value))
+    assert sentences[0] == sentences[1]
+
+
+def test_a_plan_follows_seed_and_number_of_records(write_recipe, tmp_path):
+    path = write_recipe(tmp_path / "small.yaml")
+    assert plan(path, seed=8, records=5).records == 5
+    assert plan(path, seed=8).seed == read_recipe(path, seed=8).seed == 8
+
+
+def test_the_time_of_a_plan_contains_the_time_to_draw_every_record(write_recipe, tmp_path, monkeypatch):
+    monkeypatch.setattr("gen.generation.plan.measured_pace", lambda *_: Pace(lane_step=0.0, record=0.0))
+    small = plan(write_recipe(tmp_path / "small.yaml")).estimated_seconds
+    large = plan(write_recipe(tmp_path / "large.yaml", {"corpus.rigs": 2500})).estimated_seconds
+    assert small > 0
+    assert large > 20 * small
+
+
+@pytest.mark.parametrize("per_part", [1, 5, 24])
+def test_the_size_of_a_plan_has_one_overhead_for_each_part_and_one_for_the_index(recipe_with, per_part):
+    recipe = recipe_with({"storage.records_per_part": per_part})
+    lean = recipe_with({"storage.records_per_part": 1000})
+    assert plan_bytes(recipe) - plan_bytes(lean) == (recipe.n_parts - 1) * BYTES_PER_FILE
+    assert plan_bytes(lean) > 2 * BYTES_PER_FILE

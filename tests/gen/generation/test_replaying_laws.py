@@ -1,0 +1,143 @@
+"""Laws of the scenario stored in a corpus: it is the drawn one, and a corpus without one gets a sentence."""
+
+import shutil
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from gen import (
+    draw_scenarios,
+    generate,
+    open_corpus,
+    read_recipe,
+    replay,
+    shaft_angles,
+    stored_scenario,
+    write_corpus,
+)
+from gen.corpus import finish_corpus, part_name, write_part
+from gen.simulation.motion import start_of
+from gen.support.errors import CorpusError
+from tests import corpora
+
+
+def written(records, folder):
+    """A corpus of one part whose signals are in floating point."""
+    (folder / "parts").mkdir(parents=True)
+    rows = [write_part(records, folder / "parts" / part_name(0))]
+    finish_corpus(folder, rows)
+
+
+def test_records_of_faults_and_levels_that_were_drawn_again_are_replayed_bit_for_bit(write_recipe, tmp_path):
+    """Also where records before them were left out, so that their places in the corpus are not their numbers."""
+    level = {
+        "kind": "snr",
+        "faulty_db": "uniform(-25, 10)",
+        "healthy_db": "uniform(-15, 10)",
+    }
+    outer = {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-180, 180)"}
+    hidden = {"kind": "ball", "width_mm": 0.1, "level": {"faulty_db": -60}}
+    changes = {"level": level, "faults": [outer, hidden], "recording.duration_s": 0.25, "truth.undetected": "redraw"}
+    generated = generate(write_recipe(tmp_path / "r.yaml", changes), tmp_path / "corpus")
+    assert generated.failures
+    with open_corpus(tmp_path / "corpus") as corpus:
+        numbers, faults, levels = (corpus[name].values for name in ("recording", "fault_tries", "level_tries"))
+    moved = numbers != np.arange(len(numbers))
+    for wanted in (moved & (faults > 0), moved & (levels > 0)):
+        assert replay(tmp_path / "corpus", int(np.flatnonzero(wanted)[0])).identical
+
+
+def test_a_rung_alone_is_replayed_bit_for_bit(write_recipe, tmp_path):
+    """The largest rung of its group, which set the level, is not in the corpus."""
+    level = {"kind": "snr", "faulty_db": 0, "healthy_db": 0}
+    faults = [{"kind": "healthy", "weight": 2}, {"kind": "inner", "width_mm": 0.5}]
+    size = {"corpus.rungs": [0, 0.5, 1], "corpus.records_per_specimen": 1, "corpus.rigs": 1}
+    changes = {"level": level, "faults": faults, **size}
+    generate(write_recipe(tmp_path / "r.yaml", changes), tmp_path / "corpus")
+    with open_corpus(tmp_path / "corpus") as corpus:
+        small = corpus.isel(record=np.isin(corpus["rung"].values, (0, 1))).load()
+    assert set(small["rung"].values) == {0, 1}
+    write_corpus(small, tmp_path / "small")
+    assert all(replay(tmp_path / "small", record).identical for record in range(small.sizes["record"]))
+
+
+def test_a_record_is_replayed_with_channels_cut_renamed_or_exchanged_and_in_floating_point(write_recipe, tmp_path):
+    channels = [{"name": "x", "body": "housing"}, {"name": "y", "body": "housing", "angle_deg": 90}]
+    recipe = write_recipe(tmp_path / "r.yaml", {"recording.channels": channels, "records": 3})
+    generate(recipe, tmp_path / "made")
+    with open_corpus(tmp_path / "made") as corpus:
+        whole = corpus.load().drop_encoding()
+    whole = whole.assign_coords(
+        elapsed_time=whole["elapsed_time"].astype(np.float64)
+    )  # in the byte order of this machine
+    copies = {
+        "whole": whole,
+        "cut": whole.isel(channel=[1]),
+        "renamed": whole.assign_coords(channel=["a", "b"]),
+        "exchanged": whole.assign_coords(channel=["y", "x"]),
+        "in other order": whole.isel(channel=[1, 0]),
+    }
+    for name, copy in copies.items():
+        written(copy, tmp_path / name)
+        again = replay(tmp_path / name, 2)
+        assert again.identical
+        assert again.dataset["channel"].values.tolist() == copy["channel"].values.tolist()
+        np.testing.assert_array_equal(xr.decode_cf(again.dataset)["acceleration"][0], copy["acceleration"][2])
+
+
+def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        numbers = corpus["recording"].values
+    drawn = draw_scenarios(read_recipe(tiny_corpus / "recipe.yaml"))
+    assert [stored_scenario(tiny_corpus, record) for record in range(len(numbers))] == [drawn[n] for n in numbers]
+
+
+def test_a_corpus_without_its_recipe_still_gives_its_scenarios(tiny_corpus, tmp_path):
+    copied = shutil.copytree(tiny_corpus, tmp_path / "corpus")
+    (copied / "recipe.yaml").unlink()
+    assert stored_scenario(copied, 7) == stored_scenario(tiny_corpus, 7)
+
+
+@pytest.mark.parametrize("record", [-1, 48])
+def test_a_record_that_is_not_there_has_no_scenario(tiny_corpus, record):
+    with pytest.raises(CorpusError, match=f"record {record} is not in it; it has records 0 to 47"):
+        stored_scenario(tiny_corpus, record)
+
+
+def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(tmp_path):
+    corpora.write_corpus(tmp_path / "corpus")
+    with pytest.raises(CorpusError, match=r"corpus: record 4: stored scenario: the whole text: Invalid JSON"):
+        stored_scenario(tmp_path / "corpus", 4)
+
+
+def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
+    with_draws = corpora.columns
+    monkeypatch.setattr(corpora, "EXTRA", ())
+    monkeypatch.setattr(corpora, "columns", lambda *part: {k: v for k, v in with_draws(*part).items() if k != "draws"})
+    corpora.write_corpus(tmp_path / "corpus")
+    with pytest.raises(CorpusError, match="record 0 was not simulated: the corpus stores no scenario of it"):
+        stored_scenario(tmp_path / "corpus", 0)
+
+
+def test_the_angle_of_the_shaft_turns_at_the_true_rate_of_the_record(tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        rates, time = corpus["true_shaft_rate"].values, corpus["elapsed_time"].values
+    for record in (0, 17):
+        angles = shaft_angles(tiny_corpus, record)
+        assert angles.shape == time.shape
+        assert np.polyfit(time, angles / (2 * np.pi), 1)[0] == pytest.approx(rates[record], rel=2e-3)
+
+
+def test_the_angle_of_the_shaft_begins_with_the_record_after_its_settling(tiny_corpus):
+    for record in (0, 17):
+        scenario = stored_scenario(tiny_corpus, record)
+        turned = shaft_angles(tiny_corpus, record)[0] - start_of(scenario).shaft
+        settling = 2 * np.pi * scenario.record.conditions["shaft"] * scenario.settings.settle
+        assert turned == pytest.approx(settling, rel=0.02)
+
+
+def test_a_corpus_that_was_not_generated_has_no_angle_of_the_shaft(tmp_path):
+    corpora.write_corpus(tmp_path / "corpus")
+    with pytest.raises(CorpusError, match="record 0: stored scenario: "):
+        shaft_angles(tmp_path / "corpus", 0)

@@ -1,0 +1,346 @@
+"""Laws of the faults that can be seen: what a record without its fault tells, and what becomes of a fault that cannot be seen."""
+
+import numpy as np
+import pytest
+
+from gen.corpus import FAULTS
+from gen.generation.labels import part_dataset
+from gen.generation.scheduling import made_records
+from gen.generation.undetected import FAULT_TRIES, made_from
+from gen.measurement.measure import measure
+from gen.recipe.sensing import FloatConverter
+from gen.scenarios import draw_scenarios
+from gen.simulation import simulate as simulation
+from gen.simulation.hits import felt_places
+from gen.simulation.simulate import simulate
+
+FLOAT = FloatConverter(kind="float32")
+OUTER = {"kind": "outer", "width_mm": 0.5, "angle_deg": "uniform(-180, 180)"}
+LEVEL = {
+    "kind": "snr",
+    "faulty_db": "uniform(-15, 10)",
+    "healthy_db": "uniform(-15, 10)",
+}
+TRAINING = {
+    "level": LEVEL,
+    "recording.duration_s": 0.25,
+    "corpus.rigs": 4,
+    "faults": [{"kind": "healthy"}, OUTER, {"kind": "inner", "width_mm": 0.5}],
+}
+
+
+def labelled(made):
+    return part_dataset(made.measured, made.response)
+
+
+@pytest.fixture(scope="module")
+def redrawing(recipe_with):
+    recipe = recipe_with(TRAINING | {"truth.undetected": "redraw"})
+    return recipe, made_records(recipe, range(recipe.n_records))
+
+
+def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
+    recipe, made = redrawing
+    faulty = np.array([scenario.specimen.fault != "healthy" for scenario in made.measured.scenarios])
+    kept = [place for place in np.flatnonzero(faulty) if place not in made.response.failures]
+    assert len(kept) > 10
+    assert (made.measured.detectable[kept] == 1).all()
+    assert any(scenario.specimen.fault_try for scenario in made.measured.scenarios)
+    assert any(scenario.record.level_try for scenario in made.measured.scenarios)
+    assert recipe.truth.undetected == "redraw"
+
+
+def test_a_fault_that_is_drawn_again_leaves_everything_else_as_it_was(redrawing):
+    recipe, made = redrawing
+    for first, final in zip(draw_scenarios(recipe), made.measured.scenarios, strict=True):
+        assert final.rig == first.rig
+        assert final.record.conditions == first.record.conditions
+        assert final.specimen.properties == first.specimen.properties
+        assert final.specimen.fault == first.specimen.fault
+        assert (final.specimen.spalls == first.specimen.spalls) == (
+            final.specimen.fault_try == 0 or not first.specimen.spalls
+        )
+
+
+def test_a_fault_that_is_drawn_again_keeps_the_conditions_of_its_entry(recipe_with):
+    """Of two entries of a class with conditions of their own, the second is not taken where the first cannot be seen."""
+    slow = OUTER | {"operation": {"shaft_rpm": 600}}
+    recipe = recipe_with({"faults": [OUTER, slow], "corpus.rigs": 8})
+    first = draw_scenarios(recipe)
+    assert len({scenario.specimen.entry for scenario in first}) == 2
+    for fault_try in (1, 2):
+        again = draw_scenarios(recipe, fault_tries=dict.fromkeys(range(32), fault_try))
+        assert [one.record.conditions for one in again] == [one.record.conditions for one in first]
+        assert [one.specimen.spalls for one in again] != [one.specimen.spalls for one in first]
+
+
+def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
+    _, made = redrawing
+    found = {}
+    for scenario in made.measured.scenarios:
+        assert found.setdefault(scenario.specimen.number, scenario.specimen) == scenario.specimen
+
+
+@pytest.mark.parametrize("cut", [range(3, 9), range(7, 8), range(24, 32)])
+def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut):
+    recipe, whole = redrawing
+    some = made_records(recipe, cut)
+    np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[cut.start : cut.stop])
+    np.testing.assert_array_equal(some.measured.fault_snr, whole.measured.fault_snr[cut.start : cut.stop])
+    assert some.measured.scenarios == whole.measured.scenarios[cut.start : cut.stop]
+
+
+def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_records_show(redrawing):
+    recipe, whole = redrawing
+    per_specimen = recipe.corpus.records_per_specimen
+    redrawn = {one.specimen.number for one in whole.measured.scenarios if one.specimen.fault_try}
+    assert redrawn
+    for specimen in redrawn:
+        number = (specimen + 1) * per_specimen - 1
+        alone = made_records(recipe, range(number, number + 1))
+        assert alone.measured.scenarios == whole.measured.scenarios[number : number + 1]
+        np.testing.assert_array_equal(alone.measured.signal[0], whole.measured.signal[number])
+
+
+def test_a_record_is_made_again_with_the_fault_and_the_level_that_it_has(redrawing):
+    _, whole = redrawing
+    redrawn = [one for one in whole.measured.scenarios if one.specimen.fault_try or one.record.level_try]
+    for scenario in redrawn[:3]:
+        again = made_from([scenario])
+        np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[scenario.record.number])
+        assert again.measured.scenarios == [scenario]
+
+
+def test_the_ratio_of_a_fault_is_the_drawn_one(redrawing):
+    _, made = redrawing
+    for place, scenario in enumerate(made.measured.scenarios):
+        if scenario.specimen.fault != "healthy" and place not in made.response.failures:
+            found = made.measured.fault_snr[place]
+            assert found == pytest.approx(scenario.record.snr, abs=0.05) or found < scenario.record.snr
+            power = 10 ** (found / 10)
+            assert made.measured.fault_share[place] == pytest.approx(power / (1 + power), rel=1e-6)
+
+
+def test_a_spall_that_no_loaded_ball_meets_adds_exactly_nothing(recipe_with):
+    """Records with and without it have the same bits, although they share a kernel with damaged records."""
+    unloaded = {"kind": "outer", "width_mm": 0.5, "angle_deg": 170}
+    recipe = recipe_with({"faults": [unloaded], "corpus.specimens_per_rig": 1, "specimen.diametral_clearance_um": 30})
+    made = made_records(recipe, range(2))
+    assert made.measured.fault_snr.tolist() == [-np.inf, -np.inf]
+    assert made.measured.fault_share.tolist() == [0.0, 0.0]
+    assert made.measured.detectable.tolist() == [0, 0]
+    assert [truth.loaded_hits for truth in made.response.truth] == [0, 0]
+
+
+@pytest.mark.parametrize("waviness", [0, 20])
+def test_the_twin_of_a_record_is_the_record_without_its_fault(recipe_with, waviness):
+    worn = {"kind": "distributed", "site": "outer", "waviness_um": 0.5}
+    faults = [{"kind": "inner", "width_mm": 0.5}, worn, {"kind": "cage"}]
+    recipe = recipe_with({"specimen.waviness_nm": waviness, "faults": faults, "corpus.specimens_per_rig": 3})
+    scenarios = draw_scenarios(recipe, 0, 6)
+    twins = simulate(scenarios).twins
+    alone = simulate([scenario.without_fault() for scenario in scenarios])
+    assert {scenario.specimen.fault for scenario in scenarios} == {"inner", "outer", "cage"}
+    np.testing.assert_array_equal(twins.acceleration, alone.acceleration)
+
+
+def test_a_record_is_the_same_whether_its_fault_is_known_apart_or_not(recipe_with):
+    """Bearing without the fault plus what the fault adds is the bearing with the fault, in every channel."""
+    changes = {
+        "recording.converter": {"kind": "float32"},
+        "recording.channels": [
+            {"name": "a", "body": "sensor"},
+            {"name": "b", "body": "housing", "path": {"direct": 2}},
+        ],
+        "path.modulation": {"probability": 1, "first": 0.5, "second": 0.2},
+        "level": {"kind": "physical", "background_m_s2": 0.1, "gain": 3},
+    }
+    whole, apart = (made_records(recipe_with(changes | {"truth.twins": twins}), range(8)) for twins in (False, True))
+    assert (apart.measured.fault_snr > 0).any()
+    for row in range(8):
+        np.testing.assert_allclose(
+            apart.measured.signal[row],
+            whole.measured.signal[row],
+            rtol=0,
+            atol=2e-6 * np.abs(whole.measured.signal[row]).max(),
+        )
+    np.testing.assert_allclose(apart.measured.snr, whole.measured.snr, atol=1e-4)
+
+
+def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
+    recipe = recipe_with({"faults": [{"kind": "inner", "width_mm": 0.5}]})
+    integrate = simulation.integrate_all
+
+    def second_twin_diverges(integrations, *given):
+        integrate(integrations, *given)
+        (twin,) = (one for one in integrations if one.number == 1 and not one.given.spalls)
+        twin.diverged = 100
+
+    monkeypatch.setattr(simulation, "integrate_all", second_twin_diverges)
+    response = simulate(draw_scenarios(recipe, 0, 2))
+    assert list(response.failures) == [1]
+    assert "record 1 diverged at t = 0.008333 s" in response.failures[1]
+    assert np.isnan(response.acceleration[1]).all()
+    assert np.isfinite(response.acceleration[0]).all()
+
+
+def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with):
+    recipe = recipe_with({"truth.twins": False})
+    made = made_records(recipe, range(8))
+    assert made.response.twins is None
+    healthy = np.array([scenario.specimen.fault == "healthy" for scenario in made.measured.scenarios])
+    assert np.isnan(made.measured.fault_snr).all()
+    assert (made.measured.detectable[~healthy] == 2).all()
+    assert (made.measured.detectable[healthy] == 0).all()
+
+
+def hidden(recipe_with, undetected):
+    unloaded = {"kind": "outer", "width_mm": 0.5, "angle_deg": 170}
+    changes = {"faults": [unloaded], "corpus.specimens_per_rig": 1, "specimen.diametral_clearance_um": 30}
+    recipe = recipe_with(changes | {"truth.undetected": undetected})
+    return recipe, made_records(recipe, range(2))
+
+
+def test_a_fault_that_cannot_be_seen_keeps_its_label_where_the_recipe_says_so(recipe_with):
+    _, made = hidden(recipe_with, "keep")
+    dataset = labelled(made)
+    assert dataset["fault"].values.tolist() == [2, 2]
+    assert dataset["detectable"].values.tolist() == [0, 0]
+    assert (dataset["width"] > 0).all()
+
+
+def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(recipe_with):
+    _, made = hidden(recipe_with, "healthy")
+    dataset = labelled(made)
+    assert dataset["fault"].values.tolist() == [0, 0]
+    assert dataset["n_spalls"].values.tolist() == [0, 0]
+    assert (dataset["width"] == 0).all()
+    assert dataset["fault_snr"].values.tolist() == [-np.inf, -np.inf]
+
+
+def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
+    recipe = recipe_with({"truth.twins": False, "truth.undetected": "healthy"})
+    made = made_records(recipe, range(8))
+    faults = [FAULTS.index(scenario.specimen.fault) for scenario in made.measured.scenarios]
+    assert any(faults)
+    assert labelled(made)["fault"].values.tolist() == faults
+
+
+def test_a_fault_that_no_draw_makes_visible_is_left_out_with_a_sentence(recipe_with):
+    _, made = hidden(recipe_with, "redraw")
+    assert sorted(made.response.failures) == [0, 1]
+    assert f"none of {FAULT_TRIES} drawn faults of class outer" in made.response.failures[0]
+
+
+LADDER = {
+    "level": LEVEL,
+    "recording.duration_s": 0.25,
+    "corpus.rungs": [0, 0.5, 1],
+    "corpus.specimens_per_rig": 3,
+    "faults": [{"kind": "healthy", "weight": 1}, OUTER | {"angle_deg": 0}, {"kind": "inner", "width_mm": 0.5}],
+}
+
+
+@pytest.fixture(scope="module", params=["keep", "redraw"])
+def ladders(recipe_with, request):
+    recipe = recipe_with(LADDER | {"truth.undetected": request.param})
+    return recipe, made_records(recipe, range(18))
+
+
+def groups_of(made):
+    found = {}
+    for place, scenario in enumerate(made.measured.scenarios):
+        if scenario.record.pair >= 0:
+            found.setdefault(scenario.record.pair, []).append(place)
+    return list(found.values())
+
+
+def test_records_of_a_group_differ_in_what_the_fault_adds_alone(ladders):
+    """Background and bearing have the same gains at every severity, so the difference to the first rung is the fault."""
+    recipe, made = ladders
+    exact = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"converter": FLOAT})})
+    signal = made_records(exact, range(18)).measured.signal.astype(float)
+    groups = groups_of(made)
+    assert groups
+    for group in groups:
+        healthy, *damaged = (signal[place] for place in group)
+        rest = np.sqrt(np.mean(healthy**2))
+        for place, record in zip(group[1:], damaged, strict=True):
+            added = np.sqrt(np.mean((record - healthy) ** 2))
+            assert 20 * np.log10(added / rest) == pytest.approx(made.measured.fault_snr[place], abs=0.05)
+
+
+def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
+    _, made = ladders
+    for *_, largest in groups_of(made):
+        drawn = made.measured.scenarios[largest].record.snr
+        assert made.measured.fault_snr[largest] == pytest.approx(drawn, abs=0.05)
+
+
+def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with):
+    quiet = LEVEL | {"faulty_db": "uniform(-40, 10)"}
+    recipe = recipe_with(LADDER | {"level": quiet, "truth.undetected": "redraw"})
+    made = made_records(recipe, range(18))
+    tried = 0
+    for group in groups_of(made):
+        levels = {(one.snr, one.level_try) for one in (made.measured.scenarios[place].record for place in group)}
+        assert len(levels) == 1
+        again = made_from([made.measured.scenarios[group[0]]])
+        np.testing.assert_array_equal(again.measured.signal[0], made.measured.signal[group[0]])
+        tried += levels.pop()[1] > 0
+    assert tried > 0
+
+
+def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_of_its_group(recipe_with):
+    """Of the widest spalls at the edge of the load zone, half the width may lie outside."""
+    angles = "uniform(20, 180)"
+    changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "truth.undetected": "redraw"}
+    recipe = recipe_with(LADDER | {"corpus.rungs": [0.1, 1], "corpus.rigs": 6} | changes)
+    made = made_records(recipe, range(recipe.n_records))
+    tries = {one.specimen.number: one.specimen.fault_try for one in made.measured.scenarios}
+    drawn = draw_scenarios(recipe, fault_tries=tries)
+    missed = {one.record.number for one, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
+    assert any(
+        one.record.number in missed and one.record.number + 1 not in missed for one in drawn if one.record.rung == 0
+    )
+
+
+def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_diverge(recipe_with):
+    recipe = recipe_with(LADDER)
+    scenarios = [one for one in draw_scenarios(recipe, 0, 18) if one.record.pair >= 0][:6]
+    response = simulate(scenarios)
+    for damaged in (response.acceleration, response.twins.acceleration):
+        damaged[2] = np.nan
+    measured = measure(response.acceleration, scenarios, response.twins)
+    assert measured.fault_snr[1] == pytest.approx(measured.scenarios[1].record.snr, abs=0.05)
+    scale = recipe.recording.converter.full_scale_m_s2 / 32767
+    rms = np.sqrt(np.mean((measured.signal[1] * scale) ** 2))
+    assert rms == pytest.approx(scenarios[1].record.rms, rel=1e-3)
+    assert measured.signal[0].any()
+    assert not measured.signal[2].any()
+
+
+def test_a_group_is_not_cut_by_a_part(ladders):
+    recipe, whole = ladders
+    for number in (1, 4, 11):
+        some = made_records(recipe, range(number, number + 2))
+        np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[number : number + 2])
+        scenario = whole.measured.scenarios[number]
+        again = made_from([scenario])
+        np.testing.assert_array_equal(again.measured.signal[0], whole.measured.signal[number])
+
+
+def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
+    """The background of a machine and the gain of its sensor are the same at every severity, and both are stored."""
+    level = {"kind": "physical", "gain": "uniform(0.5, 2)", "background_m_s2": 0.2}
+    rungs, width = [0.25, 0.5, 0.75, 1], {"kind": "outer", "width_mm": 0.4}
+    recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
+    made = made_records(recipe, range(16))
+    dataset = labelled(made)
+    assert dataset["gain"].values.tolist() == [scenario.rig.gain for scenario in made.measured.scenarios]
+    assert dataset["background_rms"].values == pytest.approx(0.2)
+    signal = made.measured.signal.astype(float) / made.measured.counts_per_unit
+    rms = np.sqrt(np.mean(signal**2, axis=(1, 2))) / dataset["gain"].values
+    for group in groups_of(made):
+        assert np.all(np.diff(rms[group]) > 0)
+        assert np.all(np.diff(made.measured.fault_snr[group]) > 3)

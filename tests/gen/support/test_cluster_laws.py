@@ -1,0 +1,153 @@
+"""Laws of clusters: workers with threads write the same bytes, and a lost cluster ends in one sentence."""
+
+import threading
+import time
+from functools import partial
+
+import dask
+import pytest
+from distributed import Client, LocalCluster
+
+from gen import generate
+from gen.corpus import read_manifest, validate_corpus
+from gen.support import cluster
+from gen.support.errors import ClusterError
+
+
+@pytest.fixture
+def threaded():
+    """A cluster whose workers are threads of this process, four each."""
+    found = LocalCluster(n_workers=2, threads_per_worker=4, processes=False, dashboard_address="127.0.0.1:0")
+    with dask.config.set({"distributed.comm.timeouts.connect": "1s"}):
+        yield found
+        found.close(timeout=2)
+
+
+@pytest.mark.parametrize("turn", range(3))
+def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, tmp_path, turn):
+    recipe = tmp_path / "many.yaml"
+    recipe.write_text(tiny_recipe.read_text().replace("records_per_part: 12", f"records_per_part: {2 + turn}"))
+    alone = generate(recipe, tmp_path / "alone")
+    made = generate(recipe, tmp_path / "threads", scheduler=threaded.scheduler_address)
+    assert read_manifest(made.path).parts == read_manifest(alone.path).parts
+    assert validate_corpus(made.path) == []
+
+
+def told(topic, item):
+    cluster.publisher(topic)(item)
+
+
+def _slow(number):
+    time.sleep(0.2)
+    return number
+
+
+@pytest.mark.parametrize(
+    ("lose", "sentence"),
+    [
+        (lambda c: c.scale(0), r"has had no worker for 1 s; start workers and run the same command again"),
+        (lambda c: c.sync(c.scheduler.close), r"is gone; start it and run the same command again"),
+    ],
+    ids=["all workers", "the scheduler"],
+)
+def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, lose, sentence):
+    monkeypatch.setattr(cluster, "POLL_S", 0.2)
+    monkeypatch.setattr(cluster, "PATIENCE_S", 1.0)
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _slow, range(10_000))
+        assert next(tasks) < 10_000
+        loser = threading.Timer(0.5, lose, [threaded])
+        loser.start()
+        with pytest.raises(ClusterError, match=sentence):
+            list(tasks)
+        loser.join()
+
+
+def test_a_cluster_that_gets_workers_again_completes_the_work(threaded, monkeypatch):
+    monkeypatch.setattr(cluster, "POLL_S", 0.1)
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _slow, range(40))
+        found = [next(tasks)]
+        threaded.scale(0)
+        while client.nthreads():
+            time.sleep(0.05)
+        later = threading.Timer(1.0, threaded.scale, [2])
+        later.start()
+        found += list(tasks)
+        later.join()
+    assert set(found) == set(range(40))
+
+
+def test_every_item_is_worked_on_once(threaded):
+    with Client(threaded, set_as_default=False) as client:
+        assert sorted(cluster.run_tasks(client, abs, range(-50, 0))) == list(range(1, 51))
+        assert list(cluster.run_tasks(client, abs, [])) == []
+
+
+def test_few_tasks_are_submitted_ahead_of_their_results(threaded):
+    """Two per thread, of which there are eight: memory does not grow with the number of items."""
+    taken = 0
+
+    def items():
+        nonlocal taken
+        for item in range(200):
+            taken += 1
+            yield item
+
+    with Client(threaded, set_as_default=False) as client:
+        for done, _ in enumerate(cluster.run_tasks(client, abs, items())):
+            assert taken - done <= 2 * 8 + 1
+
+
+def test_workers_that_come_later_are_given_tasks(threaded, monkeypatch):
+    """With one worker of four threads 8 tasks are in hand, with two 16."""
+    monkeypatch.setattr(cluster, "COUNT_AGAIN_S", 0.0)
+    taken = 0
+
+    def items():
+        nonlocal taken
+        for taken in range(1, 201):  # noqa: B007
+            yield 0
+
+    threaded.scale(1)
+    with Client(threaded, set_as_default=False) as client:
+        while len(client.nthreads()) != 1:
+            time.sleep(0.05)
+        tasks = cluster.run_tasks(client, abs, items())
+        next(tasks)
+        assert taken == 8
+        threaded.scale(2)
+        client.wait_for_workers(2)
+        assert 8 < max(taken - done for done, _ in enumerate(tasks, start=2)) <= 16
+
+
+def _inverse(number):
+    time.sleep(0.2 * (number != 1))
+    return 1 / number
+
+
+def test_results_that_arrive_together_with_an_error_come_before_it(threaded):
+    found = []
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _inverse, [1, 2, 0, 4, 8])
+        found.append(next(tasks))
+        time.sleep(1)  # until all others have finished
+        with pytest.raises(ZeroDivisionError):
+            found.extend(tasks)
+    assert sorted(found) == [0.125, 0.25, 0.5, 1]
+
+
+def test_messages_of_tasks_reach_the_client(threaded):
+    found = []
+    with Client(threaded, set_as_default=False) as client:
+        topic = cluster.listen(client, lambda *message: found.append(message))
+        list(cluster.run_tasks(client, partial(told, topic), [4, 7]))
+        stop = time.monotonic() + 10
+        while len(found) < 2 and time.monotonic() < stop:
+            time.sleep(0.01)
+    assert sorted(found) == [(4,), (7,)]
+
+
+def test_an_error_of_a_task_comes_through(threaded):
+    with Client(threaded, set_as_default=False) as client, pytest.raises(ZeroDivisionError):
+        list(cluster.run_tasks(client, (1).__truediv__, [1, 0]))
