@@ -6,13 +6,11 @@ from typing import Any, get_args
 
 from pydantic import ConfigDict
 
-from gen.recipe.faults import BallFault, CageFault, CompoundFault, DistributedFault, Fault, Healthy, RaceFault
+from gen.recipe.faults import Fault
 from gen.recipe.section import Section
 
 _OF_KIND = {
-    kind: model
-    for model in (Healthy, RaceFault, BallFault, CageFault, DistributedFault, CompoundFault)
-    for kind in get_args(model.model_fields["kind"].annotation)
+    kind: model for model in get_args(get_args(Fault)[0]) for kind in get_args(model.model_fields["kind"].annotation)
 }
 
 
