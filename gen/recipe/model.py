@@ -171,6 +171,10 @@ class Recipe(Section):
         except ValidationError as error:
             raise RecipeError("\n".join(sentences(error, Recipe))) from None
 
+    def __repr__(self) -> str:
+        """Name and size; ``gen.write_recipe`` shows all keys."""
+        return f"<Recipe {self.name}: {self.n_records:,} records, {len(self.faults)} faults, seed {self.seed}>"
+
     def __hash__(self) -> int:
         """Hash of name and seed; the hash of pydantic fails on the dictionaries of some sections."""
         return hash((self.name, self.seed))

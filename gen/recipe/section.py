@@ -1,6 +1,6 @@
 """Base of every section of a recipe, and the types that several sections share."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Annotated, Any
 
 import numpy as np
@@ -26,6 +26,10 @@ class Section(BaseModel):
     def _within_bounds(cls, value: Any, info: ValidationInfo) -> Any:
         bounds = cls.model_fields[info.field_name or ""].json_schema_extra
         return check_bounds(value, bounds) if isinstance(bounds, dict) else value
+
+    def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
+        """Keys that were given; the kind of a section names it."""
+        return ((key, value) for key, value in super().__repr_args__() if key in self.model_fields_set)
 
 
 def plain(value: Any) -> Any:

@@ -351,6 +351,11 @@ class Scenario:
     specimen: Specimen
     record: Operation
 
+    def __repr__(self) -> str:
+        """Numbers and class; the fields have all drawn values."""
+        numbers = f"rig {self.rig.number}, specimen {self.specimen.number}, record {self.record.number}"
+        return f"<Scenario of {self.settings.recipe}: {numbers}, {self.specimen.fault}>"
+
     def rng(self, purpose: Purpose) -> np.random.Generator:
         """Random stream of this record for one purpose."""
         return stream(self.settings.seed, self.rig.number, self.specimen.number, self.record.stream_number, purpose)

@@ -206,3 +206,10 @@ def test_a_recipe_from_a_dict_has_the_errors_of_the_file(tmp_path):
     assert sentences_of(lambda: read_recipe(data)) == sentences_of(lambda: Recipe.model_validate(data)) == expected
     assert sentences_of(lambda: read_recipe(path)) == "\n".join(f"{path}: {line}" for line in expected.split("\n"))
     assert "sed: no such key; did you mean seed?" in expected
+
+
+def test_faults_recipes_and_scenarios_are_shown_in_one_short_line():
+    recipe = gen.recipe_for([gen.outer(width_mm=gen.loguniform(0.1, 2)), "healthy"], n=4, seed=3)
+    assert repr(recipe.faults[0]) == "RaceFault(width_mm=loguniform(0.1, 2), kind='outer')"
+    assert repr(recipe) == "<Recipe records: 8 records, 2 faults, seed 3>"
+    assert repr(gen.draw_scenarios(recipe, 1, 2)[0]) == "<Scenario of records: rig 0, specimen 1, record 1, healthy>"
