@@ -1,7 +1,7 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -160,12 +160,15 @@ def _has_twin(scenario: Scenario) -> bool:
 
 def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput | None:
     """Kernel input of a record as it was without its fault; None if it has none, and with ``truth.twins: false``."""
-    specimen = scenario.specimen
+    specimen, healthy = scenario.specimen, scenario.specimen.at_severity(0)
     if not _has_twin(scenario):
         return None
-    if specimen.wear is not None or specimen.cage or specimen.axis.get("jumps"):
-        return without_fault(given, scenario, timeline(scenario.settings))
-    return given._replace(spalls=())  # spalls are the only difference
+    changed = {
+        field.name for field in fields(specimen) if getattr(specimen, field.name) != getattr(healthy, field.name)
+    }
+    if changed <= {"fault", "spalls", "axis"} and not specimen.axis.get("jumps"):
+        return given._replace(spalls=())  # without spalls a tilted spin axis changes nothing, but its jumps do
+    return without_fault(given, scenario, timeline(scenario.settings))
 
 
 def laid_out(scenarios: list[Scenario]) -> list[tuple[Group, Batch]]:
