@@ -34,7 +34,9 @@ def roll_off(density: FloatArray, frequencies: FloatArray, share: float) -> Floa
 
 def centroid(density: FloatArray, frequencies: FloatArray) -> FloatArray:
     """Mean frequency weighted with the energy [Hz], shape (record,)."""
-    return (density @ frequencies) / density.sum(axis=-1)
+    return (density * frequencies).sum(axis=-1) / density.sum(
+        axis=-1
+    )  # a product of matrices rounds by the number of rows
 
 
 def tonality(density: FloatArray, frequencies: FloatArray) -> FloatArray:

@@ -27,6 +27,13 @@ def test_a_single_bin_has_its_roll_off_and_centroid_at_its_frequency():
     assert centroid(density, FREQUENCIES)[0] == 1200
 
 
+@pytest.mark.parametrize("measure", [centroid, tonality, lambda density, f: roll_off(density, f, 0.85)])
+def test_a_record_has_the_same_value_in_every_batch(measure):
+    density = np.random.default_rng(0).random((37, 1001))
+    alone = [measure(row[None], FREQUENCIES)[0] for row in density]
+    np.testing.assert_array_equal(measure(density, FREQUENCIES), alone)
+
+
 @law
 @given(st.integers(0, 2**32 - 1), st.floats(0.2, 5.0))
 def test_tonality_is_the_share_of_tones_in_the_energy(seed, amplitude):
