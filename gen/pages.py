@@ -5,6 +5,7 @@
 """
 
 import sys
+import textwrap
 from pathlib import Path
 
 from gen.corpus import format_page
@@ -113,7 +114,7 @@ def readme() -> str:
     for key in keys:
         sections.setdefault(key.key.rpartition(".")[0], []).append(key)
     for section, own in sections.items():
-        about = [meanings[section], ""] if section in meanings else []
+        about = [*textwrap.wrap(meanings[section], 120, break_on_hyphens=False), ""] if section in meanings else []
         lines += [f"### {section or 'Top level'}", "", *about]
         lines += ["| key | kind | unit | allowed | default | meaning |", "|---|---|---|---|---|---|"]
         lines += [_row(key) for key in own]
