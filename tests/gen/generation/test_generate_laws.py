@@ -1,11 +1,6 @@
-"""Laws of generation: a corpus is the same for any number of workers and interruptions."""
+"""Laws of generation: a corpus is the same for any number of workers."""
 
-import fcntl
-import importlib
-import json
 import math
-import os
-import shutil
 import threading
 import time
 
@@ -13,7 +8,6 @@ import numpy as np
 import pytest
 from distributed import LocalCluster
 
-from gen import copy
 from gen.corpus import (
     FAULTS,
     SIGNAL,
@@ -26,88 +20,18 @@ from gen.corpus import (
     validate_corpus,
 )
 from gen.corpus.manifest import Overrides
-from gen.generation import sources
 from gen.generation.corpus import generate
-from gen.generation.scheduling import Crew
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, read_scenario
 from gen.support.errors import ClusterError, CorpusError, RecipeError
-from tests.paths import ROOT
-from tests.tampering import edit_manifest, edited
-
-GENERATE = importlib.import_module("gen.generation.corpus")
-
-
-def hashes(folder):
-    return {row.name: row.sha256 for row in read_manifest(folder).parts}
+from tests.same_corpora import assert_the_same_corpus
 
 
 def counts(folder):
     with open_corpus(folder) as corpus:
         return np.rint(corpus[SIGNAL].values * 32767 / 500).astype(np.int16)
-
-
-@pytest.fixture(scope="module")
-def recipe_file(write_recipe, tmp_path_factory):
-    return write_recipe(tmp_path_factory.mktemp("recipe") / "small.yaml")
-
-
-@pytest.fixture(scope="module")
-def whole(recipe_file, tmp_path_factory):
-    """The small corpus: three parts of eight records."""
-    folder = tmp_path_factory.mktemp("whole") / "corpus"
-    return generate(recipe_file, folder)
-
-
-@pytest.fixture(scope="module")
-def single(recipe_file, tmp_path_factory):
-    """The small corpus in a single file."""
-    return generate(recipe_file, tmp_path_factory.mktemp("single") / "corpus.nc")
-
-
-@pytest.fixture
-def copied(whole, tmp_path):
-    return shutil.copytree(whole.path, tmp_path / "copy")
-
-
-def files(corpus):
-    """Bytes of all files of a corpus by their names."""
-    found = [corpus] if corpus.is_file() else [path for path in corpus.rglob("*") if path.is_file()]
-    return {path.relative_to(corpus): path.read_bytes() for path in found}
-
-
-def assert_the_same_corpus(corpus, whole):
-    assert validate_corpus(corpus) == []
-    assert files(corpus) == files(whole.path)
-    assert not corpus.with_name(f"{corpus.name}.parts").exists()
-
-
-def set_facts(path, **facts):
-    """Change facts of an unfinished corpus or of a part."""
-    if path.suffix == ".nc":
-        with edited(path) as found:
-            for name, value in facts.items():
-                found.attrs[name] = value
-        return
-    edit_manifest(path, **facts)
-
-
-def unfinished(folder):
-    """The corpus as a killed call leaves it before its last steps."""
-    edit_manifest(folder, complete=False, records=0, parts_sha256="0" * 64)
-    for name in ("index.nc", "README.md", "croissant.json"):
-        (folder / name).unlink()
-    manifest = json.loads((folder / "manifest.json").read_text())
-    (folder / "manifest.json").write_text(json.dumps(manifest | {"parts": []}))
-    return folder
-
-
-@pytest.fixture
-def begun(copied):
-    """An unfinished corpus all of whose parts are there."""
-    return unfinished(copied)
 
 
 def test_one_call_makes_a_complete_and_valid_corpus(whole):
@@ -166,246 +90,6 @@ def test_workers_of_a_given_scheduler_make_the_same_corpus(recipe_file, whole, t
     with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=":0") as cluster:
         generate(recipe_file, tmp_path / "given", scheduler=cluster.scheduler_address)
     assert_the_same_corpus(tmp_path / "given", whole)
-
-
-@pytest.mark.parametrize("name", ["c", "c.nc"])
-@pytest.mark.parametrize("kept", [0, 1, 2])
-def test_an_interrupted_corpus_is_refused_until_the_same_call_completes_it(
-    recipe_file, whole, single, tmp_path, kept, name
-):
-    folder = tmp_path / (name if name == "c" else "c.nc.parts")
-
-    def interrupted(*_counts):
-        if len(hashes(folder)) >= kept:
-            raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        generate(recipe_file, tmp_path / name, progress=interrupted)
-    with pytest.raises(CorpusError, match="unfinished" if name == "c" else "no such folder or file"):
-        open_corpus(tmp_path / name)
-    assert hashes(folder).items() <= hashes(whole.path).items()
-    before = {path: path.stat() for path in (folder / "parts").iterdir()}
-    made_again = []
-    again = generate(recipe_file, tmp_path / name, progress=lambda *_: made_again.extend(changed(before)))
-    assert again.kept == kept
-    assert made_again == []
-    assert_the_same_corpus(tmp_path / name, whole if name == "c" else single)
-
-
-def changed(before):
-    return [path for path, stat in before.items() if path.exists() and path.stat().st_mtime_ns != stat.st_mtime_ns]
-
-
-@pytest.mark.parametrize("step", ["corpus.finishing.join_parts", "generation.corpus.remove_parts"])
-def test_a_call_that_ends_in_one_of_the_last_steps_of_a_file_is_completed(
-    recipe_file, single, tmp_path, monkeypatch, step
-):
-    def killed(*_args):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr(f"gen.{step}", killed)
-        with pytest.raises(KeyboardInterrupt):
-            generate(recipe_file, tmp_path / "c.nc")
-    assert (tmp_path / "c.nc.parts").exists()
-    assert generate(recipe_file, tmp_path / "c.nc").kept == 3
-    assert_the_same_corpus(tmp_path / "c.nc", single)
-
-
-@pytest.mark.parametrize("step", [None, "corpus.finishing.join_parts", "generation.corpus.remove_parts"])
-def test_files_of_the_user_beside_the_parts_of_a_file_stay(recipe_file, single, tmp_path, monkeypatch, step):
-    target = tmp_path / "c.nc"
-    notes = [tmp_path / "c.nc.parts" / name for name in ("notes.txt", "parts/notes.txt")]
-    if step is None:
-        shutil.copyfile(single.path, target)
-        notes[1].parent.mkdir(parents=True)
-    else:
-        with monkeypatch.context() as patch:
-            patch.setattr(f"gen.{step}", lambda *_: 1 / 0)
-            with pytest.raises(ZeroDivisionError):
-                generate(recipe_file, target)
-    for note in notes:
-        note.write_text("mine")
-    generate(recipe_file, target)
-    assert validate_corpus(target) == []
-    assert {path for path in (tmp_path / "c.nc.parts").rglob("*") if path.is_file()} == set(notes)
-
-
-def test_a_copy_is_not_generated_again(recipe_file, whole, tmp_path):
-    (copied := tmp_path / "copied").mkdir()
-    copy(whole.path, copied)
-    before = files(copied)
-    with pytest.raises(CorpusError, match="holds a copy of a corpus, which is not generated again"):
-        generate(recipe_file, copied)
-    assert files(copied) == before
-
-
-def test_a_corpus_interrupted_before_its_first_part_was_done_is_completed_too(
-    recipe_file, whole, tmp_path, monkeypatch
-):
-    def interrupted(*_args):
-        raise KeyboardInterrupt
-
-    with monkeypatch.context() as patch:
-        patch.setattr(GENERATE, "make_parts", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            generate(recipe_file, tmp_path / "c")
-    generate(recipe_file, tmp_path / "c")
-    assert_the_same_corpus(tmp_path / "c", whole)
-
-
-def flip(path):
-    content = bytearray(path.read_bytes())
-    content[-500] ^= 0xFF
-    path.write_bytes(content)
-
-
-def other_seed(parts, write_recipe):
-    folder = parts.parent.with_name("other seed")
-    generate(write_recipe(folder.with_suffix(".yaml"), {"seed": 4}), folder)
-    shutil.copyfile(folder / "parts" / part_name(1), parts / part_name(1))
-
-
-STRANGE = {
-    "deleted": lambda parts, _: (parts / part_name(1)).unlink(),
-    "altered": lambda parts, _: flip(parts / part_name(1)),
-    "cut short": lambda parts, _: os.truncate(parts / part_name(1), 5000),
-    "a copy of another": lambda parts, _: shutil.copyfile(parts / part_name(0), parts / part_name(1)),
-    "of another seed": other_seed,
-    "no netCDF file": lambda parts, _: (parts / part_name(1)).write_text("mine"),
-    "of the format before": lambda parts, _: set_facts(parts / part_name(1), raceway_format=2),
-    "of other sources": lambda parts, _: set_facts(parts / part_name(1), sources_sha256="0" * 64),
-    "of another library": lambda parts, _: set_facts(parts / part_name(1), versions="{}"),
-    "without facts": lambda parts, _: set_facts(parts / part_name(1), failures="["),
-    "a link": lambda parts, _: link(parts / part_name(1)),
-}
-
-
-def link(part):
-    part.rename(part.parents[2] / "moved.nc")
-    part.symlink_to(part.parents[2] / "moved.nc")
-
-
-@pytest.mark.parametrize("strange", STRANGE)
-@pytest.mark.parametrize("state", ["finished", "unfinished"])
-def test_a_part_that_is_not_the_right_one_is_made_again_to_the_byte(
-    recipe_file, write_recipe, whole, copied, strange, state
-):
-    if state == "unfinished":
-        unfinished(copied)
-    STRANGE[strange](copied / "parts", write_recipe)
-    assert validate_corpus(copied) != []
-    assert generate(recipe_file, copied).kept == 2
-    assert_the_same_corpus(copied, whole)
-
-
-@pytest.mark.parametrize(
-    ("facts", "sentence"),
-    [
-        (
-            {"sources_sha256": "a" * 64},
-            r"was begun with sources aaaaaaaaaaaa; sources [0-9a-f]{12} is installed and can give other samples: install the former",
-        ),
-        ({"sources_sha256": None}, r"was begun with sources unknown; sources [0-9a-f]{12} is"),
-        ({"versions": {"numpy": "1.0"}}, r"numpy 1\.0, .*netCDF4 none.* is installed"),
-    ],
-)
-def test_a_corpus_that_other_sources_or_libraries_began_is_refused_by_name(recipe_file, begun, facts, sentence):
-    edit_manifest(begun, **facts)
-    before = files(begun)
-    with pytest.raises(CorpusError, match=sentence):
-        generate(recipe_file, begun)
-    assert files(begun) == before
-
-
-def test_edited_sources_neither_complete_a_corpus_nor_keep_its_parts(recipe_file, begun, single, monkeypatch):
-    for module in ("gen.generation.corpus", "gen.generation.parts"):
-        monkeypatch.setattr(f"{module}.sources_sha256", lambda: "b" * 64)
-    for corpus in (begun, single.path):
-        with pytest.raises(CorpusError, match=r"was begun with sources [0-9a-f]{12}; sources bbbbbbbbbbbb is"):
-            generate(recipe_file, corpus)
-
-
-def test_a_worker_with_other_sources_is_refused_by_name_and_writes_nothing(recipe_file, tmp_path):
-    given = read_recipe(recipe_file), tmp_path, Crew(1, 1), "c" * 64, lambda *_: None, range(1)
-    with pytest.raises(
-        ClusterError, match=r"^worker .*: has other sources of raceway \([0-9a-f]{12}\) than this process"
-    ):
-        GENERATE._unit(*given)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_path, monkeypatch):
-    package = shutil.copytree(ROOT / "gen", tmp_path / "gen", ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(sources, "__file__", str(package / "generation" / "sources.py"))
-    found = {sources.sources_sha256.__wrapped__()}
-    assert found == {sources.sources_sha256()}
-    for name in (
-        "physics/bearing.py",
-        "physics/kernel/compiling.py",
-        "scenarios/draw.py",
-        "measurement/measure.py",
-        "generation/labels.py",
-    ):
-        (package / name).write_text((package / name).read_text() + "\n# changed\n")
-        found.add(sources.sources_sha256.__wrapped__())
-    assert len(found) == 6
-    (package / "corpus" / "card" / "page.py").write_text("")
-    assert sources.sources_sha256.__wrapped__() in found
-
-
-def test_a_second_call_in_the_same_folder_is_told_so(recipe_file, copied):
-    handle = os.open(copied, os.O_RDONLY)
-    fcntl.flock(handle, fcntl.LOCK_EX)
-    with pytest.raises(CorpusError, match="another raceway command is writing into it; wait until it ends"):
-        generate(recipe_file, copied)
-    os.close(handle)
-    assert generate(recipe_file, copied).kept == 3
-
-
-def test_what_a_killed_call_left_is_removed_and_nothing_of_the_user(recipe_file, whole, copied):
-    for name in (".manifest.json.host.1.1.tmp", ".index.nc.host.22.33.tmp", "parts/.part-00001.nc.host.4.5.tmp"):
-        (copied / name).write_bytes(b"half")
-    (copied / ".notes.tmp").write_text("mine")
-    generate(recipe_file, copied)
-    assert [path.name for path in copied.rglob(".*")] == [".notes.tmp"]
-    (copied / ".notes.tmp").unlink()
-    assert_the_same_corpus(copied, whole)
-
-
-def test_a_second_call_keeps_every_part(recipe_file, whole, single, copied, tmp_path):
-    file = shutil.copyfile(single.path, tmp_path / "c.nc")
-    for corpus, first in ((copied, whole), (file, single)):
-        again = generate(recipe_file, corpus)
-        assert (again.records, again.parts, again.kept) == (24, 3, 3)
-        assert_the_same_corpus(corpus, first)
-
-
-def test_a_damaged_single_file_is_refused_and_stays(recipe_file, single, tmp_path):
-    file = shutil.copyfile(single.path, tmp_path / "c.nc")
-    flip(file)
-    before = file.read_bytes()
-    with pytest.raises(CorpusError, match=r"c\.nc: is altered, .* or delete it and make the corpus again"):
-        generate(recipe_file, file)
-    assert file.read_bytes() == before
-
-
-@pytest.mark.parametrize(
-    "changes", [{"seed": 4}, {"records": 20}, {"operation.load_n": 300}], ids=lambda changes: str(changes)
-)
-def test_another_recipe_does_not_go_into_the_same_corpus(write_recipe, copied, single, tmp_path, changes):
-    before = hashes(copied)
-    other = write_recipe(tmp_path / "other.yaml", changes)
-    for corpus in (copied, single.path):
-        with pytest.raises(CorpusError, match="holds a corpus of another recipe, seed or size; choose another name"):
-            generate(other, corpus)
-    assert hashes(copied) == before
-
-
-def test_comments_and_layout_do_not_make_another_recipe(recipe_file, copied, tmp_path):
-    commented = tmp_path / "commented.yaml"
-    commented.write_text("# the same\n\n" + recipe_file.read_text())
-    assert generate(commented, copied).kept == 3
 
 
 def test_what_is_in_the_way_of_a_corpus_is_named(recipe_file, tmp_path):
