@@ -124,9 +124,10 @@ def race_waves(seed, rms):
     return rms * np.sqrt(2 / N_ORDERS) * np.exp(1j * phases)
 
 
-def record(machine, turning, some_spalls=(), *, seed=0, waviness=0.0):
+def record(machine, turning, some_spalls=(), *, seed=0, waviness=0.0, n_balls=9):
     """A 6205 in ``machine``, its processes drawn from ``seed``; uneven if it has jitter or waviness."""
-    bearing = replace(CATALOGUE["6205"], contact_angle=float(np.arccos(machine.contact_cosine)))
+    angle = float(np.arccos(machine.contact_cosine))
+    bearing = replace(CATALOGUE["6205"], contact_angle=angle, n_balls=n_balls)
     rng = np.random.default_rng(seed)
     return KernelInput(
         bearing=bearing,
@@ -147,11 +148,11 @@ def steady_records(draw):
 
 
 @st.composite
-def wandering_records(draw):
+def wandering_records(draw, *, n_balls=9):
     """A record with many mechanisms: two to four spalls, damped contacts, wander, jitter, waviness."""
     some = draw(st.lists(spalls(), min_size=2, max_size=4))
     seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
-    return record(draw(machines()), draw(wandering_turnings()), some, seed=seed, waviness=rms)
+    return record(draw(machines()), draw(wandering_turnings()), some, seed=seed, waviness=rms, n_balls=n_balls)
 
 
 @st.composite

@@ -122,6 +122,23 @@ def add_four(
 
 
 @njit(**INLINE)
+def add_sixteen(
+    shape: Shape,
+    first: int | np.int64,
+    totals: tuple[Push, ...],
+    motion: Relative,
+    instant: Instant,
+    lane: int,
+    params: FloatArray,
+) -> tuple[Push, ...]:
+    """Add sixteen balls to four sums."""
+    totals = add_four(shape, first, totals, motion, instant, lane, params)
+    totals = add_four(shape, first + 4, totals, motion, instant, lane, params)
+    totals = add_four(shape, first + 8, totals, motion, instant, lane, params)
+    return add_four(shape, first + 12, totals, motion, instant, lane, params)
+
+
+@njit(**INLINE)
 def contact_force(
     shape: Shape, motion: Relative, c: float, s: float, instant: Instant, lane: int, params: FloatArray
 ) -> Push:
@@ -143,12 +160,10 @@ def contact_force(
     )  # the exact additive identity, so LLVM drops the addition; 0.0 would change the sign of -0.0
     sums = (nothing, nothing, nothing, nothing)
     # np.int64, because numba would compile the function once for each plain integer
-    sums = add_four(shape, np.int64(0), sums, seen, instant, lane, params)
-    sums = add_four(shape, np.int64(4), sums, seen, instant, lane, params)
-    sums = add_four(shape, np.int64(8), sums, seen, instant, lane, params)
-    sums = add_four(shape, np.int64(12), sums, seen, instant, lane, params)
-    sums = add_four(shape, np.int64(16), sums, seen, instant, lane, params)
-    sums = add_four(shape, np.int64(20), sums, seen, instant, lane, params)
+    sums = add_sixteen(shape, np.int64(0), sums, seen, instant, lane, params)
+    sums = add_sixteen(shape, np.int64(16), sums, seen, instant, lane, params)
+    sums = add_sixteen(shape, np.int64(32), sums, seen, instant, lane, params)
+    sums = add_sixteen(shape, np.int64(48), sums, seen, instant, lane, params)  # up to MAX_BALLS
     (ax, ay, ap), (bx, by, bp), (cx, cy, cp), (dx, dy, dp) = sums
     stiffness = params[Param.LOAD_DEFLECTION_FACTOR * LANES + lane]
     along, across = stiffness * ((ax + bx) + (cx + dx)), stiffness * ((ay + by) + (cy + dy))

@@ -15,10 +15,20 @@ from gen.physics.extent import BALL_ORDERS, MAX_BALLS
 from gen.physics.kernel.compiling import INLINE, LANES, cosine, fma, lane_count, sine, wide
 from gen.physics.kernel.layout import Angle, Batch, Drive, FloatArray, Shape, State, gap_row, n_folds, race_rows
 
-_TURNS = np.arange(MAX_BALLS)[:, None] * np.arange(MAX_BALLS) / np.maximum(np.arange(MAX_BALLS + 1), 1)[:, None, None]
-COS_OF_TURNS, SIN_OF_TURNS = np.cos(2 * np.pi * _TURNS), np.sin(2 * np.pi * _TURNS)  # (number of balls, ball, order)
-# the sine of half as many turns as there are balls is exactly 0
-SIN_OF_TURNS[2 * np.arange(MAX_BALLS // 2 + 1), :, np.arange(MAX_BALLS // 2 + 1) % MAX_BALLS] = 0.0
+
+def _turns(n_balls: int) -> tuple[FloatArray, FloatArray]:
+    """Cosine and sine of ``2 pi ball order / n_balls``, each up to half the number of balls; shape (ball * order,)."""
+    half = np.arange(n_balls // 2 + 1)
+    turns = half[:, None] * half / n_balls
+    cosines, sines = np.cos(2 * np.pi * turns), np.sin(2 * np.pi * turns)
+    if n_balls % 2 == 0:
+        sines[:, -1] = 0.0  # exactly, for half as many turns as there are balls
+    return cosines.ravel(), sines.ravel()
+
+
+_TURNS = [_turns(n_balls) for n_balls in range(1, MAX_BALLS + 1)]
+COS_OF_TURNS, SIN_OF_TURNS = (np.concatenate(tables) for tables in zip(*_TURNS, strict=True))
+FIRST_TURN = np.cumsum([0, 0] + [len(cosines) for cosines, _ in _TURNS])  # of each number of balls
 
 
 class Rotation(IntEnum):
@@ -112,7 +122,8 @@ def unfold(shape: Shape, folded: FloatArray, gaps: FloatArray) -> None:
     for ball in range(n_balls // 2 + 1):
         here, mirror = gaps[ball * LANES :], gaps[(n_balls - ball) % n_balls * LANES :]
         other = 1.0 if ball < n_balls - ball < n_balls else 0.0
-        cosines, sines = COS_OF_TURNS[n_balls, ball], SIN_OF_TURNS[n_balls, ball]
+        first = FIRST_TURN[n_balls] + ball * (n_balls // 2 + 1)
+        cosines, sines = COS_OF_TURNS[first:], SIN_OF_TURNS[first:]
         for lane in range(lane_count()):
             even, odd = folded[lane], 0.0
             for order in range(1, n_balls // 2 + 1):

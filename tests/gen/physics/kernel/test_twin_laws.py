@@ -7,6 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from gen.physics.extent import MAX_BALLS
 from gen.physics.inputs import SpallInput, Turning, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
 from gen.physics.kernel.compiling import LANES
@@ -41,6 +42,12 @@ def test_the_kernel_goes_where_its_twin_goes_without_a_fault(drawn):
 @law
 @given(wandering_records())
 def test_the_kernel_goes_where_its_twin_goes_with_spalls_and_wander(drawn):
+    assert_the_twin_agrees(drawn)
+
+
+@settings(law, max_examples=5)
+@given(wandering_records(n_balls=MAX_BALLS))
+def test_the_kernel_goes_where_its_twin_goes_with_as_many_balls_as_it_takes(drawn):
     assert_the_twin_agrees(drawn)
 
 
