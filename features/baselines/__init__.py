@@ -11,7 +11,7 @@ estimators        the registry of baselines, from majority class to ensemble
 calibration       calibrated probabilities, and thresholds of answers
 references        features relative to healthy records of the same rig
 reference_choice  records tested against a reference, without those that belong to it
-predictions       classes predicted for the records of a table and for whole recordings
+predictions       predicted classes of records and of whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 severities        fault widths that a test contains and its training does not
 tracks            splits by specimen, rig, bearing type, speed, severity and fault shape, and their checks
@@ -20,7 +20,7 @@ splits            cross-validation on a track, with its two controls
 curves            score against the number of training specimens
 cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
-models            training, saving, loading, evaluation
+models            training, prediction, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known
 benchmark         scores of every baseline with controls, and on another corpus
 ================= ==================================================================================
@@ -30,9 +30,9 @@ from features.baselines.benchmark import Baseline, Results, TrackResults, benchm
 from features.baselines.calibration import Calibration
 from features.baselines.curves import CurvePoint, learning_curve
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
-from features.baselines.models import Model, evaluate, load_model, save_model, train
+from features.baselines.models import Model, evaluate, load_model, predict, save_model, train
 from features.baselines.own import EstimatorError, load_maker
-from features.baselines.predictions import UNSURE, Predictions, predict
+from features.baselines.predictions import UNSURE, Predictions
 from features.baselines.records import DEFAULT_GROUPS, count_unknown
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import severity_warning

@@ -1,4 +1,4 @@
-"""A trained baseline with the names of its features, its classes and a description of its training.
+"""A trained baseline: fitted, calibrated, applied to feature tables, scored, saved and loaded.
 
 Model files contain no pickle, and loading one runs no code from it: see `features.baselines.model_file`.
 """
@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -21,28 +21,36 @@ from features.baselines.estimators import (
     ESTIMATORS,
     UNTRAINED,
     Estimator,
+    class_probabilities,
     relative_name,
 )
 from features.baselines.fitting import FitProgress
 from features.baselines.model_file import read_model_file, write_model_file
 from features.baselines.own import Maker, maker_name
-from features.baselines.predictions import class_names, predict
+from features.baselines.predictions import Predictions, fault_names, predictions
 from features.baselines.records import (
     DEFAULT_GROUPS,
+    FloatArray,
     check_classes,
+    feature_rows,
     features_of,
     labelled_records,
     record_digests,
     seen_records,
+    title_of,
 )
 from features.baselines.reference_choice import check_durations, compared
-from features.baselines.references import RELATIVE, paired_table, with_energies
+from features.baselines.references import RELATIVE, paired_table, relative_to, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.indicators import GROUPS
+from features.recording_speeds import recording_numbers
 from gen.corpus import UNKNOWN_CODE, check_result
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
 
 FORMAT = 4
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
@@ -161,7 +169,7 @@ def _train(
     return Model(
         estimator=fitted,
         name=estimator if isinstance(estimator, str) else maker_name(estimator),
-        classes=class_names(fitted.classes_),
+        classes=fault_names(fitted.classes_),
         features=names,
         groups=tuple(groups),
         band=(band.low, band.high),
@@ -173,6 +181,66 @@ def _train(
         versions={library: version(library) for library in _LIBRARIES},
         calibration=calibration,
     )
+
+
+def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None) -> Predictions:
+    """Predictions of a model for all records of a feature table, labelled or not.
+
+    Parameters
+    ----------
+    table
+        A feature table.
+    model
+        A trained model.
+    reference
+        Feature table with healthy records of the same rigs, which the records are compared with: see `relative_to`. Its records of
+        other classes are not used.
+
+    Raises
+    ------
+    CorpusError
+        If the table lacks a feature of the model or is computed from another band, features or model contain numbers too large to
+        compute with, or the model or the records cannot be used with the reference.
+    """
+    if reference is not None:
+        if model.relative is None:
+            message = (
+                f"{title_of(reference)}: the model takes no reference, because {model.corpus} has no rig with two healthy "
+                "recordings and records of each other class; leave the reference out, or train on another corpus."
+            )
+            raise CorpusError(message)
+        return predict(relative_to(table, reference, model.features), model.relative)
+    band = band_of(table.attrs)
+    if band != model.band:
+        low, high = model.band
+        raise CorpusError(
+            f"{title_of(table)}: its features are computed from {band.low:g}-{band.high:g} Hz, and the model was trained on "
+            f"{low:g}-{high:g} Hz; compute them with --band {low:g} {high:g}."
+        )
+    rows = feature_rows(table, model.features)
+    probabilities = estimator_probabilities(model, rows, title_of(table))
+    return predictions(probabilities, model.classes, recording_numbers(table), model.calibration)
+
+
+def estimator_probabilities(model: Model, features: "DataFrame", where: str) -> FloatArray:
+    """Probability of each class as the estimator of a model gives it, shape (record, class).
+
+    Raises
+    ------
+    CorpusError
+        If features or model contain numbers too large to compute with.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            probabilities = class_probabilities(model.estimator, features)
+    except ValueError as error:  # scikit-learn refuses numbers that are infinite, or too large for single precision
+        reason = str(error).splitlines()[0]
+        raise CorpusError(
+            f"{where}: {model.name} cannot classify these records ({reason}); train the model again."
+        ) from error
+    if not np.isfinite(probabilities).all():
+        raise CorpusError(f"{where}: {model.name} gives probabilities that are not finite; train the model again.")
+    return probabilities
 
 
 def evaluate(

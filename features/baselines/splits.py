@@ -14,7 +14,7 @@ from features.baselines.calibration import UNCALIBRATED, fit_calibration
 from features.baselines.estimators import UNTRAINED
 from features.baselines.fitting import fits
 from features.baselines.own import Maker
-from features.baselines.predictions import Predictions, class_names, predictions
+from features.baselines.predictions import Predictions, fault_names, predictions
 from features.baselines.records import DEFAULT_GROUPS, FloatArray, IntArray, Records, records_of
 from features.baselines.scores import Scores, confusion_matrix, figures, score
 from features.baselines.severities import uncovered_in_splits
@@ -150,7 +150,7 @@ def _pooled(
     """
     truth = np.searchsorted(classes, labels)
     calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth, recording)
-    return predictions(probabilities, class_names(classes), recording, calibration)
+    return predictions(probabilities, fault_names(classes), recording, calibration)
 
 
 def _balanced_accuracy(fault: IntArray, probabilities: FloatArray) -> float:

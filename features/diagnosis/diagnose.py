@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from features.band import Band
-from features.baselines.predictions import UNSURE, Predictions, estimator_probabilities, predict, predictions
+from features.baselines.models import Model, estimator_probabilities, predict
+from features.baselines.predictions import UNSURE, Predictions, predictions
 from features.baselines.references import with_energies
 from features.diagnosis.evidence import Line, find_evidence, strange_series
 from features.diagnosis.quality import quality_of
@@ -39,7 +40,6 @@ from gen.support.errors import CorpusError
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.baselines.models import Model
     from features.recording_speeds import Speed
 
 LONGEST = 60.0  # s; of a longer recording the beginning is used
@@ -104,7 +104,7 @@ class Diagnosis:
 
 
 def diagnose(
-    recording: Recorded, model: "Model", *, healthy: Recorded | None = None, speed: "Speed" = "check"
+    recording: Recorded, model: Model, *, healthy: Recorded | None = None, speed: "Speed" = "check"
 ) -> Diagnosis:
     """Diagnose one recording.
 
@@ -182,7 +182,7 @@ def _beginning(recording: Recorded) -> tuple[FloatArray, list[str]]:
     return recording.signal[:most], [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."]
 
 
-def _useless(recording: Recorded, model: "Model", reason: str, advice: str) -> Diagnosis:
+def _useless(recording: Recorded, model: Model, reason: str, advice: str) -> Diagnosis:
     return Diagnosis(
         verdict=UNSURE,
         probabilities=dict.fromkeys(model.classes, 1 / len(model.classes)),
@@ -203,7 +203,7 @@ def _speed(recording: Recorded) -> tuple[float | None, float]:
     return (float(found.rate) if found.clear and not found.agrees else None), float(found.uncertainty)
 
 
-def _table(recording: Recorded, model: "Model", fault: int) -> "xr.Dataset":
+def _table(recording: Recorded, model: Model, fault: int) -> "xr.Dataset":
     windows = windows_of(recording.signal, recording.fs)
     groups = with_energies(model.groups)
     table = recording_table(
@@ -212,7 +212,7 @@ def _table(recording: Recorded, model: "Model", fault: int) -> "xr.Dataset":
     return table.assign_attrs(title=recording.name)
 
 
-def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | None") -> Diagnosis:
+def _predicted(recording: Recorded, model: Model, reference: "xr.Dataset | None") -> Diagnosis:
     """Diagnosis with the prediction of the model alone."""
     if reference is None:
         found = _prediction_of_windows(recording, model)
@@ -227,7 +227,7 @@ def _predicted(recording: Recorded, model: "Model", reference: "xr.Dataset | Non
     )  # fmt: skip
 
 
-def _prediction_of_windows(recording: Recorded, model: "Model") -> Predictions:
+def _prediction_of_windows(recording: Recorded, model: Model) -> Predictions:
     """Predictions as of `predict`, without xarray, whose first use imports dask: a tenth of the time of a diagnosis."""
     from pandas import DataFrame, Index
 

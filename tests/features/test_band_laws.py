@@ -7,7 +7,7 @@ import xarray as xr
 from features import feature_table
 from features.band import DEFAULT_BAND, ENERGY_EDGES, Band, checked_band
 from features.baselines import evaluate, load_model, save_model, train
-from features.baselines.predictions import predict
+from features.baselines.models import predict
 from features.indicators import Orders, feature_names, indicators
 from gen.support.errors import CorpusError
 from tests.tone_corpora import write_corpus
