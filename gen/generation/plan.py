@@ -15,7 +15,7 @@ from gen.corpus import CODECS, FAULTS, SPLITS
 from gen.generation.pace import measured_pace
 from gen.generation.step_checks import checked_places
 from gen.physics.kernel.compiling import LANES
-from gen.recipe import Recipe, read_recipe
+from gen.recipe import Recipe, operations, read_recipe
 from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.batches import Group, filled_lanes, group_of
 from gen.simulation.outline import outlined_inputs
@@ -172,7 +172,7 @@ def most_drawn(recipe: Recipe) -> int:
     """Largest number of records that a plan draws."""
     dear = any(
         operation.axial_load_n.support()[1] > 0 or operation.load_wander_percent.support()[1] > 0
-        for operation in recipe.operations.values()
+        for operation in operations(recipe).values()
     )
     return MOST_DRAWN_DEAR if dear else MOST_DRAWN
 

@@ -15,10 +15,11 @@ sensing       sensors, path, background, level, converter
 sensor_faults faults of mount, cable, amplifier and data transfer
 changes       keys of operation and level that one fault replaces
 fault_entries keys that all entries of faults have in common
+sections      all sections of a recipe, and the counts that follow from them
 shares        quantities that are a share of another
 loads         loads that no bearing of the recipe can carry
 checks        keys that contradict each other, weights that cannot be met
-model         the recipe as a whole
+model         the checked recipe
 constructors  faults and distributions by calls in Python
 keywords      a recipe from keys by their own names
 text          a recipe as YAML text

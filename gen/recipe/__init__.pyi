@@ -104,6 +104,9 @@ from .shares import (
     STATIC_RATING as STATIC_RATING,
 )
 from .shares import (
+    operations as operations,
+)
+from .shares import (
     quantities as quantities,
 )
 from .text import recipe_text as recipe_text

@@ -1,31 +1,80 @@
 """Refuse recipes that cannot be made as a whole: keys that contradict each other, weights that cannot be met."""
 
-from typing import TYPE_CHECKING
-
-from gen.recipe.faults import fault_class
+from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
 from gen.recipe.loads import load_problem
 from gen.recipe.machine import CatalogueBearing
-from gen.recipe.operation import OperationSection, Steps
+from gen.recipe.operation import OperationSection, Steps, Table
+from gen.recipe.sections import Sections
 from gen.recipe.sensor_faults import sensor_fault_problem
-from gen.recipe.shares import share_problem
+from gen.recipe.shares import operations, share_problem
+from gen.support.limits import check_limit
 
-if TYPE_CHECKING:
-    from gen.recipe.model import Recipe
+# memory of a record beside its signal, in samples of 12 bytes: 40 kB of drawn values, and 140 bytes per number of a table or trace
+_SAMPLES_OF_A_RECORD, _SAMPLES_OF_A_NUMBER = 4000, 12
 
 
-def recipe_problem(recipe: "Recipe") -> str | None:
-    """Error sentence about the first thing for which a recipe cannot be made, else None."""
-    return (
-        _faults_problem(recipe)
+def check_recipe(recipe: Sections) -> None:
+    """ValueError about the first reason for which a recipe cannot be made; gives every share the range of its product."""
+    _check_sizes(recipe)
+    problem = (
+        _edges_problem(recipe)
+        or _faults_problem(recipe)
         or _corpus_problem(recipe)
         or _sensing_problem(recipe)
         or _sensor_faults_problem(recipe)
         or share_problem(recipe)
-        or next(filter(None, (_operation_problem(recipe, *item) for item in recipe.operations.items())), None)
+        or next(filter(None, (_operation_problem(recipe, *item) for item in operations(recipe).items())), None)
     )
+    if problem is not None:
+        raise ValueError(problem)
 
 
-def _faults_problem(recipe: "Recipe") -> str | None:
+def _check_sizes(recipe: Sections) -> None:
+    """Check counts and sizes before anything is drawn; the limits keep the memory of a part to a few gigabytes."""
+    corpus, recording = recipe.corpus, recipe.recording
+    # checked even if records: ends the corpus early, because the splits are drawn over all of its rigs
+    place = "corpus: rigs * specimens_per_rig * records_per_specimen" + (" * rungs" if corpus.rungs else "")
+    check_limit("records", corpus.n_records, f"{place} are", ValueError)
+    check_limit("rig_specimens", corpus.specimens_per_rig, "corpus.specimens_per_rig: asks for", ValueError)
+    seconds = recording.settle_s + recording.duration_s
+    samples = round(seconds * recording.sample_rate_hz) * len(recording.channels)
+    check_limit("record_samples", samples, "recording: a record of all channels, settle_s included, has", ValueError)
+    records = min(recipe.n_records, recipe.storage.records_per_part)
+    of_a_record = samples + _SAMPLES_OF_A_RECORD + _SAMPLES_OF_A_NUMBER * _numbers_of_a_record(recipe)
+    check_limit("part_samples", records * of_a_record, f"storage.records_per_part: {records} records need", ValueError)
+
+
+def _numbers_of_a_record(recipe: Sections) -> int:
+    """Count of the numbers of profiles and traces that each record holds."""
+    tables = [0]
+    for entry in range(len(recipe.faults)):
+        operation = recipe.operation_of(entry)
+        profiles = (operation.speed_profile, operation.load_profile)
+        tables.append(sum(2 * len(profile.times_s) for profile in profiles if isinstance(profile, Table)))
+    traces = [
+        sum(round(spall.n_spalls.support()[1]) * len(spall.trace_um or ()) for spall in _spalls(fault))
+        for fault in recipe.faults
+    ]
+    return max(tables) + max(traces)
+
+
+def _spalls(fault: Fault) -> list[RaceFault | BallFault]:
+    """Parts of a fault that are spalls."""
+    parts = fault.parts if isinstance(fault, CompoundFault) else (fault,)
+    return [part for part in parts if isinstance(part, RaceFault | BallFault)]
+
+
+def _edges_problem(recipe: Sections) -> str | None:
+    for number, fault in enumerate(recipe.faults):
+        if recipe.contact.ball_mass == "steel" and any(spall.profile == "rectangular" for spall in _spalls(fault)):
+            return (
+                f"faults[{number}].profile: the walls of a rectangular spall have no slope that gives the speed of an impact; "
+                f"take another profile, or contact.ball_mass: none."
+            )
+    return None
+
+
+def _faults_problem(recipe: Sections) -> str | None:
     weights = {"healthy": 0.0, "faulty": 0.0}
     if recipe.corpus.fault_choice == "in_turn":
         for number, entry in enumerate(recipe.faults):
@@ -44,7 +93,7 @@ def _faults_problem(recipe: "Recipe") -> str | None:
     return _rungs_problem(recipe, **weights)
 
 
-def _rungs_problem(recipe: "Recipe", healthy: float, faulty: float) -> str | None:
+def _rungs_problem(recipe: Sections, healthy: float, faulty: float) -> str | None:
     """Error sentence if the rungs are of no fault, or give more healthy records than the weights allow, else None."""
     rungs = recipe.corpus.rungs
     if rungs is None:
@@ -60,7 +109,7 @@ def _rungs_problem(recipe: "Recipe", healthy: float, faulty: float) -> str | Non
     return None
 
 
-def _corpus_problem(recipe: "Recipe") -> str | None:
+def _corpus_problem(recipe: Sections) -> str | None:
     corpus = recipe.corpus
     if recipe.truth.undetected == "redraw" and corpus.records_of_a_specimen > recipe.storage.records_per_part:
         return (
@@ -77,13 +126,13 @@ def _corpus_problem(recipe: "Recipe") -> str | None:
     return None
 
 
-def _sensor_faults_problem(recipe: "Recipe") -> str | None:
+def _sensor_faults_problem(recipe: Sections) -> str | None:
     converter = recipe.recording.converter
     full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
     return sensor_fault_problem(recipe.sensor_faults, full_scale, recipe.recording.duration_s)
 
 
-def _sensing_problem(recipe: "Recipe") -> str | None:
+def _sensing_problem(recipe: Sections) -> str | None:
     recording = recipe.recording
     if recipe.machine.resonator is None and any("sensor" in channel.body for channel in recording.channels):
         return "recording.channels: body sensor needs machine.resonator; give one, or use body: housing."
@@ -100,7 +149,7 @@ def _sensing_problem(recipe: "Recipe") -> str | None:
     return None
 
 
-def _operation_problem(recipe: "Recipe", place: str, operation: OperationSection) -> str | None:
+def _operation_problem(recipe: Sections, place: str, operation: OperationSection) -> str | None:
     """Error sentence about the operating conditions at a place of the recipe: those of all records, or those of one fault."""
     if operation.axial_load_n.support()[1] > 0 and not _slanted(recipe):
         return (
@@ -121,7 +170,7 @@ def _operation_problem(recipe: "Recipe", place: str, operation: OperationSection
     return None
 
 
-def _slanted(recipe: "Recipe") -> bool:
+def _slanted(recipe: Sections) -> bool:
     """Whether some bearing has a contact angle."""
     bearing = recipe.bearing
     angles = {0.0, *recipe.specimen.contact_angle_deg.support()}

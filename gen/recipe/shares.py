@@ -7,16 +7,14 @@ when all numbers are drawn, so that to make one quantity a share moves no other.
 
 import difflib
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 from gen.recipe.distributions import DISTRIBUTIONS, Support, interval, is_within
 from gen.recipe.machine import CatalogueBearing
 from gen.recipe.operation import OperationSection
 from gen.recipe.section import Section
+from gen.recipe.sections import Sections
 from gen.support.units import UNITS, unit_suffix
-
-if TYPE_CHECKING:
-    from gen.recipe.model import Recipe
 
 BEARING_QUANTITIES = ("pitch_diameter_mm", "ball_diameter_mm")
 """Dimensions of the bearing of the rig, for sections below it."""
@@ -44,7 +42,7 @@ def quantities(section: Section) -> dict[str, Any]:
     return {key: value for key, value in vars(section).items() if type(value) in DISTRIBUTIONS}
 
 
-def share_problem(recipe: "Recipe") -> str | None:
+def share_problem(recipe: Sections) -> str | None:
     """Error sentence about the first share that cannot be, else None; gives every share of the recipe the range of its product."""
     problem = _misplaced(recipe, {id(scope.section) for scope in _scopes(recipe)})
     for scope in _scopes(recipe):
@@ -53,23 +51,24 @@ def share_problem(recipe: "Recipe") -> str | None:
             _set_products(scope, quantities(scope.section))
     for number, entry in enumerate(recipe.faults):
         if entry.operation is not None:
-            changed = _Scope(f"faults[{number}].operation", changed_operation(recipe, number), _above_records(recipe))
+            changed = _Scope(f"faults[{number}].operation", recipe.operation_of(number), _above_records(recipe))
             problem = problem or _scope_problem(recipe, changed)
     return problem
 
 
-def changed_operation(recipe: "Recipe", entry: int) -> OperationSection:
-    """Operating conditions of the records of one entry of ``faults``."""
-    changes = recipe.faults[entry].operation
-    return recipe.operation if changes is None else recipe.operation.model_copy(update=changes.given())
+def operations(recipe: Sections) -> dict[str, OperationSection]:
+    """Operating conditions by their place in the recipe, of all records and of every fault with changes of its own.
 
-
-def with_products(recipe: "Recipe", operation: OperationSection) -> OperationSection:
-    """Operating conditions whose shares have the range of their product."""
-    scope = _Scope("operation", operation, _above_records(recipe))
-    found = {key: quantities(operation)[key].model_copy() for key in _products(scope)}
-    _set_products(scope, found)
-    return operation.model_copy(update=found)
+    Their shares have the range of their product.
+    """
+    by_place = {"operation": recipe.operation}
+    for number, entry in enumerate(recipe.faults):
+        if entry.operation is not None:
+            scope = _Scope("operation", recipe.operation_of(number), _above_records(recipe))
+            shares = {key: quantities(scope.section)[key].model_copy() for key in _products(scope)}
+            _set_products(scope, shares)
+            by_place[f"faults[{number}].operation"] = recipe.operation_of(number).model_copy(update=shares)
+    return by_place
 
 
 def _set_products(scope: _Scope, shares: Mapping[str, Any]) -> None:
@@ -82,7 +81,7 @@ def _bounds(section: Section, key: str) -> Any:
     return type(section).model_fields[key].json_schema_extra
 
 
-def _scopes(recipe: "Recipe") -> Iterator[_Scope]:
+def _scopes(recipe: Sections) -> Iterator[_Scope]:
     """Sections with shares, in the order of drawing; the ranges of one are read after the one before it has its products."""
     yield _Scope("machine", recipe.machine, {})
     machine = _supports(recipe.machine)
@@ -107,7 +106,7 @@ def _numbered(place: str, sections: tuple[Any, ...]) -> list[tuple[str, Any]]:
     return [(f"{place}[{number}]", section) for number, section in enumerate(sections)]
 
 
-def _above_records(recipe: "Recipe") -> dict[str, Support | None]:
+def _above_records(recipe: Sections) -> dict[str, Support | None]:
     loads = {STATIC_RATING: None, LEAST_AXIAL_LOAD: None}
     return {**_supports(recipe.machine), **_bearing_supports(recipe), **_supports(recipe.specimen), **loads}
 
@@ -117,7 +116,7 @@ def _supports(section: Section) -> dict[str, Support | None]:
     return {key: found.known_support() for key, found in quantities(section).items()}
 
 
-def _bearing_supports(recipe: "Recipe") -> dict[str, Support | None]:
+def _bearing_supports(recipe: Sections) -> dict[str, Support | None]:
     bearing = recipe.bearing
     if not isinstance(bearing, CatalogueBearing):
         return {"pitch_diameter_mm": _supports(bearing)["pitch_diameter_mm"], "ball_diameter_mm": None}
@@ -126,7 +125,7 @@ def _bearing_supports(recipe: "Recipe") -> dict[str, Support | None]:
     return {"pitch_diameter_mm": (min(pitches), max(pitches)), "ball_diameter_mm": (min(balls), max(balls))}
 
 
-def _misplaced(recipe: "Recipe", with_shares: set[int]) -> str | None:
+def _misplaced(recipe: Sections, with_shares: set[int]) -> str | None:
     """Error sentence about a share, or a value per rig or specimen, in a section that has none."""
     for place, section in _sections("", recipe):
         operating = isinstance(section, OperationSection) or place.endswith("].operation")
@@ -152,7 +151,7 @@ def _sections(place: str, section: Section) -> Iterator[tuple[str, Section]]:
                 yield from _sections(at, item)
 
 
-def _scope_problem(recipe: "Recipe", scope: _Scope) -> str | None:
+def _scope_problem(recipe: Sections, scope: _Scope) -> str | None:
     own = quantities(scope.section)
     for key, found in own.items():
         if found.share_of is not None:
@@ -171,7 +170,7 @@ def _is_rounding(end: float, bounds: dict[str, Any]) -> bool:
     return is_within(end * (1 - 1e-12), bounds) or is_within(end * (1 + 1e-12), bounds)
 
 
-def _name_problem(recipe: "Recipe", scope: _Scope, key: str, named: str) -> str | None:
+def _name_problem(recipe: Sections, scope: _Scope, key: str, named: str) -> str | None:
     """Error sentence if a quantity cannot be a share of the one that it names, else None."""
     own = quantities(scope.section)
     unit, at = unit_suffix(key), f"{scope.place}.{key}"

@@ -23,6 +23,7 @@ from gen.recipe import (
     Modes,
     PathSection,
     Recipe,
+    operations,
 )
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.classes import fault_of_each_specimen, possible_entries
@@ -96,7 +97,7 @@ def draw_scenarios(
 def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     machine = draws.section(recipe.machine)
     # ISO 21940-11 defines the balance grade at the highest speed of the machine
-    highest_rate = max(operation.shaft_rpm.support()[1] for operation in recipe.operations.values()) / 60
+    highest_rate = max(operation.shaft_rpm.support()[1] for operation in operations(recipe).values()) / 60
     machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
     known = known_of(recipe.machine, machine)
     resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator, known)
