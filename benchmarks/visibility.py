@@ -91,7 +91,7 @@ def recorded(recipe: Recipe) -> tuple[FloatArray, float]:
     """Records of a recipe, shape (seed, time) [m s-2], and their shaft rate [Hz]."""
     scenarios = draw_scenarios(recipe)
     signals = measure(simulate(scenarios).acceleration, scenarios).signal[:, 0]
-    return signals.astype(float), scenarios[0].record.conditions["shaft"]
+    return signals.astype(float), scenarios[0].record.conditions.shaft_rate
 
 
 def envelope_power(signals: FloatArray) -> FloatArray:

@@ -65,7 +65,7 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
     for scenario in _sample(recipe):
         # records of one specimen whose conditions are zero or not zero alike have the same kernel
         record = scenario.record
-        conditions = tuple(name for name, value in record.conditions.items() if value)
+        conditions = tuple(name for name, value in vars(record.conditions).items() if value)
         profiles = (record.speed_profile is None, record.load_profile is None)
         chosen.setdefault((scenario.specimen.number, scenario.specimen.fault, conditions, profiles), scenario)
     scenarios = list(chosen.values())

@@ -64,8 +64,8 @@ def _drawn(scenario: Scenario) -> dict[str, Any]:
     conditions = record.conditions
     return {
         "sample_rate": settings.sample_rate,
-        "axial_load": conditions["axial_load"],
-        "temperature": np.nan if rig.lubricant is None else conditions["temperature"],
+        "axial_load": conditions.axial_load,
+        "temperature": np.nan if rig.lubricant is None else conditions.temperature,
         **orders(rig.bearing)._asdict(),
         "bearing": rig.bearing.designation,
         "fault": FAULTS.index(specimen.fault),

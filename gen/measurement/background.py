@@ -43,7 +43,7 @@ def lines_of(filters: RigFilters, scenario: Scenario, rng: np.random.Generator, 
     record, steps = scenario.record, filters.tones[:, 0]
     n_orders = len(filters.harmonics)
     phases = 2 * np.pi * rng.random(len(steps))
-    rates = record.conditions["shaft"] * np.arange(1, n_orders + 1)
+    rates = record.conditions.shaft_rate * np.arange(1, n_orders + 1)
     motion = np.concatenate([filters.harmonic_motion, filters.tone_motion], axis=1)
     amplitudes = np.concatenate([filters.harmonics, filters.tones[:, 1]])
     lines = filters.in_channels(motion, amplitudes, np.concatenate([rates, steps * axis.fs / (2 * np.pi)]))

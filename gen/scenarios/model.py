@@ -314,11 +314,30 @@ class Gains:
 
 
 @dataclass(frozen=True)
+class Conditions:
+    """Drawn values of the section ``operation`` [SI]; temperature in degrees Celsius."""
+
+    shaft_rate: float
+    label_error: float
+    load: float
+    speed_wander: float
+    mean_slip: float
+    slip: float
+    jitter: float
+    spin_wander: float
+    axial_load: float
+    load_wander: float
+    temperature: float
+    inner_ring_hotter: float
+    slip_walk: float | None = None
+
+
+@dataclass(frozen=True)
 class Operation:
     """Operating conditions and level of one record."""
 
     number: Number
-    conditions: Drawn
+    conditions: Conditions
     snr: float | None
     """Fault over all else, or bearing over background without a fault, for ``level.kind: snr`` [dB]."""
     rms: float | None

@@ -11,7 +11,7 @@ import numpy as np
 
 from gen.recipe import Recipe, Section, quantities
 from gen.scenarios.draws import Combination, Draws, Known, in_si
-from gen.scenarios.model import Drawn
+from gen.scenarios.model import Conditions
 
 Level = Literal["rig", "specimen", "record"]
 Distributions = Mapping[str, Any]
@@ -60,8 +60,8 @@ def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -
     return Common({key: float(rng.random()) for key in quantities(recipe.operation)}, combination)
 
 
-def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, Common], known: Known) -> Drawn:
-    """Operating conditions of a record [SI], by the key without its unit.
+def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, Common], known: Known) -> Conditions:
+    """Operating conditions of a record, without its slip walk.
 
     ``commons`` has the numbers of rig and specimen, if some quantity is drawn at that level.
 
@@ -72,11 +72,11 @@ def draw_conditions(operating: Operating, draws: Draws, commons: Mapping[Level, 
     """
     wanted = operating.wanted
     u = {key: draws.u() for key in wanted}
-    found = _values(operating, "record", u, draws.combination)
+    values = _values(operating, "record", u, draws.combination)
     for level, common in commons.items():
         for key, value in _values(operating, level, common.numbers, Combination(common.combination)).items():
-            found[key] = wanted[key].at_scatter(value, u[key])
-    return in_si(operating.section, wanted, {key: found[key] for key in wanted}, known, draws.item)
+            values[key] = wanted[key].at_scatter(value, u[key])
+    return Conditions(**in_si(operating.section, wanted, {key: values[key] for key in wanted}, known, draws.item))
 
 
 def _values(

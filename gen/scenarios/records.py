@@ -102,7 +102,7 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
             profile = _draw_profile(own, changes[key], recipe.recording.duration_s)
         profiles.append(profile)
     if recipe.operation.slip_walk is not None:
-        conditions["slip_walk"] = draws.section(recipe.operation.slip_walk)["spacing"]
+        conditions = replace(conditions, slip_walk=draws.section(recipe.operation.slip_walk)["spacing"])
     pair = group if rung >= 0 else -1
     speed_profile, load_profile = profiles
     sensor_faults = draw_record_sensor_faults(recipe, source.rig.number, specimen.number, first)

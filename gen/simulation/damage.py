@@ -144,7 +144,7 @@ def waviness_of(scenario: Scenario, fs: float) -> Waviness:
     place = scenario.settings.seed, scenario.rig.number, specimen.number, 0
     rms, of_balls = specimen.properties["waviness"], specimen.properties["ball_waviness"]
     whole, at_balls = _waves(place, specimen.bearing, rms, of_balls, specimen.wear)
-    highest_rate = scenario.record.conditions["shaft"] * (1.0 if profile is None else max(profile.shares))
+    highest_rate = scenario.record.conditions.shaft_rate * (1.0 if profile is None else max(profile.shares))
     highest_order = FASTEST_WAVE * fs / highest_rate
     races = np.where(at_balls.races <= highest_order, whole.races, 0j)
     return Waviness(races, np.where(at_balls.balls <= highest_order, whole.balls, 0j))

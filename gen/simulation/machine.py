@@ -25,8 +25,8 @@ stiffness_of = functools.lru_cache(maxsize=4096)(load_deflection_factor)
 def check_load(scenario: Scenario) -> None:
     """Raise ValueError if the equivalent static load of a record is far above the static rating of its bearing."""
     drawing, conditions, profile = scenario.rig.bearing, scenario.record.conditions, scenario.record.load_profile
-    radial = conditions["load"] * (1.0 if profile is None else max(profile.shares))
-    load = equivalent_load(radial, conditions["axial_load"], scenario.specimen.bearing.contact_angle)
+    radial = conditions.load * (1.0 if profile is None else max(profile.shares))
+    load = equivalent_load(radial, conditions.axial_load, scenario.specimen.bearing.contact_angle)
     rating = static_rating(drawing)
     if load * LEAST_SAFETY > rating:
         raise ValueError(
@@ -44,7 +44,7 @@ def machine_of(scenario: Scenario) -> Machine:
         If the oil film is too thick for film formulas, or the axial load too small to hold the rings together.
     """
     drawn, resonator = scenario.rig.machine, scenario.rig.resonator
-    bearing, load = scenario.specimen.bearing, scenario.record.conditions["load"]
+    bearing, load = scenario.specimen.bearing, scenario.record.conditions.load
     mass = drawn["shaft_mass"] + drawn["housing_mass"]
     stiffness_x = mass * (2 * math.pi * drawn["support_frequency"]) ** 2
     stiffness_y = stiffness_x * drawn["support_ratio"]
@@ -78,7 +78,7 @@ def machine_of(scenario: Scenario) -> Machine:
         looseness=drawn["looseness"],
         contact_exponent=contact_exponent(bearing),
     )
-    axial, profile = scenario.record.conditions["axial_load"], scenario.record.load_profile
+    axial, profile = scenario.record.conditions.axial_load, scenario.record.load_profile
     if axial != 0:
         check_axial_load(machine, axial, 1.0 if profile is None else max(profile.shares))
     return machine
@@ -90,10 +90,10 @@ def with_axial_loads(
     """Machines of some records whose balls are squeezed by the axial loads too; the cages start at ``cage_angles`` [rad]."""
     loaded, alike = list(machines), defaultdict[float, list[int]](list)
     for place, scenario in enumerate(scenarios):
-        if scenario.record.conditions["axial_load"] != 0:
+        if scenario.record.conditions.axial_load != 0:
             alike[machines[place].contact_exponent].append(place)
     for places in alike.values():
-        loads = np.array([scenarios[place].record.conditions["axial_load"] for place in places])
+        loads = np.array([scenarios[place].record.conditions.axial_load for place in places])
         n_balls = [scenarios[place].specimen.bearing.n_balls for place in places]
         balls = ball_angles(n_balls, [cage_angles[place] for place in places])
         found = axial_approach(as_columns([machines[place] for place in places]), loads, balls)
@@ -107,12 +107,12 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
     """Load-deflection factor [N m^-n], damping [N s/m] and half the clearance [m] of one ball, with thermal expansion and oil film."""
     bearing, conditions, oil = scenario.specimen.bearing, scenario.record.conditions, scenario.rig.lubricant
     factor, clearance = stiffness_of(bearing), scenario.specimen.properties["diametral_clearance"]
-    clearance = warm_clearance(bearing, clearance, conditions["inner_ring_hotter"])
+    clearance = warm_clearance(bearing, clearance, conditions.inner_ring_hotter)
     if oil is None:
         return factor, 0.0, clearance / 2
     heaviest = heaviest_ball_load(scenario)
     lubricant = Lubricant(oil["viscosity_40"], oil["viscosity_100"], oil["density"], oil["pressure_viscosity"])
-    made = film(bearing, lubricant, conditions["temperature"], conditions["shaft"], heaviest)
+    made = film(bearing, lubricant, conditions.temperature, conditions.shaft_rate, heaviest)
     if made.thickness > THICKEST_FILM:
         raise ValueError(
             f"an oil film of {made.thickness * 1e6:.3g} um is above the {THICKEST_FILM * 1e6:g} um for which film formulas hold; "
@@ -125,7 +125,7 @@ def _contact(scenario: Scenario) -> tuple[float, float, float]:
 def heaviest_ball_load(scenario: Scenario) -> float:
     """Static load of the most loaded ball after Stribeck, plus its share of the axial load, without preload [N]."""
     bearing, conditions = scenario.specimen.bearing, scenario.record.conditions
-    total = STRIBECK * conditions["load"]
-    if conditions["axial_load"] > 0 and bearing.contact_angle != 0:
-        total += conditions["axial_load"] / abs(math.sin(bearing.contact_angle))
+    total = STRIBECK * conditions.load
+    if conditions.axial_load > 0 and bearing.contact_angle != 0:
+        total += conditions.axial_load / abs(math.sin(bearing.contact_angle))
     return total / bearing.n_balls

@@ -49,7 +49,7 @@ def start_of(scenario: Scenario, n_terms: int | None = None) -> Start:
     """Draw the start of a record from its own random stream, with the first ``n_terms`` of its cosine terms, or all."""
     rng = scenario.rng(Purpose.MOTION)
     shaft, cage, spin = (2 * np.pi * rng.random(3)).tolist()
-    frequencies, phases = _processes(scenario.specimen.bearing, scenario.record.conditions["shaft"], rng, n_terms)
+    frequencies, phases = _processes(scenario.specimen.bearing, scenario.record.conditions.shaft_rate, rng, n_terms)
     return Start(shaft, cage, spin, frequencies, phases)
 
 
@@ -57,12 +57,12 @@ def turning_of(scenario: Scenario, start: Start) -> Turning:
     """How shaft, cage and balls of a record turn."""
     drawn, specimen, conditions = scenario.rig.machine, scenario.specimen, scenario.record.conditions
     return Turning(
-        shaft_rate=conditions["shaft"],
-        speed_rms=conditions["speed_wander"],
-        mean_slip=conditions["mean_slip"],
-        slip_rms=conditions["slip"],
-        spin_rms=conditions["spin_wander"],
-        jitter_rms=conditions["jitter"],
+        shaft_rate=conditions.shaft_rate,
+        speed_rms=conditions.speed_wander,
+        mean_slip=conditions.mean_slip,
+        slip_rms=conditions.slip,
+        spin_rms=conditions.spin_wander,
+        jitter_rms=conditions.jitter,
         axis_offset=specimen.axis.get("axis_offset", 0.0),
         axis_rms=specimen.axis.get("axis_wander", 0.0),
         axis_limit=specimen.axis.get("track", 0.0),
@@ -78,8 +78,8 @@ def turning_of(scenario: Scenario, start: Start) -> Turning:
         knock_seed=int(scenario.rng(Purpose.KNOCKS).integers(2**52)) if specimen.cage else 0,
         late_ball=0 if specimen.cage else -1,
         late_by=specimen.cage.get("pitch_error", 0.0),
-        walk=conditions.get("slip_walk", 0.0),
-        walk_seed=int(scenario.rng(Purpose.SLIP).integers(2**52)) if "slip_walk" in conditions else 0,
+        walk=conditions.slip_walk or 0.0,
+        walk_seed=int(scenario.rng(Purpose.SLIP).integers(2**52)) if conditions.slip_walk is not None else 0,
         axis_jumps=specimen.axis.get("jumps", 0.0),
         axis_spread=specimen.axis.get("spread", 0.0),
         axis_seed=int(scenario.rng(Purpose.AXIS).integers(2**52)) if "jumps" in specimen.axis else 0,
@@ -111,7 +111,7 @@ def _bands(n_balls: int) -> tuple[FloatArray, FloatArray, NDArray[np.int_]]:
 def is_scheduled(scenario: Scenario) -> bool:
     """Whether speed or load of a record change over time by a profile or by load wander."""
     record = scenario.record
-    return not (record.speed_profile is None and record.load_profile is None and record.conditions["load_wander"] == 0)
+    return not (record.speed_profile is None and record.load_profile is None and record.conditions.load_wander == 0)
 
 
 def schedule_of(scenario: Scenario, timeline: Timeline) -> FloatArray:
@@ -125,7 +125,7 @@ def schedule_of(scenario: Scenario, timeline: Timeline) -> FloatArray:
         factors[:, 0] = share_at(record.speed_profile, times + 0.5 / timeline.fs)
     if record.load_profile is not None:
         factors[:, 1] = share_at(record.load_profile, times)
-    if record.conditions["load_wander"] > 0:
+    if record.conditions.load_wander > 0:
         factors[:, 1] *= load_wander(scenario, times)
     return factors
 
@@ -139,9 +139,9 @@ def load_wander(scenario: Scenario, times: FloatArray) -> FloatArray:
 def wander_terms(scenario: Scenario) -> tuple[float, FloatArray, FloatArray]:
     """Amplitude of every term of the load wander [1], rates of at most the shaft rate [rad/s], and phases [rad], shape (term,)."""
     rng, conditions = scenario.rng(Purpose.LOAD_WANDER), scenario.record.conditions
-    rates = 2 * np.pi * conditions["shaft"] * power(0.05, rng.random(LOAD_TERMS))
+    rates = 2 * np.pi * conditions.shaft_rate * power(0.05, rng.random(LOAD_TERMS))
     phases = rng.uniform(0, 2 * np.pi, LOAD_TERMS)
-    return conditions["load_wander"] * math.sqrt(2 / LOAD_TERMS), rates, phases
+    return conditions.load_wander * math.sqrt(2 / LOAD_TERMS), rates, phases
 
 
 def cosine_sum(
@@ -192,7 +192,7 @@ def mean_motion(
     if profile is None:
         means = (np.sin(turn * (settle + duration) + phase) - np.sin(turn * settle + phase)) / (turn * duration)
     else:  # weighted by the shaft rate, with 20 points per turn: ten to a cycle of the fastest process
-        points = int(np.clip(20 * conditions["shaft"] * duration, 2**12, 2**17))
+        points = int(np.clip(20 * conditions.shaft_rate * duration, 2**12, 2**17))
         times = (np.arange(points) + 0.5) * (duration / points)
         share = share_at(profile, times)
         means = np.einsum("t,tk->k", share, np.cos(np.outer(settle + times, turn) + phase)) / share.sum()
@@ -200,14 +200,14 @@ def mean_motion(
     def mean(first: int, count: int) -> float:
         return float(means[first : first + count].sum()) * math.sqrt(2 / count)
 
-    rate = conditions["shaft"] * mean_share(profile, duration)
-    rate *= 1 + conditions["speed_wander"] * mean(0, SPEED_TERMS)
-    slip = conditions["mean_slip"] + conditions["slip"] * mean(SLIP_FIRST, SLIP_TERMS)
-    if "slip_walk" in conditions:
+    rate = conditions.shaft_rate * mean_share(profile, duration)
+    rate *= 1 + conditions.speed_wander * mean(0, SPEED_TERMS)
+    slip = conditions.mean_slip + conditions.slip * mean(SLIP_FIRST, SLIP_TERMS)
+    if conditions.slip_walk is not None:
         walk, weights = _walk(scenario.specimen.bearing, turning, timeline), None
         if profile is not None:
             weights = share_at(profile, (np.arange(timeline.record) + 0.5) / timeline.fs)
         slip += float(walk.mean() if weights is None else np.average(walk, weights=weights))
     found = slipping_orders(scenario.specimen.bearing, slip)
-    wander = conditions["spin_wander"] * mean(SPIN_FIRST, SPIN_TERMS)
+    wander = conditions.spin_wander * mean(SPIN_FIRST, SPIN_TERMS)
     return MeanMotion(rate, found._replace(bsf=found.bsf * (1 + wander)))

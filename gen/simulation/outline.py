@@ -67,10 +67,10 @@ def _load_peak(scenario: Scenario, timeline: Timeline) -> float:
     between two of these samples.
     """
     profile = scenario.record.load_profile
-    if scenario.record.conditions["load_wander"] == 0:
+    if scenario.record.conditions.load_wander == 0:
         return 1.0 if profile is None else _peak(profile, timeline, later=0.0)
     count, (amplitude, rates, phases) = timeline.knots, wander_terms(scenario)
-    apart = int(timeline.fs / (SAMPLES_PER_TURN * scenario.record.conditions["shaft"]))
+    apart = int(timeline.fs / (SAMPLES_PER_TURN * scenario.record.conditions.shaft_rate))
     apart = max(1, min(apart, MOST_APART, count // 2))
     knots = np.arange(0, count + apart, apart)  # the last is beyond the end, so that every knot is between two
     times = timeline.knot_times(knots)

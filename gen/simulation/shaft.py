@@ -27,7 +27,7 @@ def shaft_angles(scenario: Scenario, timeline: Timeline) -> FloatArray:
     kernel.
     """
     start, record = start_of(scenario, SPEED_TERMS), scenario.record
-    omega, wander = 2 * math.pi * record.conditions["shaft"], record.conditions["speed_wander"]
+    omega, wander = 2 * math.pi * record.conditions.shaft_rate, record.conditions.speed_wander
     if record.speed_profile is None:
         nodes = np.arange(timeline.dropped, timeline.dropped + timeline.returned + STRIDE, STRIDE) / timeline.fs
         turned = omega * (nodes + (wander * _integrated_wander(start, nodes) if wander > 0 else 0.0))

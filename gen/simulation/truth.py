@@ -92,11 +92,11 @@ def truth_of(scenario: Scenario, timeline: Timeline, given: KernelInput | None) 
         motion = mean_motion(scenario, timeline, turning_of(scenario, start), start.frequencies, start.phases)
     else:
         motion = mean_motion(scenario, timeline, given.turning, given.frequencies, given.phases)
-    nominal = record.conditions["shaft"]
+    nominal = record.conditions.shaft_rate
     ends = [1.0, 1.0] if record.speed_profile is None else share_at(record.speed_profile, np.array([0.0, duration]))
     return Truth(
-        shaft_rate=nominal * mean_share(record.speed_profile, duration) * (1 + record.conditions["label_error"]),
-        load=record.conditions["load"] * mean_share(record.load_profile, duration),
+        shaft_rate=nominal * mean_share(record.speed_profile, duration) * (1 + record.conditions.label_error),
+        load=record.conditions.load * mean_share(record.load_profile, duration),
         true_shaft_rate=motion.shaft_rate,
         first_shaft_rate=nominal * ends[0],
         last_shaft_rate=nominal * ends[1],

@@ -60,13 +60,16 @@ def unit_suffix(key: str) -> str:
 
 
 def split_unit(key: str) -> tuple[str, float]:
-    """Key without its unit, and the factor that turns that unit into SI.
+    """Key without its unit, and the factor that turns that unit into SI; a speed in rpm becomes a rate in Hz.
 
-    >>> split_unit("width_mm"), split_unit("balance_mm_s"), split_unit("direct")
-    (('width', 0.001), ('balance', 0.001), ('direct', 1.0))
+    >>> split_unit("width_mm"), split_unit("shaft_rpm"), split_unit("direct")
+    (('width', 0.001), ('shaft_rate', 0.016666666666666666), ('direct', 1.0))
     """
     suffix = unit_suffix(key)
-    return (key.removesuffix(f"_{suffix}"), UNITS[suffix].factor) if suffix else (key, 1.0)
+    name = key.removesuffix(f"_{suffix}") if suffix else key
+    return (
+        (f"{name}_rate", UNITS[suffix].factor) if suffix == "rpm" else (name, UNITS[suffix].factor if suffix else 1.0)
+    )
 
 
 def to_si(value: float, unit: str) -> float:

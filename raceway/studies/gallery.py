@@ -150,7 +150,7 @@ def _run_up(output: Path) -> Section:
         shown, drawn = _shown(record, FAULTS[fault]), read_scenario(str(record["draws"].values)).record
         times = np.arange(len(shown.signal)) / shown.fs
         share = 1.0 if drawn.speed_profile is None else share_at(drawn.speed_profile, times)
-        rate = drawn.conditions["shaft"] * share * np.ones(len(times))
+        rate = drawn.conditions.shaft_rate * share * np.ones(len(times))
         figure = draw_waterfall(
             f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _marked(shown)
         )

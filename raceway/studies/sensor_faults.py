@@ -112,7 +112,7 @@ def _with_gear(signal: FloatArray, scenario: Scenario, fs: float) -> FloatArray:
     gear = scenario.rig.background.gear
     if gear is None:
         raise ValueError("scenario: has no gear; draw it from a recipe that has one.")
-    angles = 2 * np.pi * scenario.record.conditions["shaft"] / fs * np.arange(signal.shape[1])
+    angles = 2 * np.pi * scenario.record.conditions.shaft_rate / fs * np.arange(signal.shape[1])
     level = scenario.rig.gain * scenario.rig.background_rms
     return signal + level * gear_mesh(gear, angles, scenario.rng(Purpose.GEAR_PHASE))
 

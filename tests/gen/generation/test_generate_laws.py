@@ -189,8 +189,8 @@ def test_labels_say_what_was_drawn(recipe_file, whole):
             assert FAULTS[int(row["fault"])] == specimen.fault
             assert SPLITS[int(row["split"])] == specimen.split
             assert (int(row["rig"]), int(row["specimen"])) == (scenario.rig.number, specimen.number)
-            assert float(row["shaft_rate"]) == conditions["shaft"] * (1 + conditions["label_error"])
-            assert float(row["true_shaft_rate"]) == pytest.approx(conditions["shaft"], rel=0.01)
+            assert float(row["shaft_rate"]) == conditions.shaft_rate * (1 + conditions.label_error)
+            assert float(row["true_shaft_rate"]) == pytest.approx(conditions.shaft_rate, rel=0.01)
             assert [float(row[name]) for name in nominal._fields] == list(nominal)
             assert (float(row["largest_drop"]) > 0) == (specimen.fault != "healthy")
             assert float(row["width"]) == (0 if specimen.fault == "healthy" else pytest.approx(0.5e-3))

@@ -242,7 +242,7 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     recipe = gen.recipe_for([OUTER, INNER], 3, rungs=[0, 0.5, 1], level=SNR, **SHORT)
     scenarios = gen.draw_scenarios(recipe)
     faster = [
-        replace(one, record=replace(one.record, conditions=one.record.conditions | {"shaft": 61.0}))
+        replace(one, record=replace(one.record, conditions=replace(one.record.conditions, shaft_rate=61.0)))
         for one in scenarios
     ]
     made = gen.simulate_scenarios(faster[3:] + faster[:3])
@@ -291,7 +291,7 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
             r"scenarios\[1\]: is no scenario \(settings\.seed: .*; change drawn ones with",
         ),
         (
-            lambda one: replace(one, record=replace(one.record, conditions={"shaft": float("nan")})),
+            lambda one: replace(one, record=replace(one.record, conditions={"shaft_rate": float("nan")})),
             r"scenarios\[1\]: is no scenario \(",
         ),
     ],
@@ -312,17 +312,20 @@ def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder
 
 
 @pytest.mark.parametrize(
-    ("conditions", "sentence"),
+    ("changed", "sentence"),
     [
-        (lambda drawn: {"shaft": drawn["shaft"]}, r"cannot be simulated \(KeyError: 'load'\); keep all of them"),
-        (lambda drawn: drawn | {"shaft": 0.0}, r"cannot be simulated \(ZeroDivisionError"),
+        (lambda one: replace(one, rig=replace(one.rig, machine={})), r"cannot be simulated \(KeyError: .*\); keep all"),
+        (
+            lambda one: replace(
+                one, record=replace(one.record, conditions=replace(one.record.conditions, shaft_rate=0.0))
+            ),
+            r"cannot be simulated \(ZeroDivisionError",
+        ),
     ],
 )
-def test_missing_and_absurd_drawn_values_are_one_sentence(ladder, conditions, sentence):
-    one = gen.scenarios_of(ladder)[0]
-    changed = replace(one, record=replace(one.record, conditions=conditions(one.record.conditions)))
+def test_missing_and_absurd_drawn_values_are_one_sentence(ladder, changed, sentence):
     with pytest.raises(SimulationError, match=sentence):
-        gen.simulate_scenarios([changed])
+        gen.simulate_scenarios([changed(gen.scenarios_of(ladder)[0])])
 
 
 def test_no_scenarios_are_no_records():

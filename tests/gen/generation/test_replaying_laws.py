@@ -133,7 +133,7 @@ def test_the_angle_of_the_shaft_begins_with_the_record_after_its_settling(tiny_c
     for record in (0, 17):
         scenario = stored_scenario(tiny_corpus, record)
         turned = shaft_angles(tiny_corpus, record)[0] - start_of(scenario).shaft
-        settling = 2 * np.pi * scenario.record.conditions["shaft"] * scenario.settings.settle
+        settling = 2 * np.pi * scenario.record.conditions.shaft_rate * scenario.settings.settle
         assert turned == pytest.approx(settling, rel=0.02)
 
 

@@ -116,6 +116,6 @@ def test_no_shipped_recipe_asks_for_a_load_near_the_limit(name):
     """The largest load over static rating is 0.3, of domain_randomised."""
     recipe = read_recipe(name)
     ratios = [
-        scenario.record.conditions["load"] / static_rating(scenario.rig.bearing) for scenario in draw_scenarios(recipe)
+        scenario.record.conditions.load / static_rating(scenario.rig.bearing) for scenario in draw_scenarios(recipe)
     ]
     assert max(ratios) < 0.35

@@ -122,5 +122,5 @@ def test_everything_at_once_moves_and_stays_within_its_step(recipe_with):
     assert np.isfinite(response.acceleration).all()
     assert (response.acceleration.std(axis=2) > 1e-3).all()
     assert (response.step_phase < 0.5).all()
-    rates = [truth(scenario, recipe).true_shaft_rate / scenario.record.conditions["shaft"] for scenario in scenarios]
+    rates = [truth(scenario, recipe).true_shaft_rate / scenario.record.conditions.shaft_rate for scenario in scenarios]
     assert rates == pytest.approx([0.85] * len(rates), rel=0.01)

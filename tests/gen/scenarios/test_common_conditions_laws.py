@@ -1,5 +1,6 @@
 """Laws of conditions that a rig or a specimen has in common, and of conditions that one fault changes."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -23,7 +24,7 @@ def of_each(scenarios, level, name):
     """Values of an operating quantity of each rig or specimen."""
     found = {}
     for scenario in scenarios:
-        found.setdefault(getattr(scenario, level).number, []).append(scenario.record.conditions[name])
+        found.setdefault(getattr(scenario, level).number, []).append(getattr(scenario.record.conditions, name))
     return [np.array(values) for values in found.values()]
 
 
@@ -38,7 +39,8 @@ def test_a_rig_or_specimen_has_one_value(recipe_with, level, key, sampling):
     assert all(len(set(of_one)) == 1 for of_one in values)
     assert len({of_one[0] for of_one in values}) == len(values)
     for one, other in zip(draw_scenarios(common), draw_scenarios(usual), strict=True):
-        assert one.record.conditions | {name: other.record.conditions[name]} == other.record.conditions
+        value = getattr(other.record.conditions, name)
+        assert replace(one.record.conditions, **{name: value}) == other.record.conditions
         assert (one.rig, one.specimen) == (other.rig, other.specimen)
 
 
@@ -49,7 +51,7 @@ def test_records_scatter_about_the_value_of_their_rig_or_specimen(recipe_with, l
         of_each(
             draw_scenarios(recipe_with(changes | {"operation.shaft_rpm": uniform(1500, 2000, per=level, **more)})),
             level,
-            "shaft",
+            "shaft_rate",
         )
         for more in ({}, {"scatter_percent": 2})
     )
@@ -73,7 +75,7 @@ def test_a_common_value_is_a_share_of_the_quantity_of_each_record(recipe_with):
     shares = {}
     for scenario in scenarios:
         conditions = scenario.record.conditions
-        shares.setdefault(scenario.rig.number, []).append(conditions["axial_load"] / conditions["load"])
+        shares.setdefault(scenario.rig.number, []).append(conditions.axial_load / conditions.load)
     for found in shares.values():
         assert found == pytest.approx([found[0]] * len(found))
 
@@ -90,9 +92,9 @@ def test_grids_of_a_rig_enumerate_all_combinations_with_those_of_its_machine(rec
     rigs = {}
     for one in scenarios:
         conditions = one.record.conditions
-        rigs[one.rig.number] = (one.rig.machine["shaft_mass"], round(60 * conditions["shaft"]), conditions["load"])
+        rigs[one.rig.number] = (one.rig.machine["shaft_mass"], round(60 * conditions.shaft_rate), conditions.load)
     assert sorted(rigs.values()) == sorted(product([2, 3], [600, 900, 1200], [100, 200]))
-    slips = [100 * one.record.conditions["slip"] for one in scenarios]
+    slips = [100 * one.record.conditions.slip for one in scenarios]
     assert slips == pytest.approx([1, 2] * (len(scenarios) // 2))
 
 
@@ -133,8 +135,9 @@ def test_a_change_is_of_its_fault_alone_and_moves_no_other_quantity(recipe_with,
             assert drawn_values(one) == drawn_values(other)
             continue
         assert (one.rig, one.specimen) == (other.rig, other.specimen)
-        assert one.record.conditions | {name: other.record.conditions[name]} == other.record.conditions
-        assert 4.9 * factor < one.record.conditions[name] < 9.1 * factor
+        value = getattr(other.record.conditions, name)
+        assert replace(one.record.conditions, **{name: value}) == other.record.conditions
+        assert 4.9 * factor < getattr(one.record.conditions, name) < 9.1 * factor
         assert (one.record.snr, one.record.rms) == (other.record.snr, other.record.rms)
         assert (one.record.speed_profile, one.record.load_profile) == (
             other.record.speed_profile,
@@ -184,7 +187,7 @@ def test_a_specimen_knows_its_entry(recipe_with):
     for scenario in draw_scenarios(recipe):
         entry = recipe.faults[scenario.specimen.entry]
         assert scenario.specimen.fault == entry.kind
-        assert (scenario.record.conditions["load"] == 77) == (scenario.specimen.entry == 4)
+        assert (scenario.record.conditions.load == 77) == (scenario.specimen.entry == 4)
 
 
 def test_equal_changes_and_no_changes_have_different_hashes():

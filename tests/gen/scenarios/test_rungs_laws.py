@@ -101,7 +101,7 @@ def test_groups_are_neighbours_and_specimens_are_whole(recipe_with):
     healthy = [one for one in scenarios if one.record.pair < 0]
     assert {one.specimen.fault for one in healthy} == {"healthy"}
     assert {one.record.rung for one in healthy} == {-1}
-    speeds = Counter(one.record.conditions["shaft"] for one in healthy)
+    speeds = Counter(one.record.conditions.shaft_rate for one in healthy)
     assert max(speeds.values()) == 1  # each record of a healthy specimen has conditions of its own
     assert sum(len(recipe.records_of_part(part)) for part in range(recipe.n_parts)) == recipe.n_records
 
@@ -131,7 +131,7 @@ def test_the_conditions_of_faulty_specimens_cover_their_ranges(recipe_with, samp
     )
     drawn = draw_scenarios(recipe)
     for groups in ([one for one in drawn if one.record.pair >= 0], [one for one in drawn if one.record.pair < 0]):
-        quantiles = [(60 * one.record.conditions["shaft"] - 1500) / 500 for one in groups]
+        quantiles = [(60 * one.record.conditions.shaft_rate - 1500) / 500 for one in groups]
         assert set(np.digitize(quantiles, np.arange(1, 8) / 8)) == set(range(8))
 
 
@@ -140,7 +140,7 @@ def test_grids_run_through_all_their_values_on_faulty_specimens(recipe_with):
     changes = {"corpus.rungs": (0, 1), "corpus.records_per_specimen": 1, "faults": MANY_HEALTHY}
     recipe = recipe_with(changes | {"operation.shaft_rpm": gen.grid(*speeds)})
     groups = groups_of(draw_scenarios(recipe)).values()
-    assert {round(60 * group[0].record.conditions["shaft"]) for group in groups} == set(speeds)
+    assert {round(60 * group[0].record.conditions.shaft_rate) for group in groups} == set(speeds)
 
 
 @pytest.mark.parametrize("by", ["specimen", "rig"])

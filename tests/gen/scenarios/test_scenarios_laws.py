@@ -95,7 +95,7 @@ def test_what_was_drawn_for_a_rig_or_a_specimen_says_nothing_about_what_runs_on_
             (
                 np.log(scenario.rig.machine["shaft_mass"]),
                 scenario.specimen.properties["diametral_clearance"],
-                scenario.record.conditions["shaft"],
+                scenario.record.conditions.shaft_rate,
             )
             for scenario in draw_scenarios(recipe_with(size | {"corpus.sampling": sampling}))
         ]
@@ -173,14 +173,14 @@ def test_quasi_random_records_fill_the_range_of_a_value_evenly(recipe_with, samp
         "operation.shaft_rpm": "uniform(1, 64)",
     }
     drawn = draw_scenarios(recipe_with(changes))
-    quantiles = [(scenario.record.conditions["shaft"] * 60 - 1) / 63 for scenario in drawn]
+    quantiles = [(scenario.record.conditions.shaft_rate * 60 - 1) / 63 for scenario in drawn]
     assert len(quantiles) == 64
     assert Counter(int(64 * u) for u in quantiles) == dict.fromkeys(range(64), 1)
 
 
 def test_random_records_do_not_fill_it_evenly(recipe_with):
     drawn = draw_scenarios(recipe_with({"corpus.rigs": 8}))
-    quantiles = [(scenario.record.conditions["shaft"] * 60 - 1500) / 500 for scenario in drawn]
+    quantiles = [(scenario.record.conditions.shaft_rate * 60 - 1500) / 500 for scenario in drawn]
     assert len({int(64 * u) for u in quantiles}) < 50
 
 
@@ -199,7 +199,7 @@ def test_grids_of_one_level_give_every_combination_once_before_they_come_again(r
     clearances: dict[int, set[float]] = {}
     for scenario in draw_scenarios(recipe):
         conditions = scenario.record.conditions
-        found = round(conditions["shaft"] * 60), conditions["load"]
+        found = round(conditions.shaft_rate * 60), conditions.load
         combinations.setdefault(scenario.specimen.number, []).append(found)
         of_rig = clearances.setdefault(scenario.rig.number, set())
         of_rig.add(round(scenario.specimen.properties["diametral_clearance"] * 1e6))
@@ -243,7 +243,7 @@ def test_a_scenario_is_plain_enough_to_be_stored_beside_its_record(recipe_with):
         stored = json.loads(scenario_texts([scenario])[0])
         assert stored["rig"]["machine"] == scenario.rig.machine
         assert stored["specimen"]["properties"] == scenario.specimen.properties
-        assert stored["record"]["conditions"] == scenario.record.conditions
+        assert stored["record"]["conditions"] == vars(scenario.record.conditions)
 
 
 def test_values_are_in_si_units(recipe_with):
@@ -251,8 +251,8 @@ def test_values_are_in_si_units(recipe_with):
         {"operation.shaft_rpm": 1800, "specimen.diametral_clearance_um": 8, "operation.slip_percent": 2}
     )
     scenario = draw_scenarios(recipe, 0, 1)[0]
-    assert scenario.record.conditions["shaft"] == pytest.approx(30.0)
-    assert scenario.record.conditions["slip"] == pytest.approx(0.02)
+    assert scenario.record.conditions.shaft_rate == pytest.approx(30.0)
+    assert scenario.record.conditions.slip == pytest.approx(0.02)
     assert scenario.specimen.properties["diametral_clearance"] == pytest.approx(8e-6)
 
 

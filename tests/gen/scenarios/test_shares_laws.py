@@ -2,6 +2,7 @@
 
 import math
 from contextlib import nullcontext
+from dataclasses import replace
 
 import pytest
 from hypothesis import given, settings
@@ -35,8 +36,8 @@ def test_an_axial_load_is_its_share_of_the_radial_load_of_the_same_record(recipe
     numbers = {"operation.axial_load_n": uniform(0.1, 0.6), "corpus.sampling": sampling}
     drawn, own = (draw_scenarios(recipe_with(SLANTED | changes)) for changes in (axial, numbers))
     for one, other in zip(drawn, own, strict=True):
-        expected = other.record.conditions["axial_load"] * one.record.conditions["load"]
-        assert one.record.conditions["axial_load"] == pytest.approx(expected)
+        expected = other.record.conditions.axial_load * one.record.conditions.load
+        assert one.record.conditions.axial_load == pytest.approx(expected)
 
 
 @pytest.mark.parametrize(
@@ -55,9 +56,9 @@ def test_to_make_a_quantity_a_share_moves_no_other(recipe_with, key, named):
     drawn = draw_scenarios(recipe_with(usual | {f"operation.{key}": share(named, 0.05, 0.06)}))
     name = split_unit(key)[0]
     for one, other in zip(drawn, without, strict=True):
-        conditions = one.record.conditions | {name: other.record.conditions[name]}
+        conditions = replace(one.record.conditions, **{name: getattr(other.record.conditions, name)})
         assert conditions == other.record.conditions
-        assert one.record.conditions[name] != other.record.conditions[name]
+        assert getattr(one.record.conditions, name) != getattr(other.record.conditions, name)
         assert one.record.speed_profile == other.record.speed_profile
         unbalance = {"unbalance": other.rig.machine["unbalance"]}  # follows the highest speed of the recipe
         assert one.rig.machine | unbalance == other.rig.machine
@@ -88,8 +89,8 @@ def test_a_share_can_name_quantities_of_every_level_above(recipe_with):
         assert scenario.rig.resonator["mass"] == pytest.approx(machine["shaft_mass"] / 50)
         assert properties["waviness"] == pytest.approx(1e-6 * CATALOGUE["6205"].ball_diameter)
         assert properties["ball_waviness"] == pytest.approx(properties["waviness"] / 4)
-        assert conditions["load"] == pytest.approx(8 * machine["bow"])
-        assert conditions["jitter"] == pytest.approx(math.radians(1))
+        assert conditions.load == pytest.approx(8 * machine["bow"])
+        assert conditions.jitter == pytest.approx(math.radians(1))
         assert scenario.rig.lubricant["viscosity_100"] == pytest.approx(68e-6 / 8)
 
 
@@ -109,8 +110,8 @@ def test_a_chain_of_shares_is_a_product_in_any_order(recipe_with):
     chain = {"operation.load_n": share("axial_load_n", 4, 4), "operation.axial_load_n": share("bow_n", 2, 2)}
     recipe = recipe_with(SLANTED | chain | {"machine.bow_n": uniform(10, 20)})
     for scenario in draw_scenarios(recipe):
-        assert scenario.record.conditions["axial_load"] == pytest.approx(2 * scenario.rig.machine["bow"])
-        assert scenario.record.conditions["load"] == pytest.approx(8 * scenario.rig.machine["bow"])
+        assert scenario.record.conditions.axial_load == pytest.approx(2 * scenario.rig.machine["bow"])
+        assert scenario.record.conditions.load == pytest.approx(8 * scenario.rig.machine["bow"])
     assert recipe.operation.load_n.support() == pytest.approx((80, 160))
 
 
@@ -174,7 +175,7 @@ def test_a_load_can_be_a_share_of_the_static_rating_of_the_bearing(recipe_with):
     scenarios = draw_scenarios(recipe)
     assert len({scenario.rig.bearing.designation for scenario in scenarios}) == 2
     for scenario in scenarios:
-        assert scenario.record.conditions["load"] == pytest.approx(0.1 * static_rating(scenario.rig.bearing))
+        assert scenario.record.conditions.load == pytest.approx(0.1 * static_rating(scenario.rig.bearing))
 
 
 @pytest.mark.parametrize("of_drawing", [0, 25])
@@ -190,7 +191,7 @@ def test_a_share_above_1_of_the_least_axial_load_holds_the_rings_together(recipe
         recipe = recipe_with(changes | {"operation.axial_load_n": share("least_axial_load_n", times, times)})
         for scenario in draw_scenarios(recipe, 0, 6):
             conditions, angle = scenario.record.conditions, scenario.specimen.bearing.contact_angle
-            assert conditions["axial_load"] == pytest.approx(times * 1.25 * math.tan(angle) * conditions["load"])
+            assert conditions.axial_load == pytest.approx(times * 1.25 * math.tan(angle) * conditions.load)
             with nullcontext() if possible else pytest.raises(ValueError, match="too small to hold its rings together"):
                 machine_of(scenario)
 
@@ -211,7 +212,7 @@ def test_every_product_lies_in_its_support(recipe_with, shares, loads, seed):
     low, high = recipe.operation.axial_load_n.support()
     assert (low, high) == pytest.approx((min(shares) * min(loads), max(shares) * max(loads)))
     for scenario in draw_scenarios(recipe, 0, 4):
-        assert low * (1 - 1e-9) <= scenario.record.conditions["axial_load"] <= high * (1 + 1e-9)
+        assert low * (1 - 1e-9) <= scenario.record.conditions.axial_load <= high * (1 + 1e-9)
 
 
 def test_the_support_of_a_share_that_is_known_only_when_drawn_is_that_of_its_field(recipe_with):
@@ -260,5 +261,5 @@ def test_a_section_has_the_quantities_that_can_be_drawn():
 def test_quantiles_of_a_share_are_as_even_as_those_of_any_quantity(recipe_with):
     changes = {"corpus.sampling": "sobol", "corpus.rigs": 8, "machine.bow_n": 100}
     recipe = recipe_with(changes | {"operation.load_n": share("bow_n", 1, 65)})
-    quantiles = [one.record.conditions["load"] / 100 - 1 for one in draw_scenarios(recipe)]
+    quantiles = [one.record.conditions.load / 100 - 1 for one in draw_scenarios(recipe)]
     assert sorted(int(found) for found in quantiles) == list(range(64))

@@ -78,7 +78,7 @@ def envelopes(recipe):
     scenarios = draw_scenarios(recipe)
     signals = measure(simulate(scenarios).acceleration, scenarios).signal[:, 0]
     return [
-        (scenario.specimen.fault, Envelope(signal, scenario.record.conditions["shaft"]))
+        (scenario.specimen.fault, Envelope(signal, scenario.record.conditions.shaft_rate))
         for scenario, signal in zip(scenarios, signals, strict=True)
     ]
 

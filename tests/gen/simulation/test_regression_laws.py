@@ -44,7 +44,7 @@ def test_a_path_that_lets_nothing_through_is_refused(recipe_with):
 def test_a_grid_goes_on_from_specimen_to_specimen(recipe_with):
     speeds = [600, 900, 1200, 1500]
     recipe = recipe_with({"operation.shaft_rpm": gen.grid(*speeds)})
-    found = [60 * scenario.record.conditions["shaft"] for scenario in draw_scenarios(recipe)]
+    found = [60 * scenario.record.conditions.shaft_rate for scenario in draw_scenarios(recipe)]
     assert found == pytest.approx([speeds[number % 4] for number in range(len(found))])
 
 
