@@ -1,2 +1,1 @@
-from .comparison import Comparison as Comparison
-from .comparison import compare as compare
+from .comparison import Comparison as Comparison, compare as compare

@@ -1,6 +1,6 @@
 """The files of a finished corpus beside its parts: index, manifest, data card; one file of all parts; a change of the publication."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from gen.corpus.manifest import (
     write_manifest,
 )
 from gen.corpus.part import PartRow
-from gen.corpus.publication import Publication
+from gen.corpus.publication import Publication, read_publication
 from gen.corpus.signals import SignalCounts
 
 
@@ -67,18 +67,28 @@ def remove_parts(directory: Path, names: Iterable[str]) -> None:
             folder.rmdir()
 
 
-def publish(path: Path | str, publication: Publication) -> None:
+def publish(path: Path | str, publication: Publication | Mapping[str, Any]) -> None:
     """Change licence, creators and references of a finished corpus.
 
     The parts stay as they are, and the other files of a folder are those of a corpus that was made with this publication from the start;
     a single file gets other attributes. A killed call leaves a corpus that can be read, and the same call completes it.
 
+    Parameters
+    ----------
+    path : path
+        The corpus.
+    publication : mapping or Publication
+        Keys of :class:`gen.corpus.Publication`, such as ``{"license": "CC-BY-4.0", "creators": [{"name": "Jane Doe"}]}``.
+
     Raises
     ------
     CorpusError
-        If the corpus is unfinished, altered or a part of another, another call changes it, or a file or its data card cannot be written.
+        If a key is unknown or a value is wrong; if the corpus is unfinished, altered or a part of another, another call changes it, or a
+        file or its data card cannot be written.
     """
     path = Path(path)
+    if not isinstance(publication, Publication):
+        publication = read_publication(publication)
     check_card(path)
     corpus_files(path)
     manifest = read_manifest(path)

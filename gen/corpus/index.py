@@ -21,7 +21,6 @@ from gen.corpus.files import append_checksum, remove_checksum, whole_or_not_at_a
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.manifest import (
     INDEX_NAME,
-    RECIPE_TEXT,
     Check,
     checked,
     corpus_files,
@@ -30,7 +29,7 @@ from gen.corpus.manifest import (
 )
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_part, open_records
-from gen.corpus.schema import SIGNAL, schema_problems
+from gen.corpus.schema import RECIPE_TEXT, SIGNAL, schema_problems
 from gen.corpus.simulated import SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.support.errors import CorpusError

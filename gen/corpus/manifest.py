@@ -30,15 +30,12 @@ from gen.corpus.files import (
 from gen.corpus.open_files import file_facts
 from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
-from gen.corpus.schema import FORMAT
+from gen.corpus.schema import FORMAT, RECIPE_TEXT
 from gen.corpus.signals import Count, SignalCounts, summed
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
 Check = Literal["sha256", "size"]
-
-RECIPE_TEXT = "recipe_text"
-"""Global attribute of a single file with its recipe, as ``recipe.yaml`` of a folder."""
 
 _PART_NAME = re.compile(r"part-\d{5,9}\.nc")
 _TEXTS = ("title", "recipe", "recipe_sha256", "sources_sha256", "parts_sha256", "importer")

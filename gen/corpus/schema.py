@@ -29,6 +29,7 @@ _CONTENT_OF_ROLES = {  # words of ISO 19115-1 in the attribute coverage_content_
     "provenance": "auxiliaryInformation",
 }
 SIGNAL = "acceleration"
+RECIPE_TEXT = "recipe_text"  # global attribute with the recipe of all records, as YAML
 DRAWS = "draws"  # variable of simulated corpora: the scenario of a record, as JSON of some kilobytes
 IDENTITY = (
     "identity"  # joined corpora get new numbers from it, so that a machine has the same number in all of their records

@@ -9,19 +9,16 @@ import warnings
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
-from gen.corpus import DRAWS
+from gen.corpus import RECIPE_TEXT
 from gen.generation.parts import dataset_of, library_versions, part_attributes
 from gen.generation.scheduling import Crew, MadePart, made_parts
 from gen.generation.undetected import made_from
-from gen.recipe import Recipe, plain, recipe_for
+from gen.recipe import Recipe, make_recipe, recipe_text
 from gen.recipe.keywords import FaultLike
 from gen.scenarios import Rig, Scenario, check_scenario, read_scenario, scenario_texts
 from gen.support.errors import CorpusError, RecipeError, SimulationError
-
-RECIPE = "recipe_json"  # attribute of a Dataset of all records of a recipe
 
 
 def record(fault: FaultLike | None = None, **keys: Any) -> xr.Dataset:
@@ -55,7 +52,7 @@ def record(fault: FaultLike | None = None, **keys: Any) -> xr.Dataset:
     >>> found = record(outer(width_mm=0.8), bearing="6205", shaft_rpm=1480)  # doctest: +SKIP
     >>> found.acceleration.plot()  # doctest: +SKIP
     """
-    recipe = recipe_for(fault, **{"name": "record", **keys})
+    recipe = make_recipe(fault, **{"name": "record", **keys})
     if recipe.n_records != 1:
         raise RecipeError(
             f"the keys ask for {recipe.n_records} records; gen.record makes one, gen.records makes several."
@@ -95,18 +92,18 @@ def records(
     """
     if type(workers) is not int or workers < 1:
         raise RecipeError(f"workers: {workers!r} is not allowed; use 1 or more.")
-    return _made(recipe_for(fault, n, **keys), workers)
+    return _made(make_recipe(fault, n, **keys), workers)
 
 
-def simulate_scenarios(scenarios: Sequence[Scenario]) -> xr.Dataset:
-    """Records of scenarios, such as drawn ones changed with :func:`dataclasses.replace`.
+def simulate(scenarios: Sequence[Scenario]) -> xr.Dataset:
+    """Simulate records of scenarios, such as drawn ones changed with :func:`dataclasses.replace`.
 
     Parameters
     ----------
     scenarios : sequence of Scenario
-        From :func:`gen.draw_scenarios`, :func:`gen.scenarios_of` or :func:`gen.stored_scenario`, changed or not. Random processes such as
-        noise follow from the numbers of rig, specimen and record, so scenarios with the same numbers have the same noise. A measured
-        scenario of a pair or ladder keeps its ``record.gains``; without them, the largest severity sets the level.
+        From :func:`gen.draw_scenarios` or :func:`gen.read_scenarios`, changed or not. Random processes such as noise follow from the
+        numbers of rig, specimen and record, so scenarios with the same numbers have the same noise. A measured scenario of a pair or
+        ladder keeps its ``record.gains``; without them, the largest severity sets the level.
 
     Returns
     -------
@@ -122,45 +119,6 @@ def simulate_scenarios(scenarios: Sequence[Scenario]) -> xr.Dataset:
     """
     made, failures = dataset_of(made_from(_checked(scenarios)))
     return _decoded([made], failures, {"versions": json.dumps(library_versions())})
-
-
-def recipe_of(dataset: xr.Dataset) -> Recipe:
-    """Recipe that a Dataset of records was made from.
-
-    Raises
-    ------
-    CorpusError
-        If the Dataset carries none.
-    """
-    if not isinstance(dataset, xr.Dataset):
-        raise CorpusError(
-            f"{type(dataset).__name__} given in place of a Dataset; give one from gen.record or gen.records."
-        )
-    if RECIPE not in dataset.attrs:
-        raise CorpusError(
-            f"the Dataset has no attribute {RECIPE}; give one from gen.record or gen.records, with its attributes."
-        )
-    try:
-        return Recipe(**json.loads(dataset.attrs[RECIPE]))
-    except (ValueError, TypeError):
-        raise CorpusError(
-            f"the attribute {RECIPE} of the Dataset is not the JSON text of a recipe; make the records again."
-        ) from None
-
-
-def scenarios_of(dataset: xr.Dataset) -> list[Scenario]:
-    """Scenario of each record of a Dataset, with every drawn value.
-
-    Raises
-    ------
-    CorpusError
-        If the Dataset has no scenarios.
-    """
-    if not isinstance(dataset, xr.Dataset) or DRAWS not in dataset:
-        raise CorpusError(
-            f"the Dataset has no variable {DRAWS}, so it holds no scenarios; give one from gen.record or gen.records."
-        )
-    return [read_scenario(str(text)) for text in np.atleast_1d(dataset[DRAWS].values)]
 
 
 def _checked(scenarios: Sequence[Scenario]) -> list[Scenario]:
@@ -207,7 +165,7 @@ def _made(recipe: Recipe, workers: int) -> xr.Dataset:
     numbers = [range(first, min(first + size, stop)) for first in range(0, stop, size)]
     parts = sorted(made_parts(recipe, numbers, finished, crew=Crew(workers)), key=lambda part: part[0])
     failures = [text for *_, texts in parts for text in texts]
-    attributes = part_attributes(recipe, failures) | {RECIPE: json.dumps(plain(recipe))}
+    attributes = part_attributes(recipe, failures) | {RECIPE_TEXT: recipe_text(recipe)}
     return _decoded([part for _, part, _ in parts], failures, attributes)
 
 

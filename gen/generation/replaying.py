@@ -1,4 +1,4 @@
-"""Records of a corpus simulated again from the scenarios that it stores with them, and the true angle of their shaft.
+"""Records of a corpus simulated again from the scenarios that it stores with them.
 
 A stored scenario is complete, so it does not matter in which corpus its record lies.
 """
@@ -10,14 +10,12 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus import DRAWS, SIGNAL, open_corpus
+from gen.corpus import SIGNAL, open_corpus
 from gen.corpus.joining import NUMBERS
 from gen.generation.labels import part_dataset
 from gen.generation.undetected import made_from
-from gen.scenarios import Scenario, check_scenario, read_scenario, simulation_errors
-from gen.simulation.shaft import shaft_angles as angles_of
-from gen.simulation.timeline import timeline
-from gen.support.errors import CorpusError, RecipeError
+from gen.scenarios import Scenario, read_scenarios
+from gen.support.errors import CorpusError
 
 
 @dataclass(frozen=True)
@@ -40,11 +38,18 @@ def replay(path: Path | str, record: int) -> Replayed:
     CorpusError
         If the corpus has no such record, or stores no scenario of it.
     """
-    scenario = stored_scenario(path, record)
     with open_corpus(path, check="size") as corpus:
-        stored = corpus[SIGNAL][record].values
+        records = corpus.sizes["record"]
+        if not 0 <= record < records:
+            raise CorpusError(f"{path}: record {record} is not in it; it has records 0 to {records - 1}.")
+        row = corpus.isel(record=[record])
+        try:
+            (scenario,) = read_scenarios(row)
+        except CorpusError as error:
+            raise CorpusError(f"{path}: record {record}{str(error).removeprefix('record 0')}") from None
+        stored = row[SIGNAL].values[0]
         names = [str(name) for name in corpus["channel"].values]
-        numbers = {name: corpus[name][record : record + 1].values for name in NUMBERS if name in corpus}
+        numbers = {name: row[name].values for name in NUMBERS if name in corpus}
     made = made_from([scenario])
     again = part_dataset(made.measured, made.response)
     (signal,) = xr.decode_cf(again, decode_times=False)[SIGNAL].values
@@ -59,44 +64,3 @@ def _place(stored: NDArray[np.floating], name: str, again: NDArray[np.floating],
     names = scenario.settings.channels
     places = sorted(range(len(names)), key=lambda place: names[place] != name)
     return next((place for place in places if np.array_equal(again[place], stored)), places[0])
-
-
-def stored_scenario(path: Path | str, record: int) -> Scenario:
-    """Scenario that a corpus stores with a record.
-
-    ``record`` counts the records of the corpus from 0.
-
-    Raises
-    ------
-    CorpusError
-        If there is no such record, or the corpus stores no scenario of it.
-    """
-    with open_corpus(path, check="size") as corpus:
-        records = corpus.sizes["record"]
-        if not 0 <= record < records:
-            raise CorpusError(f"{path}: record {record} is not in it; it has records 0 to {records - 1}.")
-        text = str(corpus[DRAWS][record].values) if DRAWS in corpus else ""
-    if not text:
-        raise CorpusError(f"{path}: record {record} was not simulated: the corpus stores no scenario of it.")
-    try:
-        scenario = read_scenario(text)
-        check_scenario(scenario)
-    except (CorpusError, RecipeError) as error:
-        raise CorpusError(f"{path}: record {record}: {error}") from None
-    return scenario
-
-
-def shaft_angles(path: Path | str, record: int) -> NDArray[np.float64]:
-    """Angle of the shaft at every sample of a record of a simulated corpus, shape (elapsed_time,) [rad].
-
-    It is the true angle, by which bearing, unbalance and background turn: for order tracking and synchronous averages.
-
-    Raises
-    ------
-    CorpusError
-        If there is no such record, or the corpus stores no scenario of it.
-    """
-    scenario = stored_scenario(path, record)
-    axis = timeline(scenario.settings)
-    with simulation_errors():
-        return angles_of(scenario, axis)[axis.kept]

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from gen.corpus import (
     DRAWS,
     IDENTITY,
+    RECIPE_TEXT,
     SCHEMA,
     SIGNAL,
     SIMULATED,
@@ -27,11 +28,10 @@ from gen.corpus import (
 )
 from gen.corpus.joining import new_numbers
 from gen.generation.corpus import facts_of
-from gen.generation.memory import RECIPE, recipe_of, scenarios_of
 from gen.generation.parts import part_attributes
 from gen.measurement.measure import LARGEST_COUNT
-from gen.recipe import Recipe, corpus_identity, recipe_text
-from gen.scenarios import Settings
+from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
+from gen.scenarios import Settings, read_scenarios
 from gen.support.errors import CorpusError
 
 _PART_RECORDS = 256
@@ -46,7 +46,7 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     ----------
     dataset : Dataset
         Records with the scenarios that they were simulated from, in any order: from :func:`gen.record`, :func:`gen.records` or
-        :func:`gen.simulate_scenarios`, whole or chosen, or several such Datasets joined with :func:`xarray.concat`. Variables of shape
+        :func:`gen.simulate`, whole or chosen, or several such Datasets joined with :func:`xarray.concat`. Variables of shape
         (record,) can be added, with the attributes ``long_name`` and ``role``.
     target : path
         New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
@@ -91,7 +91,7 @@ def _write_parts(stored: xr.Dataset, corpus: NewCorpus, size: int) -> None:
 
 def _recipes(rows: xr.Dataset) -> list[str]:
     """Names of the recipes of the records."""
-    return list(dict.fromkeys(scenario.settings.recipe for scenario in scenarios_of(rows)))
+    return list(dict.fromkeys(scenario.settings.recipe for scenario in read_scenarios(rows)))
 
 
 def _as_one_row(record: xr.Dataset) -> xr.Dataset:
@@ -109,7 +109,7 @@ def _form_of(rows: xr.Dataset) -> Settings:
     """Settings of the first record; of all others, those that fix the form of a file are the same."""
     if not rows.sizes["record"]:
         raise CorpusError("the Dataset has no record; give at least one.")
-    first, *others = (scenario.settings for scenario in scenarios_of(rows))
+    first, *others = (scenario.settings for scenario in read_scenarios(rows))
     for place, settings in enumerate(others, start=1):
         changed = next((name for name in _ONE_FORM if getattr(settings, name) != getattr(first, name)), None)
         if changed is not None:
@@ -122,9 +122,9 @@ def _form_of(rows: xr.Dataset) -> Settings:
 
 def _whole_recipe(rows: xr.Dataset) -> Recipe | None:
     """Recipe that a Dataset carries, if its records are all those of the recipe in their order; else None."""
-    if RECIPE not in rows.attrs:
+    if RECIPE_TEXT not in rows.attrs:
         return None
-    recipe = recipe_of(rows)
+    recipe = read_recipe(rows)
     corpora = {str(text).partition("/")[0] for text in rows[IDENTITY].values}
     ascending = bool((np.diff(rows["recording"].values) > 0).all())
     count = rows.sizes["record"] + len(json.loads(rows.attrs.get("failures", "[]")))

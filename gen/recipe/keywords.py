@@ -40,7 +40,7 @@ class _Place(NamedTuple):
     """Values of ``kind`` of the last section that has the key; empty if the section has no kinds."""
 
 
-def recipe_for(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, **keys: Any) -> Recipe:
+def make_recipe(fault: FaultLike | Sequence[FaultLike] | None = None, n: int | None = None, **keys: Any) -> Recipe:
     """Recipe with ``n`` records of each fault, from keys by their own names: the one that :func:`gen.records` uses.
 
     With :func:`gen.write_recipe` and :func:`gen.generate` it makes a corpus that does not fit into memory.

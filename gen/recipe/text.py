@@ -28,7 +28,9 @@ def write_recipe(recipe: Recipe, path: Path | str) -> None:
         If the file cannot be written.
     """
     if not isinstance(recipe, Recipe):
-        raise RecipeError(f"recipe: {type(recipe).__name__} given; give a gen.Recipe, such as gen.read_recipe makes.")
+        raise RecipeError(
+            f"recipe: {type(recipe).__name__} given; give one that gen.make_recipe or gen.read_recipe gave."
+        )
     write_text_durably(recipe_text(recipe), Path(path))
 
 

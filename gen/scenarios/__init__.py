@@ -14,7 +14,7 @@ records       records of a specimen, with rungs of severity
 draw          draw rigs and specimens, and with them all records
 settings      values that a recipe fixes for all of its records
 checks        check a scenario that was changed by hand, or comes from a file
-stored        write a scenario as the JSON text that a corpus stores, and read it
+stored        write scenarios as the JSON texts that a corpus stores, and read them
 ============= =================================================================
 """
 
@@ -44,7 +44,7 @@ from gen.scenarios.model import (
 )
 from gen.scenarios.records import with_level
 from gen.scenarios.settings import common_settings, settings_of
-from gen.scenarios.stored import read_scenario, scenario_texts
+from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
 
 __all__ = [
     "Background",
@@ -72,6 +72,7 @@ __all__ = [
     "first_records",
     "first_specimens",
     "read_scenario",
+    "read_scenarios",
     "scenario_texts",
     "settings_of",
     "simulation_errors",

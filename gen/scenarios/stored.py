@@ -2,11 +2,18 @@
 
 import json
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
+import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from gen.corpus import DRAWS
+from gen.scenarios.checks import check_scenario
 from gen.scenarios.model import Scenario
-from gen.support.errors import CorpusError
+from gen.support.errors import CorpusError, RecipeError
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _SCENARIO = TypeAdapter(Scenario)
 _LONGEST_PLACE = 100
@@ -23,6 +30,35 @@ def scenario_texts(scenarios: Sequence[Scenario]) -> list[str]:
         f'"record": {json.dumps(one.record, default=vars)}}}'
         for one in scenarios
     ]
+
+
+def read_scenarios(records: "xr.Dataset") -> list[Scenario]:
+    """Scenario of each record of a Dataset, with every drawn value.
+
+    Parameters
+    ----------
+    records : Dataset
+        Simulated records, all or some: of :func:`gen.record`, :func:`gen.records` or :func:`gen.open_corpus`.
+
+    Raises
+    ------
+    CorpusError
+        If a record has no scenario, or one that cannot be simulated.
+    """
+    if DRAWS not in getattr(records, "variables", ()):
+        raise CorpusError(
+            f"no Dataset with the variable {DRAWS}; give records that gen.records or gen.open_corpus gave."
+        )
+    scenarios = []
+    for place, text in enumerate(np.atleast_1d(records[DRAWS].values)):
+        if not text:
+            raise CorpusError(f"record {place} has no scenario: it was not simulated, or its signal was changed since.")
+        try:
+            scenarios.append(read_scenario(str(text)))
+            check_scenario(scenarios[-1])
+        except (CorpusError, RecipeError) as error:
+            raise CorpusError(f"record {place}: {error}") from None
+    return scenarios
 
 
 def read_scenario(text: str) -> Scenario:

@@ -93,15 +93,21 @@ def read_yaml(path: Path, error: type[RacewayError]) -> Any:
         text = content.decode("utf-16" if wide else "utf-8")
     except UnicodeDecodeError as flaw:
         raise error(f"{path}: cannot be read ({flaw}); give a YAML file in UTF-8.") from None
+    return parse_yaml(text, path, error)
+
+
+def parse_yaml(text: str, where: Path | str, error: type[RacewayError]) -> Any:
+    """Values of a YAML text; ``where`` is its place, for errors of the class ``error``, which are those of :func:`read_yaml`."""
+    check_limit("yaml_bytes", len(text), f"{where}: is", error)
     if _LONG_TAG.search(text):
-        raise error(f"{path}: is not valid YAML (a tag of more than 500 characters); correct it there.")
+        raise error(f"{where}: is not valid YAML (a tag of more than 500 characters); correct it there.")
     try:
-        return _Document(text, path, error).read()
+        return _Document(text, where, error).read()
     except RacewayError:
         raise
     except Exception as flaw:  # ruamel.yaml raises a dozen unrelated types on damaged text
         place, reason = _told(flaw)
-        raise error(f"{path}: {place}is not valid YAML ({reason}); correct it there.") from flaw
+        raise error(f"{where}: {place}is not valid YAML ({reason}); correct it there.") from flaw
 
 
 def _told(flaw: Exception) -> tuple[str, str]:
@@ -117,9 +123,9 @@ def _told(flaw: Exception) -> tuple[str, str]:
 class _Document:
     """State of reading a document: its events, the count of values, and the values that aliases can repeat."""
 
-    def __init__(self, text: str, path: Path, error: type[RacewayError]) -> None:
+    def __init__(self, text: str, where: Path | str, error: type[RacewayError]) -> None:
         self.events: Iterator[Event] = YAML(typ="safe", pure=True).parse(text)
-        self.path, self.error = path, error
+        self.where, self.error = where, error
         self.count, self.most = 0, limit("yaml_values")
         self.anchors: dict[str, _Node | None] = {}
 
@@ -167,7 +173,7 @@ class _Document:
         if self.count > self.most:
             line = event.start_mark.line + 1
             check_limit(
-                "yaml_values", self.count, f"{self.path}: up to line {line}, with aliases expanded, holds", self.error
+                "yaml_values", self.count, f"{self.where}: up to line {line}, with aliases expanded, holds", self.error
             )
 
     def repeated(self, event: Any, depth: int) -> _Node:

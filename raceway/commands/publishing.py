@@ -11,7 +11,7 @@ from raceway.console import show
 from raceway.console.options import A_PATH, corpus_argument, json_option
 
 if TYPE_CHECKING:
-    from gen import Publication
+    from gen.corpus import Publication
 
 
 def _creators(_context: click.Context, _option: click.Parameter, texts: tuple[str, ...]) -> list[dict[str, str]]:
@@ -106,9 +106,7 @@ def card(
 
 def _published(corpus: Path, given: dict[str, Any]) -> "Publication":
     """Facts of the corpus after those that are given have replaced others."""
-    from gen.corpus import publish, read_manifest, read_publication
+    from gen.corpus import publish, read_manifest
 
-    known = read_manifest(corpus).publication
-    wanted = read_publication(known.stored | given)
-    publish(corpus, wanted)
+    publish(corpus, read_manifest(corpus).publication.stored | given)
     return read_manifest(corpus).publication

@@ -43,8 +43,8 @@ def test_an_unknown_name_is_an_attribute_error(package):
 )
 def test_a_public_name_is_the_function_after_the_import_of_any_module(order):
     imports = "; ".join(f"import {name}" for name in order)
-    names = "gen.generate.__module__, gen.replay.__module__, gen.simulate.__module__"
-    expected = "gen.generation.corpus gen.generation.replaying gen.simulation.simulate\n"
+    names = "gen.generate.__module__, gen.replay.__module__, gen.read_recipe.__module__"
+    expected = "gen.generation.corpus gen.generation.replaying gen.recipe.reading\n"
     assert run(f"{imports}; from gen import generate, replay; print({names})") == expected
     assert run(f"from gen import generate, replay; {imports}; print({names})") == expected
 

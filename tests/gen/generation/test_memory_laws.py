@@ -129,18 +129,6 @@ def test_further_variables_are_written(ladder, tmp_path):
         (lambda ladder: ladder.isel(record=[]), "the Dataset has no record; give at least one."),
         (lambda ladder: ladder.drop_vars("snr"), "the Dataset has no variable snr; keep all that gen.records gives."),
         (
-            lambda ladder: ladder.drop_vars("draws"),
-            "the Dataset has no variable draws, so it holds no scenarios; give one from",
-        ),
-        (
-            lambda ladder: ladder.assign_attrs(recipe_json="{"),
-            "the attribute recipe_json of the Dataset is not the JSON text of a recipe",
-        ),
-        (
-            lambda ladder: ladder.assign_attrs(recipe_json="[1]"),
-            "the attribute recipe_json of the Dataset is not the JSON text of a recipe",
-        ),
-        (
             lambda ladder: ladder.assign(mine=("record", np.arange(6))),
             "mine: needs one value for each record and the attributes long_name and",
         ),
@@ -198,7 +186,7 @@ def test_a_killed_write_leaves_a_whole_corpus_or_none(ladder, tmp_path):
 def test_the_corpus_of_a_choice_has_no_recipe(ladder, tmp_path, order):
     directory = gen.write_corpus(ladder.isel(record=order), tmp_path / "corpus")
     assert not (directory / "recipe.yaml").exists()
-    gen.write_recipe(gen.recipe_of(ladder), tmp_path / "recipe.yaml")
+    gen.write_recipe(gen.read_recipe(ladder), tmp_path / "recipe.yaml")
     with pytest.raises(CorpusError, match="choose another name"):
         gen.generate(tmp_path / "recipe.yaml", directory)
     assert gen.validate_corpus(directory) == []
@@ -228,9 +216,9 @@ def test_gen_record_makes_one_record_alone():
 
 
 def test_drawn_scenarios_give_the_records_of_their_recipe(ladder):
-    scenarios = gen.scenarios_of(ladder)
-    assert scenarios == gen.draw_scenarios(gen.recipe_of(ladder))
-    again = gen.simulate_scenarios(scenarios)
+    scenarios = gen.read_scenarios(ladder)
+    assert scenarios == gen.draw_scenarios(gen.read_recipe(ladder))
+    again = gen.simulate(scenarios)
     assert (
         again.drop_vars("step_error")
         .drop_attrs(deep=False)
@@ -239,21 +227,22 @@ def test_drawn_scenarios_give_the_records_of_their_recipe(ladder):
 
 
 def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_path):
-    recipe = gen.recipe_for([OUTER, INNER], 3, rungs=[0, 0.5, 1], level=SNR, **SHORT)
+    recipe = gen.make_recipe([OUTER, INNER], 3, rungs=[0, 0.5, 1], level=SNR, **SHORT)
     scenarios = gen.draw_scenarios(recipe)
     faster = [
         replace(one, record=replace(one.record, conditions=replace(one.record.conditions, shaft_rate=61.0)))
         for one in scenarios
     ]
-    made = gen.simulate_scenarios(faster[3:] + faster[:3])
+    made = gen.simulate(faster[3:] + faster[:3])
     assert np.allclose(made["true_shaft_rate"], 61, rtol=0.02)
     directory = gen.write_corpus(made.isel(record=[2, 0, 1, 5, 4, 3]), tmp_path / "corpus")
     assert gen.validate_corpus(directory) == []
     assert replayed(directory)
-    stored = gen.stored_scenario(directory, 1)
+    with gen.open_corpus(directory) as corpus:
+        (stored,) = gen.read_scenarios(corpus.isel(record=1))
     assert replace(stored, record=replace(stored.record, gains=None)) == faster[3]
     with pytest.raises(RecipeError, match=r"scenarios\[1\]: rung 0 of pair 0 does not rise; sort them, each once"):
-        gen.simulate_scenarios([faster[1], faster[0]])
+        gen.simulate([faster[1], faster[0]])
     assert replayed(gen.write_corpus(made.isel(record=[0, 1]), tmp_path / "cut"))
 
 
@@ -297,18 +286,18 @@ def test_every_record_of_scenarios_made_by_hand_is_replayed_from_its_own(tmp_pat
     ],
 )
 def test_scenarios_that_do_not_fit_each_other_are_refused(ladder, changed, sentence):
-    scenarios = gen.scenarios_of(ladder)
+    scenarios = gen.read_scenarios(ladder)
     with pytest.raises(RecipeError, match=sentence):
-        gen.simulate_scenarios([scenarios[0], changed(scenarios[1])])
+        gen.simulate([scenarios[0], changed(scenarios[1])])
 
 
 def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder):
-    one, other, *_ = gen.scenarios_of(ladder)
+    one, other, *_ = gen.read_scenarios(ladder)
     other = replace(other, settings=replace(other.settings, seed=6, twins=False))
     with pytest.raises(
         SimulationError, match=r"scenarios\[1\]: its settings are not those of scenarios\[0\] \(seed, twins\); simulate"
     ):
-        gen.simulate_scenarios([one, other])
+        gen.simulate([one, other])
 
 
 @pytest.mark.parametrize(
@@ -325,17 +314,17 @@ def test_scenarios_of_different_settings_are_simulated_in_different_calls(ladder
 )
 def test_missing_and_absurd_drawn_values_are_one_sentence(ladder, changed, sentence):
     with pytest.raises(SimulationError, match=sentence):
-        gen.simulate_scenarios([changed(gen.scenarios_of(ladder)[0])])
+        gen.simulate([changed(gen.read_scenarios(ladder)[0])])
 
 
 def test_no_scenarios_are_no_records():
     with pytest.raises(SimulationError, match="scenarios: there are none; give at least one"):
-        gen.simulate_scenarios([])
+        gen.simulate([])
 
 
 def test_the_dataset_carries_the_recipe_as_it_was_given(ladder):
-    assert plain(gen.recipe_of(ladder)) == plain(
-        gen.recipe_for([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
+    assert plain(gen.read_recipe(ladder)) == plain(
+        gen.make_recipe([OUTER, INNER], 3, records_per_part=4, shaft_rpm=gen.uniform(3000, 4000), **SHORT)
     )
 
 
@@ -343,15 +332,24 @@ def test_the_dataset_carries_the_recipe_as_it_was_given(ladder):
     ("call", "error", "sentence"),
     [
         (lambda _: gen.write_corpus(None, "corpus"), CorpusError, "NoneType given in place of a Dataset"),
-        (lambda _: gen.recipe_of({}), CorpusError, "dict given in place of a Dataset"),
-        (lambda _: gen.scenarios_of(3), CorpusError, "so it holds no scenarios; give one from"),
-        (lambda some: gen.simulate_scenarios(some[0]), RecipeError, "scenarios: Scenario given; give a list"),
-        (lambda _: gen.simulate_scenarios(None), RecipeError, "scenarios: NoneType given; give a list"),
-        (lambda _: gen.simulate_scenarios("x"), RecipeError, "scenarios: str given; give a list"),
-        (lambda _: gen.simulate_scenarios([1]), RecipeError, r"scenarios\[0\]: is no scenario"),
+        (lambda _: gen.read_recipe(xr.Dataset()), RecipeError, "recipe_text of the Dataset: there is none; give a"),
+        (
+            lambda _: gen.read_recipe(xr.Dataset(attrs={"recipe_text": "{"})),
+            RecipeError,
+            "Dataset: line 1: is not valid",
+        ),
+        (lambda _: gen.read_scenarios(3), CorpusError, "no Dataset with the variable draws; give records"),
+        (lambda some: gen.simulate(some[0]), RecipeError, "scenarios: Scenario given; give a list"),
+        (lambda _: gen.simulate(None), RecipeError, "scenarios: NoneType given; give a list"),
+        (lambda _: gen.simulate("x"), RecipeError, "scenarios: str given; give a list"),
+        (lambda _: gen.simulate([1]), RecipeError, r"scenarios\[0\]: is no scenario"),
         (lambda _: gen.read_recipe(None), RecipeError, "recipe: NoneType given; give a path, the name of"),
-        (lambda _: gen.write_recipe({}, "recipe.yaml"), RecipeError, r"recipe: dict given; give a gen\.Recipe"),
-        (lambda _: gen.read_publication([1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
+        (
+            lambda _: gen.write_recipe({}, "recipe.yaml"),
+            RecipeError,
+            "recipe: dict given; give one that gen.make_recipe",
+        ),
+        (lambda _: gen.publish("corpus", [1]), CorpusError, r"publication: \[1\] is not a mapping; give keys"),
     ],
 )
 def test_an_argument_of_another_type_is_one_sentence(call, error, sentence, tmp_path, monkeypatch):

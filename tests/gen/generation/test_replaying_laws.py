@@ -11,13 +11,14 @@ from gen import (
     generate,
     open_corpus,
     read_recipe,
+    read_scenarios,
     replay,
-    shaft_angles,
-    stored_scenario,
     write_corpus,
 )
 from gen.corpus import finish_corpus, part_name, write_part
 from gen.simulation.motion import start_of
+from gen.simulation.shaft import shaft_angles
+from gen.simulation.timeline import timeline
 from gen.support.errors import CorpusError
 from tests import corpora
 
@@ -88,27 +89,31 @@ def test_a_record_is_replayed_with_channels_cut_renamed_or_exchanged_and_in_floa
 
 def test_the_stored_scenario_of_every_record_is_the_drawn_one(tiny_corpus):
     with open_corpus(tiny_corpus) as corpus:
-        numbers = corpus["recording"].values
-    drawn = draw_scenarios(read_recipe(tiny_corpus / "recipe.yaml"))
-    assert [stored_scenario(tiny_corpus, record) for record in range(len(numbers))] == [drawn[n] for n in numbers]
+        drawn = draw_scenarios(read_recipe(corpus))
+        assert read_scenarios(corpus) == [drawn[number] for number in corpus["recording"].values]
 
 
-def test_a_corpus_without_its_recipe_still_gives_its_scenarios(tiny_corpus, tmp_path):
+def test_an_opened_corpus_gives_its_recipe(tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        assert read_recipe(corpus) == read_recipe(tiny_corpus / "recipe.yaml")
+
+
+def test_a_corpus_without_its_recipe_still_replays(tiny_corpus, tmp_path):
     copied = shutil.copytree(tiny_corpus, tmp_path / "corpus")
     (copied / "recipe.yaml").unlink()
-    assert stored_scenario(copied, 7) == stored_scenario(tiny_corpus, 7)
+    assert replay(copied, 7).identical
 
 
 @pytest.mark.parametrize("record", [-1, 48])
-def test_a_record_that_is_not_there_has_no_scenario(tiny_corpus, record):
+def test_a_record_that_is_not_there_is_not_replayed(tiny_corpus, record):
     with pytest.raises(CorpusError, match=f"record {record} is not in it; it has records 0 to 47"):
-        stored_scenario(tiny_corpus, record)
+        replay(tiny_corpus, record)
 
 
 def test_a_stored_text_that_is_no_scenario_is_refused_with_corpus_and_record(tmp_path):
     corpora.write_corpus(tmp_path / "corpus")
     with pytest.raises(CorpusError, match=r"corpus: record 4: stored scenario: the whole text: Invalid JSON"):
-        stored_scenario(tmp_path / "corpus", 4)
+        replay(tmp_path / "corpus", 4)
 
 
 def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
@@ -116,28 +121,17 @@ def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(corpora, "EXTRA", ())
     monkeypatch.setattr(corpora, "columns", lambda *part: {k: v for k, v in with_draws(*part).items() if k != "draws"})
     corpora.write_corpus(tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="record 0 was not simulated: the corpus stores no scenario of it"):
-        stored_scenario(tmp_path / "corpus", 0)
+    with pytest.raises(CorpusError, match="no Dataset with the variable draws"):
+        replay(tmp_path / "corpus", 0)
 
 
 def test_the_angle_of_the_shaft_turns_at_the_true_rate_of_the_record(tiny_corpus):
     with open_corpus(tiny_corpus) as corpus:
-        rates, time = corpus["true_shaft_rate"].values, corpus["elapsed_time"].values
+        rates, time, scenarios = corpus["true_shaft_rate"].values, corpus["elapsed_time"].values, read_scenarios(corpus)
+    axis = timeline(scenarios[0].settings)
     for record in (0, 17):
-        angles = shaft_angles(tiny_corpus, record)
-        assert angles.shape == time.shape
-        assert np.polyfit(time, angles / (2 * np.pi), 1)[0] == pytest.approx(rates[record], rel=2e-3)
-
-
-def test_the_angle_of_the_shaft_begins_with_the_record_after_its_settling(tiny_corpus):
-    for record in (0, 17):
-        scenario = stored_scenario(tiny_corpus, record)
-        turned = shaft_angles(tiny_corpus, record)[0] - start_of(scenario).shaft
-        settling = 2 * np.pi * scenario.record.conditions.shaft_rate * scenario.settings.settle
-        assert turned == pytest.approx(settling, rel=0.02)
-
-
-def test_a_corpus_that_was_not_generated_has_no_angle_of_the_shaft(tmp_path):
-    corpora.write_corpus(tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="record 0: stored scenario: "):
-        shaft_angles(tmp_path / "corpus", 0)
+        angles = shaft_angles(scenarios[record], axis)
+        conditions, settle = scenarios[record].record.conditions, scenarios[record].settings.settle
+        turned = angles[axis.kept][0] - start_of(scenarios[record]).shaft
+        assert turned == pytest.approx(2 * np.pi * conditions.shaft_rate * settle, rel=0.02)
+        assert np.polyfit(time, angles[axis.kept] / (2 * np.pi), 1)[0] == pytest.approx(rates[record], rel=2e-3)

@@ -24,7 +24,7 @@ def sentences_of(make):
 
 
 def test_a_key_by_its_own_name_is_that_of_its_section():
-    named = gen.recipe_for(
+    named = gen.make_recipe(
         OUTER, shaft_rpm=1480, support_frequency_hz=300, viscosity_40_mm2_s=30, validation=0.1, gain=2
     )
     sections = {
@@ -34,19 +34,21 @@ def test_a_key_by_its_own_name_is_that_of_its_section():
         "corpus": {"split": {"validation": 0.1}},
         "level": {"kind": "physical", "gain": 2},
     }
-    assert named == gen.recipe_for(OUTER, **sections)
+    assert named == gen.make_recipe(OUTER, **sections)
 
 
 def test_a_designation_can_be_a_number_in_python():
-    assert gen.recipe_for(OUTER, bearing=6206) == gen.recipe_for(OUTER, bearing="6206")
-    assert gen.recipe_for(OUTER, bearing=[6205, "6206"]) == gen.recipe_for(OUTER, bearing=["6205", "6206"])
+    assert gen.make_recipe(OUTER, bearing=6206) == gen.make_recipe(OUTER, bearing="6206")
+    geometry = {"n_balls": 22, "pitch_diameter_mm": 60, "ball_diameter_mm": 6}
+    assert gen.make_recipe(bearing=geometry).bearing == gen.make_recipe(**geometry).bearing
+    assert gen.make_recipe(OUTER, bearing=[6205, "6206"]) == gen.make_recipe(OUTER, bearing=["6205", "6206"])
 
 
 def test_every_name_has_a_section_unless_several_share_it():
     shared = [name for name, places in _places().items() if len(places) > 1]
     assert len(_places()) > 100
     for name in shared:
-        message = sentences_of(lambda name=name: gen.recipe_for(**{name: 1}))
+        message = sentences_of(lambda name=name: gen.make_recipe(**{name: 1}))
         sections = [".".join(place.sections) for place in _places()[name]]
         assert message.startswith(f"{name}: is a key of ")
         assert all(section in message for section in sections)
@@ -86,11 +88,11 @@ def test_every_name_has_a_section_unless_several_share_it():
     ],
 )
 def test_a_wrong_key_is_one_sentence_that_says_what_to_do(keys, sentence):
-    assert sentence in sentences_of(lambda: gen.recipe_for(OUTER, **keys))
+    assert sentence in sentences_of(lambda: gen.make_recipe(OUTER, **keys))
 
 
 def test_counts_that_contradict_each_other_are_refused():
-    message = sentences_of(lambda: gen.recipe_for(OUTER, n=6, rigs=2, specimens_per_rig=6))
+    message = sentences_of(lambda: gen.make_recipe(OUTER, n=6, rigs=2, specimens_per_rig=6))
     assert message.startswith("n: 6 records of each of 1 faults take 6 specimens, and rigs * specimens_per_rig are 12")
 
 
@@ -101,9 +103,9 @@ def test_each_fault_has_n_records_or_the_error_is_about_n(n, n_faults, rigs, per
     keys = {"rigs": rigs, "records_per_specimen": per_specimen, "rungs": rungs}
     of_a_specimen = per_specimen * len(rungs or [1])
     if n % of_a_specimen or n * n_faults // of_a_specimen % rigs:
-        assert sentences_of(lambda: gen.recipe_for(faults, n, **keys)).startswith("n: ")
+        assert sentences_of(lambda: gen.make_recipe(faults, n, **keys)).startswith("n: ")
         return
-    recipe = gen.recipe_for(faults, n, **keys)
+    recipe = gen.make_recipe(faults, n, **keys)
     entries = [scenario.specimen.entry for scenario in gen.draw_scenarios(recipe)]
     assert [entries.count(place) for place in range(n_faults)] == [n] * n_faults
     assert recipe.corpus.rigs == rigs
@@ -112,23 +114,23 @@ def test_each_fault_has_n_records_or_the_error_is_about_n(n, n_faults, rigs, per
 def test_faults_in_turn_have_no_weights():
     heavy = gen.outer(width_mm=1, weight=2)
     assert "faults[0].weight: has no effect with corpus.fault_choice: in_turn" in sentences_of(
-        lambda: gen.recipe_for(heavy)
+        lambda: gen.make_recipe(heavy)
     )
-    assert gen.recipe_for(heavy, fault_choice="by_weight").faults[0].weight == 2
+    assert gen.make_recipe(heavy, fault_choice="by_weight").faults[0].weight == 2
 
 
 def test_a_fault_in_turn_that_is_drawn_again_keeps_its_entry():
-    recipe = gen.recipe_for([gen.outer(width_mm=gen.uniform(0.1 + n, 0.5 + n)) for n in range(3)], n=4)
+    recipe = gen.make_recipe([gen.outer(width_mm=gen.uniform(0.1 + n, 0.5 + n)) for n in range(3)], n=4)
     first, again = gen.draw_scenarios(recipe), gen.draw_scenarios(recipe, fault_tries=dict.fromkeys(range(12), 1))
     assert [one.specimen.entry for one in first] == [one.specimen.entry for one in again] == [0, 1, 2] * 4
     assert all(a.specimen.spalls[0].width != b.specimen.spalls[0].width for a, b in zip(first, again, strict=True))
 
 
 def test_numbers_and_arrays_of_numpy_are_taken_as_numbers():
-    recipe = gen.recipe_for(
+    recipe = gen.make_recipe(
         gen.outer(width_mm=np.float32(0.5)), shaft_rpm=gen.grid(np.array([1000, 1200])), seed=np.int64(3)
     )
-    assert recipe == gen.recipe_for(gen.outer(width_mm=0.5), shaft_rpm=gen.grid([1000, 1200]), seed=3)
+    assert recipe == gen.make_recipe(gen.outer(width_mm=0.5), shaft_rpm=gen.grid([1000, 1200]), seed=3)
 
 
 @pytest.mark.parametrize(
@@ -160,9 +162,9 @@ def test_a_wrong_fault_is_one_sentence_at_its_call(make, sentence):
 def test_one_fault_can_be_used_for_several_bearings():
     """The range of a share is that of the bearing; no recipe changes that of another."""
     shared = gen.outer(width_mm=gen.uniform(0.05, 0.1) * "ball_spacing_mm")
-    first = gen.recipe_for(shared, bearing="6205")
+    first = gen.make_recipe(shared, bearing="6205")
     before = first.faults[0].width_mm.support()
-    gen.recipe_for(shared, bearing="6210")
+    gen.make_recipe(shared, bearing="6210")
     assert first.faults[0].width_mm.support() == before
 
 
@@ -174,7 +176,7 @@ def test_distributions_by_calls_are_those_of_a_recipe():
         gen.choice(1, 2, weights=(1, 3)),
         gen.grid(1, 2, per="rig"),
     ]
-    kinds = [type(gen.recipe_for(shaft_rpm=call).operation.shaft_rpm).__name__ for call in calls]
+    kinds = [type(gen.make_recipe(shaft_rpm=call).operation.shaft_rpm).__name__ for call in calls]
     assert kinds == ["Uniform", "LogUniform", "Normal", "Choice", "Grid"]
 
 
@@ -183,7 +185,7 @@ def test_a_recipe_survives_its_text_and_its_dict(name, tmp_path):
     recipe = read_recipe(name)
     gen.write_recipe(recipe, tmp_path / "r.yaml")
     as_json = json.loads(json.dumps(plain(recipe)))
-    for same in (read_recipe(tmp_path / "r.yaml"), gen.Recipe(**as_json), read_recipe(as_json)):
+    for same in (read_recipe(tmp_path / "r.yaml"), Recipe(**as_json), read_recipe(as_json)):
         assert same == recipe
         assert recipe_hash(same) == recipe_hash(recipe)
 
@@ -192,7 +194,7 @@ def test_a_recipe_survives_its_text_and_its_dict(name, tmp_path):
 @given(text, st.from_regex(r"[A-Za-z0-9_.-]{1,12}", fullmatch=True))
 def test_any_title_and_name_survive_the_text_of_a_recipe(tmp_path_factory, title, name):
     path = tmp_path_factory.getbasetemp() / "any.yaml"
-    recipe = gen.recipe_for(title=title, name=name)
+    recipe = gen.make_recipe(title=title, name=name)
     gen.write_recipe(recipe, path)
     assert read_recipe(path) == recipe
     assert recipe_text(read_recipe(path)) == recipe_text(recipe)
@@ -209,7 +211,7 @@ def test_a_recipe_from_a_dict_has_the_errors_of_the_file(tmp_path):
 
 
 def test_faults_recipes_and_scenarios_are_shown_in_one_short_line():
-    recipe = gen.recipe_for([gen.outer(width_mm=gen.loguniform(0.1, 2)), "healthy"], n=4, seed=3)
+    recipe = gen.make_recipe([gen.outer(width_mm=gen.loguniform(0.1, 2)), "healthy"], n=4, seed=3)
     assert repr(recipe.faults[0]) == "RaceFault(width_mm=loguniform(0.1, 2), kind='outer')"
     assert repr(recipe) == "<Recipe records: 8 records, 2 faults, seed 3>"
     assert repr(gen.draw_scenarios(recipe, 1, 2)[0]) == "<Scenario of records: rig 0, specimen 1, record 1, healthy>"

@@ -12,9 +12,9 @@ from features.baselines.splits import grouped_splits
 from gen.corpus import FAULTS, open_corpus
 from gen.generation.corpus import generate
 from gen.generation.plan import plan
-from gen.generation.replaying import replay, stored_scenario
+from gen.generation.replaying import replay
 from gen.measurement.measure import measure
-from gen.scenarios import draw_scenarios, read_scenario, scenario_texts, settings_of
+from gen.scenarios import draw_scenarios, read_scenario, read_scenarios, scenario_texts, settings_of
 from gen.simulation.inputs import kernel_input
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
@@ -172,7 +172,7 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     made = generate(path, tmp_path / "c")
     assert (made.records, planned.records, planned.specimens, planned.parts) == (12, 12, 4, 3)
     with open_corpus(made.path) as corpus:
-        found = corpus[["fault", "pair", "rung", "specimen", "recording"]].load()
+        found = corpus[["fault", "pair", "rung", "specimen", "recording", "draws"]].load()
     assert found["recording"].values.tolist() == list(range(12))
     in_pair = found["pair"].values >= 0
     assert (found["pair"].values[in_pair] == np.arange(12)[in_pair] // 3).all()
@@ -186,5 +186,5 @@ def test_a_generated_ladder_is_labelled_planned_and_replayed(write_recipe, tmp_p
     for record in (int(np.flatnonzero(in_pair)[0]), int(np.flatnonzero(in_pair)[-1])):
         again = replay(made.path, record)
         assert again.identical
-        assert stored_scenario(made.path, record).record.rung == int(found["rung"][record])
+        assert read_scenarios(found.isel(record=record))[0].record.rung == int(found["rung"][record])
         xr.testing.assert_equal(again.dataset["pair"][0], found["pair"][record])

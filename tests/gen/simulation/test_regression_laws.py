@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import gen
-from gen import CorpusError, RecipeError, draw_scenarios, generate, simulate
+from gen import CorpusError, RecipeError, draw_scenarios, generate
 from gen.scenarios import settings_of
 from gen.simulation.inputs import kernel_input
+from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 
 

@@ -13,7 +13,8 @@ from tests.recipes import EVERYTHING
 GEN = ROOT / "gen"
 SCRIPT = """
 import hashlib, sys
-from gen import draw_scenarios, read_recipe, simulate
+from gen import draw_scenarios, read_recipe
+from gen.simulation.simulate import simulate
 from gen.measurement.measure import measure
 recipe = read_recipe(sys.argv[1])
 scenarios = draw_scenarios(recipe)
