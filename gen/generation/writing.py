@@ -1,13 +1,11 @@
-"""A Dataset of records, as :mod:`gen.generation.memory` makes it, written as a corpus.
+"""Records in memory written as a corpus: simulated ones, changed or not, or others with the variables of the format.
 
-Each record is replayed from the scenario that it stores, so any records of one form can be written together: some of a recipe, changed by
-hand, or of several recipes. All records of one recipe give the corpus that :func:`gen.generate` makes, with its recipe.
+A record keeps its scenario, from which it can be replayed, if its signal is the one that the scenario gave. All records of one recipe give
+the corpus that :func:`gen.generate` makes, with its recipe.
 """
 
 import json
-from collections import Counter
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -20,34 +18,34 @@ from gen.corpus import (
     SCHEMA,
     SIGNAL,
     SIMULATED,
-    NewCorpus,
     Variable,
     check_new,
     make_dataset,
     new_corpus,
 )
 from gen.corpus.joining import new_numbers
+from gen.corpus.schema import SIGNAL_DIMS, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.parts import part_attributes
 from gen.measurement.measure import LARGEST_COUNT
 from gen.recipe import Recipe, corpus_identity, read_recipe, recipe_text
-from gen.scenarios import Settings, read_scenarios
+from gen.scenarios import Settings, read_scenario
 from gen.support.errors import CorpusError
 
 _PART_RECORDS = 256
 _NOT_A_COUNT = 0.01  # largest distance of a decoded sample from a count; single precision comes within 0.004
-_ONE_FORM = ("sample_rate", "samples", "channels", "full_scale")
 
 
 def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
-    """Write records made in memory as a corpus.
+    """Write records in memory as a corpus.
 
     Parameters
     ----------
     dataset : Dataset
-        Records with the scenarios that they were simulated from, in any order: from :func:`gen.record`, :func:`gen.records` or
-        :func:`gen.simulate`, whole or chosen, or several such Datasets joined with :func:`xarray.concat`. Variables of shape
-        (record,) can be added, with the attributes ``long_name`` and ``role``.
+        One or several records with the variables of the format, in any order: from :func:`gen.record`, :func:`gen.records`,
+        :func:`gen.simulate` or :func:`gen.open_corpus`, whole or chosen, changed, or joined with :func:`xarray.concat`. Variables of shape
+        (record,) can be added, with the attributes ``long_name`` and ``role``. A record whose signal was filtered, scaled or cut is written
+        without its scenario, so that it cannot be replayed. Signals are stored as float32 unless all are counts of one converter.
     target : path
         New corpus: a file if the name ends in ``.nc``, else a folder that is empty or does not exist.
 
@@ -59,65 +57,76 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     Raises
     ------
     CorpusError
-        If the target exists or cannot be written; if the signal was changed or cut, a record occurs twice, or records have another
-        sample rate, length, channels or converter than others.
+        If the target exists or cannot be written, there is no record, or a variable is missing or not in the format.
     """
     target = Path(target).absolute()
     check_new(target)
-    if not isinstance(dataset, xr.Dataset):
-        raise CorpusError(f"{type(dataset).__name__} given in place of a Dataset; give one from gen.records.")
-    rows = dataset if "record" in dataset.dims else _as_one_row(dataset)
-    stored = _stored(rows, _form_of(rows))
-    recipe = _whole_recipe(rows)
+    rows = _rows(dataset)
+    draws = rows[DRAWS].values if DRAWS in rows else np.full(rows.sizes["record"], "")
+    settings = [read_scenario(str(text)).settings if text else None for text in draws]
+    signal, full_scale, replayable = _signal(rows[SIGNAL].values, settings)
+    stored = _stored(rows, np.where(replayable, draws, ""), signal, full_scale)
+    recipe = _whole_recipe(rows) if replayable.all() else None
     if recipe is None:
-        versions = json.loads(rows.attrs["versions"]) if "versions" in rows.attrs else {}
-        made_by = {"title": stored.attrs["title"], "recipe": ", ".join(_recipes(rows)), "versions": versions}
-        with new_corpus(target, **made_by) as corpus:
-            _write_parts(stored, corpus, _PART_RECORDS)
-        return target
-    failures = tuple(json.loads(rows.attrs["failures"]))
-    stored.attrs |= part_attributes(recipe, failures)
-    facts = facts_of(recipe, {"seed": None, "records": None})
-    facts |= {"publication": recipe.publication.dated(), "failures": failures}
-    with new_corpus(target, codec=recipe.storage.codec, recipe_text=recipe_text(recipe), **facts) as corpus:
-        _write_parts(stored, corpus, recipe.storage.records_per_part)
+        size, codec, text = _PART_RECORDS, "zlib", None
+        names = dict.fromkeys(of.recipe for of in settings if of is not None)
+        facts = {
+            "title": stored.attrs["title"],
+            "recipe": ", ".join(names) or None,
+            "versions": json.loads(rows.attrs.get("versions", "{}")),
+        }
+    else:
+        size, codec, text = recipe.storage.records_per_part, recipe.storage.codec, recipe_text(recipe)
+        failures = tuple(json.loads(rows.attrs["failures"]))
+        stored.attrs |= part_attributes(recipe, failures)
+        facts = facts_of(recipe, {"seed": None, "records": None})
+        facts |= {"publication": recipe.publication.dated(), "failures": failures}
+    with new_corpus(target, codec=codec, recipe_text=text, **facts) as corpus:
+        for first in range(0, stored.sizes["record"], size):
+            corpus.write(stored.isel(record=slice(first, first + size)))
     return target
 
 
-def _write_parts(stored: xr.Dataset, corpus: NewCorpus, size: int) -> None:
-    for first in range(0, stored.sizes["record"], size):
-        corpus.write(stored.isel(record=slice(first, first + size)))
+def _rows(dataset: xr.Dataset) -> xr.Dataset:
+    """Records with the axes of the signal in the order of the format."""
+    if not isinstance(dataset, xr.Dataset):
+        raise CorpusError(f"{type(dataset).__name__} given in place of a Dataset; give one from gen.records.")
+    missing = [name for name in (SIGNAL, *(variable.name for variable in SCHEMA)) if name not in dataset.variables]
+    if missing:
+        raise CorpusError(f"the Dataset has no variable {', '.join(missing)}; the format of corpora needs it.")
+    rows = dataset if "record" in dataset.dims else dataset.reset_coords().expand_dims("record")
+    if set(rows[SIGNAL].dims) != set(SIGNAL_DIMS) or not rows[SIGNAL].size:
+        raise CorpusError(
+            f"{SIGNAL} has the axes {dict(rows[SIGNAL].sizes)}; give at least one record with a channel and a sample."
+        )
+    return rows.transpose(*SIGNAL_DIMS)
 
 
-def _recipes(rows: xr.Dataset) -> list[str]:
-    """Names of the recipes of the records."""
-    return list(dict.fromkeys(scenario.settings.recipe for scenario in read_scenarios(rows)))
+def _signal(
+    values: NDArray[np.floating], settings: list[Settings | None]
+) -> tuple[NDArray[np.int16] | NDArray[np.float32], float | None, NDArray[np.bool_]]:
+    """Signal as it is stored, the full scale of its counts, if it has them, and whether each record is as its scenario gave it."""
+    counts = [_counts(row, of) for row, of in zip(values, settings, strict=True)]
+    replayable = [
+        of is not None and of.samples == values.shape[2] and (of.full_scale is None or found is not None)
+        for found, of in zip(counts, settings, strict=True)
+    ]
+    scales = {of.full_scale if of is not None else None for of in settings}
+    exact = [found for found in counts if found is not None]
+    if len(scales) == 1 and len(exact) == len(counts):
+        return np.stack(exact), scales.pop(), np.array(replayable)
+    return values.astype(np.float32), None, np.array(replayable)
 
 
-def _as_one_row(record: xr.Dataset) -> xr.Dataset:
-    """A single record with the axis of records."""
-    axes = {"channel", "elapsed_time"}
-    columns = {
-        name: (("record", *found.dims), found.values[np.newaxis], found.attrs)
-        for name, found in record.variables.items()
-        if name not in axes
-    }
-    return xr.Dataset(columns, {name: record.variables[name] for name in axes}, record.attrs)
-
-
-def _form_of(rows: xr.Dataset) -> Settings:
-    """Settings of the first record; of all others, those that fix the form of a file are the same."""
-    if not rows.sizes["record"]:
-        raise CorpusError("the Dataset has no record; give at least one.")
-    first, *others = (scenario.settings for scenario in read_scenarios(rows))
-    for place, settings in enumerate(others, start=1):
-        changed = next((name for name in _ONE_FORM if getattr(settings, name) != getattr(first, name)), None)
-        if changed is not None:
-            raise CorpusError(
-                f"record {place} of the Dataset has {changed} {getattr(settings, changed)}, and record 0 has {getattr(first, changed)}; "
-                "write each kind as a corpus of its own."
-            )
-    return first
+def _counts(values: NDArray[np.floating], settings: Settings | None) -> NDArray[np.int16] | None:
+    """Counts of a record; None if its samples are not those of the converter of its scenario, or it has none."""
+    if settings is None or settings.full_scale is None:
+        return None
+    exact = values.astype(np.float64) * (LARGEST_COUNT / settings.full_scale)
+    counts = np.rint(exact)
+    if not np.abs(exact - counts).max() <= _NOT_A_COUNT or np.abs(counts).max() > LARGEST_COUNT:
+        return None
+    return counts.astype(np.int16)
 
 
 def _whole_recipe(rows: xr.Dataset) -> Recipe | None:
@@ -132,63 +141,38 @@ def _whole_recipe(rows: xr.Dataset) -> Recipe | None:
     return recipe if whole else None
 
 
-def _stored(rows: xr.Dataset, settings: Settings) -> xr.Dataset:
+def _stored(
+    rows: xr.Dataset,
+    draws: NDArray[np.str_],
+    signal: NDArray[np.int16] | NDArray[np.float32],
+    full_scale: float | None,
+) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
-    known = SCHEMA + SIMULATED
-    missing = next((variable.name for variable in known if variable.name not in rows.variables), None)
-    if missing is not None:
-        raise CorpusError(f"the Dataset has no variable {missing}; keep all that gen.records gives.")
-    names = {variable.name for variable in known}
-    further = []
-    for name in set(rows.variables) - names - {SIGNAL, "channel", "elapsed_time"}:
+    known = {variable.name: variable for variable in SCHEMA + SIMULATED if variable.name in rows.variables}
+    further = {}
+    for name in sorted(map(str, set(rows.variables) - known.keys() - {SIGNAL, "channel", "elapsed_time"})):
         found = rows[name]
         if found.dims != ("record",) or "long_name" not in found.attrs or "role" not in found.attrs:
             raise CorpusError(
                 f"{name}: needs one value for each record and the attributes long_name and role; add them, or drop it."
             )
         kind = "str" if found.dtype.kind in "OU" else found.dtype.str[1:]
-        further.append(
-            Variable(str(name), kind, found.attrs.get("units", "1"), found.attrs["role"], found.attrs["long_name"])
+        further[name] = Variable(
+            name, kind, found.attrs.get("units", "1"), found.attrs["role"], found.attrs["long_name"]
         )
-    twice = next((text for text, count in Counter(rows[DRAWS].values.tolist()).items() if count > 1), None)
-    if twice is not None:
-        first, second, *_ = np.flatnonzero(rows[DRAWS].values == twice)
-        raise CorpusError(f"records {first} and {second} of the Dataset have the same scenario; give each record once.")
-    signal, counts_per_unit = _counts(rows, settings)
-    return make_dataset(
+    variables = known | further
+    columns = {name: rows[name].values for name in variables} | {DRAWS: draws}
+    columns |= new_numbers([str(text) for text in rows[IDENTITY].values])
+    stored = make_dataset(
         signal,
-        settings.sample_rate,
-        settings.channels,
-        {variable.name: rows[variable.name].values for variable in (*known, *further)}
-        | new_numbers([str(text) for text in rows[IDENTITY].values]),
-        extra=(*SIMULATED, *sorted(further)),
-        counts_per_unit=counts_per_unit,
-        attributes={"title": f"Records of recipe {settings.recipe}"}
+        float(rows["sample_rate"][0]),
+        tuple(map(str, rows["channel"].values)),
+        {name: columns[name] for name in variables},
+        extra=tuple(variable for name, variable in variables.items() if variable not in SCHEMA),
+        counts_per_unit=None if full_scale is None else LARGEST_COUNT / full_scale,
+        attributes={"title": "Vibration records"}
         | {key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
     )
-
-
-def _counts(rows: xr.Dataset, settings: Settings) -> tuple[NDArray[Any], float | None]:
-    """Counts of the converter, or accelerations without one, shape (record, channel, elapsed_time); and the counts per m s-2."""
-    channels = list(settings.channels)
-    signal = rows[SIGNAL].transpose("record", "channel", "elapsed_time")
-    if signal.shape[1:] != (len(channels), settings.samples) or list(rows["channel"].values) != channels:
-        raise CorpusError(
-            f"{SIGNAL} has channels {', '.join(map(str, rows['channel'].values))} and {signal.shape[2]} samples, the records "
-            f"{', '.join(channels)} and {settings.samples}; write records with all of their channels and samples."
-        )
-    if settings.full_scale is None:
-        return np.asarray(signal.values, np.float32), None
-    counts_per_unit = LARGEST_COUNT / settings.full_scale
-    counts = np.empty(signal.shape, np.int16)
-    for place, values in enumerate(
-        signal.values
-    ):  # one record at a time: in double precision all would take four times their memory
-        exact = values.astype(np.float64) * counts_per_unit
-        rounded = np.rint(exact)
-        if not np.abs(exact - rounded).max() <= _NOT_A_COUNT or np.abs(rounded).max() > LARGEST_COUNT:
-            raise CorpusError(
-                f"{SIGNAL} of record {place} is not as the converter gave it; write records before you filter, scale or correct them."
-            )
-        counts[place] = rounded
-    return counts, counts_per_unit
+    for problem in schema_problems(stored, SIMULATED):
+        raise CorpusError(problem)
+    return stored

@@ -108,37 +108,59 @@ def test_further_variables_are_written(ladder, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("changed", "sentence"),
+    ("changed", "stored", "replayable"),
     [
-        (
-            lambda ladder: ladder.isel(elapsed_time=slice(100)),
-            "acceleration has channels sensor and 100 samples, the records sensor and 1200",
-        ),
-        (
-            lambda ladder: ladder.assign(acceleration=1.001 * ladder[SIGNAL]),
-            "acceleration of record 0 is not as the converter gave it",
-        ),
-        (
-            lambda ladder: ladder.assign(acceleration=ladder[SIGNAL] * np.nan),
-            "acceleration of record 0 is not as the converter gave it",
-        ),
-        (
-            lambda ladder: ladder.isel(record=[1, 1]),
-            "records 0 and 1 of the Dataset have the same scenario; give each record once.",
-        ),
-        (lambda ladder: ladder.isel(record=[]), "the Dataset has no record; give at least one."),
-        (lambda ladder: ladder.drop_vars("snr"), "the Dataset has no variable snr; keep all that gen.records gives."),
-        (
-            lambda ladder: ladder.assign(mine=("record", np.arange(6))),
-            "mine: needs one value for each record and the attributes long_name and",
-        ),
+        (lambda ladder: ladder.isel(elapsed_time=slice(100)), np.int16, 0),
+        (lambda ladder: ladder.assign(acceleration=1.001 * ladder[SIGNAL]), np.float32, 0),
+        (lambda ladder: ladder.assign(acceleration=ladder[SIGNAL].where(ladder.fault == 1, 0.1)), np.float32, 3),
+        (lambda ladder: ladder.isel(record=[1, 1]), np.int16, 2),
+        (lambda ladder: ladder.drop_vars(["snr", "clipped"]), np.int16, 6),
+        (lambda ladder: ladder.drop_vars("draws"), np.float32, 0),
         (
             lambda ladder: xr.concat([ladder, gen.records(OUTER, converter={"kind": "float32"}, **SHORT)], "record"),
-            "record 6 of the Dataset has full_scale None, and record 0 has 500.0; write each kind as a corpus of its own.",
+            np.float32,
+            7,
         ),
     ],
+    ids=["cut", "scaled", "half changed", "twice", "without truth", "without scenarios", "two converters"],
 )
-def test_a_dataset_that_cannot_be_made_again_is_refused(ladder, tmp_path, changed, sentence):
+def test_a_record_that_was_changed_is_written_without_its_scenario(ladder, tmp_path, changed, stored, replayable):
+    given = changed(ladder)
+    directory = gen.write_corpus(given, tmp_path / "corpus")
+    assert gen.validate_corpus(directory) == []
+    assert (directory / "recipe.yaml").exists() == (replayable == 6)
+    with gen.open_corpus(directory) as corpus:
+        assert corpus[SIGNAL].encoding["dtype"] == stored
+        np.testing.assert_array_equal(corpus[SIGNAL], given[SIGNAL].astype(np.float32))
+        with_scenario = corpus["draws"].values != "" if "draws" in corpus else np.zeros(corpus.sizes["record"], bool)
+    assert with_scenario.sum() == replayable
+    for record, has_one in enumerate(with_scenario):
+        if has_one:
+            assert gen.replay(directory, record).identical
+        else:
+            with pytest.raises(
+                CorpusError, match=f"record {record} has no scenario|no Dataset with the variable draws"
+            ):
+                gen.replay(directory, record)
+
+
+def test_an_opened_corpus_is_written_as_it_was(ladder, tmp_path):
+    with gen.open_corpus(gen.write_corpus(ladder, tmp_path / "first")) as corpus:
+        gen.write_corpus(corpus, tmp_path / "second")
+    parts = [(tmp_path / name / "parts" / "part-00000.nc").read_bytes() for name in ("first", "second")]
+    assert parts[0] == parts[1]
+
+
+@pytest.mark.parametrize(
+    ("changed", "sentence"),
+    [
+        (lambda ladder: ladder.isel(record=[]), "acceleration has the axes {'record': 0, 'channel': 1, 'elapsed_time'"),
+        (lambda ladder: ladder.drop_vars(["fault", SIGNAL]), "the Dataset has no variable acceleration, fault;"),
+        (lambda ladder: ladder.assign(fault=ladder.fault + 7), "fault has values other than 0 healthy, 1 inner"),
+        (lambda ladder: ladder.assign(mine=("record", np.arange(6))), "mine: needs one value for each record and the"),
+    ],
+)
+def test_a_dataset_that_is_not_in_the_format_is_refused(ladder, tmp_path, changed, sentence):
     with pytest.raises(CorpusError, match=r".") as caught:
         gen.write_corpus(changed(ladder), tmp_path / "corpus")
     assert sentence in str(caught.value)
