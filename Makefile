@@ -33,7 +33,7 @@ lint: $(VENV)/installed
 	$(BIN)/basedpyright
 
 test: lint
-	$(BIN)/python -m pytest -n logical --dist worksteal
+	$(BIN)/python -m pytest -n logical --dist loadfile
 
 generated: $(VENV)/installed
 	$(BIN)/python -m gen.pages .
@@ -41,10 +41,11 @@ generated: $(VENV)/installed
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks
 
-# fresh examples of all laws, and the fuzzer for longer
+# fresh examples of all laws; then fuzz, kills, memory, other processors, programs of others, and all of the gallery and the benchmarks
 thorough: $(VENV)/installed
-	$(BIN)/python -m pytest -n logical --dist worksteal --hypothesis-profile=fresh
-	$(BIN)/python -m tests.fuzz --count 20000
+	$(BIN)/python -m pytest -n logical --dist loadfile --hypothesis-profile=fresh
+	$(BIN)/python -m pytest -n logical tests/thorough
+	$(BIN)/python -m tests.thorough.fuzz --count 20000
 
 $(FLOORS)/installed: pyproject.toml
 	rm -rf $(FLOORS)

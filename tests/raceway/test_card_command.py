@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gen.corpus import card_folder, locked, open_corpus, read_manifest, sha256, validate_corpus
+from gen.corpus import card_folder, locked, open_corpus, read_manifest, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.commands.publishing import card
 from raceway.studies import card_pictures
-from tests.kills import killed
 from tests.tone_corpora import write_corpus
 
 ORDERS = {"ftf": 0.4, "bpfo": 9.0, "bpfi": 4.0, "bsf": 2.4}  # so that the lines of the pictures are those of the tones
@@ -144,39 +143,6 @@ def test_scores_of_another_corpus_are_refused(run, copied, tmp_path):
     for text in ("[1]", "[" * 100_000):
         (tmp_path / "results.json").write_text(text)
         assert "is not a file of scores" in run("card", copied, "--scores", tmp_path / "results.json").stderr
-
-
-@pytest.mark.usefixtures("undrawn")
-def test_a_killed_call_leaves_a_readable_corpus_that_the_same_call_completes(run, copied, tmp_path):
-    """Validation is silent only about a corpus whose files agree: an old or a new one."""
-    old = shutil.copytree(copied.parent, tmp_path / "old")
-
-    def call():
-        assert run("card", copied, "--license", "MIT").exit_code == 0
-
-    call()
-    expected = contents(copied)
-    reset(copied.parent, old)
-    for _ in killed(call, moments=8):
-        open_corpus(copied).close()
-        whole = {name: text for name, text in contents(copied).items() if not Path(name).name.startswith(".")}
-        listed = json.loads(whole.get(str((card_folder(copied) / "croissant.json").relative_to(root(copied))), b"{}"))
-        digests = {file["@id"]: file.get("sha256") for file in listed.get("distribution", ())}
-        wrong = [name for name, digest in digests.items() if digest and sha256(root(copied) / name) != digest]
-        assert not wrong or validate_corpus(copied) != []
-        call()
-        assert contents(copied) == expected
-        assert validate_corpus(copied) == []
-        reset(copied.parent, old)
-
-
-def root(corpus):
-    return corpus if corpus.is_dir() else corpus.parent
-
-
-def reset(place, old):
-    shutil.rmtree(place)
-    shutil.copytree(old, place)
 
 
 def test_the_help_has_examples_and_names_the_next_step():

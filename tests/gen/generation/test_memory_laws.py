@@ -1,6 +1,5 @@
 """Laws of records made in memory and of the corpora written from them: the same records as from a recipe, whole, and made again from it."""
 
-import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,6 @@ import gen
 from gen.corpus import SIGNAL
 from gen.recipe import plain
 from gen.support.errors import CorpusError, RecipeError, SimulationError
-from tests.kills import killed
 
 # the kernel of the small recipes
 SHORT = {"waviness_nm": 20, "sample_rate_hz": 12000, "duration_s": 0.1, "settle_s": 0.06, "seed": 5}
@@ -193,15 +191,6 @@ def test_a_relative_and_an_empty_folder_are_taken(ladder, tmp_path, monkeypatch)
     (tmp_path / "empty").mkdir()
     assert gen.write_corpus(ladder.isel(record=[0]), "empty") == tmp_path / "empty"
     assert gen.validate_corpus("empty") == []
-
-
-def test_a_killed_write_leaves_a_whole_corpus_or_none(ladder, tmp_path):
-    directory = tmp_path / "corpus"
-    for _ in killed(lambda: gen.write_corpus(ladder, directory), moments=5):
-        assert not directory.exists() or gen.validate_corpus(directory) == []
-        for left in tmp_path.iterdir():
-            assert left == directory or left.name.startswith(".")
-            shutil.rmtree(left)
 
 
 @pytest.mark.parametrize("order", [[1], [5, 4, 3, 2, 1, 0]], ids=["some", "in another order"])

@@ -14,7 +14,7 @@ from gen.importers.mapping_values import bearing_of
 from gen.importers.paths import match_path
 from gen.physics.bearing import orders
 from gen.support.errors import RacewayError
-from tests.fuzz import recipes
+from tests.thorough.fuzz import recipes
 
 SEEDS = {
     "common.yaml": """\

@@ -1,4 +1,4 @@
-"""Mutated files through every reader: ``python -m tests.fuzz [TARGET ...] --count 20000``.
+"""Mutated files through every reader: ``python -m tests.thorough.fuzz [TARGET ...] --count 20000``.
 
 Each target is a module of this folder with three functions: ``seeds(folder)`` writes small valid files, ``mutate(content, rng)`` changes
 one, and ``check(path)`` reads the result, which must be refused with a sentence or be read. Checks run in a child process with limits on
@@ -27,7 +27,7 @@ MEMORY = 8_000_000_000  # bytes of address space
 
 def fuzz(target, count, seed, keep):
     """Run ``count`` mutations and return the findings; the file of each is kept in ``keep``."""
-    module = importlib.import_module(f"tests.fuzz.{target}")
+    module = importlib.import_module(f"tests.thorough.fuzz.{target}")
     findings = []
     with tempfile.TemporaryDirectory() as folder:
         place = Path(folder)
