@@ -46,7 +46,8 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
             expected = context["expected_tags"].replace("'", "")
             return f"{place}.kind: {reprlib.repr(context['tag'])} is not one of {expected}."
         case "union_tag_not_found":
-            return f"{place}: {shown} needs a kind, such as kind: {_first_kind(item)}."
+            kinds = ", ".join(_kinds(item["loc"], model))
+            return f"{place}: {shown} needs a kind: {kinds}."
         case "value_error":
             text = item["msg"].removeprefix("Value error, ")
             if place.endswith("width_mm") and "is not in" in text:
@@ -87,15 +88,6 @@ _ALLOWED = {
     "model_attributes_type": "a section with keys of its own",
     "dict_type": "a section with keys of its own",
 }
-
-
-def _first_kind(item: Any) -> str:
-    known = {
-        "bearing": "catalogue", "faults": "inner", "parts": "inner", "speed_profile": "run_up", "load_profile": "ramp"
-    }  # fmt: skip
-    place = [step for step in item["loc"] if isinstance(step, str)]
-    whole = isinstance(item["loc"][-1], int) or item["loc"][-1] in known
-    return known.get(place[-1], "uniform") if whole else "uniform"
 
 
 def _place(location: tuple[int | str, ...], model: type[BaseModel]) -> str:
@@ -155,11 +147,23 @@ def _sections(annotations: list[Any]) -> list[type[BaseModel]]:
 
 def _siblings(location: tuple[int | str, ...], model: type[BaseModel]) -> list[str]:
     """Keys that are allowed where ``location`` ends."""
+    return _last(location[:-1], model).keys()
+
+
+def _last(location: tuple[int | str, ...], model: type[BaseModel]) -> _Cursor:
+    """Sections that ``location`` leads to."""
     node = _Cursor(model)
-    for step in location[:-1]:
+    for step in location:
         if isinstance(step, str):
             node = node.into(step) if node.knows(step) else node.of_kind(step)
-    return node.keys()
+    return node
+
+
+def _kinds(location: tuple[int | str, ...], model: type[BaseModel]) -> list[str]:
+    """Values of ``kind`` of the sections that are allowed at ``location``."""
+    node = _last(location, model)
+    fields = [section.model_fields["kind"] for section in node.models if "kind" in section.model_fields]
+    return [kind for field in fields for kind in get_args(field.annotation)]
 
 
 def _guess(location: tuple[int | str, ...], model: type[BaseModel]) -> str | None:

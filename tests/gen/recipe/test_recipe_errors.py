@@ -141,7 +141,7 @@ TABLE = [
     (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: distributed, site: outer}]}",
      "faults[1].parts[1].kind: 'distributed' is not one of inner, outer, ball, cage."),
     (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: outer}]}", "faults[1].parts[1].width_mm: is missing; give it."),
-    (OUTER, "{kind: compound, parts: [{kind: cage}, {width_mm: 1}]}", "faults[1].parts[1]: this needs a kind, such as kind: inner."),
+    (OUTER, "{kind: compound, parts: [{kind: cage}, {width_mm: 1}]}", "faults[1].parts[1]: this needs a kind: inner, outer, ball, cage."),
     (OUTER, "{kind: compound, parts: [{kind: cage}, {kind: ball, width_mm: 6}]}",
      "does not fit the ball radius of 3.97 mm; keep width_mm below 5.56."),
     (OUTER, "{kind: compound, parts: [{kind: cage, weight: 1}, {kind: outer, width_mm: 1}]}",
@@ -164,7 +164,8 @@ TABLE = [
      "operation.speed_profile.from_percent: 0 is not in [0.1, 1000]."),
     (RPM, RPM + ", speed_profile: {kind: run_up, from_percent: 9, to_percent: 99, lasting_s: 0}",
      "operation.speed_profile.lasting_s: 0 is not in (0, 600]."),
-    (RPM, RPM + ", speed_profile: {from_percent: 9, to_percent: 99}", "operation.speed_profile: this needs a kind, such as kind: run_up."),
+    (RPM, RPM + ", speed_profile: {from_percent: 9, to_percent: 99}",
+     "operation.speed_profile: this needs a kind: ramp, run_up, steps, table."),
     (RPM, RPM + ", speed_profile: {kind: spline}", "operation.speed_profile.kind: 'spline' is not one of ramp, run_up, steps, table."),
     (RPM, RPM + ", speed_profile: 50", "operation.speed_profile: 50 is not allowed here; it must be a section with keys of its own."),
     # heat, oil, axial load, machine faults
