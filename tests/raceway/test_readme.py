@@ -14,6 +14,6 @@ def test_corpora_tables_and_scenarios_are_made_as_the_readme_says(tiny_corpus, t
     example = re.findall(r"```python\n(.*?)```", README, re.DOTALL)[1]
     names = {}
     exec(example.replace('"quickstart"', repr(str(tiny_recipe))), names)  # noqa: S102 - our own page
-    assert len(names["response"].acceleration) == 2
+    assert len(names["pair"].acceleration) == 2
     assert names["table"].sizes["record"] == names["corpus"].sizes["record"]
     assert names["twin"].specimen.fault == "healthy" != names["scenario"].specimen.fault
