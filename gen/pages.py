@@ -31,6 +31,37 @@ A recipe is a YAML file. `raceway plan RECIPE` reports what it makes, `raceway g
 range alone, such as `[0, 10]`, the value is a number or a distribution. `raceway recipes --schema > recipe.schema.json`
 writes a schema with which editors complete and check keys; a recipe names it in its first line,
 `# yaml-language-server: $schema=recipe.schema.json`.
+
+## A first recipe
+
+Four machines with a bearing of 22 balls, healthy or with an outer race fault of one of five widths, and two sensors;
+all keys that are left out have the defaults of the tables below.
+
+```yaml
+# Outer race faults of five widths in our own bearing, for a first look.
+name: first
+title: Outer race faults of five widths
+corpus: {rigs: 4, specimens_per_rig: 12, records_per_specimen: 2, split: {test: 0.25}}
+recording:
+  sample_rate_hz: 25600
+  duration_s: 1
+  channels:
+    - {name: vertical, angle_deg: 90}
+    - {name: horizontal, angle_deg: 0}
+bearing: {n_balls: 22, pitch_diameter_mm: 60, ball_diameter_mm: 6}
+machine:
+  support_frequency_hz: uniform(200, 600)     # of each machine
+specimen: {waviness_nm: 20}                   # of each physical bearing
+operation:
+  shaft_rpm: uniform(1400, 1500)              # of each record
+  load_n: 500
+level: {kind: physical, background_m_s2: "loguniform(0.1, 3)"}
+faults:
+  - kind: healthy
+  - {kind: outer, weight: 5, width_mm: "grid(0.2, 0.4, 0.6, 0.8, 1)"}
+```
+
+## Distributions
 """
 
 _DRAWING = """A distribution is read like a call in Python, and never run. Within braces it needs quotes, as other text with commas:
