@@ -2,8 +2,8 @@
 
 ``python -m benchmarks.ablation REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them.
 ablation.yaml beside this file lists the mechanisms: the keys that take one out of the recipe (``without``), or that bring in one that the
-recipe does not have (``with``). Each variant of the recipe is generated, and a classifier trained on it, once per seed. docs/ablation.md
-holds the tables. ``--cost`` tells what the variants cost.
+recipe does not have (``with``). Each variant of the recipe is generated, and a classifier trained on it, once per seed. docs/transfer.md
+has some of its figures.
 """
 
 import argparse
@@ -25,11 +25,8 @@ from features import feature_table
 from features.baselines import DEFAULT_ESTIMATOR, Scores, evaluate, train
 from gen import generate
 from gen.importers import import_cwru, import_generic, import_mfpt
-from gen.physics.kernel.compiling import LANES
-from gen.recipe import Recipe, find_recipe
+from gen.recipe import find_recipe
 from gen.recipe.fault_entries import fault_entries
-from gen.scenarios import draw_scenarios
-from gen.simulation.simulate import integrations, laid_out
 
 MECHANISMS = Path(__file__).with_suffix(".yaml")
 GROUPS = ("lines", "shape")
@@ -142,39 +139,6 @@ def plain(scores: Scores) -> dict[str, float]:
     return {name: float(value) for name, value in figures.items() if value is not None} | recalls
 
 
-class Cost(NamedTuple):
-    """What determines the time of the kernel for one part."""
-
-    kernels: int
-    lane_steps: float
-    """Steps per sample in all lanes, filled or not, for each record."""
-    filled: float
-    """Share of the lanes that hold a record or its twin."""
-
-
-def cost_of(recipe: Recipe) -> Cost:
-    """Cost of the first part of a recipe, without the faults that are drawn again."""
-    scenarios = draw_scenarios(recipe, 0, min(recipe.storage.records_per_part, recipe.n_records))
-    groups = [group for group, _ in laid_out(scenarios)]
-    return Cost(
-        kernels=len({group.shape for group in groups}),
-        lane_steps=LANES * sum(group.steps for group in groups) / len(scenarios),
-        filled=integrations(scenarios) / (LANES * len(groups)),
-    )
-
-
-def costs(recipe: Mapping[str, Any], mechanisms: Sequence[Mechanism]) -> Iterator[str]:
-    """Markdown table of the cost of every variant, in the parts of the recipe and in smaller ones."""
-    sizes = (480, recipe["storage"]["records_per_part"])
-    yield "| variant | kernels | " + " | ".join(f"lane-steps, parts of {n} | lanes filled" for n in sizes) + " |"
-    yield "|---|---:|" + "---:|---:|" * len(sizes)
-    for variant, changes in variants(mechanisms).items():
-        made = changed(recipe, changes)
-        found = [cost_of(Recipe.model_validate(changed(made, {"storage.records_per_part": n}))) for n in sizes]
-        cells = [f"{one.lane_steps:.1f} | {one.filled:.0%}" for one in found]
-        yield f"| {variant} | {found[-1].kernels} | " + " | ".join(cells) + " |"
-
-
 COLUMNS = {"balanced accuracy": "BA", "AUC": "AUC", "log-loss": "log-loss", "false alarms": "false alarms"}
 
 
@@ -202,7 +166,6 @@ def main() -> None:
         prog="python -m benchmarks.ablation", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("real", type=Path, nargs="?", default=os.environ.get("RACEWAY_REAL"))
-    parser.add_argument("--cost", action="store_true", help="print what the variants cost instead; needs no recordings")
     parser.add_argument("--seeds", type=int, default=3)
     parser.add_argument("--full", action="store_true", help="as many records as the recipe has, in place of 480")
     parser.add_argument("--workers", type=int, default=2)
@@ -210,9 +173,6 @@ def main() -> None:
     parser.add_argument("--json", type=Path, help="also write every figure to this file")
     options = parser.parse_args()
     shipped = YAML(typ="safe").load(Path(find_recipe("domain_randomised")))
-    if options.cost:
-        print("\n".join(costs(shipped, read_mechanisms())))
-        return
     if options.real is None:
         parser.error("give the folder that holds cwru, mfpt and uestc, or name it in RACEWAY_REAL.")
     recipe = changed(shipped, {} if options.full else SMALL)

@@ -18,7 +18,7 @@ import numpy as np
 
 from benchmarks.pairs import Line, Skipped, interleaved, row, seconds
 from features.indicators import Orders, feature_names, indicators
-from gen.corpus import SCHEMA, SIGNAL, Codec, finish_corpus, make_dataset, part_name, write_part
+from gen.corpus import SCHEMA, Codec, finish_corpus, make_dataset, part_name, write_part
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 
@@ -86,8 +86,8 @@ def memory_rows(pairs: int, scales: tuple[int, int]) -> Iterator[Line]:
     yield row("features memory", f"peak beyond the table, {large}", "MB", found["large"], small, found["small"])
 
 
-def noise_corpus(folder: Path, records: int, samples: int = SHORT, codec: Codec = "zlib", **packing: float) -> Path:
-    """Write a corpus whose parts are copies of one part with records of noise; ``packing`` replaces attributes of the signal."""
+def noise_corpus(folder: Path, records: int, samples: int = SHORT, codec: Codec = "zlib") -> Path:
+    """Write a corpus whose parts are copies of one part with records of noise."""
     rates, nominal = _known(PER_PART)
     counts = np.random.default_rng(0).integers(-9999, 9999, (PER_PART, 1, samples)).astype(np.int16)
     columns = {variable.name: np.zeros(PER_PART) for variable in SCHEMA}
@@ -97,7 +97,6 @@ def noise_corpus(folder: Path, records: int, samples: int = SHORT, codec: Codec 
     (folder / "parts").mkdir(parents=True)
     first = folder / "parts" / part_name(0)
     dataset = make_dataset(counts, FS, ("a",), columns, counts_per_unit=1e3, attributes=texts)
-    dataset[SIGNAL].attrs |= packing
     made = write_part(dataset, first, codec)
     parts = [made._replace(name=part_name(number)) for number in range(records // PER_PART)]
     for part in parts[1:]:

@@ -1,20 +1,25 @@
-"""The kernel compared with C programs for the seed model alone, and the full model compared with the seed model.
+"""The kernel compared with a C program for the seed model alone, and the full model compared with the seed model.
 
-The C program ``plain.c`` computes the same outputs from the same records: it takes the same steps and decimates four channels with the
-same filters. ``intrinsics.c`` takes the steps only, as an upper bound. All run in this thread and are timed by its CPU clock. Steps of
-records are counted, not those of idle lanes; with the number of records that ``rows`` takes by default no lane is idle in any program.
+``plain.c`` computes the same outputs from the same records: it takes the same steps and decimates four channels with the same filters. All
+run in this thread and are timed by its CPU clock. Steps of records are counted, not those of idle lanes; with the number of records that
+``rows`` takes by default no lane is idle in any program.
 """
 
+import ctypes
+import shutil
+import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import NamedTuple
 
-from benchmarks.compiled import accelerations, compiled, compiled_with_filters, compiler, has_avx512, in_lanes
+import numpy as np
+
 from benchmarks.pairs import Line, Skipped, interleaved, row
-from benchmarks.seed import seed_records
+from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of, seed_records
 from gen.physics.inputs import KernelInput
-from gen.physics.kernel.decimate import decimation
+from gen.physics.kernel.decimate import Decimation, Single, Stage, decimation
 from gen.physics.kernel.layout import Batch
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, settings_of
@@ -26,14 +31,27 @@ from gen.simulation.timeline import Timeline, timeline
 
 SEED, FULL = "ophel2025", Path(__file__).with_name("full.yaml")
 UNIT = "record-steps/s"
-KINDS = {
-    "plain": "C99 with the same filters, short loops over lanes, -O3 -march=native -ffast-math",
-    "fused": "the same, all balls in one loop",
-    "intrinsics": "C, AVX-512 intrinsics, approximate roots, steps only",
-}
-PLAIN_LANES, INTRINSIC_LANES, TRIES = (8, 16, 32, 64), (8,), 3
+PLAIN = "C99 with the same filters, short loops over lanes, -O3 -march=native -ffast-math"
+LANES, TRIES = (8, 16, 32, 64), 3
+HERE = Path(__file__).parent
+FLAGS = ("-std=gnu99", "-O3", "-march=native", "-ffast-math", "-fPIC")
+BLOCK = 64  # samples between two runs of the filters of plain.c
+DOUBLES, SINGLES = (np.ctypeslib.ndpointer(kind, flags="C_CONTIGUOUS") for kind in (np.float64, np.float32))
 Rate = Callable[[], float]
-Groups = dict[int, list[KernelInput]]
+
+
+class CBatch(NamedTuple):
+    """Records in the rows of ``plain.c``, one per lane."""
+
+    state: FloatArray
+    """Shape (coordinate, lane): x1 y1 x2 y2 and their rates [m, m/s]."""
+    turn: FloatArray
+    """Directions of cage and shaft, and position of the spall among the balls in units of their distance, shape (row, lane)."""
+    params: FloatArray
+    """Shape (parameter, lane)."""
+
+
+Outputs = Callable[[CBatch, float, int], Single]
 
 
 def rows(
@@ -41,16 +59,13 @@ def rows(
 ) -> Iterator[Line]:
     """Lines of the table: ``records`` records of the seed model, 64 healthy and 64 with a fault in every program."""
     with tempfile.TemporaryDirectory() as folder:
-        rivals = _c_rates(recipe, records, Path(folder))
+        theirs = {"plain": _c_rate(recipe, records, Path(folder))} if compiler() else {}
         ours = {"ours": kernel_rate(recipe, records), "full": kernel_rate(full, full_records)}
-        found = interleaved(pairs, **ours, **rivals)
-    for source, kind in KINDS.items():
-        if source in rivals:
-            yield row(f"kernel {source}", "seed model, one core", UNIT, found["ours"], kind, found[source])
-        elif compiler() is None:
-            yield Skipped(f"kernel {source}", "there is no C compiler (cc) on this machine.")
-        else:
-            yield Skipped(f"kernel {source}", "this processor has no AVX-512.")
+        found = interleaved(pairs, **ours, **theirs)
+    if theirs:
+        yield row("kernel plain", "seed model, one core", UNIT, found["ours"], PLAIN, found["plain"])
+    else:
+        yield Skipped("kernel plain", "there is no C compiler (cc) on this machine.")
     yield row("kernel full", "full model: 6 DOF and every term", UNIT, found["full"], "our seed model", found["ours"])
 
 
@@ -96,47 +111,85 @@ def _rate(total: int, run: Callable[[], None]) -> Rate:
     return rate
 
 
-def _c_rates(recipe: Path | str, records: int, folder: Path) -> dict[str, Rate]:
-    """For each C program, a function that measures its record-steps per second at the number of lanes at which it is fastest here."""
-    if compiler() is None:
-        return {}
-    sources = {"plain": PLAIN_LANES, "fused": PLAIN_LANES} | ({"intrinsics": INTRINSIC_LANES} if has_avx512() else {})
+def _c_rate(recipe: Path | str, records: int, folder: Path) -> Rate:
+    """Function that measures the record-steps per second of the C program at the number of lanes at which it is fastest here."""
     checked = read_recipe(recipe)
-    groups, samples, (dt, steps) = (
-        seed_records(checked, records),
-        timeline(settings_of(checked)).integrated,
-        step_seconds(recipe),
-    )
-    chosen = {}
-    for source, every in sources.items():
-        of_source = _steps_only if source == "intrinsics" else _filtered
-        rates = {lanes: of_source(source, lanes, groups, dt, samples, steps, folder) for lanes in every}
-        tried = interleaved(TRIES, **{str(lanes): rate for lanes, rate in rates.items()})
-        chosen[source] = rates[max(every, key=lambda lanes: max(tried[str(lanes)]))]
-    return chosen
+    groups, samples = seed_records(checked, records), timeline(settings_of(checked)).integrated
+    dt, steps = step_seconds(recipe)
+    total = samples * steps * sum(map(len, groups.values()))
+    rates = {}
+    for lanes in LANES:
+        work = [
+            (compiled(lanes, spall, folder, decimation(steps)), in_lanes(some, lanes, dt))
+            for spall, some in groups.items()
+        ]
+        rates[str(lanes)] = _rate(total, lambda work=work: _simulate(work, dt, samples))
+    tried = interleaved(TRIES, **rates)
+    return rates[max(rates, key=lambda lanes: max(tried[lanes]))]
 
 
-def _filtered(source: str, lanes: int, groups: Groups, dt: float, samples: int, steps: int, folder: Path) -> Rate:
-    filters = decimation(steps)
-    work = [
-        (compiled_with_filters(source, lanes, spall, folder, filters), in_lanes(records, lanes, dt))
-        for spall, records in groups.items()
+def _simulate(work: list[tuple[Outputs, list[CBatch]]], dt: float, samples: int) -> None:
+    for outputs, batches in work:
+        for batch in batches:
+            outputs(batch, dt, samples)
+
+
+def compiler() -> str | None:
+    """Path of the C compiler, if there is one."""
+    return shutil.which("cc")
+
+
+def compiled(lanes: int, spall: int, folder: Path, filters: Decimation) -> Outputs:
+    """Function that simulates a batch with steps of ``dt`` seconds, and returns so many outputs of the filters of our kernel.
+
+    The outputs are the accelerations x1 y1 x2 y2, shape (sample, coordinate, lane) [m s-2]; the history is zero before the first step.
+    """
+    first, last = _taps(filters.first), _taps(filters.last)
+    factor = filters.first.factor
+    steps = factor * filters.last.factor
+    sizes = (f"-DSTEPS={steps}", f"-DFIRST={factor}", f"-DFIRST_TAPS={len(first)}", f"-DLAST_TAPS={len(last)}")
+    given = (f"-DLANES={lanes}", f"-DSPALL={spall}", *sizes)
+    library = folder / f"{''.join(given)}.so"
+    subprocess.run(["cc", *FLAGS, *given, "-c", "-o", library.with_suffix(".o"), HERE / "plain.c"], check=True)
+    # linking with -ffast-math would disable subnormal numbers in the whole process
+    subprocess.run(["cc", "-shared", "-o", library, library.with_suffix(".o"), "-lm"], check=True)
+    march = ctypes.CDLL(str(library)).march
+    march.argtypes = [DOUBLES, DOUBLES, DOUBLES, ctypes.c_double, ctypes.c_long, SINGLES, SINGLES, SINGLES]
+    march.restype = None
+
+    def outputs(batch: CBatch, dt: float, samples: int) -> Single:
+        made = np.empty((-(-samples // BLOCK) * BLOCK, 4, lanes), np.float32)
+        march(batch.state.copy(), batch.turn.copy(), batch.params, dt, len(made), first, last, made)
+        return made[:samples]
+
+    return outputs
+
+
+def _taps(stage: Stage) -> Single:
+    """Taps of one output of a stage; none if the stage is left out."""
+    return np.ascontiguousarray(stage.taps[: stage.kept + 1, 0])
+
+
+def in_lanes(records: list[KernelInput], lanes: int, dt: float) -> list[CBatch]:
+    """Records laid out for steps of ``dt`` seconds; some come twice where the last batch would not be full."""
+    full = [records[place % len(records)] for place in range(-(-len(records) // lanes) * lanes)]
+    return [_batch(*seed_of(full[first : first + lanes]), dt) for first in range(0, len(full), lanes)]
+
+
+def _batch(seed: Seed, state: FloatArray, dt: float) -> CBatch:
+    passed = (seed.shaft_angle + seed.spall_angle - seed.cage_angle) / SPACING % N_BALLS
+    cage, shaft = seed.cage_rate * dt / 2, seed.omega * dt / 2
+    turn = [
+        np.cos(seed.cage_angle),
+        np.sin(seed.cage_angle),
+        np.cos(seed.shaft_angle),
+        np.sin(seed.shaft_angle),
+        passed,
     ]
-
-    def run() -> None:
-        for outputs, batches in work:
-            for batch in batches:
-                outputs(batch, dt, samples)
-
-    return _rate(samples * steps * sum(map(len, groups.values())), run)
-
-
-def _steps_only(source: str, lanes: int, groups: Groups, dt: float, samples: int, steps: int, folder: Path) -> Rate:
-    work = [(compiled(source, lanes, spall, folder), in_lanes(records, lanes, dt)) for spall, records in groups.items()]
-
-    def run() -> None:
-        for march, batches in work:
-            for batch in batches:
-                accelerations(march, batch, dt, samples, steps)
-
-    return _rate(samples * steps * sum(map(len, groups.values())), run)
+    params = [
+        seed.load_deflection_factor, seed.half_clearance, 1 / seed.shaft_mass, 1 / seed.housing_mass, seed.ring_damping,
+        seed.support_stiffness_x, seed.support_stiffness_y, seed.support_damping_x, seed.support_damping_y, seed.load_x,
+        seed.load_y, seed.unbalance, np.cos(cage), np.sin(cage), np.cos(shaft), np.sin(shaft), (shaft - cage) / SPACING,
+        seed.half_span, seed.inner_radius, seed.depth, seed.ball_radius,
+    ]  # fmt: skip
+    return CBatch(state, np.stack(turn), np.stack(params))

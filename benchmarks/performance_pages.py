@@ -16,11 +16,11 @@ _TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.D
 Results = Mapping[str, Rows]
 
 GROUPS = {
-    "kernel": ("roofline", "kernel"),
-    "pipeline": ("pipeline", "against", "lanes", "growth", "start"),
+    "kernel": ("kernel",),
+    "pipeline": ("pipeline", "against", "growth", "start"),
     "million": ("million",),
     "features": ("features",),
-    "reading": ("opening", "reading", "training"),
+    "reading": ("opening", "training"),
     "starting": ("starting",),
     "truth": ("truth",),
 }
@@ -55,8 +55,6 @@ TARGETS = (
         "memory, `domain_randomised` [MB]", "million domain_randomised memory", "value", {"": 500}, None, small=True
     ),
     Target("CPU of the driver per part, 10,000 parts over 100", "growth driver", "ratio", {"": 1.5}, 1.1, small=True),
-    Target("lanes at work, `domain_randomised`", "lanes domain_randomised", "value", {"": 0.9}, None),
-    Target("lanes at work, `quickstart`", "lanes quickstart", "value", {"": 0.9}, None),
 )
 
 

@@ -4,8 +4,7 @@
    Runge-Kutta (docs/model.md). What the recipe of the seed sets to zero is left out. Balls stand still in the frame of the cage, directions
    are turned by half a step at a time, and the spall corrects the force of the one ball nearest to it: no trigonometry in the loop.
 
-   Given from outside: LANES, SPALL (0 none, 1 rectangular, 2 geometric), FUSED (the balls in one loop over lanes, or a short loop for
-   each), and for the filters STEPS per sample, FIRST, FIRST_TAPS and LAST_TAPS. */
+   Given from outside: LANES, SPALL (0 none, 1 rectangular, 2 geometric), STEPS per sample, and FIRST, FIRST_TAPS and LAST_TAPS of the filters. */
 #include <math.h>
 #include <string.h>
 
@@ -74,19 +73,6 @@ static void accelerations(const row *restrict q, const row *restrict turn, const
         x[i] = dx * turn[CAGE_C][i] + dy * turn[CAGE_S][i];
         y[i] = dy * turn[CAGE_C][i] - dx * turn[CAGE_S][i];
     }
-#if FUSED
-    EACH {
-        double sx = 0, sy = 0;
-#pragma GCC unroll 9
-        for (int ball = 0; ball < BALLS; ball++) {
-            double squeeze = fmax(x[i] * COS[ball] + y[i] * SIN[ball] - p[GAP][i], 0), force = squeeze * sqrt(squeeze);
-            sx += force * COS[ball];
-            sy += force * SIN[ball];
-        }
-        fx[i] = sx;
-        fy[i] = sy;
-    }
-#else
     EACH fx[i] = fy[i] = 0;
     for (int ball = 0; ball < BALLS; ball++)
         EACH {
@@ -94,7 +80,6 @@ static void accelerations(const row *restrict q, const row *restrict turn, const
             fx[i] += force * COS[ball];
             fy[i] += force * SIN[ball];
         }
-#endif
 #if SPALL
     EACH {
         double squeeze = x[i] * near->c[i] + y[i] * near->s[i] - p[GAP][i];
@@ -153,23 +138,7 @@ static inline void step(row *restrict q, row *restrict turn, const row *restrict
         }
 }
 
-/* Accelerations before the first of every `steps` steps, shape (sample, coordinate, lane). */
-void march(double *state, double *turning, const double *params, double dt, long samples, long steps, double *out)
-{
-    row *q = (row *)state, *turn = (row *)turning, *kept = (row *)out, a[COORDINATES];
-    const row *p = (const row *)params;
-    nearest start;
-    find_nearest(turn, p, &start);
-    for (long sample = 0; sample < samples; sample++, kept += COORDINATES)
-        for (long n = 0; n < steps; n++) {
-            step(q, turn, p, dt, &start, a);
-            if (n == 0)
-                memcpy(kept, a, sizeof a);
-        }
-}
-
-#ifdef STEPS
-/* The same with the four accelerations low-passed and decimated by STEPS, in two stages: FIRST_TAPS taps decimate by FIRST, and LAST_TAPS
+/* Steps, with the four accelerations low-passed and decimated by STEPS, in two stages: FIRST_TAPS taps decimate by FIRST, and LAST_TAPS
    taps by STEPS / FIRST; FIRST_TAPS is 0 for one stage. Single precision, all lanes of the four channels in one row. */
 enum { BLOCK = 64, LAST = STEPS / FIRST, LAST_KEPT = LAST_TAPS - 1, KEPT = FIRST_TAPS ? FIRST_TAPS - 1 : LAST_KEPT };
 typedef float output[COORDINATES * LANES];
@@ -190,7 +159,7 @@ static inline void decimate(const output *restrict history, const float *restric
 }
 
 /* Outputs of the filters, shape (sample, coordinate, lane), for a multiple of BLOCK samples; the history is zero before the first step. */
-void march_decimated(double *state, double *turning, const double *params, double dt, long samples, const float *first_taps,
+void march(double *state, double *turning, const double *params, double dt, long samples, const float *first_taps,
                      const float *last_taps, float *out)
 {
     static output history[KEPT + BLOCK * STEPS], halfway[LAST_KEPT + BLOCK * LAST];
@@ -217,4 +186,3 @@ void march_decimated(double *state, double *turning, const double *params, doubl
         memmove(history, history + BLOCK * STEPS, KEPT * sizeof *history);
     }
 }
-#endif

@@ -1,4 +1,4 @@
-"""Records per second for training, compared with NumPy and h5py on the same counts; signals decoded to single and to double precision.
+"""Records per second for training, compared with NumPy and h5py on the same counts.
 
 ``numpy`` reads an uncompressed array of the counts that is mapped into memory, ``h5py`` the parts of the corpus. All of them give the
 same shuffled batches in single precision. Times are CPU times, and the files are in the page cache.
@@ -15,7 +15,7 @@ import numpy as np
 import gen
 from benchmarks.features import PER_PART, noise_corpus
 from benchmarks.pairs import Line, cpu_seconds, interleaved, row
-from gen.corpus import SIGNAL, corpus_files, open_corpus, stored_blocks
+from gen.corpus import SIGNAL, corpus_files, stored_blocks
 from gen.exporting.items import LabelledRecords
 
 SCALE = np.float32(1e-3)  # of the counts of a noise corpus
@@ -27,7 +27,6 @@ def rows(pairs: int = 7, *, parts: int = 8, samples: int = 12_800, batch: int = 
     with tempfile.TemporaryDirectory() as temporary:
         folder = noise_corpus(Path(temporary) / "zlib", parts * PER_PART, samples)
         yield from loading_rows(pairs, folder, batch)
-        yield from precision_rows(pairs, folder)
 
 
 def loading_rows(pairs: int, folder: Path, batch: int) -> Iterator[Line]:
@@ -59,25 +58,6 @@ def loading_rows(pairs: int, folder: Path, batch: int) -> Iterator[Line]:
     yield row("training h5py", f"{what}, zlib", "1/s", found["ours"], "h5py on the parts", found["h5py"])
     yield row("training zstd", f"{what}, zstd", "1/s", found["zstd"], ours, found["ours"])
     yield row("training one by one", "shuffled records one by one, zlib", "1/s", found["single"], ours, found["ours"])
-
-
-def precision_rows(pairs: int, folder: Path) -> Iterator[Line]:
-    """A corpus read in order, compared with one whose packing is in double precision, as it was before."""
-    with tempfile.TemporaryDirectory() as temporary, open_corpus(folder, "size") as new:
-        records, samples = new.sizes["record"], new.sizes["elapsed_time"]
-        older = noise_corpus(Path(temporary) / "double", records, samples, scale_factor=1e-3, add_offset=0.0)
-        in_order = np.arange(records).reshape(-1, PER_PART)
-        with open_corpus(older, "size") as old:
-            one, other = new[SIGNAL].variable, old[SIGNAL].variable
-            found = interleaved(
-                pairs,
-                single=lambda: rate(lambda places: one[places].values, in_order),
-                double=lambda: rate(lambda places: other[places].values, in_order),
-            )
-            sizes = [[signal.nbytes / 1e6] for signal in (one, other)]
-    what, alternative = f"{records} records in single precision", "double precision"
-    yield row("training decoded", f"read {what}", "1/s", found["single"], alternative, found["double"])
-    yield row("training memory", what, "MB", sizes[0], alternative, sizes[1])
 
 
 def joined(items: LabelledRecords, places: Places) -> np.ndarray:

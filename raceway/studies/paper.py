@@ -1,8 +1,8 @@
 """The systems of the seed paper: Ophel et al., inner-race crack in a coupled shaft-bearing system.
 
-The paper does not give most of its constants, so three parameter sets were found by search. ``paper`` is the first one.
+The paper does not give most of its constants, so three parameter sets were found by differential evolution. ``paper`` is the first one.
 ``paper-hertz`` has the contact stiffness of the geometry, and a load close to the weight of the rotor. ``paper-refit`` has exactly that
-stiffness and that weight, and no spring across the bearing (``python -m benchmarks.paper_search --hertz --seed 1``): more statements
+stiffness and that weight, and no spring across the bearing: more statements
 hold, and its load pulls shaft and housing in the direction of the figures. The unit of the paper's figures is read as millimetre
 (docs/errata.md, E15); displacements are in micrometres here.
 """

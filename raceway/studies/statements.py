@@ -68,7 +68,7 @@ _MEASURED_LATER = (
     *("C9.x1", "C9.x2", "C9.y2", "H12.y", "C17.x", "C17.y", "C18"),
     *(f"C16.{name}" for name in ("x1", "y1", "x2", "y2")),
 )
-"""Statements that the search for the presets (benchmarks/paper_search.py) did not use: they test the fit."""
+"""Statements that the search for the presets did not use: they test the fit."""
 
 Row = tuple[str, str, float, tuple[float, float]]
 

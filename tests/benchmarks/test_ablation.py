@@ -3,9 +3,9 @@
 import pytest
 from ruamel.yaml import YAML
 
-from benchmarks.ablation import Mechanism, changed, cost_of, plain, read_mechanisms, scores_of, table, variants
+from benchmarks.ablation import Mechanism, changed, plain, read_mechanisms, scores_of, table, variants
 from features import feature_table
-from gen.recipe import Recipe, find_recipe, read_recipe
+from gen.recipe import find_recipe, read_recipe
 from tests.pulses import write_pulses
 
 GIVEN = {"a": {"b": 1, "c": 2}, "faults": [{"kind": "inner", "width": 1}, {"kind": "ball", "width": 1}]}
@@ -56,14 +56,3 @@ def test_a_recipe_is_scored_on_recordings_and_shown_as_means_over_seeds(tmp_path
     lines = list(table({"the recipe": {"pulses": [figures, figures | {"AUC": figures["AUC"] + 0.5}]}}))
     assert lines[0] == "| variant | pulses BA | pulses AUC | pulses log-loss | pulses false alarms |"
     assert f"| {figures['AUC'] + 0.25:.3f} |" in lines[2]
-
-
-def test_a_mechanism_that_only_some_rigs_have_doubles_the_kernels():
-    """More kernels share the same records, so that more of the last batches have free lanes."""
-    shipped = YAML(typ="safe").load(find_recipe("quickstart"))
-    all_rigs, some_rigs = (
-        cost_of(Recipe.model_validate(changed(shipped, {"machine.looseness_um": play}))) for play in (5, "choice(0, 5)")
-    )
-    assert some_rigs.kernels == 2 * all_rigs.kernels
-    assert some_rigs.lane_steps > all_rigs.lane_steps
-    assert some_rigs.filled < all_rigs.filled <= 1

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from benchmarks import rivals
-from benchmarks.compiled import accelerations, compiled, compiled_with_filters, compiler, has_avx512, in_lanes
+from benchmarks.kernel import compiled, compiler, in_lanes
 from benchmarks.seed import GEOMETRIC, NO_SPALL, RECTANGULAR, seed_of, seed_records
 from gen.physics.inputs import KernelInput
 from gen.physics.kernel.batch import lay_out
@@ -49,18 +49,8 @@ def distance(found: np.ndarray, expected: np.ndarray) -> float:
     return float(np.abs(found - expected).max() / np.abs(expected).max())
 
 
-@pytest.mark.parametrize("source", ["plain", "fused", "intrinsics"])
-def test_a_kernel_in_c_computes_the_motion_of_ours(source: str, case: Case, tmp_path: Path):
-    if compiler() is None or (source == "intrinsics" and not has_avx512()):
-        pytest.skip("no C compiler, or no AVX-512")
-    (batch,) = in_lanes(case.records, LANES, 1 / FS)
-    march = compiled(source, LANES, case.profile, tmp_path)
-    assert distance(accelerations(march, batch, 1 / FS, SAMPLES, 1), case.ours) < 1e-9
-
-
 @pytest.mark.parametrize("steps", [3, 4])  # one filter, and two
-@pytest.mark.parametrize("source", ["plain", "fused"])
-def test_a_kernel_in_c_returns_the_outputs_of_ours(source: str, steps: int, brief_seed: Path, tmp_path: Path):
+def test_the_kernel_in_c_returns_the_outputs_of_ours(steps: int, brief_seed: Path, tmp_path: Path):
     """In single precision, which rounds to 6e-8; the outputs of the filters are sums of some hundred terms."""
     if compiler() is None:
         pytest.skip("no C compiler")
@@ -70,7 +60,7 @@ def test_a_kernel_in_c_returns_the_outputs_of_ours(source: str, steps: int, brie
         group, some = group_of(records[0], steps), records[:LANES]
         ours = integrate_batch(group, lay_out(some, group.shape, 1 / axis.fs), axis).response[:, :, : len(some)]
         (batch,) = in_lanes(some, LANES, 1 / (axis.fs * steps))
-        outputs = compiled_with_filters(source, LANES, profile, tmp_path, filters)
+        outputs = compiled(LANES, profile, tmp_path, filters)
         taps = filters.last.kept * filters.first.factor + filters.first.kept  # after the newest step of an output
         skipped = axis.dropped + taps // (2 * steps)
         made = outputs(batch, 1 / (axis.fs * steps), skipped + axis.returned)[skipped:, :, : len(some)]

@@ -2,19 +2,15 @@
 
 import itertools
 import math
-from pathlib import Path
 
 import numpy as np
 import pytest
 
-from benchmarks.paper_scan import ranges
-from benchmarks.paper_tables import causes, further
 from gen.physics.catalogue import CATALOGUE
 from raceway.studies.experiments import EXPERIMENTS, UNITS, changed, constant, experiment
 from raceway.studies.paper import PRESETS, SHAFT_MASS, Preset, run_many
 from raceway.studies.statements import findings
 
-ERRATA = Path(__file__).parents[2] / "docs" / "errata.md"
 BPFI = CATALOGUE["6205-paper"].n_balls * (1 + CATALOGUE["6205-paper"].gamma) / 2  # orders
 
 
@@ -110,17 +106,6 @@ def test_load_and_its_angle_change_the_two_components_together():
     assert constant(preset, "load_angle") == pytest.approx(90)
     assert changed(PRESETS["paper"], {}) == PRESETS["paper"]
     assert set(UNITS) == {*Preset._fields, "load", "load_angle"}
-
-
-def test_the_scan_finds_the_damping_with_which_y2_keeps_its_distance_from_zero():
-    values = np.array([1870.0, 3000.0, 4000.0, 4500.0, 5000.0])
-    assert ranges(PRESETS["paper"], "support_damping_y", values)["H8"] == [(4000.0, 5000.0, 3)]
-
-
-def test_the_page_on_errata_has_the_tables_that_the_statements_give():
-    page = ERRATA.read_text(encoding="utf-8").splitlines()
-    for row in (*further(), *causes(holds=True), *causes(holds=False)):
-        assert row in page, "python -m benchmarks.paper_tables prints the tables of docs/errata.md"
 
 
 def test_an_experiment_is_run_by_hand(told, tmp_path):

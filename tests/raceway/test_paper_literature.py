@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.paper_search import holding
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
 from raceway.studies.paper import CHANNELS, FIGURES, FS, PRESETS, draw_figures, power_spectrum, run
@@ -64,13 +63,6 @@ def test_the_values_do_not_depend_on_the_step(runs):
     for key in ("H1", "H2", "H5", "C3", "C5", "C6", "C7"):
         coarse = next(finding.value for finding in findings("paper", runs["paper"]) if finding.id == key)
         assert math.isclose(coarse, fine[key], rel_tol=0.01), key
-
-
-def test_constants_a_few_percent_off_cost_statements_but_leave_more_than_half():
-    held = holding(PRESETS["paper"], seed=1, draws=16)
-    assert held.shape == (16,)
-    assert held.min() > 38 / 2
-    assert held.mean() < 31
 
 
 def test_figures_carry_the_numbers_of_the_paper():

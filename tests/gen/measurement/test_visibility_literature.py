@@ -8,7 +8,40 @@ import functools
 import numpy as np
 import pytest
 
-from benchmarks.visibility import LINES, ROWS, STATED, UNSEEN, visibilities
+from tests.reference_machine import LINES, TURNING, visibilities
+
+ROWS = {
+    "healthy": {"kind": "healthy"},
+    "inner 0.18": {"kind": "inner", "width_mm": 0.178, "angle_deg": TURNING},
+    "inner 0.36": {"kind": "inner", "width_mm": 0.356, "angle_deg": TURNING},
+    "inner 0.53": {"kind": "inner", "width_mm": 0.533, "angle_deg": TURNING},
+    "outer 0.18": {"kind": "outer", "width_mm": 0.178},
+    "outer 0.36": {"kind": "outer", "width_mm": 0.356},
+    "outer 0.53": {"kind": "outer", "width_mm": 0.533},
+    "outer 0.53 at 3 o'clock": {"kind": "outer", "width_mm": 0.533, "angle_deg": 90},
+    "outer 0.53 at 12 o'clock": {"kind": "outer", "width_mm": 0.533, "angle_deg": 180},
+    "ball 0.18": {"kind": "ball", "width_mm": 0.178, "angle_deg": TURNING},
+    "ball 0.36": {"kind": "ball", "width_mm": 0.356, "angle_deg": TURNING},
+    "ball 0.53": {"kind": "ball", "width_mm": 0.533, "angle_deg": TURNING},
+    "ball 0.53, wander 0.1 rad": {"kind": "ball", "width_mm": 0.533, "angle_deg": TURNING, "axis_wander_deg": 5.73},
+    "inner + outer 0.53": {
+        "kind": "compound",
+        "parts": [{"kind": "inner", "width_mm": 0.533, "angle_deg": TURNING}, {"kind": "outer", "width_mm": 0.533}],
+    },
+    "outer 6 mm, 15 um deep": {"kind": "outer", "width_mm": 6, "depth_um": 15},
+    "cage, pitch error 4 deg": {"kind": "cage", "pitch_error_deg": 4, "knock_n": 0},
+    "cage, with a knock of 30 N": {"kind": "cage", "pitch_error_deg": 4, "knock_n": 30},
+}  # fmt: skip
+
+STATED = {
+    "inner": ("fr", "BPFI", "BPFI-fr", "BPFI+fr"),
+    "outer": ("BPFO",),
+    "ball": ("FTF", "2BSF", "2BSF-FTF"),
+    "ball 0.53, wander 0.1 rad": ("2BSF", "2BSF-FTF"),
+    "inner + outer 0.53": ("BPFO", "BPFI", "BPFI-fr", "BPFI+fr"),
+    "cage, with a knock of 30 N": ("FTF",),
+}
+UNSEEN = ("healthy", "outer 0.53 at 3 o'clock", "outer 0.53 at 12 o'clock", "cage, pitch error 4 deg")
 
 SEEDS, SHARE = 32, 0.95
 CLEAR, ABSENT = 15.0, 12.0  # dB

@@ -2,14 +2,54 @@
 
 import functools
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 import pytest
+from scipy.stats import kurtosis
 
-from benchmarks.mechanisms import BALL, INNER, OUTER, marks
-from benchmarks.visibility import FS, LINES, recorded, reference_recipe
+from tests.reference_machine import (
+    FS,
+    LINES,
+    SECONDS,
+    TURNING,
+    FloatArray,
+    recorded,
+    reference_recipe,
+    squared_envelope_spectrum,
+)
 
+BALL = {"kind": "ball", "width_mm": 0.533, "angle_deg": TURNING}
+INNER = {"kind": "inner", "width_mm": 0.533, "angle_deg": TURNING}
+OUTER = {"kind": "outer", "width_mm": 0.533}
 SEEDS = 8
+
+
+def marks(fault: dict[str, Any], changes: dict[str, Any], n_seeds: int) -> dict[str, float]:
+    """Marks of one case, medians over the seeds."""
+    signals, rate = recorded(reference_recipe(fault, n_seeds, **changes))
+    spectrum = squared_envelope_spectrum(signals)
+    slow = np.arange(spectrum.shape[1]) / SECONDS < 0.8 * rate
+    return {
+        "kurtosis": float(np.median(kurtosis(signals, axis=1, fisher=False))),
+        "BPFO +/- fr [dB]": _beside(spectrum, LINES["BPFO"] * rate, rate),
+        "BPFI +/- fr [dB]": _beside(spectrum, LINES["BPFI"] * rate, rate),
+        "share below 0.8 fr [%]": 100
+        * float(np.median((spectrum[:, slow] ** 2).sum(axis=1) / (spectrum**2).sum(axis=1))),
+    }
+
+
+def _beside(spectrum: FloatArray, line: float, rate: float) -> float:
+    """Mean of the two lines one shaft rate beside a line, relative to that line [dB]."""
+    peaks = [_peak(spectrum, line + side * rate) for side in (-1, 0, 1)]
+    return float(np.median(20 * np.log10((peaks[0] + peaks[2]) / (2 * peaks[1]))))
+
+
+def _peak(spectrum: FloatArray, line: float) -> FloatArray:
+    place, reach = round(line * SECONDS), round(0.01 * line * SECONDS)
+    return spectrum[:, place - reach : place + reach + 1].max(axis=1)
+
+
 plain = functools.cache(lambda name: marks({"ball": BALL, "inner": INNER, "outer": OUTER}[name], {}, SEEDS))
 
 

@@ -9,13 +9,12 @@ import math
 import numpy as np
 import pytest
 
-from benchmarks.severity import contributions, shares, unloading_drop, unloads
-from benchmarks.spall_width import contact_speed, passage
-from benchmarks.visibility import reference_recipe
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.kernel.drop import GEOMETRIC, drop
 from gen.scenarios import draw_scenarios
 from gen.simulation.inputs import bare_inputs, only
+from tests.reference_machine import reference_recipe
+from tests.spall_passages import contact_speed, contributions, passage, unloading_drop, unloads
 
 
 def scenario_of(width_mm, load_n, **fault):
@@ -90,12 +89,6 @@ def test_a_heavier_load_needs_a_wider_spall():
     ]
     assert np.all(np.diff(needed) > 0)
     assert unloads(scenario_of(1.0, 300, angle_deg=180)) is None
-
-
-def test_the_share_of_spalls_that_unload_a_ball_counts_every_spall_once():
-    found = shares("domain_randomised", 48)
-    assert set(found) <= {"inner", "outer", "ball"}
-    assert all(yes > 0 and no > 0 for yes, no, _ in found.values())
 
 
 def test_beyond_saturation_the_level_depends_on_the_time_from_entry_to_exit():

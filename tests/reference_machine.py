@@ -1,10 +1,5 @@
-"""Height of fault lines in the squared envelope spectra of a reference machine, over many seeds of every fault.
+"""Reference machine of the literature tests: a 6205 at 1797 rpm and 300 N with a sensor resonance of 3 kHz."""
 
-``python -m benchmarks.visibility`` prints a table: the median over the seeds of the height of each line over its surroundings [dB], and
-the lowest, or the highest where no line is expected. The machine is a 6205 at 1797 rpm and 300 N with a sensor resonance of 3 kHz.
-"""
-
-import argparse
 from typing import Any
 
 import numpy as np
@@ -20,30 +15,6 @@ from gen.simulation.simulate import simulate
 
 FS, SECONDS, RESONANCE = 12_000, 4.0, 3000.0
 TURNING = "uniform(0, 360)"
-DEEP = 280
-
-ROWS = {
-    "healthy": {"kind": "healthy"},
-    "inner 0.18": {"kind": "inner", "width_mm": 0.178, "angle_deg": TURNING},
-    "inner 0.36": {"kind": "inner", "width_mm": 0.356, "angle_deg": TURNING},
-    "inner 0.53": {"kind": "inner", "width_mm": 0.533, "angle_deg": TURNING},
-    "outer 0.18": {"kind": "outer", "width_mm": 0.178},
-    "outer 0.36": {"kind": "outer", "width_mm": 0.356},
-    "outer 0.53": {"kind": "outer", "width_mm": 0.533},
-    "outer 0.53 at 3 o'clock": {"kind": "outer", "width_mm": 0.533, "angle_deg": 90},
-    "outer 0.53 at 12 o'clock": {"kind": "outer", "width_mm": 0.533, "angle_deg": 180},
-    "ball 0.18": {"kind": "ball", "width_mm": 0.178, "angle_deg": TURNING},
-    "ball 0.36": {"kind": "ball", "width_mm": 0.356, "angle_deg": TURNING},
-    "ball 0.53": {"kind": "ball", "width_mm": 0.533, "angle_deg": TURNING},
-    "ball 0.53, wander 0.1 rad": {"kind": "ball", "width_mm": 0.533, "angle_deg": TURNING, "axis_wander_deg": 5.73},
-    "inner + outer 0.53": {
-        "kind": "compound",
-        "parts": [{"kind": "inner", "width_mm": 0.533, "angle_deg": TURNING}, {"kind": "outer", "width_mm": 0.533}],
-    },
-    "outer 6 mm, 15 um deep": {"kind": "outer", "width_mm": 6, "depth_um": 15},
-    "cage, pitch error 4 deg": {"kind": "cage", "pitch_error_deg": 4, "knock_n": 0},
-    "cage, with a knock of 30 N": {"kind": "cage", "pitch_error_deg": 4, "knock_n": 30},
-}  # fmt: skip
 
 _ORDERS = orders(CATALOGUE["6205"])
 LINES = {
@@ -56,17 +27,6 @@ LINES = {
     "2BSF": 2 * _ORDERS.bsf,
     "2BSF-FTF": 2 * _ORDERS.bsf - _ORDERS.ftf,
 }
-STATED = {
-    "inner": ("fr", "BPFI", "BPFI-fr", "BPFI+fr"),
-    "outer": ("BPFO",),
-    "ball": ("FTF", "2BSF", "2BSF-FTF"),
-    "ball 0.53, wander 0.1 rad": ("2BSF", "2BSF-FTF"),
-    "inner + outer 0.53": ("BPFO", "BPFI", "BPFI-fr", "BPFI+fr"),
-    "cage, with a knock of 30 N": ("FTF",),
-}
-UNSEEN = ("healthy", "outer 0.53 at 3 o'clock", "outer 0.53 at 12 o'clock", "cage, pitch error 4 deg")
-
-
 FloatArray = NDArray[np.float64]
 
 
@@ -119,20 +79,3 @@ def line_height(spectrum: FloatArray, line: float) -> FloatArray:
     near = np.abs(frequency - line) <= max(1.0, 0.015 * line)
     around = np.abs(frequency - line) <= 25
     return 20 * np.log10(spectrum[:, near].max(axis=1) / np.median(spectrum[:, around], axis=1))
-
-
-def main() -> None:
-    """Print the table."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seeds", type=int, default=32)
-    options = parser.parse_args()
-    print("| fault |", " | ".join(LINES), "|")
-    print("|---|" + "---:|" * len(LINES))
-    for name, fault in ROWS.items():
-        found = visibilities(fault, options.seeds).values()
-        extreme = np.max if name in UNSEEN else np.min
-        print(f"| {name} |", " | ".join(f"{np.median(x):.0f} ({extreme(x):.0f})" for x in found), "|", flush=True)
-
-
-if __name__ == "__main__":
-    main()

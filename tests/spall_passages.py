@@ -1,37 +1,35 @@
-"""Entry and exit of a ball into and out of a spall, compared with Sawalhi and Randall.
+"""Entry and exit of a spall, and the drop at which it unloads a ball, on the reference machine with a sensor resonance of 10 kHz.
 
-``python -m benchmarks.spall_width`` prints two tables for a 6205 at 300 N with a sensor resonance of 10 kHz. A ball that enters a spall is
-unloaded, which gives a step response of low frequency; at the exit it strikes the trailing edge, which gives an impulse response of all
-frequencies [1]_. Both events are found on the housing as the sharpest kinks of its acceleration, and levels are those of the sensor. Times
-are shares of the time W / v in which the contact travels the width W. A ball that rests on both edges strikes in the middle, after half of
-this time, so [1]_ takes the width as twice the distance travelled. Without noise, slip and jitter; the twin without the spall is
-subtracted.
+A ball that enters a spall is unloaded, which gives a step response of low frequency; at the exit it strikes the trailing edge, which gives
+an impulse response of all frequencies [1]_. Both events are found on the housing as the sharpest kinks of its acceleration, and levels are
+those of the sensor. Times are shares of the time W / v in which the contact travels the width W. A ball that rests on both edges strikes in
+the middle, after half of this time, so [1]_ takes the width as twice the distance travelled. Without noise, slip and jitter; the twin
+without the spall is subtracted.
 
 .. [1] N. Sawalhi, R. B. Randall, "Vibration response of spalled rolling element bearings: Observations, simulations and signal processing
    techniques to track the spall size", Mech. Syst. Signal Process. 25 (2011) 846-870.
 """
 
-import argparse
 import math
 from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import butter, sosfiltfilt
 
-from benchmarks.severity import unloading_drop, unloading_length
-from benchmarks.visibility import FloatArray, reference_recipe
 from gen.physics.bearing import Bearing, orders
 from gen.physics.inputs import KernelInput
+from gen.physics.rotor import Machine, as_columns, ball_forces, rest
 from gen.scenarios import Scenario, draw_scenarios, settings_of
+from gen.simulation.damage import largest_drop_over
+from gen.simulation.inputs import bare_inputs, only
 from gen.simulation.simulate import simulate
 from gen.simulation.timeline import Timeline, timeline
+from gen.support.errors import SimulationError
+from tests.reference_machine import TURNING, FloatArray, reference_recipe
 
 FS, SECONDS, ABOVE = 102_400, 1.0, 5000.0
 CHANNELS = [{"name": "housing", "body": "housing"}, {"name": "sensor", "body": "sensor"}]
 RESONATOR = {"mass_kg": 0.02, "frequency_hz": 10_000, "damping_percent": 5}
-SPEEDS = (600, 1797, 3600)
-WIDTHS = (0.5, 1.0, 1.5, 2.0, 3.0, 6.0)
-PROFILES = ("geometric", "raised_cosine", "half_sine", "rectangular")
 NEAR_THE_LOAD = math.radians(15)
 ENTRY, EXIT = (-1.3, 0.0), (-0.1, 1.6)  # where the events are searched: the spall reaches from -1 to 1
 
@@ -129,32 +127,48 @@ def _events(place: FloatArray, kinks: FloatArray, sensor: FloatArray, fast: Floa
     return [(at_exit + 1) / 2, (at_exit - at_entry) / 2, peaks, fast_peaks, *shares]
 
 
-def main() -> None:
-    """Print the tables."""
-    argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter).parse_args()
-    print(f"| race, rpm, W [mm] | {' | '.join(HEADS)} |\n|---|" + "---:|" * len(HEADS))
-    for kind in ("outer", "inner"):
-        for rpm in SPEEDS:
-            for width in WIDTHS:
-                print(f"| {kind}, {rpm}, {width:g} |", " | ".join(_cells(passage(kind, width, rpm))), "|", flush=True)
-    print(f"\n| profile, outer, 1797, 3 | {' | '.join(HEADS)} |\n|---|" + "---:|" * len(HEADS))
-    for profile in PROFILES:
-        print(f"| `{profile}` |", " | ".join(_cells(passage("outer", 3.0, 1797, profile))), "|")
+def contributions(
+    kind: str, width_mm: float, n_seeds: int, seconds: float, depth_um: float = 280, **operation: float
+) -> FloatArray:
+    """What a spall on the ``inner`` or ``outer`` race adds to the records of the seeds, shape (seed, time) [m s-2]."""
+    fault = {"kind": kind, "width_mm": width_mm, "depth_um": depth_um}
+    if kind == "inner":
+        fault["angle_deg"] = TURNING
+    recipe = reference_recipe(fault, n_seeds, operation=operation, recording={"duration_s": seconds})
+    scenarios = draw_scenarios(recipe)
+    response = simulate(scenarios + [scenario.without_fault() for scenario in scenarios]).acceleration
+    damaged, healthy = response[:, 0, timeline(settings_of(recipe)).kept].astype(float).reshape(2, n_seeds, -1)
+    return damaged - healthy
 
 
-HEADS = (
-    "W / v [ms]", "edge to exit", "expected", "entry to exit", "expected", "exit over entry", "above 5 kHz",
-    "entry above 5 kHz [%]", "exit above 5 kHz [%]",
-)  # fmt: skip
+def unloading_drop(machine: Machine, bearing: Bearing, angle: float) -> float:
+    """Drop at which the ball at ``angle`` [rad] carries nothing, in static equilibrium; NaN if it carries nothing without a spall [m]."""
+    of_one = as_columns([machine])
+    balls = angle + 2 * np.pi * np.arange(bearing.n_balls)[None] / bearing.n_balls
+    without = rest(of_one, balls)
+    if ball_forces(of_one, without[:, :2] - without[:, 2:], balls)[0][0, 0] <= 0:
+        return math.nan
+    pressed = rest(of_one, balls[:, 1:])
+    along = (pressed[0, :2] - pressed[0, 2:]) @ (math.cos(angle), math.sin(angle))
+    return float(along * machine.contact_cosine - machine.half_clearance)
 
 
-def _cells(found: Passage) -> list[str]:
-    leaving, apart = found.expected
-    levels = [f"{found.peaks:.1f}", f"{found.fast_peaks:.1f}", *(f"{100 * x:.2g}" for x in found[-2:])]
-    if math.isnan(apart):  # no ball is unloaded: there is no entry event, and the whole passage is one event
-        return [f"{1e3 * found.duration:.2f}", f"{found.exit:.2f}", f"{leaving:.2f}", *"------"]
-    return [f"{1e3 * found.duration:.2f}", *(f"{x:.2f}" for x in (found.exit, leaving, found.apart, apart)), *levels]
+def unloading_length(kind: str, drop: float, bearing: Bearing) -> float:
+    """Distance from the edge of a spall at which a rigid ball has dropped so far [m]."""
+    race = bearing.inner_radius if kind == "inner" else -bearing.outer_radius
+    return math.sqrt(2 * drop / (1 / bearing.radius("ball") + 1 / race))
 
 
-if __name__ == "__main__":
-    main()
+def unloads(scenario: Scenario, number: int = 0) -> bool | None:
+    """Whether a spall takes all load from a ball; None if no ball carries load where the spall is, or no such machine is possible.
+
+    A spall that turns, on the inner race or on a ball, is taken where the load is largest.
+    """
+    try:
+        machine = only(bare_inputs([scenario])).machine
+    except (SimulationError, ValueError):
+        return None
+    spall = scenario.specimen.spalls[number]
+    angle = scenario.rig.machine["load_angle"] + (spall.angle if spall.site == "outer" else 0.0)
+    needed = unloading_drop(machine, scenario.specimen.bearing, angle)
+    return None if math.isnan(needed) else largest_drop_over(scenario, number) >= needed
