@@ -3,12 +3,9 @@
 import json
 import re
 import shutil
-import threading
-from http.server import BaseHTTPRequestHandler, HTTPServer
 
 import h5py
 import pytest
-from distributed import LocalCluster
 
 from features.baselines import save_model, train
 from features.table import feature_table
@@ -274,57 +271,3 @@ def test_control_characters_of_a_recipe_are_not_printed(run, tiny_recipe, tmp_pa
 
 def test_json_has_null_for_nan_and_infinity():
     assert show.plain({"load": [float("nan"), 1.5], "rate": float("inf")}) == {"load": [None, 1.5], "rate": None}
-
-
-@pytest.mark.parametrize("name", ["table.nc", "table.parquet"])
-def test_a_full_disk_is_named_with_the_final_path(start, places, tmp_path, name):
-    process = start("features", places["corpus"], "-o", tmp_path / name, "--workers", 1, LARGEST_FILE="10000")
-    _, errors = process.communicate()
-    expected = f"{tmp_path / name}: could not be written (File too large); free some space or choose another folder."
-    assert (process.returncode, errors.splitlines()[-1]) == (2, expected)
-
-
-@pytest.mark.parametrize(
-    ("address", "sentence"),
-    [
-        ("tls://127.0.0.1:8786", "needs certificates; name them in the configuration of dask"),
-        ("127.0.0.1:1", "does not answer (Timed out trying to connect to 127.0.0.1:1 after 3 s)"),
-        ("garbage", "does not answer (missing port number in address 'garbage')"),
-    ],
-)
-def test_a_scheduler_that_cannot_be_used_is_told_in_one_line_and_soon(start, places, address, sentence):
-    process = start("generate", places["recipe"], "-o", places["new"], "--scheduler", address)
-    _, errors = process.communicate(timeout=20)  # a client of dask without a scheduler takes 20 s to end
-    assert (process.returncode, errors.count("\n")) == (2, 1)
-    assert errors.startswith(f"scheduler {address}: {sentence}")
-
-
-def test_another_server_than_a_scheduler_is_refused(run, places):
-    with HTTPServer(("127.0.0.1", 0), BaseHTTPRequestHandler) as server:
-        threading.Thread(target=server.serve_forever, daemon=True).start()
-        address = f"127.0.0.1:{server.server_port}"
-        result = run("features", places["corpus"], "-o", f"{places['new']}.nc", "--scheduler", address)
-        server.shutdown()
-    assert result.exit_code == 2
-    assert f"scheduler {address}: does not answer (" in result.stderr
-
-
-WITHOUT_RACEWAY = """
-import sys
-class Missing:
-    def find_spec(self, name, path=None, target=None):
-        if name.partition(".")[0] in ("gen", "features", "raceway"):
-            raise ModuleNotFoundError(name)
-sys.meta_path.insert(0, Missing())
-"""
-
-
-def test_a_worker_without_raceway_is_named_before_anything_is_written(run, places, tmp_path, monkeypatch):
-    (tmp_path / "sitecustomize.py").write_text(WITHOUT_RACEWAY)
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address="127.0.0.1:0") as cluster:
-        worker = cluster.workers[0].worker_address
-        result = run("generate", places["recipe"], "-o", places["new"], "--scheduler", cluster.scheduler_address)
-    assert result.exit_code == 2
-    assert f"its worker {worker} has no Raceway; install it there" in result.stderr
-    assert not places["new"].exists()

@@ -3,7 +3,6 @@
 import fcntl
 import os
 import re
-import shutil
 import signal
 import time
 
@@ -12,8 +11,6 @@ import pytest
 
 from gen import generate
 from gen.corpus import read_manifest, validate_corpus
-from gen.recipe import read_recipe
-from raceway.commands.corpora import _kept
 from tests.kills import killed
 
 N_PARTS = 12
@@ -110,16 +107,6 @@ def test_a_single_file_killed_at_any_moment_is_there_as_a_whole_or_not_at_all(re
     generate(recipe, corpus, records=16)
     assert corpus.read_bytes() == whole_bytes
     assert not kept_open(corpus)
-
-
-def test_the_last_sentence_counts_the_parts_after_the_files_of_killed_workers_are_removed(
-    tiny_corpus, tiny_recipe, tmp_path
-):
-    folder = shutil.copytree(tiny_corpus, tmp_path / "corpus")
-    (folder / "parts" / ".part-00003.nc.host.4.5.tmp").write_bytes(b"half a part")
-    said = _kept(folder, read_recipe(tiny_recipe))
-    assert said == f"interrupted; 4 of 4 parts kept in {folder}; the same command completes the corpus."
-    assert not list(folder.glob("**/.*"))
 
 
 def test_a_process_killed_at_any_moment_leaves_no_half_part(start, recipe, whole, tmp_path):

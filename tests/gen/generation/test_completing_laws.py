@@ -57,8 +57,7 @@ def begun(copied):
     return unfinished(copied)
 
 
-@pytest.mark.parametrize("name", ["c", "c.nc"])
-@pytest.mark.parametrize("kept", [0, 1, 2])
+@pytest.mark.parametrize(("kept", "name"), [(0, "c"), (2, "c"), (1, "c.nc")])
 def test_an_interrupted_corpus_is_refused_until_the_same_call_completes_it(
     recipe_file, whole, single, tmp_path, kept, name
 ):
@@ -149,43 +148,36 @@ def flip(path):
     path.write_bytes(content)
 
 
-def other_seed(parts, write_recipe):
-    folder = parts.parent.with_name("other seed")
-    generate(write_recipe(folder.with_suffix(".yaml"), {"seed": 4}), folder)
-    shutil.copyfile(folder / "parts" / part_name(1), parts / part_name(1))
-
-
-STRANGE = {
-    "deleted": lambda parts, _: (parts / part_name(1)).unlink(),
-    "altered": lambda parts, _: flip(parts / part_name(1)),
-    "cut short": lambda parts, _: os.truncate(parts / part_name(1), 5000),
-    "a copy of another": lambda parts, _: shutil.copyfile(parts / part_name(0), parts / part_name(1)),
-    "of another seed": other_seed,
-    "no netCDF file": lambda parts, _: (parts / part_name(1)).write_text("mine"),
-    "of the format before": lambda parts, _: set_facts(parts / part_name(1), raceway_format=2),
-    "of other sources": lambda parts, _: set_facts(parts / part_name(1), sources_sha256="0" * 64),
-    "of another library": lambda parts, _: set_facts(parts / part_name(1), versions="{}"),
-    "without facts": lambda parts, _: set_facts(parts / part_name(1), failures="["),
-    "a link": lambda parts, _: link(parts / part_name(1)),
-}
-
-
 def link(part):
     part.rename(part.parents[2] / "moved.nc")
     part.symlink_to(part.parents[2] / "moved.nc")
 
 
-@pytest.mark.parametrize("strange", STRANGE)
-@pytest.mark.parametrize("state", ["finished", "unfinished"])
-def test_a_part_that_is_not_the_right_one_is_made_again_to_the_byte(
-    recipe_file, write_recipe, whole, copied, strange, state
-):
-    if state == "unfinished":
-        unfinished(copied)
-    STRANGE[strange](copied / "parts", write_recipe)
-    assert validate_corpus(copied) != []
-    assert generate(recipe_file, copied).kept == 2
-    assert_the_same_corpus(copied, whole)
+STRANGE = {
+    "deleted": lambda part, _: part.unlink(),
+    "altered": lambda part, _: flip(part),
+    "cut short": lambda part, _: os.truncate(part, 5000),
+    "a copy of another": lambda part, _: shutil.copyfile(part.with_name(part_name(11)), part),
+    "of another seed": lambda part, other: shutil.copyfile(other / "parts" / part.name, part),
+    "no netCDF file": lambda part, _: part.write_text("mine"),
+    "of the format before": lambda part, _: set_facts(part, raceway_format=2),
+    "of other sources": lambda part, _: set_facts(part, sources_sha256="0" * 64),
+    "of another library": lambda part, _: set_facts(part, versions="{}"),
+    "without facts": lambda part, _: set_facts(part, failures="["),
+    "a link": lambda part, _: link(part),
+}
+
+
+def test_every_part_that_is_not_the_right_one_is_made_again_to_the_byte(write_recipe, tmp_path):
+    recipe = write_recipe(tmp_path / "r.yaml", {"storage.records_per_part": 2})
+    whole, other = generate(recipe, tmp_path / "whole"), generate(recipe, tmp_path / "other", seed=4)
+    for begun in (lambda folder: folder, unfinished):
+        folder = begun(shutil.copytree(whole.path, tmp_path / "damaged"))
+        for number, damage in enumerate(STRANGE.values()):
+            damage(folder / "parts" / part_name(number), other.path)
+        assert generate(recipe, folder).kept == whole.parts - len(STRANGE)
+        assert_the_same_corpus(folder, whole)
+        shutil.rmtree(folder)
 
 
 @pytest.mark.parametrize(
