@@ -39,17 +39,23 @@ RESULTS = {
 }
 
 
-@pytest.fixture
-def places(tiny_recipe, tiny_corpus, tmp_path):
+@pytest.fixture(scope="module")
+def originals(tiny_recipe, tiny_corpus, tmp_path_factory):
     """A copy of a corpus, and files of other kinds."""
-    corpus = shutil.copytree(tiny_corpus, tmp_path / "corpus")
-    shutil.copy(tiny_recipe, tmp_path / "recipe.yaml")
-    table = feature_table(corpus)
-    save_model(train(table, "majority"), tmp_path / "model.skops")
-    np.save(tmp_path / "recording.npy", np.random.default_rng(0).standard_normal(12_000))
-    (tmp_path / "raw").mkdir()
+    folder = tmp_path_factory.mktemp("originals")
+    shutil.copytree(tiny_corpus, folder / "corpus")
+    shutil.copy(tiny_recipe, folder / "recipe.yaml")
+    save_model(train(feature_table(tiny_corpus), "majority"), folder / "model.skops")
+    np.save(folder / "recording.npy", np.random.default_rng(0).standard_normal(12_000))
+    (folder / "raw").mkdir()
+    return folder
+
+
+@pytest.fixture
+def places(originals, tmp_path):
+    shutil.copytree(originals, tmp_path, dirs_exist_ok=True)
     names = {"recording": "recording.npy", "recipe": "recipe.yaml", "raw": "raw", "model": "model.skops"}
-    return {"corpus": corpus, **{name: tmp_path / file for name, file in names.items()}}
+    return {"corpus": tmp_path / "corpus", **{name: tmp_path / file for name, file in names.items()}}
 
 
 def contents(folder: Path) -> dict[Path, bytes]:
