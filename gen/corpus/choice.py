@@ -33,14 +33,14 @@ def chosen_records(
     """
     if split is not None and split not in SPLITS:
         raise CorpusError(f"split: there is no split {split!r}; allowed are {', '.join(SPLITS)}.")
-    found = [np.flatnonzero(_chosen(corpus, where, split)) for corpus in corpora]
-    if not any(map(len, found)):
-        asked = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
+    places = [np.flatnonzero(_chosen(corpus, where, split)) for corpus in corpora]
+    if not any(map(len, places)):
+        words = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
         count = sum(corpus.sizes["record"] for corpus in corpora)
         raise CorpusError(
-            f"{' and '.join(asked)}: none of {count} records is chosen; choose others{_extents(corpora, where)}."
+            f"{' and '.join(words)}: none of {count} records is chosen; choose others{_extents(corpora, where)}."
         )
-    return found
+    return places
 
 
 def chosen_channels(names: Sequence[str], channels: Sequence[str] | None) -> tuple[int, ...]:
@@ -85,11 +85,11 @@ def _chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDArray
 
 def _extents(corpora: Sequence[xr.Dataset], where: str | None) -> str:
     """Least and largest value of the measured quantities in a condition, in brackets: a unit is easily mistaken."""
-    found: list[str] = []
+    extents: list[str] = []
     for name in dict.fromkeys(re.findall(r"[A-Za-z_]\w*", where or "")):
         unit = str(corpora[0][name].attrs.get("units", "1")) if name in corpora[0] else "1"
         values = np.concatenate([corpus[name].values for corpus in corpora]) if unit != "1" else np.empty(0)
         if np.isfinite(values).any():
             values = values[np.isfinite(values)]
-            found.append(f"{name} is {values.min():.4g} to {values.max():.4g} {unit}")
-    return f" ({', '.join(found)})" if found else ""
+            extents.append(f"{name} is {values.min():.4g} to {values.max():.4g} {unit}")
+    return f" ({', '.join(extents)})" if extents else ""

@@ -147,14 +147,14 @@ class Chosen:
         """Fields of the manifest of a copy: those that all corpora share, and all sentences of any; of a choice, no hash of the whole."""
         each = [manifest.model_dump(mode="json", exclude_unset=True) for manifest in self.manifests]
         left_out = {*COUNTED, "title"} | (_FACTS_OF_THE_WHOLE if self.asked else set())
-        found: dict[str, Any] = {"title": self.title, "publication": self.publication}
+        fields: dict[str, Any] = {"title": self.title, "publication": self.publication}
         for name in dict.fromkeys(name for facts in each for name in facts if name not in left_out):
             values = [facts.get(name) for facts in each]
             if any(isinstance(value, list) for value in values):
-                found[name] = list(dict.fromkeys(item for value in values for item in value or ()))
+                fields[name] = list(dict.fromkeys(item for value in values for item in value or ()))
             elif all(value == values[0] for value in values):
-                found[name] = values[0]
-        return found
+                fields[name] = values[0]
+        return fields
 
     def values(self, name: str) -> NDArray[Any]:
         """Values of a per-record variable for all chosen records."""
@@ -270,14 +270,16 @@ def _renamed(corpora: Sequence[xr.Dataset], rename: Mapping[str, str]) -> list[x
     unknown = next((name for name in rename if name not in known), None)
     if unknown is not None:
         raise CorpusError(f"rename: there is no channel {unknown!r}{nearest(unknown, known)}")
-    found = []
+    renamed_corpora = []
     for corpus in corpora:
         names = [rename.get(name, name) for name in channel_names(corpus)]
         twice = next((name for name in names if names.count(name) > 1), None)
         if twice is not None:
             raise CorpusError(f"rename: two channels would be named {twice}; give each its own name.")
-        found.append(corpus.assign_coords(channel=("channel", np.array(names, object), corpus["channel"].attrs)))
-    return found
+        renamed_corpora.append(
+            corpus.assign_coords(channel=("channel", np.array(names, object), corpus["channel"].attrs))
+        )
+    return renamed_corpora
 
 
 def _with_channels(corpus: xr.Dataset, channels: Sequence[str] | None, path: Path) -> xr.Dataset:

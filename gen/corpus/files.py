@@ -40,8 +40,8 @@ _unfinished: set[Path] = set()
 
 def stamp(path: Path | str) -> Stamp:
     """Stamp of a file; OSError if there is no file."""
-    found = Path(path).stat()
-    return found.st_size, found.st_mtime_ns
+    status = Path(path).stat()
+    return status.st_size, status.st_mtime_ns
 
 
 def sha256(path: Path) -> str:
@@ -62,12 +62,12 @@ def _both_hashes(path: Path) -> tuple[str, str]:
             left -= len(block)
         before = digest.hexdigest()
         digest.update(stream.read())
-    found = digest.hexdigest(), before
+    both = digest.hexdigest(), before
     if stamp(path) == key[1] and time.time_ns() - key[1][1] > _CLOCK_TICK:
         if len(_hashes) >= _MOST_HASHES:
             _hashes.clear()
-        _hashes[key] = found
-    return found
+        _hashes[key] = both
+    return both
 
 
 def append_checksum(path: Path) -> str:
@@ -194,10 +194,10 @@ def writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
 def remove_left_behind_of(path: Path) -> None:
     """Remove what killed processes of this machine have left of a file or folder; those of running ones, and of longer names, are kept."""
     own = re.compile(rf"\.{re.escape(path.name)}\.{_HOST}\.(\d+)\.\d+\.tmp")
-    for found in path.parent.glob(".*.tmp"):
-        match = own.fullmatch(found.name)
-        if match is not None and not _is_being_written(found, int(match[1])):
-            _remove(found)
+    for other in path.parent.glob(".*.tmp"):
+        match = own.fullmatch(other.name)
+        if match is not None and not _is_being_written(other, int(match[1])):
+            _remove(other)
 
 
 def _is_being_written(temporary: Path, process: int) -> bool:
@@ -295,6 +295,6 @@ def _error_number(error: OSError | RuntimeError, folder: Path) -> int:
             trial.write(bytes(_TRIAL_BYTES))
             trial.flush()
             os.fsync(trial.fileno())
-    except OSError as found:
-        return found.errno or 0
+    except OSError as refusal:
+        return refusal.errno or 0
     return 0

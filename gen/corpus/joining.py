@@ -79,9 +79,9 @@ def with_same_variables(corpora: Sequence[Named]) -> tuple[list[xr.Dataset], tup
     # h5py gives an axis with its byte order stated, of which netCDF4 warns
     time = corpora[0][1]["elapsed_time"]
     axes = {"elapsed_time": ("elapsed_time", time.values.astype(np.float64), time.attrs)}
-    found = [_with_all(corpus, variables, common).assign_coords(axes) for _, corpus in corpora]
-    filled = tuple(name for name in variables if any(name not in corpus.variables for _, corpus in corpora))
-    return found, filled
+    completed = [_with_all(corpus, variables, common).assign_coords(axes) for _, corpus in corpora]
+    lacking = tuple(name for name in variables if any(name not in corpus.variables for _, corpus in corpora))
+    return completed, lacking
 
 
 def _check_same(name: str, first: tuple[str, xr.Variable], other: tuple[str, xr.Variable]) -> None:
@@ -115,9 +115,9 @@ def _with_all(
 
 def _described(variable: xr.Variable, attributes: Mapping[Any, Any]) -> xr.Variable:
     """Variable with other attributes, still unread."""
-    found = variable.copy(deep=False)
-    found.attrs = dict(attributes)
-    return found
+    view = variable.copy(deep=False)
+    view.attrs = dict(attributes)
+    return view
 
 
 def new_numbers(identities: Sequence[str]) -> dict[str, NDArray[np.int32]]:
@@ -149,11 +149,11 @@ def new_numbers(identities: Sequence[str]) -> dict[str, NDArray[np.int32]]:
 
 def _dense(corpus: NDArray[np.intp], values: NDArray[np.int32]) -> NDArray[np.int32]:
     """Numbers from 0 for pairs of a corpus and a number, in the order in which each pair first occurs; -1 for a number below 0."""
-    found, given = np.full(len(values), -1, np.int32), values >= 0
-    pairs = np.stack([corpus, values], axis=1)[given]
+    numbers, is_number = np.full(len(values), -1, np.int32), values >= 0
+    pairs = np.stack([corpus, values], axis=1)[is_number]
     _, first, inverse = np.unique(pairs, axis=0, return_index=True, return_inverse=True)
-    found[given] = np.argsort(np.argsort(first))[inverse.reshape(-1)]
-    return found
+    numbers[is_number] = np.argsort(np.argsort(first))[inverse.reshape(-1)]
+    return numbers
 
 
 def sample_digests(signal: NDArray[Any]) -> NDArray[np.bytes_]:
@@ -161,8 +161,8 @@ def sample_digests(signal: NDArray[Any]) -> NDArray[np.bytes_]:
 
     Labels do not count: two records with the same samples and different labels are no more different than two equal ones.
     """
-    found = [hashlib.sha256(np.ascontiguousarray(record).data).hexdigest()[:32] for record in signal]
-    digests = np.array(found, "S32")
+    texts = [hashlib.sha256(np.ascontiguousarray(record).data).hexdigest()[:32] for record in signal]
+    digests = np.array(texts, "S32")
     digests[np.isin(judge(signal), _WITHOUT_CONTENT)] = b""
     return digests
 
@@ -176,8 +176,8 @@ def check_repeats(digests: NDArray[np.bytes_], places: Sequence[tuple[str, NDArr
     one, other = order[:-1], order[1:]
     same = np.flatnonzero((digests[one] == digests[other]) & (digests[one] != b"") & (owner[one] != owner[other]))
     if same.size:
-        found = same[np.argmin(other[same])]
-        first, second = int(one[found]), int(other[found])
+        place = same[np.argmin(other[same])]
+        first, second = int(one[place]), int(other[place])
         raise CorpusError(
             f"{names[owner[second]]}: record {number[second]} has the same samples as record {number[first]} of "
             f"{names[owner[first]]}, and a record that occurs twice can be in the training and in the test set; give corpora of "

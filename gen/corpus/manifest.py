@@ -136,21 +136,21 @@ def checked(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
     try:
         values: Mapping[str, Any] = json.loads(content) if isinstance(content, bytes) else content
         _check_format(values["raceway_format"], place)
-        found = Manifest.model_validate_json(json.dumps(values))
+        manifest = Manifest.model_validate_json(json.dumps(values))
     except ValidationError as error:
         reason = first_problem(error)
     except (ValueError, KeyError, TypeError, RecursionError) as error:
         reason = f"{type(error).__name__}: {error}"
     else:
-        check_limit("records", found.records, f"{place}: counts", CorpusError)
-        return found
+        check_limit("records", manifest.records, f"{place}: counts", CorpusError)
+        return manifest
     raise CorpusError(f"{place}: not the manifest of a corpus ({reason}); make or copy the corpus again.")
 
 
-def _check_format(found: Any, place: Path) -> None:
-    if found != FORMAT:
+def _check_format(version: Any, place: Path) -> None:
+    if version != FORMAT:
         raise CorpusError(
-            f"{place}: corpus format {found}, this version of raceway reads format {FORMAT}; make the corpus again."
+            f"{place}: corpus format {version}, this version of raceway reads format {FORMAT}; make the corpus again."
         )
 
 
@@ -223,8 +223,8 @@ def facts_as_attributes(content: Mapping[str, Any]) -> dict[str, str]:
 
 def _with_present_parts(manifest: Manifest, directory: Path) -> Manifest:
     """Manifest of an unfinished corpus with the whole parts in its folder, in the order of their records."""
-    found = (path for path in (directory / "parts").glob("part-*.nc") if _PART_NAME.fullmatch(path.name))
-    paths = sorted(found, key=lambda path: (len(path.name), path.name))  # part-100000 comes after part-99999
+    parts = (path for path in (directory / "parts").glob("part-*.nc") if _PART_NAME.fullmatch(path.name))
+    paths = sorted(parts, key=lambda path: (len(path.name), path.name))  # part-100000 comes after part-99999
     rows = [row for row in map(row_of, paths) if row is not None]
     content = manifest.model_dump(mode="json") | facts_of_parts(rows, {}, complete=False)
     return checked(content, directory / MANIFEST_NAME)
@@ -235,10 +235,10 @@ def row_of(path: Path) -> PartRow | None:
     if path.is_symlink() or not path.is_file() or not has_whole_bytes(path):
         return None
     try:
-        found = _manifest_of_file(path)
+        manifest = _manifest_of_file(path)
     except CorpusError:
         return None
-    return PartRow(path.name, found.records, path.stat().st_size, sha256(path), found.signals)
+    return PartRow(path.name, manifest.records, path.stat().st_size, sha256(path), manifest.signals)
 
 
 def recipe_text(path: Path | str) -> str | None:
@@ -259,11 +259,11 @@ def file_problems(path: Path, manifest: Manifest, check: Check) -> list[str]:
         return []
     rows: list[PartRow | None] = [*manifest.parts, *([None] if manifest.complete else [])]
     if check == "size":
-        found = [_file_problem(path, row, check) for row in rows]
+        each = [_file_problem(path, row, check) for row in rows]
     else:
         with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)))) as pool:  # hashing releases the interpreter lock
-            found = list(pool.map(lambda row: _file_problem(path, row, check), rows, chunksize=16))
-    return sorted(problem for problem in found if problem is not None)
+            each = list(pool.map(lambda row: _file_problem(path, row, check), rows, chunksize=16))
+    return sorted(problem for problem in each if problem is not None)
 
 
 def _file_problem(directory: Path, row: PartRow | None, check: Check) -> str | None:

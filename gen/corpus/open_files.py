@@ -122,6 +122,6 @@ def file_facts(path: Path) -> tuple[dict[str, Any], int]:
     """Global attributes of a file of records, and its number of records; CorpusError if it is none."""
     source = source_of(path)
     with opened(source) as file:
-        found = attributes_of(file.handle), file.signal().shape[0]
+        facts = attributes_of(file.handle), file.signal().shape[0]
     close([source])  # another library cannot open a file that is open here
-    return found
+    return facts

@@ -33,10 +33,10 @@ def checked_orcid(text: str) -> str:
     >>> checked_orcid("https://orcid.org/0000-0002-1825-0097")
     '0000-0002-1825-0097'
     """
-    found = _ORCID.fullmatch(text)
-    if found is None:
+    match = _ORCID.fullmatch(text)
+    if match is None:
         raise ValueError(f"{text!r} is not an ORCID; it has four groups of four digits, such as 0000-0002-1825-0097.")
-    *digits, last = found[1].replace("-", "")
+    *digits, last = match[1].replace("-", "")
     total = 0
     for digit in digits:
         total = (total + int(digit)) * 2
@@ -45,7 +45,7 @@ def checked_orcid(text: str) -> str:
         raise ValueError(
             f"{text!r} is not an ORCID: its last digit does not fit the others; compare it digit by digit."
         )
-    return found[1]
+    return match[1]
 
 
 def checked_doi(text: str) -> str:
@@ -54,10 +54,10 @@ def checked_doi(text: str) -> str:
     >>> checked_doi("https://doi.org/10.1000/182")
     '10.1000/182'
     """
-    found = _DOI.fullmatch(text)
-    if found is None:
+    match = _DOI.fullmatch(text)
+    if match is None:
         raise ValueError(f"{text!r} is not a DOI; it begins with 10. and has a slash, such as 10.1000/182.")
-    return found[1]
+    return match[1]
 
 
 def _checked_license(text: str) -> str:
@@ -96,9 +96,9 @@ def _one_line(text: str) -> str:
 
 
 def _name_alone(text: str) -> str:
-    if found := _ORCID.search(text):
+    if match := _ORCID.search(text):
         raise ValueError(
-            f"{text!r} has an ORCID in the name; give it as orcid, or write 'Jane Doe <{found[1]}>' in a command."
+            f"{text!r} has an ORCID in the name; give it as orcid, or write 'Jane Doe <{match[1]}>' in a command."
         )
     return text
 

@@ -173,11 +173,11 @@ def open_part(path: Path) -> xr.Dataset:
 
 def _variables(file: OpenFile, source: Source, sizes: dict[str, int]) -> dict[str, xr.Variable]:
     """All variables of a file except the signal."""
-    found: dict[str, xr.Variable] = {}
+    variables: dict[str, xr.Variable] = {}
     for name in map(str, file.handle):
         if name != SIGNAL and not is_bare_dimension(file.dataset(name)):
-            found[name] = _variable(source, file.dataset(name), name, sizes)
-    return found
+            variables[name] = _variable(source, file.dataset(name), name, sizes)
+    return variables
 
 
 def _variable(source: Source, stored: h5py.Dataset, name: str, sizes: dict[str, int]) -> xr.Variable:

@@ -41,7 +41,7 @@ def recoveries(corpus: xr.Dataset) -> list[Recovery]:
     drawn = np.random.default_rng(0).choice(n_records, min(MOST_RECORDS, n_records), replace=False)
     some = corpus.isel(record=np.sort(drawn))
     numbers = record_numbers(some)
-    found = []
+    closest = []
     for code, fault in enumerate(FAULTS):
         rows = np.flatnonzero(some["fault"].values == code)
         for label in (name for name in LABELS if name in some and fault != "healthy"):
@@ -52,8 +52,8 @@ def recoveries(corpus: xr.Dataset) -> list[Recovery]:
                 continue
             correlations = [rank_correlation(values, column) for column in of_rows.T]
             best = int(np.argmax(np.abs(correlations)))
-            found.append(Recovery(label, fault, NUMBERS[best], correlations[best], len(values)))
-    return found
+            closest.append(Recovery(label, fault, NUMBERS[best], correlations[best], len(values)))
+    return closest
 
 
 def record_numbers(corpus: xr.Dataset) -> FloatArray:

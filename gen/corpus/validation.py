@@ -121,8 +121,8 @@ def _signal_problems(file: Path, listed: SignalCounts) -> list[str]:
     lost = np.flatnonzero(verdicts == VERDICTS.index("not_finite"))
     problems = [f"{file}: record {record} of it has samples that are not finite." for record in lost]
     if counted(verdicts) != listed:
-        found = described(counted(verdicts))
-        problems.append(f"{file}: {found} of its records cannot be used, {described(listed)} are listed.")
+        counts = described(counted(verdicts))
+        problems.append(f"{file}: {counts} of its records cannot be used, {described(listed)} are listed.")
     return problems
 
 

@@ -121,9 +121,9 @@ class _Condition:
             if name := next((item for item in items if isinstance(item, ast.Name)), None):
                 raise self._wrong(name, f"{name.id} is a name; put a text in quotes: '{name.id}'.")
             within = isinstance(sign, ast.In)
-            found = [self._compared(left, ast.Eq() if within else ast.NotEq(), item) for item in items]
+            truths = [self._compared(left, ast.Eq() if within else ast.NotEq(), item) for item in items]
             combine, of_none = (np.logical_or, np.zeros_like) if within else (np.logical_and, np.ones_like)
-            return combine.reduce([of_none(self._of(left).values, bool), *found])
+            return combine.reduce([of_none(self._of(left).values, bool), *truths])
         compare = _SIGNS.get(type(sign))
         if compare is None:
             raise self._misplaced(left, "a comparison (==, !=, <, <=, >, >=, in)")
@@ -187,8 +187,8 @@ class _Condition:
         return self._column(node.id)
 
     def _misplaced(self, node: ast.expr, wanted: str) -> CorpusError:
-        found = ast.get_source_segment(self._line, node) or ""
-        return self._wrong(node, f"found {found[:30]!r} where {wanted} should be.")
+        source = ast.get_source_segment(self._line, node) or ""
+        return self._wrong(node, f"found {source[:30]!r} where {wanted} should be.")
 
     def _wrong(self, node: ast.expr, what: str) -> CorpusError:
         before = self._line.encode()[: node.col_offset]  # the parser counts bytes

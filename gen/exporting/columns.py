@@ -98,7 +98,7 @@ def plain_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
     >>> plain_names(["width", "../x y", "=1", "Width"], taken=["record"])
     ['width', 'x_y', 'x1', 'Width_2']
     """
-    used, found = {name.lower() for name in taken}, []
+    used, different = {name.lower() for name in taken}, []
     for name in names:
         plain = re.sub(r"[^A-Za-z0-9]+", "_", name).strip("_")[:_LONGEST_NAME]
         plain = plain if plain[:1].isalpha() else f"x{plain}"
@@ -107,19 +107,19 @@ def plain_names(names: Iterable[str], taken: Iterable[str] = ()) -> list[str]:
             number += 1
             tried = f"{plain[: _LONGEST_NAME - 8]}_{number}"
         used.add(tried.lower())
-        found.append(tried)
-    return found
+        different.append(tried)
+    return different
 
 
 def _column(corpus: xr.Dataset, name: str, variable: str) -> Column:
-    found = corpus[variable].variable
-    units, role, meaning = (str(found.attrs.get(key, "")) for key in ("units", "role", "long_name"))
+    array = corpus[variable].variable
+    units, role, meaning = (str(array.attrs.get(key, "")) for key in ("units", "role", "long_name"))
     return Column(
         name,
         variable,
-        found.dtype if found.dtype.kind in "iuf" else None,
+        array.dtype if array.dtype.kind in "iuf" else None,
         units,
         role,
         meaning,
-        class_names(found.attrs),
+        class_names(array.attrs),
     )

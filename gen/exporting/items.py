@@ -58,9 +58,9 @@ class LabelledRecords:
 
     def __getitems__(self, items: Sequence[int] | NDArray[np.intp]) -> list[Item]:
         """Read several records at once, which takes half the time of one by one; PyTorch calls it for a batch."""
-        rows, found = np.unique(self.records[np.asarray(items, np.intp)], return_inverse=True)
+        rows, row_of_item = np.unique(self.records[np.asarray(items, np.intp)], return_inverse=True)
         signals = self._read(rows)
-        return [self._made(signals[row], place) for row, place in zip(found, items, strict=True)]
+        return [self._made(signals[row], place) for row, place in zip(row_of_item, items, strict=True)]
 
     def batches(self, size: int, *, seed: int | None = None) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
         """Every record once, in batches for a training loop without a data loader.

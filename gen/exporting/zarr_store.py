@@ -40,7 +40,7 @@ def _storage(records: xr.Dataset, export: Export) -> dict[str, dict[str, Any]]:
     """Packing, chunks and compression of each variable."""
     from numcodecs import Blosc
 
-    found: dict[str, dict[str, Any]] = {}
+    encodings: dict[str, dict[str, Any]] = {}
     for name, variable in records.variables.items():
         how: dict[str, Any] = {"compressors": Blosc("zstd", 5, Blosc.SHUFFLE)}
         if name == SIGNAL:
@@ -50,8 +50,8 @@ def _storage(records: xr.Dataset, export: Export) -> dict[str, dict[str, Any]]:
             how["chunks"] = (min(_COLUMN_CHUNK, export.chosen.count),)
         if name != SIGNAL and variable.dtype.kind == "f":
             how["_FillValue"] = None
-        found[str(name)] = how
-    return found
+        encodings[str(name)] = how
+    return encodings
 
 
 _READING = """\

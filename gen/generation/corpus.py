@@ -121,10 +121,10 @@ def generate(
         named = isinstance(recipe, str | Path)
         _prepare(folder, find_recipe(recipe).read_bytes() if named else recipe_text(checked).encode(), facts)
         outcomes = _all_parts(Tally(checked, progress), folder, workers, client, notice)
-        found = _finish(target, folder, outcomes, facts)
+        corpus = _finish(target, folder, outcomes, facts)
         if folder is not target:
             remove_parts(folder, map(part_name, range(checked.n_parts)))
-        return found
+        return corpus
 
 
 def facts_of(recipe: Recipe, overrides: dict[str, Any]) -> dict[str, Any]:
@@ -222,7 +222,9 @@ def _check_same(place: Path, manifest: "Manifest", facts: dict[str, Any]) -> Non
     now = facts["versions"] | {"sources": facts["sources_sha256"][:12]}
     other = [name for name in now if began.get(name) != now[name]]
     if other:
-        was, installed = (", ".join(f"{name} {found.get(name, 'none')}" for name in other) for found in (began, now))
+        was, installed = (
+            ", ".join(f"{name} {versions.get(name, 'none')}" for name in other) for versions in (began, now)
+        )
         raise CorpusError(
             f"{place}: was begun with {was}; {installed} is installed and can give other samples: install the former to "
             "complete it, or choose another name."

@@ -55,7 +55,7 @@ def part_dataset(measured: Measured, response: Response, step_error: NDArray[np.
 
 def sensor_flag_columns(flags: Sequence[SensorFlags]) -> dict[str, list[Any]]:
     """Variables of the corpus that say which sensor faults were found in each record, one list of shape (record,) each."""
-    return {name: [getattr(found, name) for found in flags] for name in SensorFlags._fields}
+    return {name: [getattr(of_record, name) for of_record in flags] for name in SensorFlags._fields}
 
 
 def _drawn(scenario: Scenario) -> dict[str, Any]:

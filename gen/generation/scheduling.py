@@ -234,13 +234,13 @@ class _Making(Generic[Result]):
 
     def _final(self, made: Records, redrawn: set[int]) -> list[tuple[_Part, list[tuple[int, int]]]]:
         """Place and number of the records of each part that are not drawn again."""
-        found: dict[_Part, list[tuple[int, int]]] = {}
+        final: dict[_Part, list[tuple[int, int]]] = {}
         for place, scenario in enumerate(made.measured.scenarios):
             number = scenario.record.number
             part = None if number in redrawn else self._part_of(number)
             if part is not None:
-                found.setdefault(part, []).append((place, number))
-        return list(found.items())
+                final.setdefault(part, []).append((place, number))
+        return list(final.items())
 
     def _check_steps(self, part: _Part, report: Report) -> Iterable[Result]:
         """Let the step checks of a part wait whose records are final, or write it if it has none."""

@@ -76,6 +76,6 @@ def _with_full_batches(chosen: list[int], groups: Mapping[int, Group]) -> list[i
     """The chosen places, and others of their groups that fill the last batch of each group."""
     filled = list(chosen)
     for group, count in Counter(groups[place] for place in chosen).items():
-        others = [place for place, found in groups.items() if found == group and place not in chosen]
+        others = [place for place, of_place in groups.items() if of_place == group and place not in chosen]
         filled += others[: -count % LANES]
     return filled

@@ -107,19 +107,19 @@ class Families:
 
     def _redrawn(self, specimens: Iterable[int]) -> list[Scenario]:
         """Scenarios of all records of some specimens with their next fault."""
-        found = []
+        redrawn = []
         for number in specimens:
             self._tries[number] = self._tries.get(number, 0) + 1
             records = self.recipe.records_of(number)
-            found += draw_scenarios(self.recipe, records.start, records.stop, fault_tries=self._tries)
-        return found
+            redrawn += draw_scenarios(self.recipe, records.start, records.stop, fault_tries=self._tries)
+        return redrawn
 
     def _with_hits(self, scenarios: list[Scenario]) -> list[Scenario]:
         """Scenarios of whole specimens, those with another fault whose spalls no loaded ball meets in some record.
 
         Of a group, the largest severity alone counts, as in :func:`_unseen_places`.
         """
-        found = {scenario.record.number: scenario for scenario in scenarios}
+        by_number = {scenario.record.number: scenario for scenario in scenarios}
         tried = scenarios
         while tried:
             largest = [tried[place] for place in _largest_places(tried)]
@@ -127,8 +127,8 @@ class Families:
                 one.specimen.number for one, is_felt in zip(largest, felt_places(largest), strict=True) if not is_felt
             }
             tried = self._redrawn(sorted(n for n in missed if self._tries.get(n, 0) < FAULT_TRIES - 1))
-            found.update({scenario.record.number: scenario for scenario in tried})
-        return list(found.values())
+            by_number.update({scenario.record.number: scenario for scenario in tried})
+        return list(by_number.values())
 
 
 def made_from(scenarios: list[Scenario]) -> Records:

@@ -18,13 +18,13 @@ _MOST_TEXTS, _MOST_PATHS = 12, 3  # shown of a table, and of the patterns that a
 
 def assumptions(sections: Sequence[Section], fs: float) -> tuple[str, ...]:
     """One sentence for each fact and each of its sources, with the patterns of paths that it holds for."""
-    found: dict[str, list[str]] = {}
+    paths_of: dict[str, list[str]] = {}
     for section in sections:
         for sentence in _of_section(section, fs):
-            found.setdefault(sentence, []).append(section.pattern.text)
+            paths_of.setdefault(sentence, []).append(section.pattern.text)
     return tuple(
         f"{sentence}." if len(paths) == len(sections) else f"{sentence} ({_listed(paths, _MOST_PATHS)})."
-        for sentence, paths in sorted(found.items(), key=lambda item: item[0].partition(":")[0])
+        for sentence, paths in sorted(paths_of.items(), key=lambda item: item[0].partition(":")[0])
     )
 
 

@@ -82,14 +82,14 @@ def doubts(values: FloatArray, signal: FloatArray, scale: Scale, *, absolute: bo
         rms = float(np.std(signal)) if signal.size else 0.0
     if not np.isfinite(rms) or rms == 0:
         return []
-    found = []
+    reasons = []
     if not QUIETEST <= rms <= LOUDEST:
-        found.append(
+        reasons.append(
             f"its rms is {rms:.2g} m/s^2, and machines show {QUIETEST:g} to {LOUDEST:g} m/s^2; check the unit, which "
             f"is taken as {scale.unit}"
         )
     if np.ptp(values) >= 100 and np.array_equal(values, np.round(values)):
-        found.append(
+        reasons.append(
             f"it holds whole numbers, as the counts of a converter are, and the unit is taken as {scale.unit}; check the unit"
         )
-    return found
+    return reasons

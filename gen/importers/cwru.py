@@ -132,23 +132,23 @@ def import_cwru(
         raise CorpusError(message)
     published = {label.number for label in _labels("all")}
     wanted = {label.number: label for label in _labels(subset)}
-    found: dict[int, Candidate] = {}
+    candidates: dict[int, Candidate] = {}
     skipped: list[str] = []
     for path in files_below(source, ".mat"):
         name, number = name_of(path, source), recording_number(path.stem)
         if number not in published:
             skipped.append(f"{name}: the name has no number of a drive-end recording at 12 kHz; skipped.")
-        elif number in found:
-            skipped.append(f"{name}: is recording {number} again, which {found[number].source} holds; skipped.")
+        elif number in candidates:
+            skipped.append(f"{name}: is recording {number} again, which {candidates[number].source} holds; skipped.")
         elif number in wanted:
-            found[number] = Candidate(name, partial(_read, path, wanted[number]))
+            candidates[number] = Candidate(name, partial(_read, path, wanted[number]))
     return import_recordings(
         _COLLECTION,
-        [found[number] for number in sorted(found)],
+        [candidates[number] for number in sorted(candidates)],
         output,
         window=window,
         skipped=skipped,
-        warnings=_warnings(found.keys(), wanted.keys()),
+        warnings=_warnings(candidates.keys(), wanted.keys()),
         progress=progress,
     )
 
@@ -159,8 +159,8 @@ def recording_number(stem: str) -> int | None:
     >>> [recording_number(stem) for stem in ("130@6_0", "98_Normal_1_12k", "B007_0_118", "IR007")]
     [130, 98, 118, None]
     """
-    found = re.match(r"(\d+)(?=[@_.]|$)", stem) or re.search(r"_(\d{2,4})$", stem)
-    return int(found[1]) if found else None
+    match = re.match(r"(\d+)(?=[@_.]|$)", stem) or re.search(r"_(\d{2,4})$", stem)
+    return int(match[1]) if match else None
 
 
 def _labels(subset: Subset) -> Iterator[_Label]:
@@ -169,14 +169,14 @@ def _labels(subset: Subset) -> Iterator[_Label]:
             yield from (_Label(number, index, load) for load, number in enumerate(specimen.numbers))
 
 
-def _warnings(found: AbstractSet[int], wanted: AbstractSet[int]) -> list[str]:
+def _warnings(present: AbstractSet[int], wanted: AbstractSet[int]) -> list[str]:
     """Known errors of the recordings found, and the numbers of those not found."""
     warnings = [
         f"{first if first == last else f'{first}-{last}'}: {note}."
         for first, last, note in _NOTES
-        if any(first <= number <= last for number in found)
+        if any(first <= number <= last for number in present)
     ]
-    missing = sorted(wanted - found)
+    missing = sorted(wanted - present)
     if missing:
         numbers = ", ".join(str(number) for number in missing)
         warnings.append(f"{len(missing)} of {len(wanted)} recordings were not found: {numbers}.")

@@ -89,13 +89,13 @@ def import_generic(
         range.
     """
     mapping = read_mapping(source)
-    found, skipped = listed_recordings(source, source.parent if folder is None else folder, mapping)
-    fs = _common_rate(source, mapping, found)
+    recordings, skipped = listed_recordings(source, source.parent if folder is None else folder, mapping)
+    fs = _common_rate(source, mapping, recordings)
     target = _Target(fs, resample=mapping.resample_hz is not None)
-    rigs = _numbered(files[0].facts.rig for files in found)
-    specimens = _numbered((files[0].facts.rig, files[0].facts.specimen) for files in found)
+    rigs = _numbered(files[0].facts.rig for files in recordings)
+    specimens = _numbered((files[0].facts.rig, files[0].facts.specimen) for files in recordings)
     candidates = []
-    for number, files in enumerate(found):
+    for number, files in enumerate(recordings):
         facts = files[0].facts
         places = number, rigs[facts.rig], specimens[facts.rig, facts.specimen]
         read = partial(_read, files, target, *places)
@@ -141,7 +141,7 @@ def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File
 
 def _measured(file: File) -> dict[str, float]:
     """Numbers that a file holds for keys of the mapping, in the units of the keys."""
-    found = {}
+    numbers = {}
     for key, reading in file.section.in_file.items():
         if file.path.suffix.lower() != ".mat":
             message = f"has no variables, and {key} is to be read from {reading.variable}; give {key} as a number"
@@ -150,8 +150,8 @@ def _measured(file: File) -> dict[str, float]:
         if not math.isfinite(number):
             message = f"holds {reading.variable}, which is no number for {key}"
             raise UnusableError(message)
-        found[key] = number * reading.times
-    return found
+        numbers[key] = number * reading.times
+    return numbers
 
 
 def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, specimen: int) -> Recording:
@@ -186,15 +186,15 @@ def _joined(files: tuple[File, ...]) -> _Joined:
     absolute = True
     every = [_facts(file) for file in files]
     for file, facts in zip(files, every, strict=True):
-        found = [read_values(file.path, sensor.place) for sensor in file.section.sensors(file.groups)]
-        rate = facts.sample_rate_hz or found[0].fs
+        columns = [read_values(file.path, sensor.place) for sensor in file.section.sensors(file.groups)]
+        rate = facts.sample_rate_hz or columns[0].fs
         if rate is None:
             raise UnusableError("states no sample rate; give sample_rate_hz")
         rates.add(rate)
         speeds.append(facts.shaft_rpm or math.nan)
-        parts.append([values.values for values in found])
-        absolute = absolute and found[0].absolute
-        stated = stated or found[0].fs
+        parts.append([values.values for values in columns])
+        absolute = absolute and columns[0].absolute
+        stated = stated or columns[0].fs
     if len(rates) > 1:
         raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
     if max(speeds) > (1 + _SAME_SPEED) * min(speeds):

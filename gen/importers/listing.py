@@ -92,8 +92,8 @@ def _matches(source: Path, folder: Path, section: Section, looked_at: int) -> li
     exact = folder / pattern.text
     try:
         plain = not pattern.groups and exact.is_file()
-        found = [exact] if plain else filter(Path.is_file, folder.glob(pattern.wildcard))
-        paths = some_files(found, looked_at, f"{where} and the patterns before match")
+        files = [exact] if plain else filter(Path.is_file, folder.glob(pattern.wildcard))
+        paths = some_files(files, looked_at, f"{where} and the patterns before match")
     except (ValueError, OSError) as error:
         message = f"{where} is not a pattern of file names ({error}); write it like data/*.mat."
         raise CorpusError(message) from None

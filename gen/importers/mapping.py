@@ -74,5 +74,5 @@ def read_mapping(path: Path) -> MappingFile:
     try:
         return MappingFile.model_validate(data)
     except ValidationError as error:
-        found = sentences(error, MappingFile)
-        raise CorpusError("\n".join(f"{path}: {sentence}" for sentence in found)) from None
+        problems = sentences(error, MappingFile)
+        raise CorpusError("\n".join(f"{path}: {sentence}" for sentence in problems)) from None

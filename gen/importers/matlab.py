@@ -59,32 +59,32 @@ def _content(path: Path, only: str | None = None) -> dict[str, Any]:
     """Variables, or one of them, and in place of structures their fields, as ``"bearing.gs"``."""
     from scipy.io import loadmat  # loads scipy.sparse
 
-    found: dict[str, Any] = {}
+    variables: dict[str, Any] = {}
 
     def add(name: str, value: Any) -> None:
         if isinstance(value, dict):
             for field, inner in value.items():
                 add(f"{name}.{field}", inner)
         else:
-            found[name] = value
+            variables[name] = value
 
     for name, value in loadmat(path, variable_names=[only] if only else None, simplify_cells=True).items():
         if not name.startswith("__"):
             add(name, value)
-    return found
+    return variables
 
 
 def _read(path: Path, variable: str | None) -> NDArray[Any]:
     name = _whole_name(variable)
-    found = _content(path, name and name.split(".")[0])
-    name = name or _only({key: np.size(value) for key, value in found.items() if _is_array(value, _REAL)}, variable)
-    if name not in found:
-        message = f"holds {listing([*(found or _content(path))])}, not {name}"
+    variables = _content(path, name and name.split(".")[0])
+    name = name or _only({key: np.size(value) for key, value in variables.items() if _is_array(value, _REAL)}, variable)
+    if name not in variables:
+        message = f"holds {listing([*(variables or _content(path))])}, not {name}"
         raise UnusableError(message)
-    if not _is_array(found[name], _REAL + "U"):
+    if not _is_array(variables[name], _REAL + "U"):
         message = f"holds {name}, but neither real numbers nor text in it"
         raise UnusableError(message)
-    return np.asarray(found[name])
+    return np.asarray(variables[name])
 
 
 def _whole_name(variable: str | None) -> str | None:
@@ -127,15 +127,15 @@ def _text(codes: NDArray[Any]) -> NDArray[np.str_]:
 
 def _sizes(file: h5py.File) -> dict[str, int]:
     """Numbers of values of all real arrays, by name; ``#refs#`` holds the contents of cells."""
-    found: dict[str, int] = {}
+    sizes: dict[str, int] = {}
 
     def note(name: str, node: Any) -> None:
         numbers = isinstance(node, h5py.Dataset) and node.dtype.kind in _REAL and not _is_text(node)
         if numbers and not name.startswith("#"):
-            found[name.replace("/", ".")] = node.size or 0
+            sizes[name.replace("/", ".")] = node.size or 0
 
     file.visititems(note)
-    return found
+    return sizes
 
 
 def _only(held: Mapping[str, int], pattern: str | None) -> str:

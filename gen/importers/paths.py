@@ -111,7 +111,7 @@ def fill_in(template: str, groups: Mapping[str, str]) -> str:
     >>> fill_in("X{number}_DE_time of {other}", {"number": "097"})
     'X097_DE_time of {other}'
     """
-    return _GROUP.sub(lambda found: groups.get(found[1], found[0]), template)
+    return _GROUP.sub(lambda match: groups.get(match[1], match[0]), template)
 
 
 def groups_in(text: str) -> list[str]:

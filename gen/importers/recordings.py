@@ -114,9 +114,9 @@ def cut(recording: Recording, source: str, length: int, fs: float) -> list[Recor
     return [Record(signal[:, start : start + length], known | {"source": f"{source}#{start}"}) for start in starts]
 
 
-def some_files(found: Iterable[Path], already: int, what: str) -> list[Path]:
+def some_files(candidates: Iterable[Path], already: int, what: str) -> list[Path]:
     """Files found, sorted; CorpusError, which begins with ``what``, if they and the ``already`` found ones exceed the limit."""
-    paths = list(islice(found, limit("recording_files") + 1))
+    paths = list(islice(candidates, limit("recording_files") + 1))
     check_limit("recording_files", already + len(paths), what, CorpusError)
     return sorted(paths)
 
@@ -143,8 +143,8 @@ def files_below(folder: Path, suffix: str) -> list[Path]:
     if not folder.is_dir():
         message = f"{folder}: {'is not a folder' if folder.exists() else 'no such folder'}; give the folder that holds the {suffix} files."
         raise CorpusError(message)
-    found = (path for path in folder.rglob("*") if path.suffix.lower() == suffix and path.is_file())
-    paths = some_files(found, 0, f"{folder}: holds")
+    files = (path for path in folder.rglob("*") if path.suffix.lower() == suffix and path.is_file())
+    paths = some_files(files, 0, f"{folder}: holds")
     if not paths:
         message = f"{folder}: has no {suffix} file in it or below; give the folder that holds the recordings."
         raise CorpusError(message)

@@ -48,9 +48,9 @@ class Section(NamedTuple):
 
     def wanted(self) -> str:
         """Words on what the groups of a path must be; empty if any text will do."""
-        found = [f"{key} a number" for key in self.from_path if key in NUMBERS and key not in self.tables]
-        found += [f"{key} one of {', '.join([*table][:8])}" for key, table in self.tables.items()]
-        return f" with {' and '.join(found)}" if found else ""
+        needs = [f"{key} a number" for key in self.from_path if key in NUMBERS and key not in self.tables]
+        needs += [f"{key} one of {', '.join([*table][:8])}" for key, table in self.tables.items()]
+        return f" with {' and '.join(needs)}" if needs else ""
 
     def facts(self, groups: Mapping[str, str], measured: Mapping[str, float] = _NOTHING) -> Facts:
         """Facts of a file with the texts of its path and the numbers ``measured`` in it.
@@ -60,18 +60,18 @@ class Section(NamedTuple):
         ValidationError
             If the path or the file gives a value that is not allowed.
         """
-        found: dict[str, Any] = {}
+        values: dict[str, Any] = {}
         for key in Facts.model_fields:
             form = getattr(self.keys, key)
             if key in self.from_path:
-                found[key] = _from_path(key, form, groups[key])
+                values[key] = _from_path(key, form, groups[key])
             elif isinstance(form, Reading):
-                found[key] = measured.get(key)
+                values[key] = measured.get(key)
             elif form is not None:
-                found[key] = fill_in(form, groups) if isinstance(form, str) else form
-        if "fault" in self.from_path and found["fault"] in WITHOUT_SPALL:
-            found = {key: value for key, value in found.items() if key not in SPALL_KEYS}
-        return Facts.model_validate(found)
+                values[key] = fill_in(form, groups) if isinstance(form, str) else form
+        if "fault" in self.from_path and values["fault"] in WITHOUT_SPALL:
+            values = {key: value for key, value in values.items() if key not in SPALL_KEYS}
+        return Facts.model_validate(values)
 
     def sensors(self, groups: Mapping[str, str] = _NOTHING) -> Iterator[Sensor]:
         """Channels in their order, with the keys of the file where a channel has none; a single one has no name."""

@@ -85,18 +85,18 @@ def read_signal(
         message = f"{path}: {problem}."
         raise CorpusError(message)
     try:
-        found = read_values(path, Place(variable, column, delimiter))
-        signal = accelerations(found.values, scale)
-        notes = doubts(found.values, signal, scale, absolute=found.absolute)
+        content = read_values(path, Place(variable, column, delimiter))
+        signal = accelerations(content.values, scale)
+        notes = doubts(content.values, signal, scale, absolute=content.absolute)
     except UnusableError as reason:
         message = f"{path}: {reason}."
         raise CorpusError(message) from None
     except (OSError, MemoryError) as error:
         message = f"{path}: {reason_of(error)}."
         raise CorpusError(message) from None
-    if rate is not None and found.fs not in (None, rate):
-        notes.append(f"states a sample rate of {found.fs:g} Hz; the given {rate:g} Hz are used")
-    return Signal(signal, found.fs if rate is None else rate, tuple(f"{path.name}: {note}." for note in notes))
+    if rate is not None and content.fs not in (None, rate):
+        notes.append(f"states a sample rate of {content.fs:g} Hz; the given {rate:g} Hz are used")
+    return Signal(signal, content.fs if rate is None else rate, tuple(f"{path.name}: {note}." for note in notes))
 
 
 def read_values(path: Path, place: Place) -> Values:

@@ -27,14 +27,14 @@ def noise_of(filters: Sequence[RigFilters], n_channels: int, rngs: Sequence[np.r
     """Noise of unit rms, drawn as its spectrum, shape (record, channel, time) [1]; a part of it is common to all channels."""
     n = filters[0].n
     drawn = np.empty((len(filters), n_channels, 2 * (n // 2 + 1)), np.float32)
-    for row, found, rng in zip(drawn, filters, rngs, strict=True):
+    for row, row_filters, rng in zip(drawn, filters, rngs, strict=True):
         rng.standard_normal(out=row, dtype=np.float32)
-        if found.common_noise > 0 and n_channels > 1:
-            row *= np.float32(math.sqrt(1 - found.common_noise))
-            row += np.float32(math.sqrt(found.common_noise)) * rng.standard_normal(row.shape[1], dtype=np.float32)
+        if row_filters.common_noise > 0 and n_channels > 1:
+            row *= np.float32(math.sqrt(1 - row_filters.common_noise))
+            row += np.float32(math.sqrt(row_filters.common_noise)) * rng.standard_normal(row.shape[1], dtype=np.float32)
     spectra = drawn.view(np.complex64)
-    for spectrum, found in zip(spectra, filters, strict=True):
-        spectrum *= found.noise
+    for spectrum, row_filters in zip(spectra, filters, strict=True):
+        spectrum *= row_filters.noise
     return irfft(spectra, n)
 
 
@@ -64,15 +64,15 @@ def impulses_of(
     filters: Sequence[RigFilters], angles: Sequence[FloatArray], rngs: Sequence[np.random.Generator]
 ) -> list[Float32Array]:
     """Impulses at random times, and knocks locked to the shaft, behind the paths: shape (channel, time) each, or (0, 0) for none [1]."""
-    found = [NO_SIGNAL] * len(filters)
+    signals = [NO_SIGNAL] * len(filters)
     rows = [row for row, some in enumerate(filters) if some.impulses[0] > 0 or some.knocks[0] > 0]
     if rows:
         hits = np.stack([_hits(filters[row], angles[row], rngs[row]) for row in rows])
         paths = np.stack([filters[row].impulse_paths for row in rows])
         spectra = rfft(hits, filters[0].n)[:, None] * paths
         for row, filtered in zip(rows, irfft(spectra, filters[0].n), strict=True):
-            found[row] = filtered
-    return found
+            signals[row] = filtered
+    return signals
 
 
 def _hits(filters: RigFilters, angles: FloatArray, rng: np.random.Generator) -> Float32Array:

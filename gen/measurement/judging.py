@@ -94,7 +94,7 @@ def spectra_of(records: Sequence[Parts]) -> list[Spectra]:
     """Spectra of records of one length; they are transformed side by side, which takes a third of the time."""
     n = records[0].fault.shape[1]
     transformed = rfft(np.stack([part for record in records for part in record[:3]]))
-    found = []
+    spectra = []
     for record, of_fault, of_healthy, of_background in zip(
         records, transformed[::3], transformed[1::3], transformed[2::3], strict=True
     ):
@@ -102,18 +102,18 @@ def spectra_of(records: Sequence[Parts]) -> list[Spectra]:
         cycles = tuple(_cycles(order * turns) for order in record.orders)
         lines = len(of_fault) * sum(len(some) for band in bands_of(n) for some in _within(cycles, band))
         angles, chance = None if record.steady else record.angles, math.log(max(lines, 1) / FALSE_ALARM)
-        found.append(Spectra(of_fault, of_fault + of_healthy, of_background, n, angles, cycles, chance))
-    return found
+        spectra.append(Spectra(of_fault, of_fault + of_healthy, of_background, n, angles, cycles, chance))
+    return spectra
 
 
 def _cycles(once: float) -> list[int]:
     """Whole numbers of cycles within the tolerance of the multiples of ``once``."""
-    found: set[int] = set()
+    cycles: set[int] = set()
     for multiple in range(1, HARMONICS + 1):
         middle = multiple * once
         reach = 1 + TOLERANCE * middle
-        found.update(range(max(1, math.ceil(middle - reach)), math.floor(middle + reach) + 1))
-    return sorted(found)
+        cycles.update(range(max(1, math.ceil(middle - reach)), math.floor(middle + reach) + 1))
+    return sorted(cycles)
 
 
 def _within(cycles: Sequence[list[int]], band: tuple[int, int]) -> list[list[int]]:
@@ -134,17 +134,17 @@ class Judge:
 
     def __init__(self, spectra: Spectra, first: Bands) -> None:
         self._spectra = spectra
-        self._found = [first]
+        self._bands = [first]
 
     def sees(self, gains: Gains) -> bool:
         """Whether every damaged part can be seen in some band."""
-        seen = parts_seen(self._found[0], gains)
+        seen = parts_seen(self._bands[0], gains)
         further = bands_of(self._spectra.n)[1:]
         if seen.all() or not further:
             return bool(seen.all())
-        if len(self._found) == 1:
-            self._found += judged_bands([self._spectra], further)
-        return bool((seen | parts_seen(self._found[1], gains)).all())
+        if len(self._bands) == 1:
+            self._bands += judged_bands([self._spectra], further)
+        return bool((seen | parts_seen(self._bands[1], gains)).all())
 
 
 def judges_of(records: Sequence[Parts]) -> list[Judge]:
@@ -158,7 +158,7 @@ def judges_of(records: Sequence[Parts]) -> list[Judge]:
 
 def judged_bands(spectra: Sequence[Spectra], bands: list[tuple[int, int]]) -> list[Bands]:
     """Lines and powers of some records in some of their bands."""
-    found = [
+    bands_of_records = [
         Bands(
             lines=np.zeros((len(one.cycles), len(one.fault), len(bands))),
             bearing=np.zeros((len(one.fault), len(bands))),
@@ -169,23 +169,23 @@ def judged_bands(spectra: Sequence[Spectra], bands: list[tuple[int, int]]) -> li
         for one in spectra
     ]
     for place, (low, high) in enumerate(bands):
-        _set_lines(found, spectra, place, (low, high))
-        for one, of_one in zip(spectra, found, strict=True):
+        _set_lines(bands_of_records, spectra, place, (low, high))
+        for one, of_one in zip(spectra, bands_of_records, strict=True):
             bearing, background = one.bearing[:, low:high], one.background[:, low:high]
             cross = np.sum((bearing * np.conj(background)).real, axis=1, dtype=np.float64)
             powers = _power(bearing), _power(background), cross
             for row, power in zip((of_one.bearing, of_one.background, of_one.cross), powers, strict=True):
                 row[:, place] = (2 / one.n) ** 2 * power
-    return found
+    return bands_of_records
 
 
 def _power(spectrum: NDArray[np.complexfloating]) -> FloatArray:
     return np.asarray(np.sum(spectrum.real**2 + spectrum.imag**2, axis=1, dtype=np.float64))
 
 
-def _set_lines(found: list[Bands], spectra: Sequence[Spectra], place: int, band: tuple[int, int]) -> None:
+def _set_lines(bands_of_records: list[Bands], spectra: Sequence[Spectra], place: int, band: tuple[int, int]) -> None:
     """Set the largest lines of the squared envelopes of a band, the one at ``place``; they stay 0 where the band is too narrow."""
-    wide = [(of_one, one) for of_one, one in zip(found, spectra, strict=True) if any(one.searched(band))]
+    wide = [(of_one, one) for of_one, one in zip(bands_of_records, spectra, strict=True) if any(one.searched(band))]
     if not wide:
         return
     signal = ifft(np.stack([one.fault[:, slice(*band)] for _, one in wide]) * (2 / wide[0][1].n), norm="forward")

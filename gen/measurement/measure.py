@@ -114,18 +114,18 @@ def measure(
             pair = scenario.record.pair
             if pair in levels:
                 scenario = _with_level_of(levels[pair], scenario)
-            found = _levelled(part, judge, scenario, rounding, other_levels)
+            level = _levelled(part, judge, scenario, rounding, other_levels)
             if pair >= 0 and scenario.record.snr is not None and part.is_finite:
-                found = found._replace(scenario=_with_level_of(found, found.scenario))
-                levels.setdefault(pair, found)
-            mixed, flags[row] = disturbed(_mixed(part, found.gains), found.scenario, axis.fs)
+                level = level._replace(scenario=_with_level_of(level, level.scenario))
+                levels.setdefault(pair, level)
+            mixed, flags[row] = disturbed(_mixed(part, level.gains), level.scenario, axis.fs)
             if counts_per_unit is not None:
                 clipped[row] = _to_counts(mixed, counts_per_unit)
             signal[row] = mixed
-            taken[row], detectable[row] = found.scenario, found.detectable
-            fault_snr[row], fault_share[row] = found.fault_snr, found.fault_share
+            taken[row], detectable[row] = level.scenario, level.detectable
+            fault_snr[row], fault_share[row] = level.fault_snr, level.fault_share
             if signal[row].any():
-                snr[row] = bearing_over_background(part.products, found.gains, rounding)
+                snr[row] = bearing_over_background(part.products, level.gains, rounding)
     return Measured(signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, flags)
 
 
@@ -191,9 +191,11 @@ def _parts(
     background = noise_of(filters, n_channels, rngs)
     impulses = impulses_of(filters, angles, rngs)
     for row, scenario in enumerate(scenarios):
-        gear, found = scenario.rig.background.gear, filters[row]
+        gear, channel_filters = scenario.rig.background.gear, filters[row]
         if gear is not None:
-            mesh = gear_in_channels(gear, angles[row], found.paths, found.n, scenario.rng(Purpose.GEAR_PHASE))
+            mesh = gear_in_channels(
+                gear, angles[row], channel_filters.paths, channel_filters.n, scenario.rng(Purpose.GEAR_PHASE)
+            )
             # impulses have the length of the Fourier transform
             impulses[row] = impulses[row][:, : mesh.shape[1]] + mesh if impulses[row].size else mesh
     parts = []
@@ -260,14 +262,14 @@ def _levelled(
     other_levels: Callable[[Scenario], Iterable[Scenario]],
 ) -> Levelled:
     """Level of a record: the drawn one, or if its fault cannot be seen the first of some others at which it can."""
-    found = []
+    levels = []
     known = scenario.record.gains is not None or not part.fault.size
     for tried in chain([scenario], () if known else other_levels(scenario)):
         gains = gains_of(tried, part.products)
-        found.append(Levelled(tried, gains, *_seen(part, judge, tried, gains, rounding)))
-        if found[-1].detectable:
-            return found[-1]
-    return found[0]
+        levels.append(Levelled(tried, gains, *_seen(part, judge, tried, gains, rounding)))
+        if levels[-1].detectable:
+            return levels[-1]
+    return levels[0]
 
 
 def _seen(
@@ -290,10 +292,10 @@ def _through_paths(acceleration: Float32Array, filters: Sequence[RigFilters]) ->
 
     The convolution is circular; its wrap-around falls into the lead, which is dropped.
     """
-    resonant = [row for row, found in enumerate(filters) if found.direct is None]
-    for row, found in enumerate(filters):
-        if found.direct is not None:
-            acceleration[row] *= found.direct
+    resonant = [row for row, of_row in enumerate(filters) if of_row.direct is None]
+    for row, of_row in enumerate(filters):
+        if of_row.direct is not None:
+            acceleration[row] *= of_row.direct
     if resonant:
         spectra = rfft(acceleration[resonant], filters[0].n)
         for spectrum, row in zip(spectra, resonant, strict=True):

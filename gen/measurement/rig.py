@@ -64,8 +64,10 @@ class RigFilters:
         at = np.clip(frequencies, 0.0, self.fs / 2) * (self.n / self.fs)
         below = np.minimum(at.astype(int), self.paths.shape[1] - 2)
         share = at - below
-        found = motion * (self.paths[:, below] * (1 - share) + self.paths[:, below + 1] * share)
-        return found * (amplitudes / np.maximum(np.sqrt(np.mean(np.abs(found) ** 2, axis=0)), _SMALLEST_GAIN))
+        behind_paths = motion * (self.paths[:, below] * (1 - share) + self.paths[:, below + 1] * share)
+        return behind_paths * (
+            amplitudes / np.maximum(np.sqrt(np.mean(np.abs(behind_paths) ** 2, axis=0)), _SMALLEST_GAIN)
+        )
 
 
 def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:

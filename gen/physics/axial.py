@@ -115,14 +115,14 @@ def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
     Newton steps down the potential energy, which is convex; a step that raises it is halved. Converged records are frozen.
     """
     places = np.arange(start.shape[1], dtype=np.intp)
-    found, q = start.copy(), start
+    equilibrium, q = start.copy(), start
     for _ in range(_MOST_STEPS):
         squeeze = given.squeeze(q)
         root = power(squeeze, given.exponent - 1)
         residual = given.load - _sum(given.factor * squeeze * root * given.directions)
         moving = np.abs(residual).max(axis=0) >= _BALANCED * np.abs(given.load).max(axis=0)
         if not moving.all():
-            found[:, places[~moving]] = q[:, ~moving]
+            equilibrium[:, places[~moving]] = q[:, ~moving]
             given = _Balls(*(array[..., moving] for array in given))
             places, q, squeeze = places[moving], q[:, moving], squeeze[:, moving]
             root, residual = root[:, moving], residual[:, moving]
@@ -131,8 +131,8 @@ def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
         stiff = given.exponent * given.factor * root * given.directions
         step = solved(_sum(stiff[:, None] * given.directions), residual)
         q = _lowered(given, q, step, given.energy(squeeze, q))
-    found[:, places] = q
-    return found
+    equilibrium[:, places] = q
+    return equilibrium
 
 
 def _lowered(given: _Balls, q: FloatArray, step: FloatArray, before: FloatArray) -> FloatArray:

@@ -274,8 +274,8 @@ def _other_orders(bearing: Bearing) -> str:
         return "-"
     name, printed, remark = PRINTED_OTHERWISE[bearing.designation]
     shares = (f"{100 * (its / own - 1):+.1f} %" for its, own in zip(printed, orders(bearing), strict=True))
-    found = ", ".join(f"{key.upper()} {share}" for key, share in zip(Orders._fields, shares, strict=True))
-    return f"Timken A-9 [1], {name}: {found}" + (f" ({remark})" if remark else "")
+    differences = ", ".join(f"{key.upper()} {share}" for key, share in zip(Orders._fields, shares, strict=True))
+    return f"Timken A-9 [1], {name}: {differences}" + (f" ({remark})" if remark else "")
 
 
 def _shown(value: float | None, factor: float) -> str:

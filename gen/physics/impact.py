@@ -95,11 +95,11 @@ def path_strikes(path: FloatArray, width: float, arc: float) -> tuple[Strike, ..
     spacing = width / (len(path) - 1)
     bends = np.maximum(-np.diff(path, 2), 0.0) / spacing
     edges = np.flatnonzero(np.diff(np.concatenate([[0], bends > 0, [0]])))
-    found = []
+    strikes = []
     for first, end in edges.reshape(-1, 2):
         run = bends[first:end]
         centre = float((np.arange(first, end) + 1) @ run / run.sum())
         offset = (centre / (len(path) - 1) - 0.5) * width / arc
-        found.append(Strike(offset, float(run.sum()), (end - first - 1) * spacing / arc))
-    found.sort(key=lambda strike: -strike.change)
-    return tuple(strike for strike in found[:MOST_STRIKES] if strike.change >= LEAST_SHARE * found[0].change)
+        strikes.append(Strike(offset, float(run.sum()), (end - first - 1) * spacing / arc))
+    strikes.sort(key=lambda strike: -strike.change)
+    return tuple(strike for strike in strikes[:MOST_STRIKES] if strike.change >= LEAST_SHARE * strikes[0].change)

@@ -178,13 +178,13 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
     housing = given.load / (given.support + given.ground) + given.play * np.sign(given.load)
     q = np.concatenate([housing + given.load / given.weight * reach, housing])
     places: NDArray[np.intp] = np.arange(q.shape[1])
-    found = q.copy()
+    equilibrium = q.copy()
     for _ in range(200):
         residual, jacobian = _unbalanced_force(given, q)
         largest = np.abs(residual).max(axis=0)
         moving = largest >= 1e-9 * given.weight
         if not moving.all():
-            found[:, places[~moving]] = q[:, ~moving]
+            equilibrium[:, places[~moving]] = q[:, ~moving]
             given = _Balance(*(array[..., moving] for array in given))
             places, q, largest = places[moving], q[:, moving], largest[moving]
             residual, jacobian = residual[:, moving], jacobian[..., moving]
@@ -195,8 +195,8 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
             jacobian[row, row] += 1e-3 * largest / 1e-6 + 1e-3
         step = solved(jacobian, residual)
         q += step * np.minimum(1.0, 2e-6 / np.maximum(np.abs(step).max(axis=0), 1e-30))
-    found[:, places] = q
-    return found.T
+    equilibrium[:, places] = q
+    return equilibrium.T
 
 
 def _balance(machine: Machine, angles: FloatArray) -> _Balance:

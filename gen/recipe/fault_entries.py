@@ -39,7 +39,7 @@ def fault_entries(value: Any) -> Any:
     if not isinstance(entries, list | tuple) or not all(isinstance(entry, Mapping) for entry in entries):
         return entries
     taken: set[str] = set()
-    found = [_filled(dict(entry), defaults, taken) for entry in entries]
+    filled = [_filled(dict(entry), defaults, taken) for entry in entries]
     unknown = next((key for key in defaults if key not in taken), None)
     if unknown is not None:
         known = {key for entry in entries for key in _keys(entry)}
@@ -47,7 +47,7 @@ def fault_entries(value: Any) -> Any:
         raise ValueError(
             f"defaults: {unknown} is a key of no entry" + (f"; did you mean {near[0]}?" if near else "; leave it out.")
         )
-    return found
+    return filled
 
 
 def _filled(entry: dict[str, Any], defaults: Mapping[str, Any], taken: set[str]) -> dict[str, Any]:

@@ -46,8 +46,8 @@ def recipe_keys(prefix: str = "") -> list[Key]:
     ['corpus.split', 'corpus.split.by', 'corpus.split.validation', 'corpus.split.test']
     """
     wanted = re.sub(r"\[\d*\]", "", prefix)
-    found = _merged([*_keys_of((Recipe,), "", set()), *_keys_of(DISTRIBUTIONS, "distribution.", set())])
-    keys = [key for key in found if key.key.startswith(wanted)]
+    every_key = _merged([*_keys_of((Recipe,), "", set()), *_keys_of(DISTRIBUTIONS, "distribution.", set())])
+    keys = [key for key in every_key if key.key.startswith(wanted)]
     if not keys:
         tops = ", ".join([*Recipe.model_fields, "distribution"])
         raise RecipeError(f"{prefix}: no key of a recipe begins like this; the first words of keys are {tops}.")
@@ -84,16 +84,16 @@ def _kinds(model: type[BaseModel]) -> tuple[str, ...]:
 
 def _sections_of(field: FieldInfo) -> list[type[Section]]:
     """Sections that the value of a field can be, or can be made of; not those with keys that are listed elsewhere."""
-    found = [model for model in dict.fromkeys(_models(field.annotation)) if issubclass(model, Section)]
-    return [model for model in found if not issubclass(model, Changes)]
+    models = [model for model in dict.fromkeys(_models(field.annotation)) if issubclass(model, Section)]
+    return [model for model in models if not issubclass(model, Changes)]
 
 
 def _merged(keys: list[Key]) -> list[Key]:
     """Keys with those joined that differ in their kinds alone."""
-    found: dict[Key, list[str]] = {}
+    kinds_of: dict[Key, list[str]] = {}
     for key in keys:
-        found.setdefault(key._replace(kinds=()), []).extend(key.kinds)
-    return [key._replace(kinds=tuple(dict.fromkeys(kinds))) for key, kinds in found.items()]
+        kinds_of.setdefault(key._replace(kinds=()), []).extend(key.kinds)
+    return [key._replace(kinds=tuple(dict.fromkeys(kinds))) for key, kinds in kinds_of.items()]
 
 
 def _default(field: FieldInfo) -> str:
@@ -175,4 +175,4 @@ def _short(number: float) -> str:
 def _models(annotation: Any) -> list[type[BaseModel]]:
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
         return [annotation]
-    return [found for argument in get_args(annotation) for found in _models(argument)]
+    return [model for argument in get_args(annotation) for model in _models(argument)]

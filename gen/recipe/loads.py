@@ -51,12 +51,12 @@ def _strongest(bearing: CatalogueBearing | GeometryBearing) -> list[Bearing]:
     low, high = bearing.contact_angle_deg.support()
     angle = to_si(0.0 if low <= 0 <= high else min(abs(low), abs(high)), "deg")
     shortest, longest = (to_si(end, "mm") for end in bearing.roller_length_mm.support())
-    found: list[Bearing] = []
+    candidates: list[Bearing] = []
     for count in range(fewest, most + 1):
         balls = Bearing(bearing.designation, count, pitch, bearing.fitting_ball(count, pitch, largest), angle)
-        found += [balls] if shortest == 0 else []
-        found += [replace(balls, rolling_element="roller", roller_length=longest)] if longest > 0 else []
-    return found
+        candidates += [balls] if shortest == 0 else []
+        candidates += [replace(balls, rolling_element="roller", roller_length=longest)] if longest > 0 else []
+    return candidates
 
 
 def _least_peak(profile: ProfileSection | None) -> float:

@@ -113,15 +113,15 @@ def _above_records(recipe: Sections) -> dict[str, Support | None]:
 
 def _supports(section: Section) -> dict[str, Support | None]:
     """Range of every quantity of a section; None for a share whose product is not known."""
-    return {key: found.known_support() for key, found in quantities(section).items()}
+    return {key: quantity.known_support() for key, quantity in quantities(section).items()}
 
 
 def _bearing_supports(recipe: Sections) -> dict[str, Support | None]:
     bearing = recipe.bearing
     if not isinstance(bearing, CatalogueBearing):
         return {"pitch_diameter_mm": _supports(bearing)["pitch_diameter_mm"], "ball_diameter_mm": None}
-    found = [bearing.bearing(name) for name in bearing.designations]
-    pitches, balls = ([1e3 * getattr(one, key) for one in found] for key in ("pitch_diameter", "ball_diameter"))
+    bearings = [bearing.bearing(name) for name in bearing.designations]
+    pitches, balls = ([1e3 * getattr(one, key) for one in bearings] for key in ("pitch_diameter", "ball_diameter"))
     return {"pitch_diameter_mm": (min(pitches), max(pitches)), "ball_diameter_mm": (min(balls), max(balls))}
 
 
@@ -129,11 +129,11 @@ def _misplaced(recipe: Sections, with_shares: set[int]) -> str | None:
     """Error sentence about a share, or a value per rig or specimen, in a section that has none."""
     for place, section in _sections("", recipe):
         operating = isinstance(section, OperationSection) or place.endswith("].operation")
-        for key, found in quantities(section).items():
+        for key, quantity in quantities(section).items():
             at = f"{place}.{key}"
-            if found.share_of is not None and id(section) not in with_shares and not operating:
+            if quantity.share_of is not None and id(section) not in with_shares and not operating:
                 return f"{at}: there are shares in {_HAVE_SHARES} alone; give the quantity a range of its own."
-            if found.per is not None and not operating:
+            if quantity.per is not None and not operating:
                 return f"{at}: the level of a draw can be chosen for quantities of operation alone; leave per out."
     return None
 
@@ -153,9 +153,9 @@ def _sections(place: str, section: Section) -> Iterator[tuple[str, Section]]:
 
 def _scope_problem(recipe: Sections, scope: _Scope) -> str | None:
     own = quantities(scope.section)
-    for key, found in own.items():
-        if found.share_of is not None:
-            problem = _name_problem(recipe, scope, key, found.share_of) or _loop(scope, key)
+    for key, quantity in own.items():
+        if quantity.share_of is not None:
+            problem = _name_problem(recipe, scope, key, quantity.share_of) or _loop(scope, key)
             if problem is not None:
                 return problem
     for key, product in _products(scope).items():
@@ -175,8 +175,8 @@ def _name_problem(recipe: Sections, scope: _Scope, key: str, named: str) -> str 
     own = quantities(scope.section)
     unit, at = unit_suffix(key), f"{scope.place}.{key}"
     if key in _COUNTS or unit in _WITHOUT_SHARES:
-        found = "count" if key in _COUNTS else f"value in {UNITS[unit].symbol}"
-        return f"{at}: a {found} has no share; give it a range of its own."
+        kind = "count" if key in _COUNTS else f"value in {UNITS[unit].symbol}"
+        return f"{at}: a {kind} has no share; give it a range of its own."
     allowed = [
         name for name in (*own, *scope.above) if name not in _COUNTS and name != key and _kind(name) == _kind(key)
     ]
@@ -228,7 +228,7 @@ def _products(scope: _Scope) -> dict[str, Support | None]:
         ends = [part * end * factor for part in share for end in whole]
         return min(ends), max(ends)
 
-    return {key: support(key) for key, found in own.items() if found.share_of is not None}
+    return {key: support(key) for key, quantity in own.items() if quantity.share_of is not None}
 
 
 def _factor(key: str) -> float:

@@ -86,27 +86,27 @@ def _shared_out(shares: dict[str, float], count: int, offset: float) -> list[str
 def first_specimens(recipe: Recipe) -> dict[str, int]:
     """Number of the first specimen of each fault class in the corpus; the search stops when it has found every class."""
     n_classes = len(class_shares(recipe))
-    found: dict[str, int] = {}
+    first_of: dict[str, int] = {}
     for rig in range(recipe.n_rigs):
         first = rig * recipe.corpus.specimens_per_rig
         faults = fault_of_each_specimen(recipe, rig)
         for number, fault in enumerate(faults[: recipe.n_specimens - first], first):
-            found.setdefault(fault, number)
-        if len(found) == n_classes:
+            first_of.setdefault(fault, number)
+        if len(first_of) == n_classes:
             break
-    return found
+    return first_of
 
 
 def first_records(recipe: Recipe) -> dict[str, int]:
     """Number of the first record of each fault class in the corpus; a record at rung 0 is healthy."""
     corpus = recipe.corpus
     before_damage = corpus.rungs is not None and corpus.rungs[0] == 0
-    found: dict[str, int] = {}
+    first_of: dict[str, int] = {}
     for fault, specimen in sorted(first_specimens(recipe).items(), key=lambda item: item[1]):
         first = recipe.records_of(specimen).start
         if before_damage and fault != "healthy":
-            found.setdefault("healthy", first)
+            first_of.setdefault("healthy", first)
             first += 1
         if first < recipe.n_records:
-            found.setdefault(fault, first)
-    return found
+            first_of.setdefault(fault, first)
+    return first_of

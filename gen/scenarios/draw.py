@@ -166,12 +166,12 @@ def _draw_path(draws: Draws, path: PathSection) -> Path:
 def _draw_modes(draws: Draws, modes: Modes | None) -> tuple[Mode, ...]:
     if modes is None:
         return ()
-    found = []
+    drawn = []
     for _ in range(round(draws.value(modes.count))):
         frequency, damping = draws.value(modes.frequency_hz), percent_to_share(draws.value(modes.damping_percent))
         gain, sign = decibel_to_ratio(draws.value(modes.gain_db)), 1.0 if draws.u() < 0.5 else -1.0
-        found.append(Mode(frequency, damping, sign * gain))
-    return tuple(found)
+        drawn.append(Mode(frequency, damping, sign * gain))
+    return tuple(drawn)
 
 
 def _draw_modulation(draws: Draws, modulation: Any) -> ShaftModulation:

@@ -69,9 +69,11 @@ class Draws:
         RecipeError
             If a share of a ``known`` quantity is outside the range of its key.
         """
-        found = {key: distribution for key, distribution in quantities(section).items() if keys is None or key in keys}
-        numbers = {key: self.value(distribution) for key, distribution in found.items()}
-        return in_si(section, found, numbers, known or {}, self.item)
+        distributions = {
+            key: distribution for key, distribution in quantities(section).items() if keys is None or key in keys
+        }
+        numbers = {key: self.value(distribution) for key, distribution in distributions.items()}
+        return in_si(section, distributions, numbers, known or {}, self.item)
 
     def is_present(self, section: Any) -> bool:
         """True with the probability that a section gives."""
@@ -98,19 +100,19 @@ def in_si(
         named = distributions[key].share_of
         if named is None:
             return numbers[key] * _unit_of(key)[1]
-        found = numbers[key] * value(named)
-        _check_share(section, key, found, f"{item}: {key}: a share of {numbers[key]:.4g} of {named}")
-        return found
+        product = numbers[key] * value(named)
+        _check_share(section, key, product, f"{item}: {key}: a share of {numbers[key]:.4g} of {named}")
+        return product
 
     return {_unit_of(key)[0]: value(key) for key in numbers}
 
 
 def _check_share(section: Section, key: str, value: float, share: str) -> None:
     bounds: Any = type(section).model_fields[key].json_schema_extra
-    found = value / _unit_of(key)[1]
-    if not any(is_within(found * rounding, bounds) for rounding in (1, 1 - 1e-9, 1 + 1e-9)):
+    in_unit = value / _unit_of(key)[1]
+    if not any(is_within(in_unit * rounding, bounds) for rounding in (1, 1 - 1e-9, 1 + 1e-9)):
         raise RecipeError(
-            f"{share} gives {found:.4g}, which is not in {interval(bounds)}; change the range of the share."
+            f"{share} gives {in_unit:.4g}, which is not in {interval(bounds)}; change the range of the share."
         )
 
 

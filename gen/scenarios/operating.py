@@ -49,10 +49,10 @@ def operating_of(recipe: Recipe, number: int) -> Operating:
 
 
 def _by_level(distributions: Distributions) -> dict[Level, Distributions]:
-    found: dict[Level, dict[str, Any]] = {"rig": {}, "specimen": {}, "record": {}}
+    by_level: dict[Level, dict[str, Any]] = {"rig": {}, "specimen": {}, "record": {}}
     for key, distribution in distributions.items():
-        found[_level_of(distribution)][key] = distribution
-    return {**found}
+        by_level[_level_of(distribution)][key] = distribution
+    return {**by_level}
 
 
 def common_numbers(recipe: Recipe, rng: np.random.Generator, combination: int) -> Common:
@@ -87,13 +87,13 @@ def _values(
     The grids of ``operation`` take their combination first and those of the changes go on from there, so that a change moves no other
     quantity; for the same reason ``combination`` is left as ``operation`` leaves it.
     """
-    found: dict[str, float] = {}
+    values: dict[str, float] = {}
     for key, distribution in operating.usual[level].items():
-        found[key] = combination.value(distribution, numbers[key])
+        values[key] = combination.value(distribution, numbers[key])
     further = Combination(combination.number)
     for key, distribution in operating.changes[level].items():
-        found[key] = further.value(distribution, numbers[key])
-    return {key: value for key, value in found.items() if operating.levels[key] == level}
+        values[key] = further.value(distribution, numbers[key])
+    return {key: value for key, value in values.items() if operating.levels[key] == level}
 
 
 def _level_of(distribution: Any) -> Level:

@@ -45,9 +45,9 @@ def kernel_input(scenario: Scenario, timeline: Timeline) -> KernelInput:
     return only(kernel_inputs([scenario], timeline))
 
 
-def only(found: tuple[list[KernelInput | None], Failures]) -> KernelInput:
+def only(inputs: tuple[list[KernelInput | None], Failures]) -> KernelInput:
     """The kernel input of the only scenario; SimulationError if no such machine is possible."""
-    (given,), failures = found
+    (given,), failures = inputs
     if given is None:
         raise SimulationError(failures[0])
     return given

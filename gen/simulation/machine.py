@@ -96,8 +96,8 @@ def with_axial_loads(
         loads = np.array([scenarios[place].record.conditions.axial_load for place in places])
         n_balls = [scenarios[place].specimen.bearing.n_balls for place in places]
         balls = ball_angles(n_balls, [cage_angles[place] for place in places])
-        found = axial_approach(as_columns([machines[place] for place in places]), loads, balls)
-        for place, squeeze in zip(places, found, strict=True):
+        squeezes = axial_approach(as_columns([machines[place] for place in places]), loads, balls)
+        for place, squeeze in zip(places, squeezes, strict=True):
             machine = machines[place]
             loaded[place] = machine._replace(half_clearance=machine.half_clearance - squeeze)
     return loaded

@@ -208,6 +208,6 @@ def mean_motion(
         if profile is not None:
             weights = share_at(profile, (np.arange(timeline.record) + 0.5) / timeline.fs)
         slip += float(walk.mean() if weights is None else np.average(walk, weights=weights))
-    found = slipping_orders(scenario.specimen.bearing, slip)
+    orders = slipping_orders(scenario.specimen.bearing, slip)
     wander = conditions.spin_wander * mean(SPIN_FIRST, SPIN_TERMS)
-    return MeanMotion(rate, found._replace(bsf=found.bsf * (1 + wander)))
+    return MeanMotion(rate, orders._replace(bsf=orders.bsf * (1 + wander)))

@@ -69,12 +69,12 @@ class WidestSpall(NamedTuple):
 
 def with_loaded_hits(truths: Sequence[Truth], inputs: Sequence[KernelInput | None], timeline: Timeline) -> list[Truth]:
     """Truths with the hits of loaded balls; 0 for a record without spalls or of which no machine is possible."""
-    found = []
+    completed = []
     for truth, given in zip(truths, inputs, strict=True):
         turns = truth.true_shaft_rate * timeline.duration
         hits = 0 if given is None else loaded_hits(given, truth.orders, turns)
-        found.append(truth._replace(loaded_hits=hits))
-    return found
+        completed.append(truth._replace(loaded_hits=hits))
+    return completed
 
 
 def lines_of_faults(scenario: Scenario, orders: Orders) -> tuple[float, ...]:

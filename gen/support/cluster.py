@@ -92,8 +92,8 @@ def _check_scheduler(address: str) -> None:
 
 def _check_workers(client: Client) -> None:
     """ClusterError if a worker cannot import Raceway; such a worker ends with its first task."""
-    found: Any = client.run(find_spec, __name__, on_error="return")
-    for worker, spec in found.items():
+    specs: Any = client.run(find_spec, __name__, on_error="return")
+    for worker, spec in specs.items():
         if not isinstance(spec, ModuleSpec):
             raise ClusterError(
                 f"{_name(client)}: its worker {worker} has no Raceway; install it there, or start the worker in an environment that has it."
@@ -193,10 +193,10 @@ def _results(client: Client, batch: list[Future]) -> list[Any]:
     """
     gather: Any = partial(client.gather, batch, asynchronous=True)
     try:
-        found: Any = client.sync(gather, callback_timeout=POLL_S)
+        results: Any = client.sync(gather, callback_timeout=POLL_S)
     except (CancelledError, CommClosedError) as error:
         raise _lost(client) from error
-    return found
+    return results
 
 
 def _raise_error(future: Future) -> None:
@@ -210,10 +210,10 @@ def _raise_error(future: Future) -> None:
 
 def _threads(client: Client) -> dict[str, int]:
     try:
-        found: Any = client.nthreads()
+        threads: Any = client.nthreads()
     except (CancelledError, OSError, ValueError, RuntimeError) as error:
         raise _lost(client) from error
-    return found
+    return threads
 
 
 def _alone_since(client: Client, before: float | None) -> float | None:

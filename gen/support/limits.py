@@ -41,7 +41,7 @@ LIMITS: Mapping[str, Limit] = {
 
 def limits_page() -> str:
     """Markdown page with all limits."""
-    rows = [f"| `{name}` | {found.value:,} {found.unit} | {found.meaning} |" for name, found in LIMITS.items()]
+    rows = [f"| `{name}` | {bound.value:,} {bound.unit} | {bound.meaning} |" for name, bound in LIMITS.items()]
     title = "# Limits on what a file may ask for\n"
     how = (
         "Raise one with `raceway --limit NAME=NUMBER COMMAND ...`. The reason for limits: [security.md](security.md).\n"
@@ -71,7 +71,7 @@ def parse_limits(text: str) -> dict[str, int]:
     RacewayError
         If an item is not ``NAME=NUMBER`` or has an unknown name.
     """
-    found = {}
+    numbers = {}
     for item in filter(None, text.split(",")):
         name, _, number = item.partition("=")
         try:
@@ -80,8 +80,8 @@ def parse_limits(text: str) -> dict[str, int]:
             value = 0
         if name not in LIMITS or value < 1:
             raise RacewayError(f"limit {item!r}: give NAME=NUMBER, NAME one of {', '.join(LIMITS)}, NUMBER 1 or more.")
-        found[name] = value
-    return found
+        numbers[name] = value
+    return numbers
 
 
 def check_limit(name: str, amount: int, what: str, error: type[Exception]) -> None:

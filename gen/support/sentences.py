@@ -19,14 +19,14 @@ def sentences(error: ValidationError, model: type[BaseModel]) -> list[str]:
     # the rest of a distribution in braces without quotes, {width_mm: uniform(1, 2)}; its beginning has an error too
     rest = {item["loc"] for item in items if item["type"] == "extra_forbidden" and str(item["loc"][-1]).endswith(")")}
     meant |= rest if len(rest) < len(items) else set()
-    found: dict[str, None] = {}
+    unique: dict[str, None] = {}
     for place, item in enumerate(items):
         sentence = None if item["loc"] in meant else _sentence(item, model)
-        if sentence and len(found) == _MOST_SENTENCES:
-            return [*found, f"there are up to {len(items) - place} more errors; correct these first."]
+        if sentence and len(unique) == _MOST_SENTENCES:
+            return [*unique, f"there are up to {len(items) - place} more errors; correct these first."]
         if sentence:
-            found[sentence] = None
-    return list(found)
+            unique[sentence] = None
+    return list(unique)
 
 
 def _sentence(item: Any, model: type[BaseModel]) -> str | None:
@@ -60,8 +60,8 @@ def _sentence(item: Any, model: type[BaseModel]) -> str | None:
             size = len(item["input"])
             if size >= least:  # the wrong entries are not counted, and have sentences of their own
                 return None
-            found = f"{size} is too few" if size else "is empty"
-            return f"{place}: {found}; give at least {'one' if least == 1 else least}."
+            what = f"{size} is too few" if size else "is empty"
+            return f"{place}: {what}; give at least {'one' if least == 1 else least}."
         case "string_too_short":
             return f"{place}: is empty; give a text."
         case "string_too_long":
@@ -123,14 +123,14 @@ class _Cursor:
         return any(key in model.model_fields for model in self.models)
 
     def into(self, key: str) -> "_Cursor":
-        found = [model.model_fields[key].annotation for model in self.models if key in model.model_fields]
-        return _Cursor(*_sections(found))
+        annotations = [model.model_fields[key].annotation for model in self.models if key in model.model_fields]
+        return _Cursor(*_sections(annotations))
 
     def of_kind(self, kind: str) -> "_Cursor":
-        found = [
+        sections = [
             m for m in self.models if "kind" in m.model_fields and kind in get_args(m.model_fields["kind"].annotation)
         ]
-        return _Cursor(*found) if found else self
+        return _Cursor(*sections) if sections else self
 
     def keys(self) -> list[str]:
         return sorted({name for model in self.models for name in model.model_fields})

@@ -162,10 +162,10 @@ class _Document:
             value, height = self.mapping(event, depth)
         else:
             raise _Flaw("no value begins here", event)
-        found = _Node(value, self.count - before, height)
+        built = _Node(value, self.count - before, height)
         if event.anchor is not None:
-            self.anchors[event.anchor] = found
-        return found
+            self.anchors[event.anchor] = built
+        return built
 
     def add(self, values: int, event: Event) -> None:
         """Count values; stop at the limit."""
@@ -180,13 +180,13 @@ class _Document:
         """Value that an alias repeats; it is counted again."""
         if event.anchor not in self.anchors:
             raise _Flaw(f"there is no &{event.anchor} before *{event.anchor}", event)
-        found = self.anchors[event.anchor]
-        if found is None:
+        anchored = self.anchors[event.anchor]
+        if anchored is None:
             raise _Flaw(f"*{event.anchor} is inside the value that it repeats", event)
-        if depth + found.height > DEEPEST:
+        if depth + anchored.height > DEEPEST:
             raise _Flaw(f"more than {DEEPEST} levels deep", event)
-        self.add(found.size, event)
-        return found
+        self.add(anchored.size, event)
+        return anchored
 
     def sequence(self, start: Any, depth: int) -> tuple[list[Any], int]:
         """List that begins with ``start``, and the number of levels below it."""
@@ -237,10 +237,10 @@ class _Document:
 def _merged(value: Any, event: Event) -> dict[Any, Any]:
     """Keys that ``<<`` merges from one mapping or several; the first mapping takes precedence."""
     merged: dict[Any, Any] = {}
-    for found in reversed(value) if isinstance(value, list) else (value,):
-        if not isinstance(found, dict):
+    for mapping in reversed(value) if isinstance(value, list) else (value,):
+        if not isinstance(mapping, dict):
             raise _Flaw("<< merges a mapping or a list of mappings", event)
-        merged |= found
+        merged |= mapping
     return merged
 
 

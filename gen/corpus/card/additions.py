@@ -73,10 +73,10 @@ def read_additions(directory: Path, manifest: Manifest) -> CardAdditions:
     path = plain_file(directory, CARD_NAME)
     check_limit("manifest_bytes", path.stat().st_size, f"{path}:", CorpusError)
     try:
-        found = CardAdditions.model_validate_json(path.read_bytes())
+        additions = CardAdditions.model_validate_json(path.read_bytes())
     except ValidationError as error:
         raise CorpusError(f"{path}: {first_problem(error)}; delete it and run raceway card again.") from None
-    return found if found.parts == nothing.parts else nothing
+    return additions if additions.parts == nothing.parts else nothing
 
 
 def write_additions(directory: Path, additions: CardAdditions) -> None:
@@ -90,10 +90,10 @@ _LINES = (
 )
 
 
-def pictures(found: Sequence[CardPicture]) -> list[str]:
+def pictures(drawings: Sequence[CardPicture]) -> list[str]:
     """Section with the pictures."""
-    lines = ["", "## Pictures", "", _LINES] if found else []
-    for picture in found:
+    lines = ["", "## Pictures", "", _LINES] if drawings else []
+    for picture in drawings:
         title, caption = plain_text(picture.title), plain_text(picture.caption)
         lines += ["", f"**{title}**: {caption}", "", f"![{title}]({PICTURES}/{_safe(picture.name)})"]
     return lines
@@ -104,13 +104,13 @@ def _safe(name: str) -> str:
     return "".join(letter for letter in name if letter.isalnum() or letter in "-_.")
 
 
-def scores(found: CardScores | None) -> list[str]:
+def scores(card: CardScores | None) -> list[str]:
     """Section with the scores."""
-    if found is None or not found.rows:
+    if card is None or not card.rows:
         return []
     meaning = (
-        f"Balanced accuracy of classifiers on {found.records} records of {', '.join(map(plain_text, found.classes))}, cross-validated by "
-        f"{plain_text(found.track)} in {found.folds} folds; chance is {1 / max(len(found.classes), 1):.3f}. A split of random records "
+        f"Balanced accuracy of classifiers on {card.records} records of {', '.join(map(plain_text, card.classes))}, cross-validated by "
+        f"{plain_text(card.track)} in {card.folds} folds; chance is {1 / max(len(card.classes), 1):.3f}. A split of random records "
         f"leaks, so its score is too good; permuted labels must score at chance."
     )
     rows = (
@@ -121,14 +121,14 @@ def scores(found: CardScores | None) -> list[str]:
             f"{row.random_records:.3f}",
             f"{row.permuted_labels:.3f}",
         )
-        for row in found.rows
+        for row in card.rows
     )
     header = ("classifier", "score", "95 % interval", "random records", "permuted labels")
     command = (
-        f"raceway benchmark . -o ../report --track {plain_text(found.track)} --folds {found.folds} --seed {found.seed}"
+        f"raceway benchmark . -o ../report --track {plain_text(card.track)} --folds {card.folds} --seed {card.seed}"
     )
-    made = f"Raceway {plain_text(found.raceway)}, features {', '.join(map(plain_text, found.features))}: `{command}`"
-    return ["", "## Scores", "", meaning, *table(header, rows, right=4), "", made]
+    origin = f"Raceway {plain_text(card.raceway)}, features {', '.join(map(plain_text, card.features))}: `{command}`"
+    return ["", "## Scores", "", meaning, *table(header, rows, right=4), "", origin]
 
 
 def _interval(row: CardScore) -> str:

@@ -31,15 +31,15 @@ def _visible_faults(corpus: xr.Dataset) -> list[str]:
 
 def _recoverable_labels(corpus: xr.Dataset) -> list[str]:
     """Table of the rank correlations of labels with simple numbers of the records."""
-    found = recoveries(corpus)
-    if not found:
+    correlations = recoveries(corpus)
+    if not correlations:
         return []
     meaning = (
         f"Which labels can be recovered from the signals? The table has the closest of {', '.join(NUMBERS)} to each label, by Spearman's "
         f"rank correlation over specimens, or over records where the label changes from record to record. Chance alone reaches "
         f"2 / sqrt(count); a label with less than that cannot be recovered from these numbers."
     )
-    rows = ((f"`{row.label}`", row.fault, row.number, f"{row.correlation:+.2f}", row.items) for row in found)
+    rows = ((f"`{row.label}`", row.fault, row.number, f"{row.correlation:+.2f}", row.items) for row in correlations)
     header = ("label", "fault", "closest number", "rank correlation", "count")
     return ["", meaning, *table(header, rows, right=2)]
 

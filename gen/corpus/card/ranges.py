@@ -138,12 +138,12 @@ def quantity_ranges(
         by_class = {code: of_class for code, of_class in by_class.items() if of_class.any()}
     elif not _differ(by_class, values, groups):
         by_class = {}
-    found: dict[tuple[float, ...], list[str]] = {}
+    classes_of: dict[tuple[float, ...], list[str]] = {}
     for code, of_class in by_class.items():
-        found.setdefault(_extent(of_class), []).append(FAULT_NAMES[code])
-    if len(found) < 2 and not describes_fault:
-        found = {_extent(values): ["all"]}
-    return [Range(name, unit, ", ".join(classes), *extent) for extent, classes in found.items()]
+        classes_of.setdefault(_extent(of_class), []).append(FAULT_NAMES[code])
+    if len(classes_of) < 2 and not describes_fault:
+        classes_of = {_extent(values): ["all"]}
+    return [Range(name, unit, ", ".join(classes), *extent) for extent, classes in classes_of.items()]
 
 
 def _differ(by_class: Mapping[int, FloatArray], values: FloatArray, groups: Groups) -> bool:
@@ -169,7 +169,7 @@ def drawn_ranges(corpus: xr.Dataset, recipe: str | None) -> tuple[list[Range], i
     if DRAWS not in corpus:
         return [], 0
     chosen = some_records(corpus.sizes["record"])
-    found: defaultdict[str, list[float]] = defaultdict(list)
+    values_of: defaultdict[str, list[float]] = defaultdict(list)
     places: defaultdict[str, list[int]] = defaultdict(list)
     last: dict[str, Any] = {}
     leaves: dict[str, list[tuple[str, float]]] = {}
@@ -179,12 +179,12 @@ def drawn_ranges(corpus: xr.Dataset, recipe: str | None) -> tuple[list[Range], i
                 if section not in last or last[section] != drawn:  # neighbours share their rig and specimen
                     last[section], leaves[section] = drawn, [*_leaves(drawn, section)]
                 for path, value in leaves[section]:
-                    found[path].append(value)
+                    values_of[path].append(value)
                     places[path].append(record)
     units = _units(recipe or "")
     groups = Groups(corpus["fault"].values, corpus["specimen"].values)
     rows: list[Range] = []
-    for path, numbers in found.items():
+    for path, numbers in values_of.items():
         values, name = np.array(numbers), path.rpartition(".")[2]
         if values.min() < values.max() and name not in corpus:
             of_path = Groups(*(group[places[path]] for group in groups))
@@ -212,10 +212,14 @@ def _runs(numbers: IntArray) -> Iterator[tuple[int, int]]:
 def _sections(text: str) -> dict[str, Any]:
     """Sections of the draws of a record: rig, specimen and record; none in a text that is no JSON."""
     try:
-        found = json.loads(text)
+        sections = json.loads(text)
     except (ValueError, RecursionError):  # a corpus from elsewhere
         return {}
-    return {name: drawn for name, drawn in found.items() if name not in _NOT_DRAWN} if isinstance(found, dict) else {}
+    return (
+        {name: drawn for name, drawn in sections.items() if name not in _NOT_DRAWN}
+        if isinstance(sections, dict)
+        else {}
+    )
 
 
 def _leaves(value: Any, path: str) -> Iterator[tuple[str, float]]:
