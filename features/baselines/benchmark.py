@@ -34,7 +34,7 @@ from features.baselines.tracks import TRACKS, Track
 from features.waveforms import Waveforms
 from gen.corpus import FAULTS, write_numbers
 from gen.support.errors import CorpusError
-from gen.support.progress import Progress
+from gen.support.progress import Progress, counter
 
 BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 """Baselines that are scored on several tracks, because all would take several times as long."""
@@ -191,7 +191,7 @@ def benchmark(
     first, splits = next(iter(cases)), next(iter(cases.values()))["grouped"][1]
     own = records if waveforms is None else records_of(waveforms, groups)
     led = records if isinstance(chosen[leading], str) else own
-    steps = _Steps(progress, len(chosen) * len(cases) + (len(curve_sizes(records, splits)) if curve else 0))
+    done = counter(progress, len(chosen) * len(cases) + (len(curve_sizes(records, splits)) if curve else 0))
     scored: dict[str, dict[str, Baseline]] = {track: {} for track in cases}
     for name, estimator in chosen.items():
         given = records if isinstance(estimator, str) else own
@@ -206,7 +206,7 @@ def benchmark(
             if test is not None and track == first and isinstance(given.features, DataFrame):
                 tested = evaluate(test, train(table, estimator, groups=groups, seed=seed, workers=workers), seed=seed)
             scored[track][name] = Baseline(**scores, test=tested)
-            steps.done()
+            done(1)
     return Results(
         corpus=_content(records, count_unknown(table)),
         test=None if test is None or other is None else _content(other, count_unknown(test)),
@@ -221,20 +221,8 @@ def benchmark(
         uncovered_widths=uncovered_in_splits(records, splits),
         further={track: _further(records, cases[track], scored[track]) for track in list(cases)[1:]},
         left_out=left_out,
-        curve=curve_points(led, chosen[leading], splits, seed, steps.done, workers) if curve else (),
+        curve=curve_points(led, chosen[leading], splits, seed, done, workers) if curve else (),
     )
-
-
-class _Steps:
-    """Number of scores done and of all, told to whoever shows the progress."""
-
-    def __init__(self, progress: Progress | None, total: int) -> None:
-        self.progress, self.total, self.count = progress, total, 0
-
-    def done(self) -> None:
-        self.count += 1
-        if self.progress is not None:
-            self.progress(self.count, self.total)
 
 
 def _chosen(estimators: Mapping[str, str | Maker] | None, *, several: bool) -> dict[str, str | Maker]:

@@ -21,7 +21,7 @@ def fit_and_calibrate(
     seed: int,
     *,
     workers: int = 1,
-    done: Callable[[], None] = lambda: None,
+    done: Callable[[int], None] = lambda _: None,
 ) -> tuple[Estimator, Calibration]:
     """Fit a classifier to all records, and calibrate it by a cross-validation by rig, or by specimen if there are too few rigs.
 

@@ -48,10 +48,10 @@ def curve_points(
     estimator: str | Maker,
     splits: Sequence[Split],
     seed: int,
-    progress: Callable[[], None] | None = None,
+    done: Callable[[int], None] = lambda _: None,
     workers: int = 1,
 ) -> tuple[CurvePoint, ...]:
-    """Points of the learning curve on given splits; ``progress`` is called after each, ``workers`` as for `score_splits`."""
+    """Points of the learning curve on given splits; ``done`` is called with 1 after each, ``workers`` as for `score_splits`."""
     orders = [nested_specimens(records.at(train), seed) for train, _ in splits]
     found: list[CurvePoint] = []
     for size in curve_sizes(records, splits):
@@ -61,8 +61,7 @@ def curve_points(
         ]
         scores = score_splits(records, records.fault, estimator, smaller, seed, workers)
         found.append(CurvePoint(size, float(np.mean([len(train) for train, _ in smaller])), scores))
-        if progress is not None:
-            progress()
+        done(1)
     return tuple(found)
 
 

@@ -14,7 +14,6 @@ from features.baselines.estimators import Estimator, class_probabilities, make_e
 from features.baselines.own import Maker
 from features.baselines.records import FloatArray, IntArray
 from features.baselines.tracks import Split
-from gen.support.progress import Progress
 from gen.support.workers import MOST_THREADS, run
 
 if TYPE_CHECKING:
@@ -28,24 +27,6 @@ class Fit(NamedTuple):
     probabilities: FloatArray
 
 
-class FitProgress:
-    """Number of fits done and of all that may be needed, told to a function that shows the progress."""
-
-    def __init__(self, progress: Progress | None, total: int) -> None:
-        self.progress, self.total, self.count = progress, total, 0
-
-    def done(self) -> None:
-        """Count a fit."""
-        self.count += 1
-        if self.progress is not None and self.count < self.total:
-            self.progress(self.count, self.total)
-
-    def end(self) -> None:
-        """Show that no further fit is needed."""
-        if self.progress is not None:
-            self.progress(self.total, self.total)
-
-
 def fits(
     features: "DataFrame",
     labels: IntArray,
@@ -54,7 +35,7 @@ def fits(
     seed: int,
     *,
     workers: int = 1,
-    done: Callable[[], None] = lambda: None,
+    done: Callable[[int], None] = lambda _: None,
 ) -> list[Fit]:
     """Fit a classifier to the training records of each split, and predict the tested ones.
 
@@ -73,7 +54,7 @@ def fits(
     workers
         Number of fits at a time; each needs its own copy of the training records. At most ``MOST_THREADS`` are used.
     done
-        Called after each fit.
+        Called with 1 after each fit.
     """
     workers = min(workers, MOST_THREADS, len(splits)) if isinstance(estimator, str) else 1
     found: dict[int, Fit] = {}
@@ -81,7 +62,7 @@ def fits(
         partial(_fit, features, labels, estimator, seed), enumerate(splits), workers=max(workers, 1)
     ):
         found[number] = fit
-        done()
+        done(1)
     return [found[number] for number in range(len(splits))]
 
 

@@ -24,7 +24,6 @@ from features.baselines.estimators import (
     class_probabilities,
     relative_name,
 )
-from features.baselines.fitting import FitProgress
 from features.baselines.model_file import read_model_file, write_model_file
 from features.baselines.own import Maker, maker_name
 from features.baselines.predictions import Predictions, fault_names, predictions
@@ -47,7 +46,7 @@ from features.indicators import GROUPS
 from features.recording_speeds import recording_numbers
 from gen.corpus import UNKNOWN_CODE, check_result
 from gen.support.errors import CorpusError
-from gen.support.progress import Progress
+from gen.support.progress import Progress, counter
 
 if TYPE_CHECKING:
     from pandas import DataFrame
@@ -144,13 +143,14 @@ def train(
         For an unknown estimator.
     """
     compares = isinstance(estimator, str) and estimator not in UNTRAINED
-    steps = FitProgress(progress, (1 + FOLDS) * (1 + compares))
-    model = _train(table, estimator, groups, seed, workers, steps.done)
+    fits = (1 + FOLDS) * (1 + compares)
+    done = counter(progress, fits)
+    model = _train(table, estimator, groups, seed, workers, done)
     paired = paired_table(table, model.features, seed) if compares else None
     if paired is not None:
-        relative = _train(paired, relative_name(str(estimator)), (RELATIVE,), seed, workers, steps.done)
+        relative = _train(paired, relative_name(str(estimator)), (RELATIVE,), seed, workers, done)
         model = replace(model, relative=relative)
-    steps.end()
+    done(fits)
     return model
 
 
@@ -160,7 +160,7 @@ def _train(
     groups: Sequence[str],
     seed: int,
     workers: int,
-    done: Callable[[], None],
+    done: Callable[[int], None],
 ) -> Model:
     names = features_of(table, groups)
     records, band = labelled_records(table, names), band_of(table.attrs)

@@ -3,7 +3,7 @@
 Each real set counts equally in a class, whatever its number of windows, so that the largest does not dominate.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,6 +15,7 @@ from features.realism.windows import Common, Windows, common_ground, measured_wi
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
+from gen.support.progress import Progress, counter
 
 FEWEST = 10  # windows of a class, below which a set is not compared in it
 SHARES = (0.05, 0.5, 0.95)
@@ -76,7 +77,7 @@ def compare(
     top: float = TOP,
     window: float | None = None,
     records: int = 500,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> Comparison:
     """Compare a synthetic corpus with real ones, class by class.
 
@@ -106,10 +107,10 @@ def compare(
         raise ValueError(message)
     common = common_ground(folders, top, window)
     measured: list[Windows] = []
+    done = counter(progress, len(folders))
     for name, folder in zip(["synthetic", *_names(folders[1:])], folders, strict=True):
         measured.append(measured_windows(folder, name, common, records))
-        if progress is not None:
-            progress(len(measured), len(folders))
+        done(1)
     return contrasted(measured[0], tuple(measured[1:]), common)
 
 

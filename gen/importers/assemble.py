@@ -18,7 +18,7 @@ from gen.importers.files import UnusableError
 from gen.importers.recordings import Candidate, Record, cut, read_recording
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
-from gen.support.progress import Progress
+from gen.support.progress import Progress, counter
 
 _PART_RECORDS = 256
 _PART_BYTES = 64_000_000
@@ -119,7 +119,8 @@ def import_recordings(
 def _records(
     candidates: Sequence[Candidate], collection: Collection, length: int, log: _Log, progress: Progress | None
 ) -> Iterator[Record]:
-    for done, candidate in enumerate(candidates, start=1):
+    done = counter(progress, len(candidates))
+    for candidate in candidates:
         try:
             recording = read_recording(candidate, length, collection.fs, collection.channels)
         except UnusableError as reason:
@@ -130,8 +131,7 @@ def _records(
             log.records[recording.fault] += len(records)
             log.warnings.extend(f"{candidate.source}: {warning}." for warning in recording.warnings)
             yield from records
-        if progress is not None:
-            progress(done, len(candidates))
+        done(1)
 
 
 def _corpus_identity(importer: str, candidates: Sequence[Candidate], first: Record) -> str:

@@ -7,10 +7,10 @@ Progress = Callable[[int, int], None]
 
 
 def counter(progress: Progress | None, total: int) -> Callable[[int], None]:
-    """Function that takes the number of items done since its last call, and reports the sum.
+    """Function that takes the number of items done since its last call, and reports the sum, ``total`` at most and once.
 
     >>> done = counter(lambda count, total: print(count, "of", total), 8)
-    >>> done(3); done(5)
+    >>> done(3); done(6); done(1)
     3 of 8
     8 of 8
     """
@@ -18,8 +18,8 @@ def counter(progress: Progress | None, total: int) -> Callable[[int], None]:
 
     def done(count: int) -> None:
         nonlocal so_far
-        so_far += count
-        if progress is not None:
+        before, so_far = so_far, min(so_far + count, total)
+        if progress is not None and so_far > before:
             progress(so_far, total)
 
     return done

@@ -7,9 +7,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any
 
+from gen.support.progress import Progress
 from raceway.console import show
-
-Progress = Callable[[int, int], None]
 
 SECONDS_BETWEEN_LINES = 10.0
 REPORTS_IN_SPEED = 32
