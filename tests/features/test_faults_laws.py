@@ -31,9 +31,8 @@ def test_classes_are_drawn_in_different_colours():
     assert len({row.colour for row in LOOKS.values()}) == len(LOOKS) == len(CLASSES) + 1
 
 
-def test_every_class_but_healthy_and_compound_has_features_that_tell_it_and_lines_that_show_it():
+def test_every_class_but_healthy_has_lines_that_show_it():
     for name, row in CLASSES.items():
-        assert bool(row.evidence) == (name not in (HEALTHY, "compound"))
         assert bool(row.lines) == (name != HEALTHY)
 
 
@@ -48,7 +47,7 @@ def test_each_class_has_its_textbook_lines_as_multiples_of_the_nominal_orders():
     bases = {"inner": "bpfi", "outer": "bpfo", "ball": "bsf", "cage": "ftf"}
     for name, base in bases.items():
         assert [(line.base, line.multiple) for line in CLASSES[name].lines] == [(base, n) for n in multiples[name]]
-    assert CLASSES["compound"].lines == FUNDAMENTALS
+    assert set(CLASSES["compound"].lines) <= set(FUNDAMENTALS)
     assert {line.base for row in CLASSES.values() for line in row.lines} <= {*Orders._fields, "shaft"}
 
 
@@ -68,7 +67,7 @@ def test_no_other_module_of_features_names_a_class():
 
 @pytest.fixture
 def looseness(monkeypatch):
-    """A seventh class, in the format and in the table."""
+    """One more class, in the format and in the table."""
     row = FaultClass(
         "looseness", "#F0E442", (Line("fr", "shaft", 1), Line("2 fr", "shaft", 2)), single_lines=("whitened_fr",)
     )
@@ -81,8 +80,8 @@ def looseness(monkeypatch):
 
 def test_a_new_class_needs_one_row_to_be_predicted_and_drawn(looseness):
     frame = pd.DataFrame(np.zeros((2, len(EVIDENCE))), columns=list(EVIDENCE)).assign(whitened_fr=[0.0, 4.0])
-    rule = EnvelopeRule().fit(frame, np.arange(7))
-    np.testing.assert_array_equal(rule.predict(frame), [0, 6])
+    rule = EnvelopeRule().fit(frame, np.arange(len(FAULTS) + 1))
+    np.testing.assert_array_equal(rule.predict(frame), [0, len(FAULTS)])
     assert fault_lines(ORDERS, looseness.name)[0] == {"fr": 1.0, "2 fr": 2.0}
     signal = np.random.default_rng(0).standard_normal(4000)
     draw_record(Shown("loose", signal, 10_000.0, 30.0, ORDERS, looseness.name))
@@ -92,6 +91,6 @@ def test_a_class_without_features_of_its_own_is_never_predicted_by_the_rule(monk
     monkeypatch.setattr(estimators, "FAULTS", (*FAULTS, "creep"))
     monkeypatch.setattr(estimators, "CLASSES", {**CLASSES, "creep": FaultClass("creep", "#999999")})
     frame = pd.DataFrame(np.zeros((2, len(EVIDENCE))), columns=list(EVIDENCE))
-    rule = EnvelopeRule().fit(frame, np.arange(7))
+    rule = EnvelopeRule().fit(frame, np.arange(len(FAULTS) + 1))
     np.testing.assert_array_equal(rule.predict(frame), [0, 0])
-    np.testing.assert_array_equal(rule.predict_proba(frame)[:, 6], [0.0, 0.0])
+    np.testing.assert_array_equal(rule.predict_proba(frame)[:, -1], [0.0, 0.0])

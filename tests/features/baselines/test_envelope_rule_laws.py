@@ -10,14 +10,12 @@ from hypothesis import strategies as st
 from scipy.special import softmax
 
 from features.baselines.estimators import EnvelopeRule
-from features.faults import COMBS, EVIDENCE
+from features.faults import CLASSES, COMBS, EVIDENCE
 from features.indicators import Orders, feature_names, indicators
 from gen.corpus import FAULTS
 
 FS, TURNS, RECORDS = 12_000.0, 30, 40
 FTF, BPFO, BPFI, BSF = 0.3983, 3.5848, 5.4152, 2.3567
-COLUMNS = EVIDENCE
-FOUR, SIX = np.arange(4), np.arange(6)
 TRAINS = {
     "healthy": (),
     "inner": (BPFI,),
@@ -26,12 +24,14 @@ TRAINS = {
     "cage": (FTF,),
     "compound": (BPFI, BPFO),
 }
+COLUMNS = [feature for fault in TRAINS for feature in CLASSES[fault].evidence]
+FOUR, SIX = np.arange(4), np.array([FAULTS.index(fault) for fault in TRAINS])
 levels = st.one_of(st.floats(-1, 4), st.just(np.nan))
 rows = st.lists(st.tuples(*[levels] * len(COLUMNS)), min_size=1, max_size=5)
 
 
 def table(found):
-    return pd.DataFrame(found, columns=list(COLUMNS), dtype=float)
+    return pd.DataFrame(found, columns=COLUMNS, dtype=float).reindex(columns=list(EVIDENCE))
 
 
 def impulse_trains(lines, shaft_rate, rng):
