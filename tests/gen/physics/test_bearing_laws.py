@@ -9,7 +9,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.physics.bearing import ball_spacing, free_contact_angle, orders, slipping_orders
-from gen.physics.catalogue import CATALOGUE
 from tests.strategies import bearings
 
 law = settings(deadline=None, max_examples=100)
@@ -66,13 +65,6 @@ def test_the_contact_angle_moves_the_orders_as_its_cosine_shrinks_the_ball(beari
     flat = replace(bearing, contact_angle=0.0)
     assert bearing.gamma == pytest.approx(flat.gamma * math.cos(bearing.contact_angle), rel=1e-12)
     assert orders(bearing).bpfo >= orders(flat).bpfo
-
-
-@pytest.mark.parametrize("designation", CATALOGUE)
-def test_a_bearing_of_the_catalogue_carries_its_own_name_and_room_for_its_balls(designation):
-    bearing = CATALOGUE[designation]
-    assert bearing.designation == designation
-    assert bearing.n_balls * bearing.ball_diameter < math.pi * bearing.pitch_diameter
 
 
 @law

@@ -17,6 +17,7 @@ import pytest
 
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE, PRINTED_OTHERWISE, catalogue_page
+from tests.cases import for_each
 
 TIMKEN = {  # FTF, BSF, BPFO, BPFI [1], the sizes whose row agrees
     "6004": (0.398, 2.339, 3.578, 5.422),
@@ -66,17 +67,17 @@ PUBLISHED = (
 )
 
 RATED = [bearing for bearing in CATALOGUE.values() if bearing.static_rating and bearing.rolling_element == "ball"]
-rated = pytest.mark.parametrize("bearing", RATED, ids=lambda bearing: bearing.designation)
+rated = for_each(RATED, lambda bearing: bearing.designation)
 
 
-@pytest.mark.parametrize("designation", TIMKEN)
+@for_each(TIMKEN)
 def test_the_orders_are_the_frequency_coefficients_of_the_maker(designation):
     """Three printed digits, and a ball rounded to a commercial size moves the spin by 0.001."""
     found = orders(CATALOGUE[designation])
     assert (found.ftf, found.bsf, found.bpfo, found.bpfi) == pytest.approx(TIMKEN[designation], abs=1.6e-3)
 
 
-@pytest.mark.parametrize("designation", OTHERWISE)
+@for_each(OTHERWISE)
 def test_a_row_that_differs_from_the_cited_table_of_the_maker_says_so(designation):
     ftf, bsf, bpfo, bpfi, share = OTHERWISE[designation]
     assert PRINTED_OTHERWISE[designation].orders == (ftf, bpfo, bpfi, bsf)
@@ -95,7 +96,7 @@ def test_every_row_of_a_size_of_the_table_that_differs_by_more_than_its_rounding
     assert differing == set(PRINTED_OTHERWISE) == set(OTHERWISE)
 
 
-@pytest.mark.parametrize("row", PUBLISHED, ids=lambda row: row[0])
+@for_each(PUBLISHED)
 def test_the_orders_are_those_published_with_the_recordings(row):
     designation, *published, digits = row
     found = orders(CATALOGUE[designation])

@@ -6,10 +6,12 @@
 """
 
 import math
+from itertools import product
 
 import pytest
 
 from gen.physics.hertz import LINE_EXPONENT, line_contact_factor, series_factor
+from tests.cases import for_each
 
 MILLIMETRES = 1e3**LINE_EXPONENT * 1e3 ** (8 / 9)  # N m^-10/9 per m^8/9 in N mm^-10/9 per mm^8/9
 lengths = pytest.mark.parametrize("length", [0.005, 0.010, 0.025, 0.050])
@@ -28,14 +30,13 @@ def test_a_roller_between_its_raceways_has_the_spring_constant_of_the_standard(l
     assert both == pytest.approx(35948 * length ** (8 / 9) * MILLIMETRES, rel=0.05)
 
 
-@pytest.mark.parametrize("slenderness", [1.0, 1.5, 2.0])
-@pytest.mark.parametrize("per_length", [5e4, 1e5, 3e5])
-@pytest.mark.parametrize("diameter", [0.0075, 0.010, 0.015])
-def test_the_approach_is_that_of_elastic_bodies(slenderness, per_length, diameter):
+@for_each(product([1.0, 1.5, 2.0], [5e4, 1e5, 3e5], [0.0075, 0.010, 0.015]))
+def test_the_approach_is_that_of_elastic_bodies(case):
     """Palmgren left the diameter out, and how deep a ring deforms is open: half or twice the depth moves the sum by 7 percent.
 
     Taken for both contacts at once, as some authors do, Palmgren's approach would be half of the theory.
     """
+    slenderness, per_length, diameter = case
     modulus, poisson = 207e9, 0.3
     length, depth = slenderness * diameter, diameter
     force = per_length * length

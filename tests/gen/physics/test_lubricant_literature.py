@@ -30,6 +30,7 @@ from gen.physics.lubricant import (
     point_squeeze_damping,
 )
 from gen.physics.rotor import STRIBECK
+from tests.cases import for_each
 from tests.paths import ROOT
 
 STEEL = effective_modulus(207e9, 0.3)
@@ -77,15 +78,14 @@ def test_measured_oils_lie_on_the_line_through_two_of_their_points():
     assert errors[-1] < 0.13
 
 
-@pytest.mark.parametrize("U", [5e-12, 2e-11, 5e-11])
-@pytest.mark.parametrize("load", [30.0, 300.0, 1500.0])
-@pytest.mark.parametrize("ratio", [2.0, 15.0, 40.0])  # of curvatures; 14 to 45 in the catalogue
-@pytest.mark.parametrize("radius", [1.5e-3, 5e-3])
-def test_the_film_of_a_ball_is_that_of_nijenbanning_venner_and_moes(radius, ratio, load, U):
+# radius, ratio of curvatures (14 to 45 in the catalogue), load, and U
+@for_each(product([1.5e-3, 5e-3], [2.0, 15.0, 40.0], [30.0, 300.0, 1500.0], [5e-12, 2e-11, 5e-11]))
+def test_the_film_of_a_ball_is_that_of_nijenbanning_venner_and_moes(case):
     """Two fits to two sets of computations, at the speeds of bearings: films of 10 nm to 0.3 um.
 
     Beyond they part, for theirs has no single power of speed: at U = 1e-12 it is 6 to 21 percent lower, at 3e-10 11 to 28 higher.
     """
+    radius, ratio, load, U = case
     viscous_speed = U * STEEL * radius
     curvature, both_speeds = 1 / ratio, 2 * viscous_speed
     M = load / (STEEL * radius**2) * (STEEL * radius / both_speeds) ** 0.75

@@ -12,6 +12,7 @@ from gen.recipe.reading import recipe_schema
 from gen.support.errors import RecipeError
 from gen.support.units import UNITS
 from gen.support.yaml_files import read_yaml
+from tests.cases import for_each
 
 KEYS = recipe_keys()
 SAY_NOTHING = {"a", "an", "the", "of", "in", "and", "or", "per", "to", "is", "for", "value", "number"}
@@ -21,7 +22,7 @@ def words(text):
     return {word.removesuffix("s") for word in re.findall(r"[a-z0-9]+", text.lower())} - SAY_NOTHING
 
 
-@pytest.mark.parametrize("key", KEYS, ids=lambda key: "-".join([key.key, *key.kinds]))
+@for_each(KEYS, lambda key: "-".join([key.key, *key.kinds]))
 def test_a_key_has_a_meaning_that_says_more_than_its_name(key):
     assert key.meaning.endswith("."), f"{key.key} has no sentence"
     unit = set(key.unit.lower().split())
@@ -70,7 +71,7 @@ def written(value, path=""):
     return below | {path + name for name in value}
 
 
-@pytest.mark.parametrize("name", shipped_recipes())
+@for_each(shipped_recipes())
 def test_every_key_of_a_shipped_recipe_is_listed(name):
     listed = {key.key for key in KEYS}
     used = {

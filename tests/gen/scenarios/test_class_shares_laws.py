@@ -114,8 +114,8 @@ def test_with_rungs_the_records_have_the_shares_of_the_weights(recipe_with, seed
 
 
 @pytest.mark.parametrize("rungs", [None, (0, 1), (0.5, 1)])
-@pytest.mark.parametrize("specimens", [1, 2, 5])
-@pytest.mark.parametrize("groups", [None, 21, 3, 2, 1])
+@pytest.mark.parametrize("specimens", [1, 5])
+@pytest.mark.parametrize("groups", [None, 3, 1])
 def test_the_first_record_of_each_class_is_the_first_one_drawn_with_it(recipe_with, specimens, groups, rungs):
     records = None if groups is None else groups * len(rungs or [1])
     changes = {"corpus.specimens_per_rig": specimens, "records": records, "faults": faults((4, 1, 1, 1))}
