@@ -52,13 +52,13 @@ def audit_splits(corpus: Path | str) -> list[str]:
     with open_corpus(corpus) as opened:
         recordings = list(_recordings(opened))
         counts = np.bincount(opened["fault"].values, minlength=UNKNOWN_CODE + 1)
-    found = [
+    signs = [
         *_named_alike(recordings),
         *_copies(recordings),
         *_lonely_classes(recordings, counts),
         *_one_per_file(recordings),
     ]
-    return [f"{corpus}: {sentence}" for sentence in found]
+    return [f"{corpus}: {sentence}" for sentence in signs]
 
 
 def _recordings(corpus: xr.Dataset) -> Iterator[_Recording]:
@@ -107,14 +107,14 @@ def _copies(recordings: Sequence[_Recording]) -> Iterator[str]:
         for second, other in enumerate(recordings[:first])
         if one.specimen != other.specimen
     ]
-    found = []
+    copies = []
     for _, first, second in sorted(pairs)[:_MOST_PAIRS]:
         one, other = recordings[first], recordings[second]
         if phase_correlation(one.phases, other.phases) > COPY:
-            found.append(f"{other.source} and {one.source}")
-    if found:
+            copies.append(f"{other.source} and {one.source}")
+    if copies:
         yield (
-            f"{_listed(found)} agree in phase sample by sample, as copies of one recording do, and are of different specimens; "
+            f"{_listed(copies)} agree in phase sample by sample, as copies of one recording do, and are of different specimens; "
             f"remove one of the two, or give both the same specimen."
         )
 

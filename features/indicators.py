@@ -155,11 +155,11 @@ def usable_records(x: FloatArray, shaft_rate: FloatArray, orders: Orders) -> np.
 def _features(
     x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, groups: Sequence[str], band: Band
 ) -> FloatArray:
-    found: dict[str, FloatArray] = {}
+    by_group: dict[str, FloatArray] = {}
     for group in groups:
-        if group not in found:  # one function may compute several groups
-            found |= GROUP_FEATURES[group](x, fs, shaft_rate, orders, band)
-    return np.concatenate([found[group] for group in groups], axis=-1)
+        if group not in by_group:  # one function may compute several groups
+            by_group |= GROUP_FEATURES[group](x, fs, shaft_rate, orders, band)
+    return np.concatenate([by_group[group] for group in groups], axis=-1)
 
 
 def _lines_and_shape(
@@ -169,9 +169,9 @@ def _lines_and_shape(
     lines = np.full((len(x), len(NAMES["lines"])), np.nan)
     shape = np.full((len(x), len(NAMES["shape"])), np.nan)
     long_enough = np.flatnonzero(duration * shaft_rate >= SHORTEST[0])
-    found = {"lines": lines, "shape": shape}
+    features = {"lines": lines, "shape": shape}
     if fs < 2 * band.narrow[0][1] or duration < SHORTEST[1] or not long_enough.size:
-        return found
+        return features
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
     coefficients = fourier_coefficients(x[long_enough], fs, band.high)
     *read, fitted = _read(bands_of(coefficients, duration, fs, band), duration, shaft_rate, orders)
@@ -179,7 +179,7 @@ def _lines_and_shape(
     over = np.stack([line_views[..., a] - line_views[..., b] for a, b in RIVALS], axis=-1)
     lines[long_enough] = np.concatenate([_flat(line_views), _flat(over), fitted], axis=-1)
     shape[long_enough] = np.concatenate([_flat(shape_views), _raw_shape(coefficients)], axis=-1)
-    return found
+    return features
 
 
 def bands_of(coefficients: ComplexArray, duration: float, fs: float, band: Band = DEFAULT_BAND) -> list[ComplexArray]:

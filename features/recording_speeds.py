@@ -74,14 +74,14 @@ def block_sums(task: tuple[RecordBlock, IntArray], channel: int = 0) -> list[Sum
     for rate in np.unique(fs[fs > 0]):
         rows = np.flatnonzero(fs == rate)
         orders = Orders(*(order[rows] for order in nominal))
-        for numbers, found in line_levels(x[rows], float(rate), shaft_rate[rows], orders):
-            for key, level in zip(recording[rows[numbers]].tolist(), found, strict=True):
+        for numbers, batch in line_levels(x[rows], float(rate), shaft_rate[rows], orders):
+            for key, level in zip(recording[rows[numbers]].tolist(), batch, strict=True):
                 levels[key] = levels[key] + level if key in levels else level.astype(float)
                 windows[key] = windows.get(key, 0) + 1
     nothing = np.zeros((1, 1))
     return [
         Sums(key, count, windows.get(key, 0), levels.get(key, nothing))
-        for key, count in zip(*(found.tolist() for found in np.unique(recording, return_counts=True)), strict=True)
+        for key, count in zip(*(batch.tolist() for batch in np.unique(recording, return_counts=True)), strict=True)
     ]
 
 
@@ -102,7 +102,7 @@ def recording_speeds(
     _, first, missing = np.unique(recording, return_index=True, return_counts=True)
     label = shaft_rate[first]
     waiting: dict[int, dict[int, Sums]] = {}
-    found: list[ShaftSpeed | None] = [None] * len(first)
+    estimates: list[ShaftSpeed | None] = [None] * len(first)
     for block, sums in blocks:
         for new in sums:
             waiting.setdefault(new.recording, {})[block] = new
@@ -113,18 +113,18 @@ def recording_speeds(
                 windows = sum(one.windows for one in ordered)
                 # summed in the order of the blocks, so that the result does not depend on that of the tasks
                 mean = sum((one.levels for one in ordered), np.zeros((1, 1))) / max(windows, 1)
-                found[new.recording] = find_speed(mean, windows, float(label[new.recording]))
-    return [speed for speed in found if speed is not None]
+                estimates[new.recording] = find_speed(mean, windows, float(label[new.recording]))
+    return [speed for speed in estimates if speed is not None]
 
 
-def with_speeds(table: xr.Dataset, recording: IntArray, found: list[ShaftSpeed], speed: Speed) -> xr.Dataset:
+def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpeed], speed: Speed) -> xr.Dataset:
     """Table with the found rate, its uncertainty and its evidence as variables of the records."""
     label = table["shaft_rate"].values
-    relative, spread = np.array([_relative(one) for one in found]).reshape(-1, 2)[recording].T
-    codes = np.array([EVIDENCE.index(one.evidence) for one in found], np.int8)[recording]
+    relative, spread = np.array([_relative(one) for one in estimates]).reshape(-1, 2)[recording].T
+    codes = np.array([EVIDENCE.index(one.evidence) for one in estimates], np.int8)[recording]
     described = {"units": "Hz", "role": "operating"}
     flags = {"flag_values": np.arange(len(EVIDENCE), dtype=np.int8), "flag_meanings": " ".join(EVIDENCE)}
-    disagreeing = sum(not one.agrees for one in found)
+    disagreeing = sum(not one.agrees for one in estimates)
     return table.assign(
         {
             FOUND: ("record", relative * label, {"long_name": "shaft rate that fits the lines best", **described}),
@@ -138,8 +138,12 @@ def with_speeds(table: xr.Dataset, recording: IntArray, found: list[ShaftSpeed],
     ).assign_attrs(speed=speed, recordings_with_other_speed=disagreeing)
 
 
-def _relative(found: ShaftSpeed) -> tuple[float, float]:
-    return (found.rate / found.label, found.uncertainty / found.label) if found.rate > 0 else (np.nan, np.nan)
+def _relative(estimate: ShaftSpeed) -> tuple[float, float]:
+    return (
+        (estimate.rate / estimate.label, estimate.uncertainty / estimate.label)
+        if estimate.rate > 0
+        else (np.nan, np.nan)
+    )
 
 
 def rates_to_use(table: xr.Dataset) -> FloatArray:
@@ -160,7 +164,7 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
     """
     if not table.attrs.get("recordings_with_other_speed"):
         return []
-    label, found, uncertainty = (table[name].values for name in ("shaft_rate", FOUND, UNCERTAINTY))
+    label, estimate, uncertainty = (table[name].values for name in ("shaft_rate", FOUND, UNCERTAINTY))
     numbers = recording_numbers(table)
     first = np.unique(numbers, return_index=True)[1]
     wrong = first[other_speed(table)[first]]
@@ -170,7 +174,7 @@ def speed_warnings(table: xr.Dataset) -> list[str]:
     )
     sentences = [
         f"{table['source'].values[row]}: labelled {60 * label[row]:.0f} rpm, but its {LINES[EVIDENCE[table[BY].values[row]]]} "
-        f"fit {60 * found[row]:.0f} +- {60 * uncertainty[row]:.0f} rpm ({100 * (found[row] / label[row] - 1):+.1f} %); "
+        f"fit {60 * estimate[row]:.0f} +- {60 * uncertainty[row]:.0f} rpm ({100 * (estimate[row] / label[row] - 1):+.1f} %); "
         f"{action}."
         for row in wrong[:MOST_SENTENCES]
     ]

@@ -107,8 +107,8 @@ def feature_table(
         recording = recording_numbers(table)
         tasks = list(zip(blocks, np.split(recording, starts[1:-1]), strict=True))
         with closing(work(partial(block_sums, channel=number), tasks, report)) as sums:
-            found = recording_speeds(recording, table["shaft_rate"].values, sums)
-        table = with_speeds(table, recording, found, treatment)
+            estimates = recording_speeds(recording, table["shaft_rate"].values, sums)
+        table = with_speeds(table, recording, estimates, treatment)
     rates = rates_to_use(table) if treatment == "correct" else table["shaft_rate"].values
     values, missing = np.empty((table.sizes["record"], len(names))), 0
     compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)

@@ -87,8 +87,8 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
             message = f"speed: {self.speed!r} is no treatment of shaft speeds; choose off or correct."
             raise ValueError(message)
         orders = (self.ftf, self.bpfo, self.bpfi, self.bsf)
-        found = (shaft_speed(signal, self.fs, self.shaft_rate, orders) for signal in x)
-        return np.array([speed.rate if speed.clear else self.shaft_rate for speed in found], dtype=float)
+        estimates = (shaft_speed(signal, self.fs, self.shaft_rate, orders) for signal in x)
+        return np.array([speed.rate if speed.clear else self.shaft_rate for speed in estimates], dtype=float)
 
     def _signals(self, X: ArrayLike, *, reset: bool) -> FloatArray:
         x: Any = X

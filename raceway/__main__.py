@@ -7,9 +7,9 @@ from importlib.util import find_spec
 def hidden_package() -> str | None:
     """File of the present folder that Python would import in place of a package of Raceway."""
     for name in ("gen", "features"):
-        found = find_spec(name)
-        if found is not None and found.submodule_search_locations is None:
-            return found.origin
+        spec = find_spec(name)
+        if spec is not None and spec.submodule_search_locations is None:
+            return spec.origin
     return None
 
 

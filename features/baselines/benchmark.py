@@ -198,8 +198,8 @@ def benchmark(
         for track, of_track in cases.items():
             known = {"leaky": scored[first][name].leaky} if track != first else {}
             scores = known | {
-                case: score_splits(given, labels, estimator, found, seed, workers)
-                for case, (labels, found) in of_track.items()
+                case: score_splits(given, labels, estimator, case_splits, seed, workers)
+                for case, (labels, case_splits) in of_track.items()
                 if case not in known
             }
             tested = None

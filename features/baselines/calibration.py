@@ -119,7 +119,7 @@ def fit_calibration(
     )
     records = calibrated(probabilities, temperature)
     dependence = _fit_dependence(records, truth, recording)
-    threshold, recording_threshold = (answering(found) for found in (records, combined(records, recording, dependence)))
+    threshold, recording_threshold = (answering(rows) for rows in (records, combined(records, recording, dependence)))
     return Calibration(
         by=by,
         temperature=temperature,
@@ -149,8 +149,8 @@ def _summed(probabilities: FloatArray, recording: IntArray) -> tuple[FloatArray,
 
 def _loss(logarithms: FloatArray, truth: IntArray) -> float:
     """Log-loss of the softmax of some rows, with the same total weight for each class."""
-    found = log_softmax(logarithms, axis=1)[np.arange(len(truth)), truth]
-    return -float(np.average(found, weights=1 / np.bincount(truth)[truth]))
+    of_truth = log_softmax(logarithms, axis=1)[np.arange(len(truth)), truth]
+    return -float(np.average(of_truth, weights=1 / np.bincount(truth)[truth]))
 
 
 def _lowest(function: Callable[[float], float], low: float, high: float) -> float:

@@ -28,8 +28,8 @@ def fit_and_calibrate(
     An untrained baseline, and one whose classes are on too few specimens, stays uncalibrated. ``workers`` and ``done`` are those of
     `features.baselines.fitting.fits`.
     """
-    found = None if estimator in UNTRAINED else calibration_splits(records, seed)
-    by, splits = ("nothing", []) if found is None else found
+    cross_validation = None if estimator in UNTRAINED else calibration_splits(records, seed)
+    by, splits = ("nothing", []) if cross_validation is None else cross_validation
     every = np.arange(len(records.fault))
     whole, *folds = fits(
         records.features, records.fault, estimator, [(every, every[:0]), *splits], seed, workers=workers, done=done

@@ -53,16 +53,16 @@ def curve_points(
 ) -> tuple[CurvePoint, ...]:
     """Points of the learning curve on given splits; ``done`` is called with 1 after each, ``workers`` as for `score_splits`."""
     orders = [nested_specimens(records.at(train), seed) for train, _ in splits]
-    found: list[CurvePoint] = []
+    points: list[CurvePoint] = []
     for size in curve_sizes(records, splits):
         smaller = [
             (train[np.isin(records.specimen[train], order[:size])], test)
             for order, (train, test) in zip(orders, splits, strict=True)
         ]
         scores = score_splits(records, records.fault, estimator, smaller, seed, workers)
-        found.append(CurvePoint(size, float(np.mean([len(train) for train, _ in smaller])), scores))
+        points.append(CurvePoint(size, float(np.mean([len(train) for train, _ in smaller])), scores))
         done(1)
-    return tuple(found)
+    return tuple(points)
 
 
 def curve_sizes(records: Records, splits: Sequence[Split]) -> list[int]:

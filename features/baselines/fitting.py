@@ -57,13 +57,13 @@ def fits(
         Called with 1 after each fit.
     """
     workers = min(workers, MOST_THREADS, len(splits)) if isinstance(estimator, str) else 1
-    found: dict[int, Fit] = {}
+    by_number: dict[int, Fit] = {}
     for number, fit in run(
         partial(_fit, features, labels, estimator, seed), enumerate(splits), workers=max(workers, 1)
     ):
-        found[number] = fit
+        by_number[number] = fit
         done(1)
-    return [found[number] for number in range(len(splits))]
+    return [by_number[number] for number in range(len(splits))]
 
 
 def _fit(

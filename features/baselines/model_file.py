@@ -107,12 +107,12 @@ def _renumbered(value: Any, members: Mapping[str, bytes], arrays: dict[bytes, st
     number = value.get("__id__")
     if number in numbers:
         return {"__id__": numbers[number]}  # skops looks up the number of an object before it reads the rest
-    found = {key: part for key, part in value.items() if key != "__id__"}
+    fields = {key: part for key, part in value.items() if key != "__id__"}
     if value.get("__loader__") in _SHARED:
-        found["__id__"] = numbers[number] = len(numbers) + 1
-    if found.get("__loader__") == "NdArrayNode" and found["type"] == "numpy":
-        found["file"] = arrays.setdefault(_without_padding(members[found["file"]]), f"{len(arrays)}.npy")
-    return {key: _renumbered(part, members, arrays, numbers) for key, part in found.items()}
+        fields["__id__"] = numbers[number] = len(numbers) + 1
+    if fields.get("__loader__") == "NdArrayNode" and fields["type"] == "numpy":
+        fields["file"] = arrays.setdefault(_without_padding(members[fields["file"]]), f"{len(arrays)}.npy")
+    return {key: _renumbered(part, members, arrays, numbers) for key, part in fields.items()}
 
 
 def _without_padding(content: bytes) -> bytes:

@@ -89,16 +89,22 @@ class OwnClassifier:
         if not (hasattr(self.fitted, "predict_proba") or hasattr(self.fitted, "decision_function")):
             return self._certain(np.asarray(self._call("predict", X)), len(X))
         method = "predict_proba" if hasattr(self.fitted, "predict_proba") else "decision_function"
-        found = np.asarray(self._call(method, X), dtype=float)
+        probabilities = np.asarray(self._call(method, X), dtype=float)
         if method == "decision_function":
-            found = softmax(np.stack([-found, found], axis=1) if found.ndim == 1 else found, axis=1)
+            probabilities = softmax(
+                np.stack([-probabilities, probabilities], axis=1) if probabilities.ndim == 1 else probabilities, axis=1
+            )
         wanted = (len(X), len(self.classes_))
-        if found.shape != wanted or not np.isfinite(found).all():
-            what = "numbers that are not finite" if found.shape == wanted else f"an array of shape {found.shape}"
+        if probabilities.shape != wanted or not np.isfinite(probabilities).all():
+            what = (
+                "numbers that are not finite"
+                if probabilities.shape == wanted
+                else f"an array of shape {probabilities.shape}"
+            )
             raise EstimatorError(
                 f"{self.name}: {method} gives {what}; give finite numbers of shape {wanted}, (record, class)."
             )
-        return found[:, self.columns]
+        return probabilities[:, self.columns]
 
     def _certain(self, predicted: Any, records: int) -> FloatArray:
         """Probability 1 of each predicted class name, shape (record, class)."""

@@ -67,12 +67,12 @@ def relative_table(table: xr.Dataset, features: Sequence[str], references: Float
     changes, energies = np.split(values - references, [len(features)], axis=1)
     if energies.size:
         energies = energies - np.median(energies, axis=1, keepdims=True)
-    found = np.concatenate([values[:, : len(features)], changes, energies], axis=1)
+    columns = np.concatenate([values[:, : len(features)], changes, energies], axis=1)
     names = np.array(relative_names(features), dtype=object)
     groups = np.full(len(names), RELATIVE, dtype=object)
     return (
         table.drop_dims("feature")
-        .assign(features=(("record", "feature"), found))
+        .assign(features=(("record", "feature"), columns))
         .assign_coords(feature=("feature", names), group=("feature", groups))
     )
 

@@ -200,8 +200,8 @@ def reliability_bins(largest: FloatArray, right: np.ndarray) -> tuple[Bin, ...]:
 
 def expected_calibration_error(bins: Sequence[Bin]) -> float:
     """Mean difference between probability and accuracy of some bins, weighted by their records."""
-    records = sum(found.records for found in bins)
-    return sum(found.records * abs(found.probability - found.accuracy) for found in bins) / records
+    records = sum(bin_.records for bin_ in bins)
+    return sum(bin_.records * abs(bin_.probability - bin_.accuracy) for bin_ in bins) / records
 
 
 def confusion_matrix(fault: IntArray, predicted: IntArray, rows: IntArray, columns: IntArray) -> IntArray:

@@ -27,7 +27,7 @@ ALL = slice(None)
 
 def covered_widths(records: Records, rows: IntArray | slice = ALL) -> Covered:
     """Intervals of fault width that some rows cover, by class."""
-    return {name: _intervals(*found) for name, found in _widths_by_class(records, rows).items()}
+    return {name: _intervals(*widths) for name, widths in _widths_by_class(records, rows).items()}
 
 
 def uncovered_widths(covered: Mapping[str, Intervals], tested: Records, rows: IntArray | slice = ALL) -> Widths:
@@ -44,11 +44,11 @@ def uncovered_widths(covered: Mapping[str, Intervals], tested: Records, rows: In
 
 def uncovered_in_splits(records: Records, splits: Iterable[tuple[IntArray, IntArray]]) -> Widths:
     """Widths that at least one split tests and does not train."""
-    found: dict[str, set[float]] = {}
+    uncovered: dict[str, set[float]] = {}
     for train, test in splits:
         for name, widths in uncovered_widths(covered_widths(records, train), records, test).items():
-            found.setdefault(name, set()).update(widths)
-    return {name: tuple(sorted(found[name])) for name in FAULTS if name in found}
+            uncovered.setdefault(name, set()).update(widths)
+    return {name: tuple(sorted(uncovered[name])) for name in FAULTS if name in uncovered}
 
 
 def severity_warning(uncovered: Mapping[str, tuple[float, ...]]) -> str:
@@ -69,13 +69,13 @@ def _span(widths: tuple[float, ...]) -> str:
 def _widths_by_class(records: Records, rows: IntArray | slice) -> dict[str, tuple[FloatArray, int]]:
     """Distinct widths of each class, ascending, and the number of its distinct pairs of specimen and width."""
     fault, specimen, width = records.fault[rows], records.specimen[rows], records.width[rows]
-    found: dict[str, tuple[FloatArray, int]] = {}
+    by_class: dict[str, tuple[FloatArray, int]] = {}
     for code in np.unique(fault):
         chosen = (fault == code) & (width > 0)
         if chosen.any():
             pairs = np.unique(np.stack([specimen[chosen], width[chosen]]), axis=1)
-            found[FAULTS[code]] = np.unique(pairs[1]), pairs.shape[1]
-    return found
+            by_class[FAULTS[code]] = np.unique(pairs[1]), pairs.shape[1]
+    return by_class
 
 
 def _intervals(widths: FloatArray, pairs: int) -> Intervals:

@@ -135,8 +135,8 @@ def score_splits(
     tested = np.sort(np.concatenate([test for _, test in splits]))
     chosen = records._replace(fault=labels).at(tested)
     _, recording = np.unique(chosen.recording, return_inverse=True)
-    found = _pooled(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
-    pooled = score(chosen, found, seed)
+    together = _pooled(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
+    pooled = score(chosen, together, seed)
     return replace(pooled, folds=tuple(folds))
 
 

@@ -173,8 +173,8 @@ def _fault_groups(records: Records, track: Track, folds: int) -> IntArray:
     for c in np.unique(records.fault):
         known = (records.fault == c) & ((records.width > 0) if track == "severity" else (shape >= 0))
         if known.any():
-            found = ranges(records.width[known], folds) if track == "severity" else shape[known]
-            group[known] = found if len(np.unique(found)) > 1 else DEALT
+            groups = ranges(records.width[known], folds) if track == "severity" else shape[known]
+            group[known] = groups if len(np.unique(groups)) > 1 else DEALT
     return group
 
 

@@ -55,8 +55,8 @@ def unlabelled_answers(table: xr.Dataset, model: Model, reference: xr.Dataset | 
     unknown = tested.isel(record=tested["fault"].values == UNKNOWN_CODE)
     if not unknown.sizes["record"]:
         return ()
-    found = predict(unknown, model, None if chosen is None else chosen.reference)
-    whole, numbers = found.by_recording or found, found.recording
+    predictions = predict(unknown, model, None if chosen is None else chosen.reference)
+    whole, numbers = predictions.by_recording or predictions, predictions.recording
     _, first = np.unique(numbers, return_index=True)
     return tuple(_answer(unknown, whole, numbers, row) for row in sorted(first))
 

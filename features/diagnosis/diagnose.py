@@ -148,8 +148,8 @@ def diagnose(
                 f"{healthy.name}: cannot be used as the healthy recording, since {reason}; give another, or none."
             )
     used = recording._replace(signal=signal)
-    found, uncertainty = _speed(used) if speed != "off" else (None, 0.0)
-    rate = recording.shaft_rate if found is None else found
+    other_rate, uncertainty = _speed(used) if speed != "off" else (None, 0.0)
+    rate = recording.shaft_rate if other_rate is None else other_rate
     spectra = band_spectra(signal, recording.fs, rate)
     lines = find_evidence(spectra, rate, recording.orders)
     reference = (
@@ -158,8 +158,8 @@ def diagnose(
         else _table(healthy._replace(signal=_beginning(healthy)[0]), model, FAULTS.index(HEALTHY))
     )
     predicted = _predicted(used._replace(shaft_rate=rate), model, reference)
-    if found is not None:
-        warnings.append(_speed_warning(recording.shaft_rate, found, uncertainty))
+    if other_rate is not None:
+        warnings.append(_speed_warning(recording.shaft_rate, other_rate, uncertainty))
         if speed == "check":
             predicted = _agreed(predicted, _predicted(used, model, reference), lines)
     diagnosis = replace(
@@ -170,7 +170,7 @@ def diagnose(
         spectrum=_shown_spectrum(spectra, lines),
         warnings=tuple(warnings + _bearing_warning(spectra, lines, rate, recording.orders)),
     )
-    return _worded(diagnosis, found, speed, len(signal) / recording.fs, healthy is not None)
+    return _worded(diagnosis, other_rate, speed, len(signal) / recording.fs, healthy is not None)
 
 
 def _beginning(recording: Recorded) -> tuple[FloatArray, list[str]]:
@@ -197,10 +197,10 @@ def _useless(recording: Recorded, model: Model, reason: str, advice: str) -> Dia
 
 def _speed(recording: Recorded) -> tuple[float | None, float]:
     """Shaft rate found, if it is clearly another than the labelled one, and its uncertainty [Hz]."""
-    found = shaft_speed(
+    estimate = shaft_speed(
         windows_of(recording.signal, recording.fs), recording.fs, recording.shaft_rate, recording.orders
     )
-    return (float(found.rate) if found.clear and not found.agrees else None), float(found.uncertainty)
+    return (float(estimate.rate) if estimate.clear and not estimate.agrees else None), float(estimate.uncertainty)
 
 
 def _table(recording: Recorded, model: Model, fault: int) -> "xr.Dataset":
@@ -215,15 +215,15 @@ def _table(recording: Recorded, model: Model, fault: int) -> "xr.Dataset":
 def _predicted(recording: Recorded, model: Model, reference: "xr.Dataset | None") -> Diagnosis:
     """Diagnosis with the prediction of the model alone."""
     if reference is None:
-        found = _prediction_of_windows(recording, model)
+        predicted = _prediction_of_windows(recording, model)
     else:
-        found = predict(_table(recording, model, UNKNOWN_CODE), model, reference)
-    whole = found.by_recording
+        predicted = predict(_table(recording, model, UNKNOWN_CODE), model, reference)
+    whole = predicted.by_recording
     assert whole is not None  # noqa: S101 - only the predictions by recording have none
     probabilities = dict(zip(whole.classes, map(float, whole.probabilities[0]), strict=True))
     return Diagnosis(
         whole.answers[0], probabilities, whole.threshold, recording.shaft_rate, recording.shaft_rate, (), "",
-        windows=len(found.probabilities),
+        windows=len(predicted.probabilities),
     )  # fmt: skip
 
 
@@ -241,22 +241,24 @@ def _prediction_of_windows(recording: Recorded, model: Model) -> Predictions:
     return predictions(probabilities, model.classes, np.zeros(len(windows), dtype=np.intp), model.calibration)
 
 
-def _agreed(found: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
+def _agreed(estimated: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
     """Prediction at the speed found, unless the classifier says another class at the labelled speed and no line decides."""
-    told = {line.fault for line in lines}
-    if labelled.verdict in (found.verdict, UNSURE) or found.verdict in told:
-        return found
+    families = {line.fault for line in lines}
+    if labelled.verdict in (estimated.verdict, UNSURE) or estimated.verdict in families:
+        return estimated
     why = (
         f"at the labelled speed the classifier says {labelled.verdict} ({candidates(labelled.probabilities, 1)}) and at the speed found "
-        f"{found.verdict} ({candidates(found.probabilities, 1)})"
+        f"{estimated.verdict} ({candidates(estimated.probabilities, 1)})"
     )
     advice = "Measure the speed again and give it with --rpm, or take the speed found with --speed correct."
-    return replace(found, verdict=UNSURE, sentence=why, advice=(advice,))
+    return replace(estimated, verdict=UNSURE, sentence=why, advice=(advice,))
 
 
-def _worded(diagnosis: Diagnosis, found: float | None, speed: "Speed", duration: float, compared: bool) -> Diagnosis:
+def _worded(
+    diagnosis: Diagnosis, other_rate: float | None, speed: "Speed", duration: float, compared: bool
+) -> Diagnosis:
     """Diagnosis with its sentence and advice; the verdict becomes unsure if the lines plainly tell another class."""
-    at_speed = speed_in_words(diagnosis.labelled_rate, found, speed != "off")
+    at_speed = speed_in_words(diagnosis.labelled_rate, other_rate, speed != "off")
     contradiction = "" if diagnosis.verdict == UNSURE else _contradiction(diagnosis)
     if diagnosis.verdict != UNSURE and not contradiction:
         probability = probability_in_words(diagnosis.probabilities[diagnosis.verdict])
@@ -295,18 +297,18 @@ def _doubt(diagnosis: Diagnosis) -> str:
 
 
 def _advice(duration: float, compared: bool) -> tuple[str, ...]:
-    found = []
+    sentences = []
     if duration < 10:
-        found.append(f"Record longer: 10 s instead of {duration:.2g} s.")
+        sentences.append(f"Record longer: 10 s instead of {duration:.2g} s.")
     if not compared:
-        found.append("Give a recording of the machine with a healthy bearing (--healthy).")
-    return (*found, "Measure the speed during the recording, and check the bearing designation.")
+        sentences.append("Give a recording of the machine with a healthy bearing (--healthy).")
+    return (*sentences, "Measure the speed during the recording, and check the bearing designation.")
 
 
-def _speed_warning(labelled: float, found: float, uncertainty: float) -> str:
-    off = 100 * (found / labelled - 1)
+def _speed_warning(labelled: float, other: float, uncertainty: float) -> str:
+    off = 100 * (other / labelled - 1)
     return (
-        f"The labelled speed of {60 * labelled:,.0f} rpm does not fit the lines of this recording; they fit {60 * found:,.0f} rpm "
+        f"The labelled speed of {60 * labelled:,.0f} rpm does not fit the lines of this recording; they fit {60 * other:,.0f} rpm "
         f"(± {60 * uncertainty:.0f}), {off:+.1f} %."
     )
 

@@ -97,13 +97,13 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     lines: list[Line] = []
     least = LEAST_LEVEL
     while families and trials:
-        found = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
+        first_lines = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
         held = [
             _family(row, spectra[number], free[number], fundamental, shaft_rate, orders) if ratio else []
-            for row, (ratio, number, fundamental) in zip(families, found, strict=True)
+            for row, (ratio, number, fundamental) in zip(families, first_lines, strict=True)
         ]
         strongest = int(np.argmax([sum(line.level for line in family) for family in held]))
-        ratio, _, fundamental = found[strongest]
+        ratio, _, fundamental = first_lines[strongest]
         row, family = families.pop(strongest), held[strongest]
         level = 10 * float(np.log10(max(ratio, 1.0)))
         if not family or level < least or (not row.comb and sum(not line.sideband for line in family) < CAGE_LINES):
@@ -139,9 +139,9 @@ def strange_series(
             for harmonic in range(1, 4):
                 beside = order - harmonic * fundamental
                 first &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
-        found = _series(spectrum, first, free, shaft_rate, len(spectra))
-        if found is not None and (best is None or found.level > best.level):
-            best = found
+        candidate = _series(spectrum, first, free, shaft_rate, len(spectra))
+        if candidate is not None and (best is None or candidate.level > best.level):
+            best = candidate
     return best
 
 

@@ -62,30 +62,30 @@ def _useless(x: FloatArray, fs: float, shaft_rate: float, orders: Orders) -> tup
 
 
 def _warnings(x: FloatArray, fs: float, duration: float, shaft_rate: float) -> list[str]:
-    found = []
+    warnings = []
     share = clipped_share(x)
     if share:
-        found.append(
+        warnings.append(
             f"{100 * share:.{1 if share < 0.1 else 0}f} % of the samples are at the highest or lowest value, so the "
             "signal is clipped; levels are not those of the machine: record again with a larger range."
         )
     if fs < 2 * DEFAULT_BAND.high:
-        found.append(
+        warnings.append(
             f"The sample rate of {fs:,.0f} Hz leaves out part of the band up to {DEFAULT_BAND.high:,.0f} Hz that the classifier was "
             f"trained on; record at {2 * DEFAULT_BAND.high:,.0f} Hz or more."
         )
     if duration < 1.0 or duration * shaft_rate < 20:
-        found.append(
+        warnings.append(
             f"The recording is short ({duration:.2g} s, {duration * shaft_rate:.0f} shaft revolutions), so that faint lines cannot be "
             "told from noise; 10 s are better."
         )
     rms = float(np.std(x))
     if not PLAUSIBLE_RMS[0] <= rms <= PLAUSIBLE_RMS[1]:
-        found.append(
+        warnings.append(
             f"The rms of {rms:.2g} m/s² is implausible for a machine that turns ({PLAUSIBLE_RMS[0]:g} to {PLAUSIBLE_RMS[1]:,.0f} m/s²); "
             "check the unit and the sensitivity. The verdict does not depend on them."
         )
-    return found
+    return warnings
 
 
 def clipped_share(x: FloatArray) -> float:

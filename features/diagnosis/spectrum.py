@@ -72,7 +72,7 @@ def band_spectra(x: FloatArray, fs: float, shaft_rate: float) -> list[BandSpectr
     coefficients = fourier_coefficients(segments, fs, fs / 2)
     whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
     count = 1 + (len(segments) - 1) / OVERLAP_LOSS
-    found = []
+    spectra = []
     for band in bands_of(x, fs):
         low, high = (round(edge * duration) for edge in band)
         z = analytic_band(whitened, low, min(high, whitened.shape[-1]))
@@ -82,8 +82,8 @@ def band_spectra(x: FloatArray, fs: float, shaft_rate: float) -> list[BandSpectr
         bins = min(int(top / resolution) + 1, amplitude.shape[-1])
         power = np.mean(amplitude.astype(float) ** 2, axis=0)
         ratio = power[:bins] / _floor(power, resolution, shaft_rate, count, bins)
-        found.append(BandSpectrum(band, resolution, 2 / duration, ratio, count))
-    return found
+        spectra.append(BandSpectrum(band, resolution, 2 / duration, ratio, count))
+    return spectra
 
 
 def bands_of(x: FloatArray, fs: float) -> list[tuple[float, float]]:

@@ -24,10 +24,10 @@ def family_in_words(lines: Sequence[Line]) -> str:
 
 def by_family(lines: Sequence[Line]) -> dict[str, list[Line]]:
     """Lines by the class that they tell, strongest family first."""
-    found: dict[str, list[Line]] = {}
+    families: dict[str, list[Line]] = {}
     for line in lines:
-        found.setdefault(line.fault, []).append(line)
-    return found
+        families.setdefault(line.fault, []).append(line)
+    return families
 
 
 def reasons(verdict: str, lines: Sequence[Line]) -> str:
@@ -63,11 +63,11 @@ def candidates(probabilities: Mapping[str, float], number: int = 2) -> str:
     return ", ".join(f"{name} {probabilities[name]:.2f}" for name in ranked)
 
 
-def speed_in_words(labelled: float, found: float | None, checked: bool) -> str:
-    """Speed of the shaft; rates in Hz, ``found`` None if the label stands."""
+def speed_in_words(labelled: float, other: float | None, checked: bool) -> str:
+    """Speed of the shaft; rates in Hz, ``other`` None if the label stands."""
     text = f"shaft {60 * labelled:,.0f} rpm"
-    if found is not None:
-        return f"shaft {60 * found:,.0f} rpm as found, {60 * labelled:,.0f} rpm as labelled"
+    if other is not None:
+        return f"shaft {60 * other:,.0f} rpm as found, {60 * labelled:,.0f} rpm as labelled"
     return f"{text} as labelled" if checked else f"{text} as labelled, not checked"
 
 

@@ -130,21 +130,21 @@ def contrasted(synthetic: Windows, real: tuple[Windows, ...], common: Common) ->
         If no class has enough windows on both sides.
     """
     classes = _classes(synthetic, real)
-    found = Comparison({}, {}, {}, {}, common, synthetic, real)
+    comparison = Comparison({}, {}, {}, {}, common, synthetic, real)
     for fault in classes:
         samples = {w.name: _values(w, fault) for w in (synthetic, *real)}
         samples = {name: values for name, values in samples.items() if len(values) >= FEWEST}
         columns = {m.name: {name: _finite(v[:, NAMES.index(m.name)]) for name, v in samples.items()}
                    for m in MEASURES if m.belongs_to(fault)}  # fmt: skip
-        found.auc[fault] = {name: _auc(sets, synthetic.name) for name, sets in columns.items()}
-        found.quantiles[fault] = {name: _quantiles(sets, synthetic.name) for name, sets in columns.items()}
-        found.counts[fault] = {name: {key: len(v) for key, v in sets.items()} for name, sets in columns.items()}
+        comparison.auc[fault] = {name: _auc(sets, synthetic.name) for name, sets in columns.items()}
+        comparison.quantiles[fault] = {name: _quantiles(sets, synthetic.name) for name, sets in columns.items()}
+        comparison.counts[fault] = {name: {key: len(v) for key, v in sets.items()} for name, sets in columns.items()}
         others = [w.name for w in real if w.name in samples]
         for held in others if len(others) > 1 else []:
             of_real = {name: {key: sets[key] for key in others} for name, sets in columns.items()}
             table = {name: _auc(sets, held) for name, sets in of_real.items()}
-            found.yardstick.setdefault(held, {})[fault] = table
-    return found
+            comparison.yardstick.setdefault(held, {})[fault] = table
+    return comparison
 
 
 def _classes(synthetic: Windows, real: tuple[Windows, ...]) -> list[str]:
@@ -188,6 +188,6 @@ def _auc(sets: dict[str, FloatArray], below: str) -> float | None:
 
 
 def _quantiles(sets: dict[str, FloatArray], synthetic: str) -> dict[str, list[float]]:
-    found = {name: quantiles(*pooled([values]), SHARES) for name, values in sets.items() if len(values) >= FEWEST}
+    by_corpus = {name: quantiles(*pooled([values]), SHARES) for name, values in sets.items() if len(values) >= FEWEST}
     values, weights = pooled([values for name, values in sets.items() if name != synthetic])
-    return found | ({"real": quantiles(values, weights, SHARES)} if len(values) else {})
+    return by_corpus | ({"real": quantiles(values, weights, SHARES)} if len(values) else {})

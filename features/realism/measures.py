@@ -111,12 +111,12 @@ def measured(x: FloatArray, fs: float, top: float, shaft_rate: FloatArray, order
         The class.
     """
     envelope = _Envelopes.of(x, fs, top, shaft_rate)
-    found = _colour(x, fs, top) | _impulsiveness(x, fs, top)
-    found["slow_share"] = envelope.shape(shaft_rate)
+    by_name = _colour(x, fs, top) | _impulsiveness(x, fs, top)
+    by_name["slow_share"] = envelope.shape(shaft_rate)
     if CLASSES[fault].evidence:
-        found |= _lines(envelope, shaft_rate, orders, fault)
+        by_name |= _lines(envelope, shaft_rate, orders, fault)
     missing = np.full(len(x), np.nan)
-    columns = [found.get(measure.name, missing) if measure.belongs_to(fault) else missing for measure in MEASURES]
+    columns = [by_name.get(measure.name, missing) if measure.belongs_to(fault) else missing for measure in MEASURES]
     return np.stack(columns, axis=-1)
 
 
@@ -126,15 +126,15 @@ def _colour(x: FloatArray, fs: float, top: float) -> dict[str, FloatArray]:
     _, fine = psd(x, fs, x.shape[-1] / fs)
     step = fs / x.shape[-1]
     inside = slice(round(LOWEST / step), round(top / step))
-    found = {
+    by_name = {
         "roll_off": roll_off(density, frequencies, ROLLED_OFF),
         "centroid": centroid(density, frequencies),
         "tonality": tonality(fine[:, inside], np.arange(fine.shape[-1])[inside] * step),
     }
     if top > UPPER_BAND:
         lower, upper = band_energies(density, frequencies, (0.0, UPPER_BAND, top)).T
-        found["energy_above_3500_hz"] = 10 * np.log10(np.maximum(upper / (lower + upper), np.finfo(float).tiny))
-    return found
+        by_name["energy_above_3500_hz"] = 10 * np.log10(np.maximum(upper / (lower + upper), np.finfo(float).tiny))
+    return by_name
 
 
 def _impulsiveness(x: FloatArray, fs: float, top: float) -> dict[str, FloatArray]:

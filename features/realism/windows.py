@@ -153,12 +153,12 @@ def _ranks(groups: np.ndarray, order: np.ndarray) -> np.ndarray:
 def _blocks(columns: dict[str, np.ndarray], record: np.ndarray) -> list[tuple[str, float, np.ndarray]]:
     """Class, sample rate and places of windows that are measured together."""
     fault, fs = columns["fault"][record], columns["sample_rate"][record]
-    found = []
+    blocks = []
     for code in np.unique(fault):
         for rate in np.unique(fs[fault == code]):
             places = np.flatnonzero((fault == code) & (fs == rate))
-            found += [(FAULTS[code], float(rate), places[i : i + BLOCK]) for i in range(0, len(places), BLOCK)]
-    return found
+            blocks += [(FAULTS[code], float(rate), places[i : i + BLOCK]) for i in range(0, len(places), BLOCK)]
+    return blocks
 
 
 def _measured(

@@ -116,13 +116,13 @@ def _shown(windows: Windows, fault: str, title: str, comparison: Comparison) -> 
 
 
 def _row(comparison: Comparison, fault: str, measure: Measure) -> Row:
-    found = comparison.quantiles[fault][measure.name]
+    quantiles = comparison.quantiles[fault][measure.name]
     held = [table.get(fault, {}).get(measure.name) for table in comparison.yardstick.values()]
     return Row(
         measure,
         _two_digits(comparison.auc[fault][measure.name]),
         [_two_digits(value) for value in held],
-        *([f"{value:.3g}" for value in found.get(name, [])] for name in (comparison.synthetic.name, "real")),
+        *([f"{value:.3g}" for value in quantiles.get(name, [])] for name in (comparison.synthetic.name, "real")),
     )
 
 

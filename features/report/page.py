@@ -159,7 +159,7 @@ def _scores(results: Results) -> dict[str, Any]:
         "chance": chance,
         "unseen": NOVELTY[results.track],
         "scores": picture(draw_scores(results.baselines, chance, NOVELTY[results.track]), "svg"),
-        "spreads": {name: float(np.std(found.grouped.folds)) for name, found in results.baselines.items()},
+        "spreads": {name: float(np.std(baseline.grouped.folds)) for name, baseline in results.baselines.items()},
         "quality": quality,
         "reliability": picture(draw_reliability({title: rows[results.leading] for title, rows in quality}), "svg"),
         "findings": _findings(results, chance),
@@ -174,7 +174,7 @@ def _tracks(results: Results, chance: float) -> dict[str, Any]:
     leading, drawn = results.leading, {}
     if results.further:
         led = {results.track: results.baselines[leading]}
-        led |= {track: found.baselines[leading] for track, found in results.further.items()}
+        led |= {track: of_track.baselines[leading] for track, of_track in results.further.items()}
         drawn["tracks"] = picture(draw_scores(led, chance, "groups"), "svg")
     if results.curve:
         rule = results.baselines["envelope_rule"].grouped
@@ -184,11 +184,11 @@ def _tracks(results: Results, chance: float) -> dict[str, Any]:
 
 def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
     """Scores by baseline under a title each: of the cross-validation, and by record and recording of the other corpus."""
-    found = results.baselines.items()
-    tested = {name: one.test for name, one in found if one.test is not None}
+    baselines = results.baselines.items()
+    tested = {name: one.test for name, one in baselines if one.test is not None}
     whole = {name: one.by_recording for name, one in tested.items() if one.by_recording is not None}
     tables = {
-        f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in found},
+        f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in baselines},
         "Other corpus, by record": tested,
         "Other corpus, by recording": whole,
     }
@@ -197,32 +197,32 @@ def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
 
 def _findings(results: Results, chance: float) -> list[str]:
     """Findings on the default baseline, one sentence each."""
-    found, rule = results.baselines[results.leading], results.baselines["envelope_rule"]
+    baseline, rule = results.baselines[results.leading], results.baselines["envelope_rule"]
     name = f"the {results.leading.replace('_', ' ')}"
     grouped = (
         f"On {NOVELTY[results.track]} outside its training, {name} reaches a balanced accuracy of "
-        f"{_with_interval(found.grouped)}; chance is {chance:.3f}, and the untrained envelope rule reaches "
+        f"{_with_interval(baseline.grouped)}; chance is {chance:.3f}, and the untrained envelope rule reaches "
         f"{rule.grouped.balanced_accuracy:.3f}."
     )
     sentences = [
         grouped,
-        _false_alarms(found.grouped),
-        f"With a random split of records, which leaks, it reaches {found.leaky.balanced_accuracy:.3f}.",
-        f"With labels permuted among specimens it reaches {_with_interval(found.null)}{_verdict(found.null, chance)}.",
+        _false_alarms(baseline.grouped),
+        f"With a random split of records, which leaks, it reaches {baseline.leaky.balanced_accuracy:.3f}.",
+        f"With labels permuted among specimens it reaches {_with_interval(baseline.null)}{_verdict(baseline.null, chance)}.",
     ]
     if results.corpus.unknown:
         sentences.append(f"{results.corpus.unknown} records whose class is not known are left out of all scores.")
     if results.uncovered_widths:
         sentences.append(f"Cross-validation: {severity_warning(results.uncovered_widths)}")
-    if found.test is not None and results.test is not None and rule.test is not None:
-        recordings = found.test.by_recording
+    if baseline.test is not None and results.test is not None and rule.test is not None:
+        recordings = baseline.test.by_recording
         whole = "" if recordings is None else f", {recordings.balanced_accuracy:.3f} by recording"
         sentences.append(
-            f"On the other corpus, {_text(results.test.title)}, it reaches {_with_interval(found.test)} by record{whole}; "
+            f"On the other corpus, {_text(results.test.title)}, it reaches {_with_interval(baseline.test)} by record{whole}; "
             f"the envelope rule reaches {rule.test.balanced_accuracy:.3f}."
         )
-        if found.test.uncovered_widths:
-            sentences.append(f"Other corpus: {severity_warning(found.test.uncovered_widths)}")
+        if baseline.test.uncovered_widths:
+            sentences.append(f"Other corpus: {severity_warning(baseline.test.uncovered_widths)}")
     return sentences
 
 

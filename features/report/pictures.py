@@ -294,10 +294,10 @@ def _draw_intervals(
     axes: Axes, scores: Sequence[Scores], rows: FloatArray, colour: str, marker: str, label: str
 ) -> None:
     """Draw balanced accuracies, and the intervals that are known."""
-    for found, row in zip(scores, rows, strict=True):
-        if found.interval is not None:
-            axes.hlines(row, *found.interval, color=colour, linewidth=1.6)
-    axes.plot([found.balanced_accuracy for found in scores], rows, marker, color=colour, markersize=5.5, label=label)
+    for score, row in zip(scores, rows, strict=True):
+        if score.interval is not None:
+            axes.hlines(row, *score.interval, color=colour, linewidth=1.6)
+    axes.plot([score.balanced_accuracy for score in scores], rows, marker, color=colour, markersize=5.5, label=label)
 
 
 @rc_context(STYLE)
@@ -305,16 +305,16 @@ def draw_reliability(scores: Mapping[str, Scores]) -> Figure:
     """Accuracy against largest probability in bins, one panel for each of some scores by title."""
     figure = Figure(figsize=(WIDTH, 2.7), layout="constrained")
     panels = figure.subplots(1, max(len(scores), 2), sharey=True, squeeze=False)[0]
-    for axes, (title, found) in zip(panels, scores.items(), strict=False):
+    for axes, (title, score) in zip(panels, scores.items(), strict=False):
         probability, accuracy = (
-            [getattr(bin_, name) for bin_ in found.reliability] for name in ("probability", "accuracy")
+            [getattr(bin_, name) for bin_ in score.reliability] for name in ("probability", "accuracy")
         )
-        area = 260 * np.array([bin_.records for bin_ in found.reliability]) / found.records
+        area = 260 * np.array([bin_.records for bin_ in score.reliability]) / score.records
         axes.plot([0, 1], [0, 1], color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
         axes.plot(probability, accuracy, color=BLUE, linewidth=0.8)
         axes.scatter(probability, accuracy, area + 4, color=BLUE, linewidth=0, zorder=3)
         axes.set(xlabel="largest probability", xlim=(0, 1.04), ylim=(-0.02, 1.06), aspect="equal")
-        axes.set_title(f"{title}\ncalibration error {found.ece:.3f}")
+        axes.set_title(f"{title}\ncalibration error {score.ece:.3f}")
     panels[0].set_ylabel("accuracy")
     for axes in panels[len(scores) :]:
         axes.remove()

@@ -31,12 +31,12 @@ def highest_place(level: FloatArray, places: FloatArray, tolerance: float) -> np
         Relative, half the width of the search.
     """
     last = level.shape[-1] - 1
-    found = np.empty(len(level), dtype=np.intp)
+    highest = np.empty(len(level), dtype=np.intp)
     for row, place in enumerate(places):
         start = min(int(np.floor(place * (1 - tolerance))), last)
         stop = min(int(np.ceil(place * (1 + tolerance))), last)
-        found[row] = start + int(np.argmax(level[row, start : stop + 1]))
-    return found
+        highest[row] = start + int(np.argmax(level[row, start : stop + 1]))
+    return highest
 
 
 def phase_wander(envelope: FloatArray, fs: float, frequency: FloatArray, half_width: FloatArray) -> FloatArray:

@@ -64,10 +64,10 @@ def _interpolate(x: FloatArray, interval: FloatArray, count: int, table: FloatAr
             place = k * interval[row]
             first = max(0, int(np.ceil(place - reach)))
             last = min(x.shape[1] - 1, int(np.floor(place + reach)))
-            found = 0.0
+            value = 0.0
             for n in range(first, last + 1):
                 u = abs(n - place) * cutoff * TABLE_STEPS
                 i = int(u)
-                found += x[row, n] * (table[i] + (u - i) * (table[i + 1] - table[i]))
-            out[row, k] = cutoff * found
+                value += x[row, n] * (table[i] + (u - i) * (table[i + 1] - table[i]))
+            out[row, k] = cutoff * value
     return out

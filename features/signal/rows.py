@@ -37,12 +37,12 @@ def total_with(values: FloatArray, parts: FloatArray) -> float:
     for start in range(0, whole, PARTIAL_SUMS):
         for part in range(PARTIAL_SUMS):
             parts[part] += values[start + part]
-    found = 0.0
+    result = 0.0
     for part in range(PARTIAL_SUMS):
-        found += parts[part]
+        result += parts[part]
     for i in range(whole, len(values)):
-        found += values[i]
-    return found
+        result += values[i]
+    return result
 
 
 @row_kernel

@@ -110,12 +110,12 @@ def _sums_between(values: FloatArray, bins: FloatArray) -> FloatArray:
         for band in range(out.shape[1]):
             start, stop = bins[row, band], bins[row, band + 1]
             first, last = int(start), int(stop)
-            found = total(values[row, first:last])
+            area = total(values[row, first:last])
             if first < values.shape[1]:
-                found -= (start - first) * values[row, first]
+                area -= (start - first) * values[row, first]
             if last < values.shape[1]:
-                found += (stop - last) * values[row, last]
-            out[row, band] = found
+                area += (stop - last) * values[row, last]
+            out[row, band] = area
     return out
 
 

@@ -148,9 +148,11 @@ def benchmark(
         return
     show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
     _show_baselines(results.baselines)
-    for track, found in results.further.items():
-        show.text("", f"By {track}, {found.folds} folds, {found.tested:,} of {found.records:,} records tested:", "")
-        _show_baselines(found.baselines)
+    for track, of_track in results.further.items():
+        show.text(
+            "", f"By {track}, {of_track.folds} folds, {of_track.tested:,} of {of_track.records:,} records tested:", ""
+        )
+        _show_baselines(of_track.baselines)
     for track, reason in results.left_out.items():
         show.text("", f"No scores by {track}. {reason}")
     if results.curve:

@@ -60,22 +60,22 @@ def compare(
     from features.report.comparison import write_comparison
 
     with progress("measuring", "corpora") as report:
-        found = run(synthetic, real, top=top, window=window, records=records, progress=report)
-    for windows in (found.synthetic, *found.real):
+        comparison = run(synthetic, real, top=top, window=window, records=records, progress=report)
+    for windows in (comparison.synthetic, *comparison.real):
         notice_of_unknown(windows.folder, windows.unknown)
-    page = write_comparison(found, output)
+    page = write_comparison(comparison, output)
     if as_json:
-        show.as_json(found.plain() | {"report": page})
+        show.as_json(comparison.plain() | {"report": page})
         return
-    _show(found)
+    _show(comparison)
     show.text("", f"{page}: quantiles, yardstick and pictures.")
 
 
-def _show(found: "Comparison") -> None:
+def _show(comparison: "Comparison") -> None:
     show.text("AUC of real against synthetic records; 0.5: alike, 1: all real values are higher:", "")
-    names = list(dict.fromkeys(name for table in found.auc.values() for name in table))
-    rows = [[name, *(_cell(table.get(name)) for table in found.auc.values())] for name in names]
-    show.table(("measure", *found.auc), rows)
+    names = list(dict.fromkeys(name for table in comparison.auc.values() for name in table))
+    rows = [[name, *(_cell(table.get(name)) for table in comparison.auc.values())] for name in names]
+    show.table(("measure", *comparison.auc), rows)
 
 
 def _cell(value: float | None) -> str:

@@ -68,14 +68,14 @@ def recipes(prefix: str | None, schema: bool, as_json: bool) -> None:
         return
     from gen.recipe import recipe_purpose, shipped_recipes
 
-    found = shipped_recipes()
-    purposes = {name: recipe_purpose(path) for name, path in found.items()}
+    paths = shipped_recipes()
+    purposes = {name: recipe_purpose(path) for name, path in paths.items()}
     if as_json:
-        listed = [{"name": name, "purpose": purposes[name], "path": path} for name, path in found.items()]
+        listed = [{"name": name, "purpose": purposes[name], "path": path} for name, path in paths.items()]
         show.as_json({"recipes": listed})
         return
     show.definitions(purposes)
-    show.text("", f"Their files are in {next(iter(found.values())).parent}.")
+    show.text("", f"Their files are in {next(iter(paths.values())).parent}.")
 
 
 def _show_keys(prefix: str, as_json: bool) -> None:

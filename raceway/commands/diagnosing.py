@@ -139,20 +139,20 @@ def diagnose(
     from features.diagnosis import diagnose as run
 
     with compilation_noticed():
-        found = run(recorded[0], loaded, healthy=recorded[1] if healthy else None, speed=speed)
+        diagnosis = run(recorded[0], loaded, healthy=recorded[1] if healthy else None, speed=speed)
     # the diagnosis itself warns of an implausible rms
     notes = tuple(note for signal in signals for note in signal.warnings if "its rms" not in note)
-    for sentence in (*notes, *found.warnings):
+    for sentence in (*notes, *diagnosis.warnings):
         notice(f"warning: {sentence}")
     if output is not None:
         from features.report.diagnosis import write_diagnosis
 
         facts = _assumed(recorded[0], known, unit, sensitivity, rate, speed, healthy, source, notes)
-        write_diagnosis(found, recorded[0], output, name=recording.name, assumed=facts)
+        write_diagnosis(diagnosis, recorded[0], output, name=recording.name, assumed=facts)
     if as_json:
-        show.as_json(_facts(found, recorded[0], recording, source, output, notes))
+        show.as_json(_facts(diagnosis, recorded[0], recording, source, output, notes))
         return
-    show.text(found.sentence, *(f"- {sentence}" for sentence in found.advice))
+    show.text(diagnosis.sentence, *(f"- {sentence}" for sentence in diagnosis.advice))
     if output is not None:
         show.text("", f"{output}: pictures, evidence and what was assumed.")
 
@@ -187,25 +187,25 @@ def _model(path: Path | None) -> tuple[Any, Path]:
 
 
 def _facts(
-    found: "Diagnosis", recorded: "Recorded", path: Path, source: Path, output: Path | None, notes: tuple[str, ...]
+    diagnosis: "Diagnosis", recorded: "Recorded", path: Path, source: Path, output: Path | None, notes: tuple[str, ...]
 ) -> dict[str, Any]:
     from features.diagnosis import FALSE_ALARM, line_facts
 
     return {
-        "verdict": found.verdict,
-        "probabilities": found.probabilities,
-        "shaft_rpm": 60 * found.shaft_rate,
-        "evidence": [line_facts(line) for line in found.evidence],
-        "sentence": found.sentence,
-        "advice": found.advice,
-        "warnings": (*notes, *found.warnings),
-        "labelled_rpm": 60 * found.labelled_rate,
-        "threshold": found.threshold,
+        "verdict": diagnosis.verdict,
+        "probabilities": diagnosis.probabilities,
+        "shaft_rpm": 60 * diagnosis.shaft_rate,
+        "evidence": [line_facts(line) for line in diagnosis.evidence],
+        "sentence": diagnosis.sentence,
+        "advice": diagnosis.advice,
+        "warnings": (*notes, *diagnosis.warnings),
+        "labelled_rpm": 60 * diagnosis.labelled_rate,
+        "threshold": diagnosis.threshold,
         "false_alarm": FALSE_ALARM,
-        "band": None if found.spectrum is None else [round(edge, 1) for edge in found.spectrum.band],
+        "band": None if diagnosis.spectrum is None else [round(edge, 1) for edge in diagnosis.spectrum.band],
         "duration_s": len(recorded.signal) / recorded.fs,
         "sample_rate_hz": recorded.fs,
-        "windows": found.windows,
+        "windows": diagnosis.windows,
         "recording": path,
         "model": source,
         "report": output,

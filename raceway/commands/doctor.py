@@ -39,14 +39,14 @@ def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
         raise click.UsageError("--records is for --speed; give both, or leave it out.")
     from raceway.studies.doctor import findings
 
-    found = []
+    facts = []
     for one in findings():
-        found.append(one)
+        facts.append(one)
         if not as_json:
-            show.text(f"{one.state.ljust(7)}  {one.subject}: {one.found}{f'; {one.advice}' if one.advice else ''}")
-    problems = sum(one.state == "problem" for one in found)
+            show.text(f"{one.state.ljust(7)}  {one.subject}: {one.value}{f'; {one.advice}' if one.advice else ''}")
+    problems = sum(one.state == "problem" for one in facts)
     if as_json:
-        show.as_json({"problems": problems, "findings": [one._asdict() for one in found]})
+        show.as_json({"problems": problems, "findings": [one._asdict() for one in facts]})
     else:
         show.text(
             "", "Everything that Raceway needs is here." if not problems else f"{show.counted(problems, 'problem')}."
@@ -61,24 +61,24 @@ def _show_speed(recipe: str, records: int | None, as_json: bool) -> None:
     from raceway.studies.timing import bench
 
     with compilation_noticed():
-        found = bench(recipe, records)
+        times = bench(recipe, records)
     if as_json:
-        show.as_json(found)
+        show.as_json(times)
         return
     show.text(
-        f"{found.recipe}: {show.counted(found.records, 'record')}, median of {show.counted(found.repeats, 'run')} on "
-        f"{found.machine['processor']}",
+        f"{times.recipe}: {show.counted(times.records, 'record')}, median of {show.counted(times.repeats, 'run')} on "
+        f"{times.machine['processor']}",
         "",
     )
     show.table(
         ("stage", "ms per record"),
-        ((name, f"{1e3 * s / found.records:.3g}") for name, s in found.stage_seconds.items()),
+        ((name, f"{1e3 * s / times.records:.3g}") for name, s in times.stage_seconds.items()),
     )
     show.text("")
     show.facts(
         {
-            "kernel": f"{found.kernel_record_steps_per_second / 1e6:,.3g} million record-steps/s",
-            "corpus": f"{found.records_per_second:,.3g} records/s",
-            "features": f"{found.features_records_per_second:,.3g} records/s",
+            "kernel": f"{times.kernel_record_steps_per_second / 1e6:,.3g} million record-steps/s",
+            "corpus": f"{times.records_per_second:,.3g} records/s",
+            "features": f"{times.features_records_per_second:,.3g} records/s",
         }
     )

@@ -237,9 +237,9 @@ def warn_of_severities(*tested: "Scores | Results | None") -> None:
     """Warn of fault widths that were tested and not trained."""
     from features.baselines import severity_warning
 
-    for found in tested:
-        if found is not None and found.uncovered_widths:
-            notice(f"warning: {severity_warning(found.uncovered_widths)}")
+    for scores in tested:
+        if scores is not None and scores.uncovered_widths:
+            notice(f"warning: {severity_warning(scores.uncovered_widths)}")
 
 
 def _show_scores(scores: "Scores") -> None:

@@ -16,14 +16,14 @@ if TYPE_CHECKING:
 
 def _creators(_context: click.Context, _option: click.Parameter, texts: tuple[str, ...]) -> list[dict[str, str]]:
     """Name and, if given, ORCID of each creator."""
-    found: list[dict[str, str]] = []
+    creators: list[dict[str, str]] = []
     for text in texts:
         match = re.fullmatch(r"\s*([^<>]*[^<>\s])\s*(?:<\s*([^<>]+?)\s*>)?\s*", text)
         if match is None:
             raise click.BadParameter(f"{text!r} is not a name; write 'Jane Doe' or 'Jane Doe <0000-0002-1825-0097>'")
         name, orcid = match.groups()
-        found.append({"name": name} | ({"orcid": orcid} if orcid else {}))
-    return found
+        creators.append({"name": name} | ({"orcid": orcid} if orcid else {}))
+    return creators
 
 
 @click.command()

@@ -55,22 +55,22 @@ def ophel2025(
     chosen = {name: constants for name, constants in PRESETS.items() if preset in (None, name)}
     if change:
         chosen = {f"{name}-changed": changed(constants, change) for name, constants in chosen.items()}
-    found = reproduced(output, chosen)
+    findings = reproduced(output, chosen)
     if as_json:
-        show.as_json({"findings": [finding._asdict() for finding in found]})
+        show.as_json({"findings": [finding._asdict() for finding in findings]})
         return
     header = ("finding", "preset", "statement", "value", "accepted", "holds")
     show.table(
         header,
-        [(f.id, f.preset, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else "NO") for f in found],
+        [(f.id, f.preset, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else "NO") for f in findings],
     )
     show.text("", "Displacements in thousandths of a millimetre.")
-    reasons = {f"{f.preset} {f.id}": f.reason for f in found if f.reason}
+    reasons = {f"{f.preset} {f.id}": f.reason for f in findings if f.reason}
     if reasons:
         show.text("Statements that do not hold, and the change with which each holds:")
         show.definitions(reasons)
-    for name in dict.fromkeys(f.preset for f in found):
-        mine = [f for f in found if f.preset == name]
+    for name in dict.fromkeys(f.preset for f in findings):
+        mine = [f for f in findings if f.preset == name]
         fitted = [f for f in mine if f.fitted]
         show.text(
             f"{name}: {sum(f.holds for f in mine)} of {len(mine)} statements hold.",
@@ -104,17 +104,17 @@ def _constants(changes: tuple[str, ...]) -> dict[str, float]:
     """Names and values of ``--change``."""
     from raceway.studies.experiments import UNITS
 
-    found = {}
+    constants = {}
     for change in changes:
         name, _, written = change.partition("=")
         if name not in UNITS:
             raise click.BadParameter(f"{name!r} is none of {', '.join(UNITS)}", param_hint="'--change'")
         try:
-            found[name] = float(written)
+            constants[name] = float(written)
         except ValueError:
-            found[name] = math.nan
-        if not math.isfinite(found[name]) or (name in ("housing_mass", "shaft_rate") and found[name] <= 0):
+            constants[name] = math.nan
+        if not math.isfinite(constants[name]) or (name in ("housing_mass", "shaft_rate") and constants[name] <= 0):
             raise click.BadParameter(
                 f"{change}: give a number, above zero for a mass or a rate", param_hint="'--change'"
             )
-    return found
+    return constants

@@ -87,11 +87,11 @@ def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
     if manifest.complete:
         with open_corpus(directory, check="size") as corpus:
             return _shown(corpus)
-    found = []
+    parts = []
     for row in manifest.parts:
         with open_part(plain_file(directory, f"parts/{row.name}")) as part:
-            found.append(_shown(part))
-    whole: Any = xr.concat(found, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
+            parts.append(_shown(part))
+    whole: Any = xr.concat(parts, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
     return whole
 
 
@@ -123,15 +123,15 @@ def _content(labels: xr.Dataset) -> dict[str, Any]:
 
 def _severities(labels: xr.Dataset) -> dict[str, dict[str, list[float]]]:
     """Smallest and largest value of each severity that is known and not 0, by class, in SI units."""
-    found: dict[str, dict[str, list[float]]] = {}
+    by_class: dict[str, dict[str, list[float]]] = {}
     for code, fault in FAULT_NAMES.items():
         rows = labels["fault"].values == code
         values = {name: labels[name].values[rows] for name in _SEVERITIES if name in labels.variables}
         ranges = {name: _range(some[some != 0]) for name, some in values.items()}
         known = {name: ends for name, ends in ranges.items() if ends is not None}
         if known:
-            found[fault] = known
-    return found
+            by_class[fault] = known
+    return by_class
 
 
 def _named_counts(codes: np.ndarray, names: Mapping[int, str]) -> dict[str, int]:

@@ -144,7 +144,7 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
             classes=tuple(classes),
             records=results["corpus"]["records"],
             raceway=results["versions"].get("raceway", "unknown"),
-            rows=tuple(_score(name, found) for name, found in results["baselines"].items()),
+            rows=tuple(_score(name, baseline) for name, baseline in results["baselines"].items()),
         )
     except OSError as error:
         raise CorpusError(
@@ -164,12 +164,12 @@ def read_scores(path: Path, corpus: xr.Dataset) -> CardScores:
     return scores
 
 
-def _score(name: str, found: dict[str, Any]) -> CardScore:
-    grouped, interval = found["grouped"], found["grouped"]["interval"]
+def _score(name: str, baseline: dict[str, Any]) -> CardScore:
+    grouped, interval = baseline["grouped"], baseline["grouped"]["interval"]
     return CardScore(
         name=name,
         score=grouped["balanced_accuracy"],
         interval=None if interval is None else (interval[0], interval[1]),
-        random_records=found["leaky"]["balanced_accuracy"],
-        permuted_labels=found["null"]["balanced_accuracy"],
+        random_records=baseline["leaky"]["balanced_accuracy"],
+        permuted_labels=baseline["null"]["balanced_accuracy"],
     )

@@ -43,10 +43,10 @@ OPTIONAL = {
 
 
 class Finding(NamedTuple):
-    """One fact: its subject, what was found, and advice, which is empty if nothing is to be done."""
+    """One fact: its subject, its value, and advice, which is empty if nothing is to be done."""
 
     subject: str
-    found: str
+    value: str
     state: State = "fine"
     advice: str = ""
 
@@ -66,8 +66,8 @@ def findings() -> Iterator[Finding]:
 
 
 def _python() -> Finding:
-    found = f"{platform.python_version()} ({sys.executable})"
-    return Finding("Python", found)
+    text = f"{platform.python_version()} ({sys.executable})"
+    return Finding("Python", text)
 
 
 def _requirements() -> Iterator[Finding]:
@@ -77,15 +77,15 @@ def _requirements() -> Iterator[Finding]:
         if needed.marker is not None:  # of an extra
             continue
         try:
-            found = version(needed.name)
+            present = version(needed.name)
         except PackageNotFoundError:
             yield Finding(needed.name, "missing", "problem", f"pip install '{needed}'.")
             continue
-        if needed.specifier.contains(found, prereleases=True):
-            yield Finding(needed.name, found)
+        if needed.specifier.contains(present, prereleases=True):
+            yield Finding(needed.name, present)
         else:
             wanted = f"{needed.name}{needed.specifier}"
-            yield Finding(needed.name, found, "problem", f"Raceway needs {wanted}: pip install '{wanted}'.")
+            yield Finding(needed.name, present, "problem", f"Raceway needs {wanted}: pip install '{wanted}'.")
 
 
 def _processor() -> Iterator[Finding]:
@@ -210,12 +210,12 @@ def _speed() -> Finding:
     from raceway.studies.timing import bench
 
     rate = bench("quickstart", TIMED_RECORDS).kernel_record_steps_per_second
-    found = f"{rate / 1e6:.0f} million record-steps/s on one core"
+    speed = f"{rate / 1e6:.0f} million record-steps/s on one core"
     published = PUBLISHED.get(processor_key())
     if published is None:
         listed = ", ".join(f"{name} {value / 1e6:.0f}" for name, value in PUBLISHED.items())
         return Finding(
-            "speed of the kernel", f"{found}; no figure is published for {processor_key()} (others: {listed} million)"
+            "speed of the kernel", f"{speed}; no figure is published for {processor_key()} (others: {listed} million)"
         )
     share = rate / published
     advice = (
@@ -223,7 +223,7 @@ def _speed() -> Finding:
         if share >= SLOW
         else "other programs are busy, or the processor runs at a lower clock; try again when it is idle."
     )
-    compared = f"{found}, {share:.2f} of the published {published / 1e6:.0f} million"
+    compared = f"{speed}, {share:.2f} of the published {published / 1e6:.0f} million"
     return Finding("speed of the kernel", compared, "note" if advice else "fine", advice)
 
 
@@ -243,9 +243,9 @@ def key_of(cpuinfo: str) -> str | None:
     'amd-26-2'
     """
     lines = (line.partition(":") for line in cpuinfo.splitlines())
-    found = {key.strip(): value.strip() for key, _, value in lines}
-    if not {"vendor_id", "cpu family", "model"} <= set(found):
+    fields = {key.strip(): value.strip() for key, _, value in lines}
+    if not {"vendor_id", "cpu family", "model"} <= set(fields):
         return None
     vendors = {"GenuineIntel": "intel", "AuthenticAMD": "amd"}
-    vendor = vendors.get(found["vendor_id"], found["vendor_id"].lower())
-    return f"{vendor}-{found['cpu family']}-{found['model']}"
+    vendor = vendors.get(fields["vendor_id"], fields["vendor_id"].lower())
+    return f"{vendor}-{fields['cpu family']}-{fields['model']}"

@@ -77,14 +77,14 @@ def _paper(output: Path) -> Iterator[Section]:
     """Figures 1 to 6 of the seed paper; 3 to 6 beside its statements about them."""
     preset = PRESETS["paper"]
     made = run(preset)
-    found = findings("paper", made)
+    statements = findings("paper", made)
     for name, drawn in (*draw_schematics(preset), *draw_figures(made)):
         write_durably(picture(drawn, "png"), output / f"{name}.png")
     text = "The system of the seed paper with the constants of preset paper, and its bearing with the crack. Drawn anew, not copied."
     yield Section("Ophel et al., the system", text, ["figure1.png", "figure2.png"])
     for state, letter in _STATES.items():
         names = [f"{figure}.png" for figure, _, shown, _ in FIGURES if shown == state]
-        table = _findings_table([finding for finding in found if finding.id.startswith(letter)])
+        table = _findings_table([finding for finding in statements if finding.id.startswith(letter)])
         text = (
             "Preset paper of the seed paper, displacements in thousandths of a millimetre, and the paper's statements. "
             "Beside a statement that does not hold stands the change of the preset with which it holds."
@@ -92,10 +92,10 @@ def _paper(output: Path) -> Iterator[Section]:
         yield Section(f"Ophel et al., {state}", text, names, table)
 
 
-def _findings_table(found: list[Finding]) -> str:
+def _findings_table(statements: list[Finding]) -> str:
     cells = [("", "statement", "value", "accepted", "holds")]
     cells += [
-        (f.id, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else f"no: {f.reason}") for f in found
+        (f.id, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else f"no: {f.reason}") for f in statements
     ]
     rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in cells]
     return "<table>" + "".join(f"<tr>{row}</tr>" for row in rows) + "</table>"

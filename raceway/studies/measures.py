@@ -54,11 +54,11 @@ def highest(frequency: FloatArray, power: FloatArray, low: float, high: float) -
 def lines(frequency: FloatArray, power: FloatArray) -> list[Line]:
     """Lines above 20 Hz and within 30 dB of the highest: frequency [Hz], level below the highest [dB], prominence [dB] of 10 and more."""
     level = 10 * np.log10(power[frequency >= 20] + 1e-30)
-    peaks, found = find_peaks(level, height=level.max() - 30, prominence=10, wlen=61)
-    columns = (frequency[frequency >= 20][peaks], level[peaks] - level.max(), found["prominences"])
+    peaks, properties = find_peaks(level, height=level.max() - 30, prominence=10, wlen=61)
+    columns = (frequency[frequency >= 20][peaks], level[peaks] - level.max(), properties["prominences"])
     return [(float(f), float(below), float(rise)) for f, below, rise in zip(*columns, strict=True)]
 
 
-def clustered(found: list[Line], low: float, high: float) -> float:
+def clustered(peaks: list[Line], low: float, high: float) -> float:
     """Number of lines from ``low`` to ``high`` that are within 20 dB of the highest line of the spectrum."""
-    return float(sum(low <= f <= high and below > -20 for f, below, _ in found))
+    return float(sum(low <= f <= high and below > -20 for f, below, _ in peaks))

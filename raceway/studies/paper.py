@@ -125,7 +125,7 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
     """Run several presets at once."""
     bearing = CATALOGUE["6205-paper"]
     still, pickups = np.zeros(n_process_terms(bearing.n_balls)), np.eye(6)[:4]
-    found: dict[int, list[FloatArray]] = {0: [], 1: []}
+    histories: dict[int, list[FloatArray]] = {0: [], 1: []}
     for cracked, spalls in enumerate(((), (CRACK,))):
         records = [
             KernelInput(
@@ -146,10 +146,12 @@ def run_many(presets: list[Preset], fs: int = FS) -> list[Run]:
             lanes = lay_out(some, shape, 1 / fs)
             made = integrate(shape, lanes, 1 / fs, 1, decimation(1), 0, round(SECONDS * fs))
             response = made.response[:: fs // FS].transpose(2, 1, 0)[: len(some)]
-            found[cracked] += list(1e6 * np.ascontiguousarray(response, dtype=float))  # sums over float32 would be off
+            histories[cracked] += list(
+                1e6 * np.ascontiguousarray(response, dtype=float)
+            )  # sums over float32 would be off
     return [
         Run(healthy, cracked, preset.shaft_rate)
-        for healthy, cracked, preset in zip(found[0], found[1], presets, strict=True)
+        for healthy, cracked, preset in zip(histories[0], histories[1], presets, strict=True)
     ]
 
 

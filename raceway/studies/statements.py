@@ -54,13 +54,13 @@ class Finding(NamedTuple):
 
 def findings(name: str, made: Run) -> list[Finding]:
     """All statements of the paper, measured on a run of the preset ``name``."""
-    found = []
+    rows = []
     for key, text, value, accept in (*_healthy(made.healthy), *_cracked(made)):
         holds = accept[0] <= value <= accept[1]
         tried = None if holds else experiment(name, key)
         why, change = (tried.why, dict(tried.change)) if tried else ("", {})
-        found.append(Finding(key, name, text, value, accept, holds, why, change, key not in _MEASURED_LATER))
-    return found
+        rows.append(Finding(key, name, text, value, accept, holds, why, change, key not in _MEASURED_LATER))
+    return rows
 
 
 _MEASURED_LATER = (
@@ -136,9 +136,9 @@ def _cracked(made: Run) -> list[Row]:
 def _crack_spectra(x: FloatArray) -> list[Row]:
     frequency, power = power_spectrum(x)
     _, tapered = power_spectrum(x, "hann")
-    found = dict(zip(CHANNELS, (lines(frequency, spectrum) for spectrum in tapered), strict=True))
+    lines_of = dict(zip(CHANNELS, (lines(frequency, spectrum) for spectrum in tapered), strict=True))
     rows: list[Row] = [
-        ("C10", "x1 has several sharp peaks at 600-800 Hz", clustered(found["x1"], 600, 800), (3, math.inf))
+        ("C10", "x1 has several sharp peaks at 600-800 Hz", clustered(lines_of["x1"], 600, 800), (3, math.inf))
     ]
     for name, spectrum in zip(CHANNELS, power, strict=True):
         ratio = highest(frequency, spectrum, 600, 800)[1] / highest(frequency, spectrum, 20, 600)[1]
@@ -146,12 +146,12 @@ def _crack_spectra(x: FloatArray) -> list[Row]:
     for name, spectrum in (("y1", power[1]), ("y2", power[3])):
         rows.append((f"C12.{name}", f"{name} peaks at 740 Hz", highest(frequency, spectrum, 500, 1000)[0], (725, 755)))
     for target, width in ((50, 6), (200, 8), (300, 8)):
-        near = [rise for f, _, rise in found["x1"] if abs(f - target) <= width]
+        near = [rise for f, _, rise in lines_of["x1"] if abs(f - target) <= width]
         rows.append((f"C13.{target}", f"x1 has a line near {target} Hz", max(near, default=0.0), (6, math.inf)))
-    low = sum(f < 300 for f, _, _ in found["y2"])
+    low = sum(f < 300 for f, _, _ in lines_of["y2"])
     rows.append(("C14", "y2 has harmonic lines below 300 Hz", float(low), (3, math.inf)))
     for name in CHANNELS:
-        cluster = clustered(found[name], 650, 800)
+        cluster = clustered(lines_of[name], 650, 800)
         rows.append((f"C16.{name}", f"{name} has a cluster of lines at 650-800 Hz", cluster, (3, math.inf)))
     for axis, shaft, housing in (("x", 0, 2), ("y", 1, 3)):
         alike = mirrored(frequency, tapered[shaft], tapered[housing])
@@ -174,13 +174,13 @@ def reproduced(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> list[Fi
         If a system leaves the finite range.
     """
     make_result_folder(folder)
-    found = []
+    measured = []
     for name, preset in presets.items():
         made = run(preset)
         if not (np.isfinite(made.healthy).all() and np.isfinite(made.cracked).all()):
             raise SimulationError(f"{name}: the displacements grow without limit; change its constants less.")
-        found += findings(name, made)
+        measured += findings(name, made)
         for figure, drawn in (*draw_schematics(preset), *draw_figures(made)):
             write_durably(picture(drawn, "png"), folder / f"{name}-{figure}.png")
-    write_numbers(plain({"findings": [finding._asdict() for finding in found]}), folder / "findings.json")
-    return found
+    write_numbers(plain({"findings": [finding._asdict() for finding in measured]}), folder / "findings.json")
+    return measured

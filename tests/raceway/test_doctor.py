@@ -52,7 +52,7 @@ def test_a_slow_machine_is_told_so_and_an_unknown_one_gets_no_verdict(monkeypatc
     ):
         monkeypatch.setattr(doctor, "PUBLISHED", published)
         assert doctor._speed().state == state
-    assert "no figure is published" in doctor._speed().found
+    assert "no figure is published" in doctor._speed().value
 
 
 def test_the_published_speed_is_that_of_the_page():
