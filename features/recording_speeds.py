@@ -24,7 +24,7 @@ SPEEDS: tuple[Speed, ...] = ("off", "check", "correct")
 
 RECORDING = ("rig", "specimen", "fault", "recording")  # numbers that identify a recording together
 LATENT = "true_shaft_rate"  # variable of simulated corpora alone
-FOUND, UNCERTAINTY, BY = "shaft_rate_found", "shaft_rate_uncertainty", "shaft_rate_evidence"
+ESTIMATE, UNCERTAINTY, BY = "shaft_rate_estimate", "shaft_rate_uncertainty", "shaft_rate_evidence"
 MOST_SENTENCES = 5
 LINES = {"bpfo": "BPFO lines", "bpfi": "BPFI lines", "2bsf": "2 BSF lines", "shaft": "shaft harmonics"}
 
@@ -118,7 +118,7 @@ def recording_speeds(
 
 
 def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpeed], speed: Speed) -> xr.Dataset:
-    """Table with the found rate, its uncertainty and its evidence as variables of the records."""
+    """Table with the estimated rate, its uncertainty and its evidence as variables of the records."""
     label = table["shaft_rate"].values
     relative, spread = np.array([_relative(one) for one in estimates]).reshape(-1, 2)[recording].T
     codes = np.array([EVIDENCE.index(one.evidence) for one in estimates], np.int8)[recording]
@@ -127,8 +127,12 @@ def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpe
     disagreeing = sum(not one.agrees for one in estimates)
     return table.assign(
         {
-            FOUND: ("record", relative * label, {"long_name": "shaft rate that fits the lines best", **described}),
-            UNCERTAINTY: ("record", spread * label, {"long_name": "standard deviation of the found rate", **described}),
+            ESTIMATE: ("record", relative * label, {"long_name": "shaft rate that fits the lines best", **described}),
+            UNCERTAINTY: (
+                "record",
+                spread * label,
+                {"long_name": "standard deviation of the estimated rate", **described},
+            ),
             BY: (
                 "record",
                 codes,
@@ -140,37 +144,39 @@ def with_speeds(table: xr.Dataset, recording: IntArray, estimates: list[ShaftSpe
 
 def _relative(estimate: ShaftSpeed) -> tuple[float, float]:
     return (
-        (estimate.rate / estimate.label, estimate.uncertainty / estimate.label)
+        (estimate.rate / estimate.labelled_rate, estimate.uncertainty / estimate.labelled_rate)
         if estimate.rate > 0
         else (np.nan, np.nan)
     )
 
 
 def rates_to_use(table: xr.Dataset) -> FloatArray:
-    """Found rate where the lines tell it clearly, labelled rate elsewhere [Hz], shape (record,)."""
-    return np.where(table[BY].values > 0, table[FOUND].values, table["shaft_rate"].values)
+    """Estimated rate where the lines tell it clearly, labelled rate elsewhere [Hz], shape (record,)."""
+    return np.where(table[BY].values > 0, table[ESTIMATE].values, table["shaft_rate"].values)
 
 
 def other_speed(table: xr.Dataset) -> NDArray[np.bool_]:
     """Whether the lines of each record's recording clearly tell another speed than the label, shape (record,)."""
-    beyond = np.abs(table[FOUND].values - table["shaft_rate"].values) > DISAGREEMENT * table[UNCERTAINTY].values
+    beyond = np.abs(table[ESTIMATE].values - table["shaft_rate"].values) > DISAGREEMENT * table[UNCERTAINTY].values
     return (table[BY].values > 0) & beyond
 
 
 def speed_warnings(table: xr.Dataset) -> list[str]:
     """Sentences about the recordings whose lines tell another speed than the label, about six at most.
 
-    A table without found rates gives none.
+    A table without estimated rates gives none.
     """
     if not table.attrs.get("recordings_with_other_speed"):
         return []
-    label, estimate, uncertainty = (table[name].values for name in ("shaft_rate", FOUND, UNCERTAINTY))
+    label, estimate, uncertainty = (table[name].values for name in ("shaft_rate", ESTIMATE, UNCERTAINTY))
     numbers = recording_numbers(table)
     first = np.unique(numbers, return_index=True)[1]
     wrong = first[other_speed(table)[first]]
     corrected = table.attrs["speed"] == "correct"
     action = (
-        "its features use the found speed" if corrected else "check the label and the bearing, or use --speed correct"
+        "its features use the estimated speed"
+        if corrected
+        else "check the label and the bearing, or use --speed correct"
     )
     sentences = [
         f"{table['source'].values[row]}: labelled {60 * label[row]:.0f} rpm, but its {LINES[EVIDENCE[table[BY].values[row]]]} "

@@ -63,7 +63,7 @@ def feature_table(
         Some of ``features.indicators.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
     speed
         ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does so too and
-        computes the features at the found speed where it is clear. Simulated corpora are not checked.
+        computes the features at the estimated speed where it is clear. Simulated corpora are not checked.
     channel
         Name of the channel, or its number from 0.
     band
@@ -80,7 +80,7 @@ def feature_table(
     Dataset
         ``features (record, feature)``, coordinates ``feature`` (names) and ``group``, all variables of the records
         except ``draws``, which is larger than the rest of the table, and the attributes of the corpus with the ``channel``,
-        band and ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_found`` and
+        band and ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and
         ``shaft_rate_uncertainty`` [Hz], ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of
         ``recordings_with_other_speed``.
 

@@ -118,8 +118,8 @@ def diagnose(
         A recording of the same machine with a healthy bearing, from the same sensor.
     speed
         ``check`` searches the shaft speed in the recording; if the label is clearly wrong it warns, and answers only if
-        the classifier says the same class at both speeds or if lines tell that of the speed found. ``correct`` takes the
-        speed found, and ``off`` believes the label.
+        the classifier says the same class at both speeds or if lines tell that of the estimated speed. ``correct`` takes
+        the estimated speed, and ``off`` believes the label.
 
     Raises
     ------
@@ -242,15 +242,15 @@ def _prediction_of_windows(recording: Recorded, model: Model) -> Predictions:
 
 
 def _agreed(estimated: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
-    """Prediction at the speed found, unless the classifier says another class at the labelled speed and no line decides."""
+    """Prediction at the estimated speed, unless the classifier says another class at the labelled speed and no line decides."""
     families = {line.fault for line in lines}
     if labelled.verdict in (estimated.verdict, UNSURE) or estimated.verdict in families:
         return estimated
     why = (
-        f"at the labelled speed the classifier says {labelled.verdict} ({candidates(labelled.probabilities, 1)}) and at the speed found "
-        f"{estimated.verdict} ({candidates(estimated.probabilities, 1)})"
+        f"at the labelled speed the classifier says {labelled.verdict} ({candidates(labelled.probabilities, 1)}) and at the "
+        f"estimated speed {estimated.verdict} ({candidates(estimated.probabilities, 1)})"
     )
-    advice = "Measure the speed again and give it with --rpm, or take the speed found with --speed correct."
+    advice = "Measure the speed again and give it with --rpm, or take the estimated speed with --speed correct."
     return replace(estimated, verdict=UNSURE, sentence=why, advice=(advice,))
 
 

@@ -58,7 +58,7 @@ class ShaftSpeed(NamedTuple):
     """False if the rate is clear and differs from the label by more than two uncertainties."""
     evidence: str
     """The lines that tell the speed, one of `EVIDENCE`."""
-    label: float
+    labelled_rate: float
     """Shaft rate as labelled [Hz]."""
 
 
@@ -110,7 +110,7 @@ def _interpolated(level: FloatArray, bins: FloatArray, factors: FloatArray) -> F
     return out
 
 
-def find_speed(levels: FloatArray, windows: int, label: float, tolerance: float = TOLERANCE) -> ShaftSpeed:
+def find_speed(levels: FloatArray, windows: int, shaft_rate: float, tolerance: float = TOLERANCE) -> ShaftSpeed:
     """Speed that fits the lines of one recording best.
 
     Parameters
@@ -120,13 +120,13 @@ def find_speed(levels: FloatArray, windows: int, label: float, tolerance: float 
         candidate).
     windows
         Number of windows, 0 if none could be used.
-    label
+    shaft_rate
         Labelled shaft rate [Hz].
     tolerance
         Largest relative error of the label.
     """
     if windows == 0:
-        return ShaftSpeed(np.nan, np.nan, clear=False, agrees=True, evidence=EVIDENCE[0], label=label)
+        return ShaftSpeed(np.nan, np.nan, clear=False, agrees=True, evidence=EVIDENCE[0], labelled_rate=shaft_rate)
     combs, shaft = _deviations(levels, windows)
     error = candidates(tolerance)
     evidence = combs.max(axis=0) + shaft - PENALTY * (error / TOLERANCE) ** 2
@@ -136,16 +136,16 @@ def find_speed(levels: FloatArray, windows: int, label: float, tolerance: float 
     clear = bool(ahead and shaft.max() - shaft[best] < SHAFT_BEHIND)
     probability = np.exp(SHARPNESS * (evidence - evidence[best]))
     variance = np.average((error - error[best]) ** 2, weights=probability)
-    rate, uncertainty = label * (1 + error[best]), label * np.sqrt(variance + SLIP**2)
+    rate, uncertainty = shaft_rate * (1 + error[best]), shaft_rate * np.sqrt(variance + SLIP**2)
     family = int(combs[:, best].argmax())
     named = family if combs[family, best] > CLEAR_FAMILY else len(FAMILIES)
     return ShaftSpeed(
         rate=float(rate),
         uncertainty=float(uncertainty),
         clear=clear,
-        agrees=not (clear and abs(rate - label) > DISAGREEMENT * uncertainty),
+        agrees=not (clear and abs(rate - shaft_rate) > DISAGREEMENT * uncertainty),
         evidence=EVIDENCE[1 + named if clear else 0],
-        label=float(label),
+        labelled_rate=float(shaft_rate),
     )
 
 

@@ -193,13 +193,13 @@ def _read(path: Path, label: _Label) -> Recording:
     if fault == "healthy":
         signal, warning = _at_12_khz(signal)
         warnings.append(warning)
-    rpm, complaints = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[label.motor_load])
+    shaft_rpm, complaints = _labelled_rpm(path, f"X{held:03d}RPM", _NOMINAL_RPM[label.motor_load])
     recording = Recording(
         number=label.number,
         rig=0,
         specimen=label.specimen,
         bearing=CATALOGUE["6205"],
-        shaft_rate=rpm_to_hertz(rpm),
+        shaft_rate=rpm_to_hertz(shaft_rpm),
         fault=fault,
         signal=signal,
         extra={"motor_load": label.motor_load * HORSEPOWER},
@@ -230,9 +230,9 @@ def _at_12_khz(signal: FloatArray) -> tuple[FloatArray, str]:
 def _labelled_rpm(path: Path, variable: str, nominal: int) -> tuple[float, tuple[str, ...]]:
     """Speed in the file, or the nominal speed with a warning if the file has none or one far from it [rpm]."""
     try:
-        rpm = read_number(path, variable)
+        shaft_rpm = read_number(path, variable)
     except UnusableError as reason:
         return nominal, (f"{reason}: the nominal {nominal} rpm of its motor load are used",)
-    if not abs(rpm / nominal - 1) <= _SPEED_TOLERANCE:
-        return nominal, (f"has {rpm:g} rpm in {variable}: the nominal {nominal} rpm of its motor load are used",)
-    return rpm, ()
+    if not abs(shaft_rpm / nominal - 1) <= _SPEED_TOLERANCE:
+        return nominal, (f"has {shaft_rpm:g} rpm in {variable}: the nominal {nominal} rpm of its motor load are used",)
+    return shaft_rpm, ()

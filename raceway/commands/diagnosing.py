@@ -37,6 +37,7 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 )
 @click.option(
     "--rpm",
+    "shaft_rpm",
     type=click.FloatRange(0.001, 1e7),
     required=True,
     callback=_a_number,
@@ -90,7 +91,7 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 def diagnose(
     recording: Path,
     bearing: str,
-    rpm: float,
+    shaft_rpm: float,
     rate: float | None,
     unit: Any,
     sensitivity: float | None,
@@ -132,7 +133,7 @@ def diagnose(
     paths = [path for path in (recording, healthy) if path is not None]
     signals = [read_signal(path, **reading) for path in paths]
     recorded = [
-        _recorded(signal.values, _rate(path, signal.fs), rpm, known, path)
+        _recorded(signal.values, _rate(path, signal.fs), shaft_rpm, known, path)
         for path, signal in zip(paths, signals, strict=True)
     ]
     loaded, source = _model(model)
@@ -163,7 +164,7 @@ def _rate(path: Path, fs: float | None) -> float:
     return fs
 
 
-def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing", path: Path) -> "Recorded":
+def _recorded(values: Any, fs: float, shaft_rpm: float, bearing: "Bearing", path: Path) -> "Recorded":
     import numpy as np
 
     from features.diagnosis import Recorded
@@ -172,7 +173,7 @@ def _recorded(values: Any, fs: float, rpm: float, bearing: "Bearing", path: Path
     from gen.support.units import rpm_to_hertz
 
     nominal = Orders(*(np.asarray(order) for order in orders(bearing)))
-    return Recorded(values, fs, rpm_to_hertz(rpm), nominal, str(path))
+    return Recorded(values, fs, rpm_to_hertz(shaft_rpm), nominal, str(path))
 
 
 def _model(path: Path | None) -> tuple[Any, Path]:

@@ -37,6 +37,7 @@ def reference_options(command: Any) -> Any:
         ),
         click.option(
             "--reference-rpm",
+            "reference_shaft_rpm",
             type=click.FloatRange(0.001, 1e7),
             metavar="RPM",
             help="Speed of the recording, if DIR has several.",
@@ -68,7 +69,7 @@ def reference_table(
     team: Team,
     analysis: Analysis,
     *,
-    reference_rpm: float | None,
+    reference_shaft_rpm: float | None,
     reference_rate: float | None,
     reference_column: int | str | None,
     reference_variable: str | None,
@@ -83,7 +84,7 @@ def reference_table(
         fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
         if signal.fs is None:
             notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")
-        rate = None if reference_rpm is None else rpm_to_hertz(reference_rpm)
+        rate = None if reference_shaft_rpm is None else rpm_to_hertz(reference_shaft_rpm)
         return recording_reference(signal.values, fs, corpus, path, rate, analysis.options()["band"])
     if path.resolve() == corpus.resolve():
         return table

@@ -139,7 +139,7 @@ speed_option: Decorator = click.option(
     type=click.Choice(["off", "check", "correct"]),
     default="check",
     show_default=True,
-    help="Compare the labelled shaft speeds of real recordings with their lines and warn (check), or use the speed found "
+    help="Compare the labelled shaft speeds of real recordings with their lines and warn (check), or use the estimated speed "
     "where it is clear (correct).",
 )
 

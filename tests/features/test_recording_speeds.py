@@ -8,7 +8,7 @@ from distributed import Client
 from features import feature_table, shaft_speed
 from features.recording_speeds import (
     BY,
-    FOUND,
+    ESTIMATE,
     UNCERTAINTY,
     Sums,
     block_sums,
@@ -93,26 +93,26 @@ def test_wrong_labels_are_found_and_right_ones_stand(checked):
     true = np.repeat([true for _, true in SPEEDS.values()], WINDOWS)
     clear = checked[BY].values > 0
     assert clear[np.isin(checked["fault"].values, [1, 2])].all()
-    np.testing.assert_array_less(np.abs(checked[FOUND].values - true)[clear], 2 * checked[UNCERTAINTY].values[clear])
+    np.testing.assert_array_less(np.abs(checked[ESTIMATE].values - true)[clear], 2 * checked[UNCERTAINTY].values[clear])
     assert checked.attrs["recordings_with_other_speed"] == 2
 
 
 def test_check_leaves_the_features_as_they_are(corpus, checked):
     plain = feature_table(corpus, GROUPS)
     xr.testing.assert_identical(checked["features"], plain["features"])
-    assert not {FOUND, UNCERTAINTY, BY} & set(plain.variables)
+    assert not {ESTIMATE, UNCERTAINTY, BY} & set(plain.variables)
     assert "speed" not in plain.attrs
 
 
 def test_found_rates_are_operating_variables_with_units(checked):
-    for name in (FOUND, UNCERTAINTY):
+    for name in (ESTIMATE, UNCERTAINTY):
         assert checked[name].attrs["role"] == "operating"
         assert checked[name].attrs["units"] == "Hz"
     assert checked[BY].attrs["flag_meanings"] == "unclear bpfo bpfi 2bsf shaft"
 
 
 def test_correct_computes_the_features_at_the_found_speed_where_it_is_clear(checked, corrected, tmp_path):
-    found = {fault: float(rate) for fault, rate in zip(SPEEDS, corrected[FOUND].values[::WINDOWS], strict=True)}
+    found = {fault: float(rate) for fault, rate in zip(SPEEDS, corrected[ESTIMATE].values[::WINDOWS], strict=True)}
     clear = dict(zip(SPEEDS, corrected[BY].values[::WINDOWS] > 0, strict=True))
     speeds = {fault: (found[fault] if clear[fault] else label, true) for fault, (label, true) in SPEEDS.items()}
     relabelled = write_machines(tmp_path / "relabelled", speeds=speeds)
@@ -125,7 +125,7 @@ def test_correct_computes_the_features_at_the_found_speed_where_it_is_clear(chec
 @pytest.mark.parametrize("per_part", [3, 20])
 def test_windows_of_one_recording_share_one_estimate_however_the_parts_are_cut(checked, tmp_path, per_part):
     other = feature_table(write_machines(tmp_path / "other", per_part=per_part), GROUPS, speed="check")
-    for name in (FOUND, UNCERTAINTY, BY):
+    for name in (ESTIMATE, UNCERTAINTY, BY):
         assert (np.unique(checked[name].values.reshape(-1, WINDOWS), axis=1).shape[1]) == 1
         np.testing.assert_allclose(other[name], checked[name], rtol=1e-9)
 
@@ -134,7 +134,7 @@ def test_the_estimate_of_a_recording_is_that_of_shaft_speed(corpus, checked):
     with open_corpus(corpus) as opened:
         x = opened["acceleration"].values[WINDOWS : 2 * WINDOWS, 0]
     found = shaft_speed(x, FS, 25.0, tuple(ORDERS.values()))
-    assert found.rate == pytest.approx(checked[FOUND].values[WINDOWS])
+    assert found.rate == pytest.approx(checked[ESTIMATE].values[WINDOWS])
     assert found.uncertainty == pytest.approx(checked[UNCERTAINTY].values[WINDOWS])
 
 
@@ -162,15 +162,15 @@ def test_two_workers_give_the_same_table(corpus, corrected):
 def test_windows_without_a_signal_are_left_out_and_a_recording_without_any_has_no_rate(tmp_path):
     one, all_of_healthy = WINDOWS + 1, range(WINDOWS)
     table = feature_table(write_machines(tmp_path / "spoiled", spoiled=(one, *all_of_healthy)), GROUPS, speed="correct")
-    assert np.isnan(table[FOUND].values[:WINDOWS]).all()
+    assert np.isnan(table[ESTIMATE].values[:WINDOWS]).all()
     assert (table[BY].values[:WINDOWS] == 0).all()
-    assert table[FOUND].values[one] == pytest.approx(26.2, rel=0.01)
+    assert table[ESTIMATE].values[one] == pytest.approx(26.2, rel=0.01)
 
 
 def test_simulated_corpora_are_corrected_on_request_and_never_checked(tmp_path):
     simulated = write_machines(tmp_path / "simulated", extra=(TRUTH,))
-    assert FOUND not in feature_table(simulated, GROUPS, speed="check")
-    assert FOUND in feature_table(simulated, GROUPS, speed="correct")
+    assert ESTIMATE not in feature_table(simulated, GROUPS, speed="check")
+    assert ESTIMATE in feature_table(simulated, GROUPS, speed="correct")
 
 
 def test_a_table_with_speeds_is_unchanged_after_netcdf(tmp_path, corrected):
@@ -185,7 +185,7 @@ def test_a_warning_names_the_recording_both_speeds_and_the_lines(checked, correc
     assert inner.startswith("inner.csv: labelled 1500 rpm, but its BPFI lines fit 15")
     assert ball.startswith("ball.csv: labelled 1560 rpm, but its shaft harmonics fit 14")
     assert inner.endswith("%); check the label and the bearing, or use --speed correct.")
-    assert speed_warnings(corrected)[0].endswith("%); its features use the found speed.")
+    assert speed_warnings(corrected)[0].endswith("%); its features use the estimated speed.")
 
 
 def test_more_than_five_recordings_are_summarised(tmp_path):
@@ -215,7 +215,7 @@ def test_the_sum_over_many_parts_does_not_depend_on_their_order():
 
 
 def test_only_a_clear_speed_contradicts_the_label():
-    found = {"shaft_rate": [25.0, 25.0, 25.0], FOUND: [26.0, 26.0, 25.1], UNCERTAINTY: [0.2] * 3, BY: [0, 2, 2]}
+    found = {"shaft_rate": [25.0, 25.0, 25.0], ESTIMATE: [26.0, 26.0, 25.1], UNCERTAINTY: [0.2] * 3, BY: [0, 2, 2]}
     table = xr.Dataset({name: ("record", np.array(values)) for name, values in found.items()})
     assert other_speed(table).tolist() == [False, True, False]
     assert rates_to_use(table).tolist() == [25.0, 26.0, 25.1]

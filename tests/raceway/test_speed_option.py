@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from features.band import DEFAULT_BAND
-from features.recording_speeds import FOUND, SPEEDS
+from features.recording_speeds import ESTIMATE, SPEEDS
 from features.table_files import read_table
 from raceway.console.options import speed_option
 from tests.features.test_recording_speeds import write_machines
@@ -23,7 +23,7 @@ def test_features_warns_of_a_wrong_speed_unless_told_off(run, corpus, tmp_path):
     assert WARNING in run("features", corpus, "-o", tmp_path / "a.nc").stderr
     result = run("features", corpus, "-o", tmp_path / "b.nc", "--speed", "off")
     assert "rpm" not in result.stderr
-    assert FOUND not in read_table(tmp_path / "b.nc")
+    assert ESTIMATE not in read_table(tmp_path / "b.nc")
 
 
 def test_features_counts_the_recordings_with_another_speed(told, corpus, tmp_path):
