@@ -32,7 +32,7 @@ from gen.support.sentences import sentences
 from gen.support.units import rpm_to_hertz, to_si
 
 _NO_RATE = 10_000.0  # Hz, if no file states one: each is then skipped with its own reason
-_SPALLS = {"healthy": 0, "cage": 0, "compound": 2, UNKNOWN: -1}
+_SPALLS = {"inner": 1, "outer": 1, "ball": 1, "compound": 2, UNKNOWN: -1}
 _SAME_SPEED = 0.02  # relative; files of one recording can differ by less, and the record has the speed of the first
 
 
@@ -226,7 +226,7 @@ def _recording(facts: Facts, signal: FloatArray, number: int, rig: int, specimen
         fault=facts.fault,
         signal=signal,
         load=math.nan if facts.load_n is None else facts.load_n,
-        n_spalls=facts.n_spalls or _SPALLS.get(facts.fault, 1),
+        n_spalls=facts.n_spalls or _SPALLS.get(facts.fault, 0),
         width=unknown if facts.width_mm is None else to_si(facts.width_mm, "mm"),
         depth=unknown if facts.depth_um is None else to_si(facts.depth_um, "um"),
         angle=math.nan if facts.angle_deg is None else to_si(facts.angle_deg, "deg"),

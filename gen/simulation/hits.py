@@ -59,9 +59,7 @@ def felt_places(scenarios: Sequence[Scenario]) -> list[bool]:
 
 
 def _only_outer_spalls(scenario: Scenario) -> bool:
-    specimen = scenario.specimen
-    sites = {spall.site for spall in specimen.spalls}
-    return sites == {"outer"} and not specimen.cage and specimen.wear is None
+    return scenario.specimen.damaged_parts == ["outer"] and scenario.specimen.wear is None
 
 
 def _reaches(given: KernelInput, angle: float, width: float, zone: LoadZone) -> bool:
