@@ -14,7 +14,7 @@ A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 | `index.nc` | the variables and attributes of the single file, for all records, without the signal |
 | `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from |
 | `recipe.yaml` | the recipe, if all records were generated from one |
-| `README.md` | the [data card](data-card.md); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
+| `README.md` | the [data card](publishing.md#the-data-card); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
 | `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
 
 The data card of a single file `NAME.nc` lies in `NAME.card/`. While a single file is being generated, its parts lie in
