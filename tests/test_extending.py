@@ -42,7 +42,7 @@ def test_a_task_lists_its_files_in_order_and_says_what_to_do_in_each(task):
 @pytest.mark.parametrize("task", TASKS)
 def test_every_file_of_a_task_exists_and_a_new_one_has_a_folder(task):
     files = [ROOT / file for _, file, _ in steps(task)]
-    missing = [file for file in files if not (file.parent.is_dir() if file.stem == "NAME" else file.is_file())]
+    missing = [file for file in files if not (file.parent.is_dir() if "NAME" in file.stem else file.is_file())]
     assert missing == []
 
 
