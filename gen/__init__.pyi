@@ -4,7 +4,8 @@ from .generation.corpus import generate as generate
 from .generation.memory import record as record, records as records, simulate as simulate
 from .generation.replaying import replay as replay
 from .generation.writing import write_corpus as write_corpus
-from .recipe import (
+from .recipe import make_recipe as make_recipe, read_recipe as read_recipe, write_recipe as write_recipe
+from .recipe.constructors import (
     ball as ball,
     cage as cage,
     choice as choice,
@@ -14,12 +15,9 @@ from .recipe import (
     healthy as healthy,
     inner as inner,
     loguniform as loguniform,
-    make_recipe as make_recipe,
     normal as normal,
     outer as outer,
-    read_recipe as read_recipe,
     uniform as uniform,
-    write_recipe as write_recipe,
 )
 from .scenarios import draw_scenarios as draw_scenarios, read_scenarios as read_scenarios
 from .support.errors import (

@@ -1,27 +1,4 @@
-from .constructors import (
-    ball as ball,
-    cage as cage,
-    choice as choice,
-    compound as compound,
-    distributed as distributed,
-    grid as grid,
-    healthy as healthy,
-    inner as inner,
-    loguniform as loguniform,
-    normal as normal,
-    outer as outer,
-    uniform as uniform,
-)
-from .faults import (
-    BallFault as BallFault,
-    CageFault as CageFault,
-    CompoundFault as CompoundFault,
-    DistributedFault as DistributedFault,
-    Fault as Fault,
-    Healthy as Healthy,
-    RaceFault as RaceFault,
-    fault_class as fault_class,
-)
+from .faults import Fault as Fault, fault_class as fault_class
 from .finding import find_recipe as find_recipe, recipe_purpose as recipe_purpose, shipped_recipes as shipped_recipes
 from .keywords import make_recipe as make_recipe
 from .machine import CatalogueBearing as CatalogueBearing
