@@ -19,7 +19,7 @@ import xarray as xr
 from benchmarks.realism import UESTC_LABELLED
 from benchmarks.transfer_pages import RESULTS, write_pages
 from features import feature_table
-from features.baselines import Model, Scores, cross_validate, evaluate, predict, train
+from features.baselines import Model, Scores, cross_validate, evaluate, train
 from gen import generate
 from gen.corpus import FAULTS
 from gen.importers import import_cwru, import_generic, import_mfpt
@@ -92,13 +92,6 @@ def pooled(tables: list[xr.Dataset]) -> xr.Dataset:
     return xr.concat(parts, "record", combine_attrs="drop_conflicts", join="exact")
 
 
-def recalls(table: xr.Dataset, model: Model) -> dict[str, float]:
-    """Share of the windows of each recording that are predicted as labelled, by the name of its file."""
-    right = np.array(predict(table, model).predicted) == np.array(FAULTS)[table["fault"].values]
-    files = np.array([str(source).partition("#")[0] for source in table["source"].values])
-    return {str(name): float(right[files == name].mean()) for name in np.unique(files)}
-
-
 def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]:
     """All figures, one value per seed."""
     zero_shot: dict[str, dict[str, list[Figures]]] = {name: {} for name in ESTIMATORS}
@@ -106,7 +99,6 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
     reference: dict[str, list[Figures]] = {}
     teachers: dict[str, dict[str, list[Figures]]] = {test: {} for test in TEACHERS}
     confusion: dict[str, Any] = {}
-    recordings: dict[str, list[dict[str, float]]] = {}
     own: dict[str, Figures] = {}
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -121,7 +113,6 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
                         held = confusion.setdefault(test, {"true": scores.classes, "predicted": scores.model_classes})
                         held["windows"] = np.add(held.get("windows", 0), scores.confusion).tolist()
                 corrected.setdefault(test, []).append(figures(evaluate(found[test], models[BEST])))
-                recordings.setdefault(test, []).append(recalls(other, models[BEST]))
                 if (referred := with_reference(other, models[BEST])) is not None:
                     reference.setdefault(test, []).append(referred)
             for test, sets in TEACHERS.items():
@@ -143,7 +134,6 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
         "reference": reference,
         "teachers": teachers,
         "confusion": confusion,
-        "recordings": {test: _means(found) for test, found in recordings.items()},
         "own_rigs": own,
     }
 
@@ -153,10 +143,6 @@ def _corpora(recipe: str, seeds: int, folder: Path, workers: int) -> Iterator[xr
         corpus = folder / f"seed-{seed}"
         generate(recipe, corpus, workers=workers, seed=20260 + seed)
         yield feature_table(corpus, GROUPS)
-
-
-def _means(found: list[dict[str, float]]) -> dict[str, float]:
-    return {name: float(np.mean([each[name] for each in found])) for name in found[0]}
 
 
 def _mean(values: list[float | None]) -> float | None:
@@ -189,9 +175,9 @@ def main() -> None:
     if not options.pages:
         if options.real is None:
             parser.error("give the folder of the recordings, or --pages.")
-        text = (
-            json.dumps(_plain(measure(options.real, options.seeds, options.recipe, options.workers)), indent=1) + "\n"
-        )
+        found = _plain(measure(options.real, options.seeds, options.recipe, options.workers))
+        lines = ",\n".join(f" {json.dumps(key)}: {json.dumps(value)}" for key, value in found.items())
+        text = f"{{\n{lines}\n}}\n"
         if options.recipe != RECIPE:
             print(text)
             return

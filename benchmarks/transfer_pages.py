@@ -118,18 +118,6 @@ def _confusion(results: Results, test: str) -> str:
     return _markdown(["true", *found["predicted"]], rows)
 
 
-def _missed(results: Results) -> str:
-    """Recordings of which less than nine tenths of the windows are predicted as labelled."""
-    rows = [
-        [test, name.replace("_", r"\_"), f"{share:.2f}"]
-        for test, recordings in results["recordings"].items()
-        if test != "wang"
-        for name, share in recordings.items()
-        if share < 0.9
-    ]
-    return _markdown(["set", "recording", "share of windows predicted as labelled"], rows)
-
-
 TABLES: Mapping[str, Callable[[Results], str]] = {
     "summary": _summary,
     "zero-shot": _zero_shot,
@@ -137,7 +125,6 @@ TABLES: Mapping[str, Callable[[Results], str]] = {
     "teachers": _teachers,
     "confusion-wang": lambda results: _confusion(results, "wang"),
     "confusion-uestc": lambda results: _confusion(results, "uestc"),
-    "missed": _missed,
 }
 
 
