@@ -38,7 +38,7 @@ from .finishing import (
 from .hdf5 import LIBRARY_LOCK as LIBRARY_LOCK
 from .index import open_corpus as open_corpus
 from .layout import stored_signal as stored_signal
-from .locking import locked as locked
+from .locking import lock as lock
 from .manifest import (
     INDEX_NAME as INDEX_NAME,
     MANIFEST_NAME as MANIFEST_NAME,
@@ -87,7 +87,12 @@ from .schema import (
     identity as identity,
     make_dataset as make_dataset,
 )
-from .signals import SignalCounts as SignalCounts, complaint as complaint, described as described, summed as summed
+from .signals import (
+    SignalCounts as SignalCounts,
+    complaint as complaint,
+    counts_in_words as counts_in_words,
+    sum_counts as sum_counts,
+)
 from .simulated import SIMULATED as SIMULATED
 from .step_errors import step_complaint as step_complaint
 from .validation import validate_corpus as validate_corpus

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.layout import is_bare_dimension, is_text
-from gen.corpus.open_files import close, opened, source_of
-from gen.corpus.part import inflated
+from gen.corpus.open_files import close, open_source, source_of
+from gen.corpus.part import inflate
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
@@ -43,7 +43,7 @@ def read_channel(
     Features use it: it reads the columns without xarray. Chunks are inflated without the lock, so that threads run in parallel.
     """
     source, rows = source_of(block.file), range(block.first, block.stop)
-    with opened(source) as file:
+    with open_source(source) as file:
         stored, (records, _, samples), packing, deflated = file.signal()
         read: Any = (
             stored_chunks(stored, rows, range(channel, channel + 1))
@@ -58,7 +58,7 @@ def read_channel(
     if packing.scale is None:
         return read, columns
     signal = np.empty((len(rows), samples), np.float32)
-    for row, counts in zip(signal, all_inflated(read, samples, source.path) if deflated else read, strict=True):
+    for row, counts in zip(signal, inflate_all(read, samples, source.path) if deflated else read, strict=True):
         packing.decode(counts, row)
     return signal, columns
 
@@ -67,13 +67,13 @@ def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
     """Stored signal of a file in blocks of records: counts of the converter, or accelerations [m s-2]; inflated without the lock."""
     source, first, records = source_of(path), 0, 1
     while first < records:
-        with opened(source) as file:
+        with open_source(source) as file:
             stored, (records, channels, samples), _, deflated = file.signal()
             block = range(first, min(first + max(1, _BLOCK_SAMPLES // max(1, channels * samples)), records))
             read: Any = stored_chunks(stored, block, range(channels)) if deflated else stored[block.start : block.stop]
         if deflated:
             values = np.empty((len(block), channels, samples), np.int16)
-            for counts, out in zip(all_inflated(read, samples, source.path), values.reshape(-1, samples), strict=True):
+            for counts, out in zip(inflate_all(read, samples, source.path), values.reshape(-1, samples), strict=True):
                 out[:] = counts
             yield values
         else:
@@ -88,7 +88,7 @@ def stored_columns(path: Path, first: int = 0, stop: int | None = None) -> dict[
     They are as they are stored, text as rows of characters, and are read without xarray.
     """
     source, columns = source_of(path), dict[str, NDArray[Any]]()
-    with opened(source) as file:
+    with open_source(source) as file:
         for name in map(bytes.decode, file.handle.id):
             # the dimension of a text, NAME_length, has no values
             bare = name.endswith("_length") and is_bare_dimension(file.dataset(name))
@@ -122,10 +122,10 @@ def stored_chunks(stored: h5py.Dataset, records: range, channels: range) -> list
     return [stored.id.read_direct_chunk((record, channel, 0)) for record in records for channel in channels]
 
 
-def all_inflated(chunks: Sequence[tuple[int, bytes]], samples: int, path: str) -> Iterator[NDArray[np.int16]]:
+def inflate_all(chunks: Sequence[tuple[int, bytes]], samples: int, path: str) -> Iterator[NDArray[np.int16]]:
     """Counts of each chunk; CorpusError if one is damaged."""
     for filters_left_out, chunk in chunks:
         try:
-            yield inflated(b"" if filters_left_out else chunk, samples)
+            yield inflate(b"" if filters_left_out else chunk, samples)
         except (ValueError, zlib.error) as error:
             raise CorpusError(f"{path}: damaged ({error}); generate or copy it again.") from None

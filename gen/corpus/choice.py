@@ -33,7 +33,7 @@ def chosen_records(
     """
     if split is not None and split not in SPLITS:
         raise CorpusError(f"split: there is no split {split!r}; allowed are {', '.join(SPLITS)}.")
-    places = [np.flatnonzero(_chosen(corpus, where, split)) for corpus in corpora]
+    places = [np.flatnonzero(_is_chosen(corpus, where, split)) for corpus in corpora]
     if not any(map(len, places)):
         words = [f"where {where!r}"] * (where is not None) + [f"split {split!r}"] * (split is not None)
         count = sum(corpus.sizes["record"] for corpus in corpora)
@@ -71,7 +71,7 @@ def per_record(corpus: xr.Dataset) -> list[str]:
     return [str(name) for name, variable in corpus.variables.items() if variable.dims == ("record",)]
 
 
-def _chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDArray[np.bool_]:
+def _is_chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDArray[np.bool_]:
     chosen = np.ones(corpus.sizes["record"], bool)
     if split is not None:
         chosen &= corpus["split"].values == SPLITS.index(split)

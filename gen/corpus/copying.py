@@ -181,7 +181,7 @@ class Chosen:
             own = places[(places >= first) & (places < first + len(records))]
             for start in range(0, len(own), size):
                 here = own[start : start + size]
-                dataset = _loaded(corpus, records[here - first], size * _SPAN)
+                dataset = _load(corpus, records[here - first], size * _SPAN)
                 yield Block(before + records[here - first], self._finished(dataset, here))
             first, before = first + len(records), before + corpus.sizes["record"]
 
@@ -233,7 +233,7 @@ def choose(
         manifests = [read_manifest(path) for path in sources]
         opened = [
             _with_channels(corpus, channels, path)
-            for corpus, path in zip(_renamed(opened, rename or {}), sources, strict=True)
+            for corpus, path in zip(_rename_channels(opened, rename or {}), sources, strict=True)
         ]
         named = list(zip(map(str, sources), opened, strict=True))
         for other in named[1:]:
@@ -264,7 +264,7 @@ def _history(told: Mapping[str, str | None]) -> str:
     return asked and f"copied by raceway copy: {' '.join(asked.split())}"
 
 
-def _renamed(corpora: Sequence[xr.Dataset], rename: Mapping[str, str]) -> list[xr.Dataset]:
+def _rename_channels(corpora: Sequence[xr.Dataset], rename: Mapping[str, str]) -> list[xr.Dataset]:
     """Corpora in which channels have new names; CorpusError if none has a channel of an old name, or two get the same name."""
     known = list(dict.fromkeys(name for corpus in corpora for name in channel_names(corpus)))
     unknown = next((name for name in rename if name not in known), None)
@@ -290,7 +290,7 @@ def _with_channels(corpus: xr.Dataset, channels: Sequence[str] | None, path: Pat
     return corpus if len(places) == corpus.sizes["channel"] else corpus.isel(channel=list(places))
 
 
-def _loaded(corpus: xr.Dataset, records: NDArray[np.intp], span: int) -> xr.Dataset:
+def _load(corpus: xr.Dataset, records: NDArray[np.intp], span: int) -> xr.Dataset:
     """Some records of an opened corpus in memory; a variable is read with at most ``span`` records at a time."""
     pieces = []
     for some in np.split(records, np.flatnonzero(np.diff(records // span)) + 1):

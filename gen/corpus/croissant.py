@@ -87,7 +87,7 @@ def croissant(path: Path) -> dict[str, Any]:
             "identifier": attributes["id"],
             "version": f"1.0.0+{content_id(manifest)[:8]}",
             "isLiveDataset": False,
-            **_published(manifest.publication),
+            **_publication_facts(manifest.publication),
             "citeAs": bibtex(title, manifest),
             "distribution": [
                 *(_file(name, file, kinds[file.suffix]) for name, file in files.items()),
@@ -103,7 +103,7 @@ def croissant(path: Path) -> dict[str, Any]:
         }
 
 
-def _published(publication: Publication) -> dict[str, Any]:
+def _publication_facts(publication: Publication) -> dict[str, Any]:
     """Licence, creators, publisher and dates, as far as they are given."""
     creators = []
     for creator in publication.creators:

@@ -10,7 +10,7 @@ from gen.corpus.card.page import check_card, write_card
 from gen.corpus.croissant import CROISSANT_NAME, write_croissant
 from gen.corpus.files import remove_left_behind, remove_left_behind_of
 from gen.corpus.index import corpus_attributes, join_parts, rewrite_attributes, write_index
-from gen.corpus.locking import locked
+from gen.corpus.locking import lock
 from gen.corpus.manifest import (
     INDEX_NAME,
     MANIFEST_NAME,
@@ -103,6 +103,6 @@ def publish(path: Path | str, publication: Publication | Mapping[str, Any]) -> N
         old = {*facts, *publication_attributes(manifest)} - {"raceway_format"}
         rewrite_attributes(path, old, corpus_attributes(content, recipe_text(path), path))
         return
-    with locked(path):
+    with lock(path):
         remove_temporary_files(path)
         finish_corpus(path, manifest.parts, **facts)

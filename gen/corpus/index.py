@@ -22,9 +22,9 @@ from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.manifest import (
     INDEX_NAME,
     Check,
-    checked,
     corpus_files,
     facts_as_attributes,
+    manifest_of,
     read_manifest,
 )
 from gen.corpus.part import PartRow
@@ -84,7 +84,7 @@ def _open_folder(path: Path, files: Sequence[Path]) -> xr.Dataset:
 def corpus_attributes(content: Mapping[str, Any], recipe: str | None, place: Path) -> dict[str, str]:
     """Global attributes of ``index.nc`` and of a single file beside those of the parts, from the contents of the manifest."""
     texts = {} if recipe is None else {RECIPE_TEXT: recipe}
-    return publication_attributes(checked(content, place)) | facts_as_attributes(content) | texts
+    return publication_attributes(manifest_of(content, place)) | facts_as_attributes(content) | texts
 
 
 def write_index(directory: Path, rows: Sequence[PartRow], attributes: Mapping[str, str]) -> None:
@@ -190,13 +190,13 @@ def _blocks(paths: Sequence[Path]) -> Iterator[dict[str, NDArray[Any]]]:
         block.append(stored_columns(path))
         size += sum(values.nbytes for values in block[-1].values())
         if size > _COPIED_BYTES:
-            yield _joined(block)
+            yield _join(block)
             block, size = [], 0
     if block:
-        yield _joined(block)
+        yield _join(block)
 
 
-def _joined(block: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
+def _join(block: Sequence[Mapping[str, NDArray[Any]]]) -> dict[str, NDArray[Any]]:
     """Values of consecutive parts one after the other; text is filled up to the width of the widest."""
     joined: dict[str, NDArray[Any]] = {}
     for name, values in block[0].items():

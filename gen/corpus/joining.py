@@ -101,10 +101,10 @@ def _with_all(
     corpus: xr.Dataset, variables: Mapping[str, tuple[str, xr.Variable]], signal: Mapping[str, Any]
 ) -> xr.Dataset:
     """Corpus with all variables in the order given; those that it lacks take no memory."""
-    columns = {SIGNAL: _described(corpus[SIGNAL].variable, signal)}
+    columns = {SIGNAL: _with_attributes(corpus[SIGNAL].variable, signal)}
     for name, (_, like) in variables.items():
         if name in corpus.variables:
-            columns[name] = _described(corpus[name].variable, like.attrs)
+            columns[name] = _with_attributes(corpus[name].variable, like.attrs)
             continue
         text = like.dtype.kind not in "iuf"
         value = np.array(unknown_value(like.dtype, like.attrs), object if text else like.dtype.newbyteorder("="))
@@ -113,7 +113,7 @@ def _with_all(
     return corpus.drop_vars(per_record(corpus)).assign(columns).set_coords(texts)
 
 
-def _described(variable: xr.Variable, attributes: Mapping[Any, Any]) -> xr.Variable:
+def _with_attributes(variable: xr.Variable, attributes: Mapping[Any, Any]) -> xr.Variable:
     """Variable with other attributes, still unread."""
     view = variable.copy(deep=False)
     view.attrs = dict(attributes)

@@ -10,7 +10,7 @@ from gen.support.errors import CorpusError
 
 
 @contextmanager
-def locked(directory: Path) -> Iterator[None]:
+def lock(directory: Path) -> Iterator[None]:
     """Lock a folder against other calls that write into it; a file system without locks is left as it is.
 
     Raises

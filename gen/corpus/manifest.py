@@ -31,7 +31,7 @@ from gen.corpus.open_files import file_facts
 from gen.corpus.part import PartRow
 from gen.corpus.publication import Publication
 from gen.corpus.schema import FORMAT, RECIPE_TEXT
-from gen.corpus.signals import Count, SignalCounts, summed
+from gen.corpus.signals import Count, SignalCounts, sum_counts
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
@@ -98,7 +98,7 @@ class Manifest(Strict):
             raise ValueError(f"it lists {repeated} more than once")
         if names and sum(part.records for part in self.parts) != self.records:
             raise ValueError(f"it counts {self.records} records, its parts {sum(part.records for part in self.parts)}")
-        if names and summed(row.signals for row in self.parts) != self.signals:
+        if names and sum_counts(row.signals for row in self.parts) != self.signals:
             raise ValueError("its number of unusable records is not the sum over its parts")
         for counts, records in ((self.signals, self.records), *((row.signals, row.records) for row in self.parts)):
             if sum(counts) > records:
@@ -118,7 +118,7 @@ def facts_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complet
         "raceway_format": FORMAT,
         "complete": complete,
         "records": sum(row.records for row in rows),
-        "signals": summed(row.signals for row in rows)._asdict(),
+        "signals": sum_counts(row.signals for row in rows)._asdict(),
         **known,
         **({"publication": publication.stored} if publication.stored else {}),
         "parts_sha256": hashlib.sha256("\n".join(row.sha256 for row in rows).encode()).hexdigest(),
@@ -131,7 +131,7 @@ def write_manifest(directory: Path, content: Mapping[str, Any]) -> None:
     write_text_durably(json.dumps(content, indent=1) + "\n", directory / MANIFEST_NAME)
 
 
-def checked(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
+def manifest_of(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
     """Manifest from its contents or its JSON; CorpusError, which names ``place``, if it is of another format or its counts disagree."""
     try:
         values: Mapping[str, Any] = json.loads(content) if isinstance(content, bytes) else content
@@ -191,7 +191,7 @@ def read_manifest(path: Path | str, check: Check = "sha256") -> Manifest:
         content = place.read_bytes()
     except OSError as error:
         raise CorpusError(f"{place}: cannot be read ({error.strerror or error}); copy the corpus again.") from None
-    manifest = checked(content, place)
+    manifest = manifest_of(content, place)
     if manifest.complete and not manifest.parts:
         raise CorpusError(f"{place}: is marked complete and lists no parts; do not trust this corpus.")
     return manifest if manifest.complete else _with_present_parts(manifest, path)
@@ -210,7 +210,7 @@ def _manifest_of_file(file: Path) -> Manifest:
             content[name] = attributes[name] if name in _TEXTS else json.loads(attributes[name])
     except (ValueError, TypeError, KeyError, RecursionError) as error:
         raise CorpusError(f"{file}: has unreadable facts ({type(error).__name__}: {error}); copy it again.") from None
-    return checked(content, file)
+    return manifest_of(content, file)
 
 
 def facts_as_attributes(content: Mapping[str, Any]) -> dict[str, str]:
@@ -227,7 +227,7 @@ def _with_present_parts(manifest: Manifest, directory: Path) -> Manifest:
     paths = sorted(parts, key=lambda path: (len(path.name), path.name))  # part-100000 comes after part-99999
     rows = [row for row in map(row_of, paths) if row is not None]
     content = manifest.model_dump(mode="json") | facts_of_parts(rows, {}, complete=False)
-    return checked(content, directory / MANIFEST_NAME)
+    return manifest_of(content, directory / MANIFEST_NAME)
 
 
 def row_of(path: Path) -> PartRow | None:

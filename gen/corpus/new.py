@@ -69,13 +69,13 @@ def new_corpus(
         with temporary_beside(parts) as folder, writing(target, folder):
             remove_left_behind_of(parts)
             remove_left_behind_of(target)
-            yield from _written(folder, target, codec, recipe_text, facts)
+            yield from _write(folder, target, codec, recipe_text, facts)
         return
     with whole_folder_or_none(target) as folder:
-        yield from _written(folder, None, codec, recipe_text, facts)
+        yield from _write(folder, None, codec, recipe_text, facts)
 
 
-def _written(
+def _write(
     folder: Path, file: Path | None, codec: Codec, recipe_text: str | None, facts: dict[str, Any]
 ) -> Iterator[NewCorpus]:
     """Corpus to write parts to, finished in its folder or as a ``file`` at the end."""

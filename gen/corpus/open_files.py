@@ -77,7 +77,7 @@ def source_of(path: Path | str) -> Source:
 
 
 @contextmanager
-def opened(source: Source) -> Iterator[OpenFile]:
+def open_source(source: Source) -> Iterator[OpenFile]:
     """Open file of a source, under the lock of the libraries; all their errors become a CorpusError."""
     with LIBRARY_LOCK:
         try:
@@ -121,7 +121,7 @@ def close(sources: Sequence[Source]) -> None:
 def file_facts(path: Path) -> tuple[dict[str, Any], int]:
     """Global attributes of a file of records, and its number of records; CorpusError if it is none."""
     source = source_of(path)
-    with opened(source) as file:
+    with open_source(source) as file:
         facts = attributes_of(file.handle), file.signal().shape[0]
     close([source])  # another library cannot open a file that is open here
     return facts

@@ -17,7 +17,7 @@ from gen.corpus.codecs import CODECS, Codec
 from gen.corpus.files import append_checksum, whole_or_not_at_all
 from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
-from gen.corpus.signals import Count, SignalCounts, counted, judge
+from gen.corpus.signals import Count, SignalCounts, count_verdicts, judge
 from gen.corpus.unicode_text import set_attributes, write_unicode
 
 _INCOMPRESSIBLE = 7.8  # bits per byte
@@ -57,8 +57,8 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
         If writing fails, with the reason that the system gives.
     """
     signal = dataset[SIGNAL].values
-    signals = counted(judge(signal))
-    chunks = {at: deflated(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
+    signals = count_verdicts(judge(signal))
+    chunks = {at: deflate(signal[at]) for at in np.ndindex(signal.shape[:2])} if codec == "zlib" else {}
     with whole_or_not_at_all(path) as temporary, LIBRARY_LOCK:
         with netCDF4.Dataset(temporary, "w", format="NETCDF4") as file:
             attributes = {str(name): value for name, value in dataset.attrs.items()}
@@ -118,13 +118,13 @@ def _write_chunks(chunks: Chunks, file: h5py.File) -> None:
         stored.id.write_direct_chunk((record, channel, 0), chunk)
 
 
-def deflated(samples: NDArray[Any]) -> bytes:
+def deflate(samples: NDArray[Any]) -> bytes:
     r"""Samples after the shuffle of HDF5 as a zlib stream, of about the size of level 1.
 
     The lower bytes of a noisy signal cannot be compressed: planes with evenly distributed bytes are stored as they are. The other planes
     are run-length coded, because only runs repeat in them.
 
-    >>> zlib.decompress(deflated(np.array([1, 2, 3], np.int16)))
+    >>> zlib.decompress(deflate(np.array([1, 2, 3], np.int16)))
     b'\x01\x02\x03\x00\x00\x00'
     """
     planes = np.ascontiguousarray(samples.view(np.uint8).reshape(len(samples), -1).T)
@@ -136,10 +136,10 @@ def deflated(samples: NDArray[Any]) -> bytes:
     return b"".join([*pieces, b"\x03\x00", zlib.adler32(planes.data).to_bytes(4, "big")])
 
 
-def inflated(chunk: bytes, samples: int) -> NDArray[np.int16]:
-    """Counts from a zlib stream of their shuffled bytes, as from :func:`deflated`; ValueError if their number is not ``samples``.
+def inflate(chunk: bytes, samples: int) -> NDArray[np.int16]:
+    """Counts from a zlib stream of their shuffled bytes, as from :func:`deflate`; ValueError if their number is not ``samples``.
 
-    >>> inflated(deflated(np.array([1, -2, 300], np.int16)), 3)
+    >>> inflate(deflate(np.array([1, -2, 300], np.int16)), 3)
     array([  1,  -2, 300], dtype=int16)
     """
     stream = zlib.decompressobj()

@@ -27,10 +27,10 @@ _WITHOUT_VERSION = re.compile(
 _EMAIL = re.compile(r"[^@\s<>,;]{1,64}@[^@\s<>,;]{1,200}\.[^@\s<>,;.]{2,63}")
 
 
-def checked_orcid(text: str) -> str:
+def check_orcid(text: str) -> str:
     """ORCID without the address before it; ValueError if it is none, or if its last character is not the check digit of ISO 7064 (11-2).
 
-    >>> checked_orcid("https://orcid.org/0000-0002-1825-0097")
+    >>> check_orcid("https://orcid.org/0000-0002-1825-0097")
     '0000-0002-1825-0097'
     """
     match = _ORCID.fullmatch(text)
@@ -48,10 +48,10 @@ def checked_orcid(text: str) -> str:
     return match[1]
 
 
-def checked_doi(text: str) -> str:
+def check_doi(text: str) -> str:
     """DOI without the address before it; ValueError if it is none.
 
-    >>> checked_doi("https://doi.org/10.1000/182")
+    >>> check_doi("https://doi.org/10.1000/182")
     '10.1000/182'
     """
     match = _DOI.fullmatch(text)
@@ -60,7 +60,7 @@ def checked_doi(text: str) -> str:
     return match[1]
 
 
-def _checked_license(text: str) -> str:
+def _check_license(text: str) -> str:
     if _SPDX.fullmatch(text) is None:
         raise ValueError(
             f"{text!r} is not an SPDX identifier; give one of spdx.org/licenses, such as CC-BY-4.0 or CC0-1.0, "
@@ -74,13 +74,13 @@ def _checked_license(text: str) -> str:
     return text
 
 
-def _checked_email(text: str) -> str:
+def _check_email(text: str) -> str:
     if _EMAIL.fullmatch(text) is None:
         raise ValueError(f"{text!r} is not an e-mail address; give one such as name@example.org.")
     return text
 
 
-def _checked_date(text: str) -> str:
+def _check_date(text: str) -> str:
     try:
         if date.fromisoformat(text).isoformat() == text:
             return text
@@ -105,11 +105,11 @@ def _name_alone(text: str) -> str:
 
 Line = Annotated[str, StringConstraints(min_length=1, max_length=200), AfterValidator(_one_line)]
 Reference = Annotated[str, StringConstraints(min_length=1, max_length=500), AfterValidator(_one_line)]
-License = Annotated[str, AfterValidator(_checked_license)]
-Orcid = Annotated[str, AfterValidator(checked_orcid)]
-Doi = Annotated[str, AfterValidator(checked_doi)]
-Email = Annotated[str, AfterValidator(_checked_email)]
-Date = Annotated[str, AfterValidator(_checked_date)]
+License = Annotated[str, AfterValidator(_check_license)]
+Orcid = Annotated[str, AfterValidator(check_orcid)]
+Doi = Annotated[str, AfterValidator(check_doi)]
+Email = Annotated[str, AfterValidator(_check_email)]
+Date = Annotated[str, AfterValidator(_check_date)]
 
 
 class Creator(BaseModel):

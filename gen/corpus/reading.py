@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from xarray.backends import BackendArray, BackendEntrypoint
 from xarray.core import indexing
 
-from gen.corpus.blocks import all_inflated, stored_chunks
+from gen.corpus.blocks import inflate_all, stored_chunks
 from gen.corpus.layout import (
     PACKING,
     Packing,
@@ -26,7 +26,7 @@ from gen.corpus.layout import (
     is_utf8,
     plain_attributes,
 )
-from gen.corpus.open_files import OpenFile, Source, close, opened, source_of
+from gen.corpus.open_files import OpenFile, Source, close, open_source, source_of
 from gen.corpus.schema import SIGNAL, SIGNAL_DIMS
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
@@ -49,7 +49,7 @@ class _Column(BackendArray):
         check_limit(
             "file_bytes", self.dtype.itemsize * math.prod(counts), f"{self.source.path}: {self.name} has", CorpusError
         )
-        with opened(self.source) as file:
+        with open_source(self.source) as file:
             values = np.asarray(file.dataset(self.name)[key])
         if values.dtype == np.dtype("S1") and not is_utf8(values):
             raise CorpusError(
@@ -89,7 +89,7 @@ class _Signal(BackendArray):
 
     def _decode(self, part: int, records: range, channels: range, out: NDArray[Any]) -> None:
         """Decode consecutive records of a part into ``out``. Chunks are inflated without the lock, so that threads run in parallel."""
-        with opened(self.parts[part]) as file:
+        with open_source(self.parts[part]) as file:
             stored, shape, packing, deflated = file.signal()
             if (shape, packing) != ((self.starts[part + 1] - self.starts[part], *self.shape[1:]), self.packing):
                 raise CorpusError(
@@ -99,7 +99,7 @@ class _Signal(BackendArray):
                 self.packing.decode(stored[records.start : records.stop, channels.start : channels.stop], out)
                 return
             chunks = stored_chunks(stored, records, channels)
-        inflating = all_inflated(chunks, self.shape[2], self.parts[part].path)
+        inflating = inflate_all(chunks, self.shape[2], self.parts[part].path)
         for place, counts in zip(np.ndindex(out.shape[:2]), inflating, strict=True):
             self.packing.decode(counts, out[place])
 
@@ -126,14 +126,14 @@ class _Records(BackendEntrypoint):
     ) -> xr.Dataset:
         """Variables of one file with the signal of ``parts``; ``counts`` are their numbers of records."""
         source, sources = source_of(filename_or_obj), [source_of(path) for path in parts]
-        with opened(sources[0]) as file:
+        with open_source(sources[0]) as file:
             stored, (count, channels, samples), packing, _ = file.signal()
             attributes = attributes_of(stored)
         counts = [count] if counts is None else counts
         signal = _Signal(sources, counts, (channels, samples), packing)
         encoding = {name: attributes.pop(name) for name in PACKING if name in attributes}
         attributes.pop("coordinates", None)
-        with opened(source) as file:
+        with open_source(source) as file:
             variables = _variables(file, source, dict(zip(SIGNAL_DIMS, signal.shape, strict=True)))
             facts = attributes_of(file.handle)
         texts = [name for name, variable in variables.items() if variable.ndim == 2]

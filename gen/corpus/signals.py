@@ -72,24 +72,24 @@ def judge(signal: NDArray[np.integer] | NDArray[np.floating]) -> NDArray[np.int8
     return channels.max(axis=1).astype(np.int8)
 
 
-def counted(verdicts: NDArray[np.int8]) -> SignalCounts:
+def count_verdicts(verdicts: NDArray[np.int8]) -> SignalCounts:
     """Number of records of each verdict except ``sound``.
 
-    >>> counted(np.array([0, 1, 1, 4], np.int8))
+    >>> count_verdicts(np.array([0, 1, 1, 4], np.int8))
     SignalCounts(clipped=2, dead=0, constant=0, not_finite=1)
     """
     return SignalCounts(*(int(np.count_nonzero(verdicts == place)) for place in range(1, len(VERDICTS))))
 
 
-def summed(counts: Iterable[SignalCounts]) -> SignalCounts:
+def sum_counts(counts: Iterable[SignalCounts]) -> SignalCounts:
     """Sum of the counts of several parts."""
     return SignalCounts(*np.array([SignalCounts(), *counts]).sum(axis=0).tolist())
 
 
-def described(counts: SignalCounts) -> str:
+def counts_in_words(counts: SignalCounts) -> str:
     """Counts in words; counts of 0 are left out.
 
-    >>> described(SignalCounts(clipped=1204, not_finite=2)), described(SignalCounts())
+    >>> counts_in_words(SignalCounts(clipped=1204, not_finite=2)), described(SignalCounts())
     ('1,204 clipped, 2 not finite', 'none')
     """
     return ", ".join(f"{n:,} {kind.replace('_', ' ')}" for kind, n in counts._asdict().items() if n) or "none"
@@ -101,4 +101,4 @@ def complaint(counts: SignalCounts, records: int) -> str | None:
     if useless <= USELESS_SHARE * records:
         return None
     advice = list(dict.fromkeys(_ADVICE[kind] for kind, n in counts._asdict().items() if n))
-    return f"{useless:,} of {records:,} records cannot be used ({described(counts)}): {'; '.join(advice)}."
+    return f"{useless:,} of {records:,} records cannot be used ({counts_in_words(counts)}): {'; '.join(advice)}."

@@ -23,7 +23,7 @@ from gen.corpus.manifest import (
     recipe_text,
 )
 from gen.corpus.open_files import file_facts
-from gen.corpus.signals import VERDICTS, SignalCounts, counted, described, judge
+from gen.corpus.signals import VERDICTS, SignalCounts, count_verdicts, counts_in_words, judge
 from gen.support.errors import CorpusError
 
 _MADE_BY = ("recipe_sha256", "sources_sha256")
@@ -120,9 +120,9 @@ def _signal_problems(file: Path, listed: SignalCounts) -> list[str]:
     verdicts = np.concatenate([judge(block) for block in stored_blocks(file)])
     lost = np.flatnonzero(verdicts == VERDICTS.index("not_finite"))
     problems = [f"{file}: record {record} of it has samples that are not finite." for record in lost]
-    if counted(verdicts) != listed:
-        counts = described(counted(verdicts))
-        problems.append(f"{file}: {counts} of its records cannot be used, {described(listed)} are listed.")
+    if count_verdicts(verdicts) != listed:
+        counts = counts_in_words(count_verdicts(verdicts))
+        problems.append(f"{file}: {counts} of its records cannot be used, {counts_in_words(listed)} are listed.")
     return problems
 
 

@@ -25,7 +25,7 @@ from gen.corpus import (
     finish_corpus,
     finish_file,
     is_single_file,
-    locked,
+    lock,
     part_name,
     read_manifest,
     remove_left_behind_of,
@@ -145,7 +145,7 @@ def _finished_before(file: Path, folder: Path, recipe: Recipe, facts: dict[str, 
     with suppress(CorpusError):  # not left by a call that was killed between the last two steps
         left = read_manifest(folder)
         if not left.complete and left.recipe_sha256 == manifest.recipe_sha256:
-            with locked(folder):
+            with lock(folder):
                 remove_parts(folder, map(part_name, range(recipe.n_parts)))
     return Generated(file, manifest.records, recipe.n_parts, recipe.n_parts, manifest.failures, manifest.signals)
 
@@ -186,7 +186,7 @@ def _claimed(folder: Path) -> Iterator[None]:
         raise CorpusError(f"{folder}: is a file; give a folder, or a file that ends in .nc, for the corpus.")
     with writing(folder):
         folder.mkdir(parents=True, exist_ok=True)
-    with locked(folder):
+    with lock(folder):
         yield
 
 

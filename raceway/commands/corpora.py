@@ -211,10 +211,10 @@ def _generated(recipe: str, output: Path, **options: Any) -> "Generated":
 
 
 def _show_generated(made: "Generated") -> None:
-    from gen.corpus import described
+    from gen.corpus import counts_in_words
 
     kept = f", {made.kept} of them kept from before" if made.kept else ""
-    unusable = f"; {described(made.signals)} cannot be used" if any(made.signals) else ""
+    unusable = f"; {counts_in_words(made.signals)} cannot be used" if any(made.signals) else ""
     failed = f"; {len(made.failures):,} could not be simulated and are left out" if made.failures else ""
     size = f"{show.counted(made.records, 'record')} in {show.counted(made.parts, 'part')}"
     show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")

@@ -17,7 +17,7 @@ from gen.corpus import (
     SPLITS,
     Manifest,
     SignalCounts,
-    described,
+    counts_in_words,
     fault_counts,
     open_corpus,
     open_part,
@@ -166,7 +166,7 @@ def show_facts(facts: dict[str, Any]) -> None:
     known["state"] = "complete" if facts["complete"] else "unfinished; the command that began it completes it"
     if "classes" in facts:
         known |= _shown_content(facts)
-    known["not usable"] = described(SignalCounts(**facts["signals"]))
+    known["not usable"] = counts_in_words(SignalCounts(**facts["signals"]))
     known |= {"parts": f"{facts['parts']:,}", "size": show.size(facts["bytes"])}
     known["versions"] = ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items())
     show.facts(known)

@@ -23,7 +23,7 @@ from gen.corpus import (
     FAULT_NAMES,
     card_folder,
     check_card,
-    locked,
+    lock,
     open_corpus,
     read_manifest,
     remove_temporary_files,
@@ -64,7 +64,7 @@ def complete_card(path: Path, scores: Path | None = None) -> CardAdditions:
         manifest, folder = read_manifest(path), card_folder(path)
         with writing(folder):
             folder.mkdir(exist_ok=True)
-        with locked(folder):
+        with lock(folder):
             remove_temporary_files(folder)
             known = read_additions(folder, manifest)
             write_additions(

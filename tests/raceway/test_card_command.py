@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from gen.corpus import card_folder, locked, open_corpus, read_manifest, validate_corpus
+from gen.corpus import card_folder, lock, open_corpus, read_manifest, validate_corpus
 from gen.support.errors import CorpusError
 from raceway.commands.publishing import card
 from raceway.studies import card_pictures
@@ -190,5 +190,5 @@ def test_a_file_of_a_corpus_gets_no_card(run, copied):
 def test_one_call_at_a_time_makes_a_card(copied):
     folder = card_folder(copied)
     folder.mkdir(exist_ok=True)
-    with locked(folder), pytest.raises(CorpusError, match="another raceway command is writing into it"):
+    with lock(folder), pytest.raises(CorpusError, match="another raceway command is writing into it"):
         card_pictures.complete_card(copied)

@@ -5,7 +5,7 @@ import xarray as xr
 
 from gen.corpus.card.markdown import plain_text, table
 from gen.corpus.schema import FAULT_NAMES, SPLITS
-from gen.corpus.signals import SignalCounts, described
+from gen.corpus.signals import SignalCounts, counts_in_words
 
 MOST_NAMES = 12  # bearings named on the card; the others are counted
 
@@ -18,7 +18,7 @@ def contents(corpus: xr.Dataset, signals: SignalCounts) -> list[str]:
     channels = "channel" if corpus.sizes["channel"] == 1 else "channels"
     return [
         f"{records} {'record' if records == 1 else 'records'} of {samples / fs:g} s at {fs:g} Hz, {channels} {names}, in m/s^2.",
-        f"Records that cannot be used: {described(signals)}.",
+        f"Records that cannot be used: {counts_in_words(signals)}.",
         "",
         f"Bearings: {_bearings(corpus)}.",
         *_classes(corpus),

@@ -34,14 +34,14 @@ def rebuilding(corpus: xr.Dataset, manifest: Manifest) -> list[str]:
     """Section with the command that makes the corpus again."""
     lines = ["", "## How to make it again", ""]
     if manifest.recipe_sha256 is not None:
-        lines += ["In this folder:", "", "```sh", _quoted(_generating(manifest)), "```"]
+        lines += ["In this folder:", "", "```sh", _quote(_generating(manifest)), "```"]
     elif manifest.recordings is not None and manifest.importer is not None:
         window = corpus.sizes["elapsed_time"] / float(corpus["sample_rate"][0])
         words = ["raceway", "import", manifest.importer, "SRC", "--window", f"{window:g}", "-o", _NEW]
         lines += [
             "With your copy of the recordings in place of SRC, and the other options of the import, which are not stored in the corpus:",
             "",
-            *("```sh", _quoted(words), "```"),
+            *("```sh", _quote(words), "```"),
         ]
     else:
         lines += [f"History of the corpus: {plain_text(corpus.attrs.get('history', 'not known'))}."]
@@ -59,7 +59,7 @@ def _generating(manifest: Manifest) -> list[str]:
     return [*words, "-o", _NEW]
 
 
-def _quoted(words: Sequence[str]) -> str:
+def _quote(words: Sequence[str]) -> str:
     return " ".join(shlex.quote(code_text(word)) for word in words)
 
 

@@ -2,7 +2,7 @@
 
 import re
 
-from gen.corpus.card.markdown import listed, plain_text, table
+from gen.corpus.card.markdown import enumeration, plain_text, table
 from gen.corpus.manifest import Manifest
 from gen.corpus.publication import Creator, Publication
 
@@ -54,7 +54,7 @@ def _sentence(title: str, note: str, publication: Publication) -> str:
     names = [plain_text(person.name) for person in publication.creators]
     year = f" ({publication.date[:4]})" if publication.date else ""
     parts = [
-        f"{listed(names)}{year}: {title}" if names else f"{title}{year}",
+        f"{enumeration(names)}{year}: {title}" if names else f"{title}{year}",
         note,
         plain_text(publication.institution or ""),
         f"https://doi.org/{plain_text(publication.doi)}" if publication.doi else "",
@@ -66,12 +66,12 @@ def bibtex(title: str, manifest: Manifest) -> str:
     """Entry of type ``misc``, which every BibTeX style knows."""
     publication, title = manifest.publication, plain_text(title)
     fields = {
-        "title": f"{{{_escaped(title)}}}",
+        "title": f"{{{_escape(title)}}}",
         "author": " and ".join(_author(person) for person in publication.creators),
         "year": (publication.date or "")[:4],
-        "publisher": _escaped(plain_text(publication.institution or "")),
+        "publisher": _escape(plain_text(publication.institution or "")),
         "doi": plain_text(publication.doi or "").replace("{", "").replace("}", ""),
-        "note": _escaped(_note(manifest)),
+        "note": _escape(_note(manifest)),
     }
     entries = [f"  {name} = {{{value}}}," for name, value in fields.items() if value]
     return "\n".join([f"@misc{{{_key(title, publication)},", *entries, "}"])
@@ -83,7 +83,7 @@ def _author(creator: Creator) -> str:
     >>> _author(Creator(name="Jane Doe", orcid="0000-0002-1825-0097")), _author(Creator(name="Example Laboratory"))
     ('Jane Doe', '{Example Laboratory}')
     """
-    name = _escaped(plain_text(creator.name))
+    name = _escape(plain_text(creator.name))
     return name if creator.orcid and " and " not in f" {name.lower()} " else f"{{{name}}}"
 
 
@@ -98,10 +98,10 @@ def _key(title: str, publication: Publication) -> str:
     return "".join(re.sub(r"[^a-z0-9]", "", word.lower()) for word in words) or "corpus"
 
 
-def _escaped(text: str) -> str:
+def _escape(text: str) -> str:
     r"""Text for a field of BibTeX.
 
-    >>> print(_escaped("50 % of A & B_1"))
+    >>> print(_escape("50 % of A & B_1"))
     50 \% of A \& B\_1
     """
     return "".join(_ESCAPES.get(letter, letter) for letter in text)

@@ -27,7 +27,7 @@ from gen.corpus import (
     validate_corpus,
     write_part,
 )
-from gen.corpus.part import deflated
+from gen.corpus.part import deflate
 from gen.support.errors import CorpusError
 from tests.corpora import EXTRA, FS, SIZES, columns, dataset, physical, write_corpus, write_parts
 
@@ -191,9 +191,9 @@ def test_a_part_that_is_no_netcdf_file_is_named(tmp_path):
 def test_compressed_samples_are_a_zlib_stream_of_their_shuffled_bytes(seed, n, level, kind):
     samples = (level * np.random.default_rng(seed).standard_normal(n)).clip(-32767, 32767).astype(kind)
     shuffled = samples.view(np.uint8).reshape(n, -1).T.tobytes()
-    assert zlib.decompress(deflated(samples)) == shuffled
-    assert len(deflated(samples)) <= len(zlib.compress(shuffled, 1)) * 1.02 + 40
+    assert zlib.decompress(deflate(samples)) == shuffled
+    assert len(deflate(samples)) <= len(zlib.compress(shuffled, 1)) * 1.02 + 40
 
 
 def test_what_needs_no_bits_takes_none():
-    assert len(deflated(np.zeros(12_800, np.int16))) < 200
+    assert len(deflate(np.zeros(12_800, np.int16))) < 200

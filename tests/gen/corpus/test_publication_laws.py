@@ -20,7 +20,7 @@ from gen.corpus import (
     validate_corpus,
 )
 from gen.corpus.manifest import facts_of_parts
-from gen.corpus.publication import checked_doi, checked_orcid
+from gen.corpus.publication import check_doi, check_orcid
 from gen.recipe import read_recipe, recipe_hash
 from gen.support.errors import CorpusError, RecipeError
 from tests import corpora
@@ -158,17 +158,17 @@ def test_a_recipe_with_another_publication_has_the_same_hash(write_recipe, tmp_p
 
 def test_the_check_digit_of_an_orcid_finds_every_wrong_digit():
     """Literature: ISO 7064, MOD 11-2; both numbers are examples in the documentation of ORCID."""
-    assert checked_orcid("0000-0002-1694-233X") == "0000-0002-1694-233X"
+    assert check_orcid("0000-0002-1694-233X") == "0000-0002-1694-233X"
     right = "0000-0002-1825-0097"
     for place, digit in enumerate(right[:-1]):
         for other in set("0123456789") - {digit, "-"}:
             with pytest.raises(ValueError, match="is not an ORCID"):
-                checked_orcid(right[:place] + other + right[place + 1 :])
+                check_orcid(right[:place] + other + right[place + 1 :])
 
 
 def test_addresses_of_a_doi_are_one_doi():
     for text in ("10.1000/182", "doi:10.1000/182", "https://doi.org/10.1000/182", "http://dx.doi.org/10.1000/182"):
-        assert checked_doi(text) == "10.1000/182"
+        assert check_doi(text) == "10.1000/182"
 
 
 WRONG = {

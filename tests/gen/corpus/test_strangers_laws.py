@@ -12,7 +12,7 @@ import pytest
 from features.table import feature_table
 from gen.corpus import SIGNAL, open_corpus, part_name, read_manifest, validate_corpus
 from gen.corpus.card.additions import CardAdditions, CardPicture, write_additions
-from gen.corpus.part import deflated
+from gen.corpus.part import deflate
 from gen.support.errors import CorpusError, RacewayError
 from tests.corpora import write_corpus
 from tests.tampering import edit_manifest, edited, seal
@@ -211,9 +211,9 @@ def test_what_is_not_in_the_format_is_refused_and_never_an_internal_error(copied
 
 CHUNKS = {
     "no stream": (b"no zlib stream", 0),
-    "too short": (deflated(np.zeros(49, np.int16)), 0),
-    "too long": (deflated(np.zeros(5000, np.int16)), 0),
-    "cut short": (deflated(np.arange(50, dtype=np.int16))[:-4], 0),
+    "too short": (deflate(np.zeros(49, np.int16)), 0),
+    "too long": (deflate(np.zeros(5000, np.int16)), 0),
+    "cut short": (deflate(np.arange(50, dtype=np.int16))[:-4], 0),
     "without its filters": (np.zeros(50, np.int16).tobytes(), 3),
 }
 
