@@ -67,8 +67,9 @@ def channel_names(corpus: xr.Dataset) -> list[str]:
 
 
 def per_record(corpus: xr.Dataset) -> list[str]:
-    """Names of the per-record variables of an opened corpus."""
-    return [str(name) for name, variable in corpus.variables.items() if variable.dims == ("record",)]
+    """Names of the per-record variables that an opened corpus stores; names of classes have no role."""
+    found = corpus.variables.items()
+    return [str(name) for name, variable in found if variable.dims == ("record",) and "role" in variable.attrs]
 
 
 def _is_chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDArray[np.bool_]:

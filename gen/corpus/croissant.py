@@ -166,7 +166,7 @@ def _listed_values(name: str, description: str, kind: str, values: Mapping[int, 
 
 def _records(corpus: xr.Dataset, source: Mapping[str, Any]) -> dict[str, Any]:
     """Set of the records with a field for each variable; the signal is one array of channels and samples."""
-    names = [str(name) for name, variable in corpus.variables.items() if variable.dims[:1] == ("record",)]
+    names = [str(name) for name, variable in corpus.variables.items() if "role" in variable.attrs]
     channels = ", ".join(str(name) for name in corpus["channel"].values)
     return {
         "@type": "cr:RecordSet",

@@ -29,7 +29,7 @@ from gen.corpus.manifest import (
 )
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_part, open_records
-from gen.corpus.schema import RECIPE_TEXT, SIGNAL, schema_problems
+from gen.corpus.schema import RECIPE_TEXT, SIGNAL, add_class_names, schema_problems
 from gen.corpus.simulated import SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.support.errors import CorpusError
@@ -52,8 +52,9 @@ def open_corpus(path: Path | str, check: Check = "sha256") -> xr.Dataset:
     Returns
     -------
     Dataset
-        ``acceleration (record, channel, elapsed_time)`` [m s-2] and the variables of :data:`gen.corpus.SCHEMA`. It can be pickled,
-        and chunked for dask with ``.chunk({"record": n})``.
+        ``acceleration (record, channel, elapsed_time)`` [m s-2] and the variables of :data:`gen.corpus.SCHEMA`, with the classes in words
+        as ``fault_name`` and ``split_name``: ``corpus.sel(record=corpus.fault_name == "inner")``. It can be pickled, and chunked for dask
+        with ``.chunk({"record": n})``.
 
     Raises
     ------
@@ -66,6 +67,7 @@ def open_corpus(path: Path | str, check: Check = "sha256") -> xr.Dataset:
     for problem in schema_problems(opened, SIMULATED):
         opened.close()
         raise CorpusError(f"{path}: {problem}")
+    add_class_names(opened)
     return opened
 
 

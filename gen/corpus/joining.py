@@ -110,7 +110,8 @@ def _with_all(
         value = np.array(unknown_value(like.dtype, like.attrs), object if text else like.dtype.newbyteorder("="))
         columns[name] = xr.Variable("record", np.broadcast_to(value, corpus.sizes["record"]), like.attrs)
     texts = [name for name, column in columns.items() if column.dtype.kind not in "iuf"]
-    return corpus.drop_vars(per_record(corpus)).assign(columns).set_coords(texts)
+    stored = corpus.drop_vars([name for name, variable in corpus.variables.items() if variable.dims == ("record",)])
+    return stored.assign(columns).set_coords(texts)
 
 
 def _with_attributes(variable: xr.Variable, attributes: Mapping[Any, Any]) -> xr.Variable:

@@ -12,6 +12,7 @@ from typing import Any
 import xarray as xr
 
 from gen.corpus import RECIPE_TEXT
+from gen.corpus.schema import add_class_names
 from gen.generation.parts import dataset_of, library_versions, part_attributes
 from gen.generation.scheduling import Crew, MadePart, made_parts
 from gen.generation.undetected import made_from
@@ -175,6 +176,7 @@ def _decoded(parts: list[xr.Dataset], failures: Sequence[str], attributes: dict[
     if not dataset.sizes["record"]:
         raise SimulationError(failures[0])
     decoded = xr.decode_cf(dataset, decode_times=False).load()
+    add_class_names(decoded)
     decoded.attrs |= attributes
     if failures:
         left_out = f"{len(failures)} of {len(failures) + dataset.sizes['record']} records are left out"

@@ -24,7 +24,7 @@ from gen.corpus import (
     new_corpus,
 )
 from gen.corpus.joining import new_numbers
-from gen.corpus.schema import SIGNAL_DIMS, schema_problems
+from gen.corpus.schema import NAMED, SIGNAL_DIMS, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.parts import part_attributes
 from gen.measurement.measure import LARGEST_COUNT
@@ -149,8 +149,9 @@ def _stored(
 ) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
     known = {variable.name: variable for variable in SCHEMA + SIMULATED if variable.name in rows.variables}
+    derived = {SIGNAL, "channel", "elapsed_time", *(f"{name}_name" for name in NAMED)}
     further = {}
-    for name in sorted(map(str, set(rows.variables) - known.keys() - {SIGNAL, "channel", "elapsed_time"})):
+    for name in sorted(map(str, set(rows.variables) - known.keys() - derived)):
         found = rows[name]
         if found.dims != ("record",) or "long_name" not in found.attrs or "role" not in found.attrs:
             raise CorpusError(

@@ -263,7 +263,12 @@ def test_a_table_is_unchanged_in_the_columns_of_parquet(tmp_path, table):
     path = tmp_path / "table.parquet"
     write_table(table, path)
     again = parquet.read_table(path)
-    assert set(again.column_names) == {*feature_names(), *(variable.name for variable in (*SCHEMA, SNR))}
+    assert set(again.column_names) == {
+        *feature_names(),
+        *(variable.name for variable in (*SCHEMA, SNR)),
+        "fault_name",
+        "split_name",
+    }
     for name in ("cepstral_bpfo_comb", "time_rms"):
         np.testing.assert_array_equal(again[name].to_numpy(), table["features"].sel(feature=name))
     assert again["bearing"].to_pylist() == table["bearing"].values.tolist()

@@ -3,8 +3,9 @@
 import xarray as xr
 
 from gen.corpus.card.markdown import plain_text, table
+from gen.corpus.choice import per_record
 from gen.corpus.recoverable import NUMBERS, recoveries
-from gen.corpus.schema import ROLES, SIGNAL
+from gen.corpus.schema import ROLES
 from gen.corpus.visible import fault_counts
 
 
@@ -47,9 +48,8 @@ def _recoverable_labels(corpus: xr.Dataset) -> list[str]:
 def meanings(corpus: xr.Dataset) -> list[str]:
     """Section with unit, role and meaning of every per-record variable, by role and name."""
     facts = {
-        str(name): [plain_text(variable.attrs.get(key, "")) for key in ("units", "role", "long_name")]
-        for name, variable in corpus.variables.items()
-        if name != SIGNAL and variable.dims == ("record",)
+        name: [plain_text(corpus[name].attrs.get(key, "")) for key in ("units", "role", "long_name")]
+        for name in per_record(corpus)
     }
     places = {role: place for place, role in enumerate(ROLES)}
     names = sorted(facts, key=lambda name: (places.get(facts[name][1], len(ROLES)), name))

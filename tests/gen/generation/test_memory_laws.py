@@ -142,6 +142,17 @@ def test_a_record_that_was_changed_is_written_without_its_scenario(ladder, tmp_p
                 gen.replay(directory, record)
 
 
+def test_the_class_names_of_records_choose_them_and_are_not_stored(ladder, tmp_path):
+    directory = gen.write_corpus(ladder, tmp_path / "corpus")
+    with gen.open_corpus(directory) as corpus:
+        for records in (ladder, corpus):
+            inner = records.sel(record=records.fault_name == "inner")
+            np.testing.assert_array_equal(inner[SIGNAL], ladder[SIGNAL][ladder.fault.values == 1])
+            assert set(records.split_name.values) <= {"train", "validation", "test"}
+    assert "fault_name" not in xr.open_dataset(directory / "index.nc")
+    assert gen.record(OUTER, **SHORT).fault_name == "outer"
+
+
 def test_an_opened_corpus_is_written_as_it_was(ladder, tmp_path):
     with gen.open_corpus(gen.write_corpus(ladder, tmp_path / "first")) as corpus:
         gen.write_corpus(corpus, tmp_path / "second")
