@@ -151,7 +151,7 @@ def test_blocks_of_records_may_come_in_any_order(corpus, checked):
 
 def test_two_workers_give_the_same_table(corpus, corrected):
     done = []
-    with Client(n_workers=2, threads_per_worker=1, dashboard_address=":0") as client:
+    with Client(n_workers=2, threads_per_worker=1, processes=False, dashboard_address=":0") as client:
         parallel = feature_table(
             corpus, GROUPS, speed="correct", scheduler=client, progress=lambda *counts: done.append(counts)
         )

@@ -86,12 +86,3 @@ def test_what_cannot_be_done_is_one_sentence_and_leaves_nothing(run, tones, tmp_
     assert sentence in result.stderr
     assert result.stderr.count("\n") <= 4
     assert sorted(path.name for path in tmp_path.iterdir()) == ["one", "other"]
-
-
-@pytest.mark.parametrize("target", ["out", "out.nc", "out.parquet"])
-def test_a_full_disk_is_one_sentence_and_leaves_nothing(start, tones, tmp_path, target):
-    process = start("copy", *tones, "-o", tmp_path / target, LARGEST_FILE="40000")
-    error = process.communicate()[1]
-    assert process.returncode == BAD_INPUT, error
-    assert "could not be written" in error
-    assert not list(tmp_path.glob("*out*"))

@@ -15,6 +15,15 @@ def test_a_full_disk_is_named_with_the_final_path(start, tiny_corpus, tmp_path, 
     assert (process.returncode, errors.splitlines()[-1]) == (2, expected)
 
 
+@pytest.mark.parametrize("target", ["out", "out.nc", "out.parquet"])
+def test_a_full_disk_ends_a_copy_in_one_sentence_and_leaves_nothing(start, tiny_corpus, tmp_path, target):
+    process = start("copy", tiny_corpus, "-o", tmp_path / target, LARGEST_FILE="40000")
+    error = process.communicate()[1]
+    assert process.returncode == 2, error
+    assert "could not be written" in error
+    assert not list(tmp_path.glob("*out*"))
+
+
 @pytest.mark.parametrize(
     ("address", "sentence"),
     [

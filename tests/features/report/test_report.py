@@ -33,6 +33,7 @@ FS = 10_000.0
 ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
 LINES = {"compound": (5.4, 3.6)}  # of other classes their fundamental line
 FOUR = FAULTS[:4]  # the classes of corpora made before there were six
+SOME = {name: name for name in ("logistic_regression", "envelope_rule", "majority")}
 HOSTILE = "<script>alert(1)</script>'\"{{ 7 * 7 }}$\\frac"
 
 
@@ -77,10 +78,11 @@ def write_corpus(directory, title="a made-up corpus", specimens=8, records=3, cl
 
 @pytest.fixture(scope="module")
 def results_of():
-    def results(corpus, test=None):
+    def results(corpus, test=None, estimators=None):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("features.baselines.estimators.TREES", 10)
-            return benchmark(feature_table(corpus), None if test is None else feature_table(test), folds=2)
+            other = None if test is None else feature_table(test)
+            return benchmark(feature_table(corpus), other, folds=2, estimators=estimators)
 
     return results
 
@@ -96,8 +98,13 @@ def results(corpus, results_of):
 
 
 @pytest.fixture(scope="module")
-def page(corpus, results, tmp_path_factory):
-    return write_report(corpus, results, tmp_path_factory.mktemp("report") / "new" / "folder").read_text()
+def folder(tmp_path_factory):
+    return tmp_path_factory.mktemp("report") / "new" / "folder"
+
+
+@pytest.fixture(scope="module")
+def page(corpus, results, folder):
+    return write_report(corpus, results, folder).read_text()
 
 
 class Links(HTMLParser):
@@ -152,7 +159,7 @@ def test_a_model_scores_the_folder_of_a_corpus_as_its_feature_table(corpus):
 
 def test_all_classes_are_counted_drawn_and_scored(results_of, tmp_path):
     corpus = write_corpus(tmp_path / "corpus", specimens=2 * len(FAULTS), classes=len(FAULTS))
-    found = Links(write_report(corpus, results_of(corpus), tmp_path / "out").read_text())
+    found = Links(write_report(corpus, results_of(corpus, estimators=SOME), tmp_path / "out").read_text())
     text = " ".join(found.text.split())
     assert len(found.addresses) == len(FAULTS) + 3
     for fault in FAULTS:
@@ -198,11 +205,10 @@ def test_the_example_of_a_class_is_the_record_of_median_level(corpus, monkeypatc
     assert healthy.caption.endswith("; the median of 6 records by the level of the fault lines.")
 
 
-def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, page, tmp_path):
-    for _ in range(2):
-        assert write_report(corpus, results, tmp_path).read_text() == page
-    held = json.loads((tmp_path / "results.json").read_text())
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["report.html", "results.json"]
+def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, page, folder):
+    assert write_report(corpus, results, folder).read_text() == page
+    held = json.loads((folder / "results.json").read_text())
+    assert sorted(path.name for path in folder.iterdir()) == ["report.html", "results.json"]
     assert held["baselines"]["ensemble"]["null"]["accuracy"] == results.baselines["ensemble"].null.accuracy
 
 
@@ -210,7 +216,7 @@ def test_text_of_a_corpus_is_escaped_and_cut_short(results_of, tmp_path):
     title = HOSTILE + 400 * "x"
     corpus = write_corpus(tmp_path / "corpus", title)
     test = write_corpus(tmp_path / "test", "2" + title, records=2)
-    page = write_report(corpus, results_of(corpus, test), tmp_path / "out").read_text()
+    page = write_report(corpus, results_of(corpus, test, SOME), tmp_path / "out").read_text()
     assert "<script" not in page
     assert 400 * "x" not in page
     assert "{{ 7 * 7 }}" in page

@@ -1,6 +1,5 @@
-"""Laws of clusters: workers with threads write the same bytes, and a lost cluster ends in one sentence."""
+"""Laws of clusters: workers with threads write the same bytes, and every item is worked on once."""
 
-import threading
 import time
 from functools import partial
 
@@ -11,7 +10,6 @@ from distributed import Client, LocalCluster
 from gen import generate
 from gen.corpus import read_manifest, validate_corpus
 from gen.support import cluster
-from gen.support.errors import ClusterError
 
 
 @pytest.fixture
@@ -23,10 +21,9 @@ def threaded():
         found.close(timeout=2)
 
 
-@pytest.mark.parametrize("turn", range(3))
-def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, tmp_path, turn):
+def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, tmp_path):
     recipe = tmp_path / "many.yaml"
-    recipe.write_text(tiny_recipe.read_text().replace("records_per_part: 12", f"records_per_part: {2 + turn}"))
+    recipe.write_text(tiny_recipe.read_text().replace("records_per_part: 12", "records_per_part: 3"))
     alone = generate(recipe, tmp_path / "alone")
     made = generate(recipe, tmp_path / "threads", scheduler=threaded.scheduler_address)
     assert read_manifest(made.path).parts == read_manifest(alone.path).parts
@@ -35,47 +32,6 @@ def test_workers_of_several_threads_make_the_same_parts(tiny_recipe, threaded, t
 
 def told(topic, item):
     cluster.publisher(topic)(item)
-
-
-def _slow(number):
-    time.sleep(0.2)
-    return number
-
-
-@pytest.mark.parametrize(
-    ("lose", "sentence"),
-    [
-        (lambda c: c.scale(0), r"has had no worker for 1 s; start workers and run the same command again"),
-        (lambda c: c.sync(c.scheduler.close), r"is gone; start it and run the same command again"),
-    ],
-    ids=["all workers", "the scheduler"],
-)
-def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, lose, sentence):
-    monkeypatch.setattr(cluster, "POLL_S", 0.2)
-    monkeypatch.setattr(cluster, "PATIENCE_S", 1.0)
-    with Client(threaded, set_as_default=False) as client:
-        tasks = cluster.run_tasks(client, _slow, range(10_000))
-        assert next(tasks) < 10_000
-        loser = threading.Timer(0.5, lose, [threaded])
-        loser.start()
-        with pytest.raises(ClusterError, match=sentence):
-            list(tasks)
-        loser.join()
-
-
-def test_a_cluster_that_gets_workers_again_completes_the_work(threaded, monkeypatch):
-    monkeypatch.setattr(cluster, "POLL_S", 0.1)
-    with Client(threaded, set_as_default=False) as client:
-        tasks = cluster.run_tasks(client, _slow, range(40))
-        found = [next(tasks)]
-        threaded.scale(0)
-        while client.nthreads():
-            time.sleep(0.05)
-        later = threading.Timer(1.0, threaded.scale, [2])
-        later.start()
-        found += list(tasks)
-        later.join()
-    assert set(found) == set(range(40))
 
 
 def test_every_item_is_worked_on_once(threaded):

@@ -1,0 +1,54 @@
+"""A cluster that is lost for good ends the work in one sentence, and one that gets workers again completes it."""
+
+import threading
+import time
+
+import pytest
+from distributed import Client
+
+from gen.support import cluster
+from gen.support.errors import ClusterError
+from tests.gen.support.test_cluster_laws import threaded
+
+__all__ = ["threaded"]
+
+
+def _slow(number):
+    time.sleep(0.2)
+    return number
+
+
+@pytest.mark.parametrize(
+    ("lose", "sentence"),
+    [
+        (lambda c: c.scale(0), r"has had no worker for 1 s; start workers and run the same command again"),
+        (lambda c: c.sync(c.scheduler.close), r"is gone; start it and run the same command again"),
+    ],
+    ids=["all workers", "the scheduler"],
+)
+def test_a_lost_cluster_ends_the_work_with_a_sentence(threaded, monkeypatch, lose, sentence):
+    monkeypatch.setattr(cluster, "POLL_S", 0.2)
+    monkeypatch.setattr(cluster, "PATIENCE_S", 1.0)
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _slow, range(10_000))
+        assert next(tasks) < 10_000
+        loser = threading.Timer(0.5, lose, [threaded])
+        loser.start()
+        with pytest.raises(ClusterError, match=sentence):
+            list(tasks)
+        loser.join()
+
+
+def test_a_cluster_that_gets_workers_again_completes_the_work(threaded, monkeypatch):
+    monkeypatch.setattr(cluster, "POLL_S", 0.1)
+    with Client(threaded, set_as_default=False) as client:
+        tasks = cluster.run_tasks(client, _slow, range(40))
+        found = [next(tasks)]
+        threaded.scale(0)
+        while client.nthreads():
+            time.sleep(0.05)
+        later = threading.Timer(1.0, threaded.scale, [2])
+        later.start()
+        found += list(tasks)
+        later.join()
+    assert set(found) == set(range(40))
