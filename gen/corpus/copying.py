@@ -48,7 +48,7 @@ class Block(NamedTuple):
         """Signal in single precision, shape (record, channel, elapsed_time) [m s-2]; a missing sample is NaN."""
         return self.dataset[SIGNAL].values.astype(np.float32, copy=False)
 
-    def stored(self) -> xr.Dataset:
+    def as_stored(self) -> xr.Dataset:
         """Records as they are stored (:func:`gen.corpus.make_dataset`): counts with their scale, or single precision."""
         signal = self.dataset[SIGNAL].variable
         values, scale = stored_signal(signal)
@@ -182,7 +182,7 @@ class Chosen:
             for start in range(0, len(own), size):
                 here = own[start : start + size]
                 dataset = _load(corpus, records[here - first], size * _SPAN)
-                yield Block(before + records[here - first], self._finished(dataset, here))
+                yield Block(before + records[here - first], self._finish(dataset, here))
             first, before = first + len(records), before + corpus.sizes["record"]
 
     def records_in(self, most_bytes: int) -> int:
@@ -195,7 +195,7 @@ class Chosen:
         if len(self.paths) > 1:
             check_repeats(self._digests, list(zip(map(str, self.paths), self.records, strict=True)))
 
-    def _finished(self, dataset: xr.Dataset, places: NDArray[np.intp]) -> xr.Dataset:
+    def _finish(self, dataset: xr.Dataset, places: NDArray[np.intp]) -> xr.Dataset:
         """Records as they are copied: with new numbers, in floating point if asked, with the attributes of all."""
         new = {name: values[places] for name, values in self._numbers.items() if name in dataset.variables}
         changed = {name: xr.Variable("record", values, dataset[name].attrs) for name, values in new.items()}

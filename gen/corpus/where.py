@@ -110,23 +110,23 @@ class _Condition:
                 return ~self.holds(part, depth + 1)
             case ast.Compare(left=left, ops=signs, comparators=others):
                 sides = zip([left, *others[:-1]], signs, others, strict=True)
-                return np.logical_and.reduce([self._compared(*side) for side in sides])
+                return np.logical_and.reduce([self._compare(*side) for side in sides])
             case _:
-                raise self._misplaced(node, "a comparison (==, !=, <, <=, >, >=, in)")
+                raise self._misplacement(node, "a comparison (==, !=, <, <=, >, >=, in)")
 
-    def _compared(self, left: ast.expr, sign: ast.cmpop, right: ast.expr) -> Truth:
+    def _compare(self, left: ast.expr, sign: ast.cmpop, right: ast.expr) -> Truth:
         """Whether two sides compare as the sign between them says."""
         if isinstance(sign, ast.In | ast.NotIn):
             items = right.elts if isinstance(right, ast.Tuple | ast.List) else [right]
             if name := next((item for item in items if isinstance(item, ast.Name)), None):
                 raise self._wrong(name, f"{name.id} is a name; put a text in quotes: '{name.id}'.")
             within = isinstance(sign, ast.In)
-            truths = [self._compared(left, ast.Eq() if within else ast.NotEq(), item) for item in items]
+            truths = [self._compare(left, ast.Eq() if within else ast.NotEq(), item) for item in items]
             combine, of_none = (np.logical_or, np.zeros_like) if within else (np.logical_and, np.ones_like)
             return combine.reduce([of_none(self._of(left).values, bool), *truths])
         compare = _SIGNS.get(type(sign))
         if compare is None:
-            raise self._misplaced(left, "a comparison (==, !=, <, <=, >, >=, in)")
+            raise self._misplacement(left, "a comparison (==, !=, <, <=, >, >=, in)")
         if isinstance(left, ast.Name):
             return self._of_variable(left, compare, right)
         self._literal(left)
@@ -176,17 +176,17 @@ class _Condition:
             case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=ast.Constant(value=int() | float()) as number):
                 return float(self._literal(number)) * (-1 if isinstance(sign, ast.USub) else 1)
             case _:
-                raise self._misplaced(node, _VALUE)
+                raise self._misplacement(node, _VALUE)
 
     def _of(self, node: ast.expr) -> Column:
         """Values of the variable that a node names."""
         if not isinstance(node, ast.Name):
-            raise self._misplaced(node, "the name of a variable")
+            raise self._misplacement(node, "the name of a variable")
         if node.id not in self._variables:
             raise self._wrong(node, f"there is no variable {node.id}{nearest(node.id, self._variables)}")
         return self._column(node.id)
 
-    def _misplaced(self, node: ast.expr, wanted: str) -> CorpusError:
+    def _misplacement(self, node: ast.expr, wanted: str) -> CorpusError:
         source = ast.get_source_segment(self._line, node) or ""
         return self._wrong(node, f"found {source[:30]!r} where {wanted} should be.")
 

@@ -142,7 +142,7 @@ def _writer(form: str, *, single: bool) -> Callable[[Export, Any], None]:
 def _write_parts(export: Export, corpus: NewCorpus) -> None:
     corpus.facts |= export.chosen.facts()
     for block in export.blocks(_PART_BYTES):
-        corpus.write(block.stored())
+        corpus.write(block.as_stored())
 
 
 def _form(target: Path, to: str | None, codec: str | None) -> str:

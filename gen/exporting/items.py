@@ -54,13 +54,13 @@ class LabelledRecords:
         place = operator.index(item)
         if not -len(self) <= place < len(self):
             raise IndexError(f"record {place} is not one of {len(self)}.")
-        return self._made(self._read(int(self.records[place])), place)
+        return self._item(self._read(int(self.records[place])), place)
 
     def __getitems__(self, items: Sequence[int] | NDArray[np.intp]) -> list[Item]:
         """Read several records at once, which takes half the time of one by one; PyTorch calls it for a batch."""
         rows, row_of_item = np.unique(self.records[np.asarray(items, np.intp)], return_inverse=True)
         signals = self._read(rows)
-        return [self._made(signals[row], place) for row, place in zip(row_of_item, items, strict=True)]
+        return [self._item(signals[row], place) for row, place in zip(row_of_item, items, strict=True)]
 
     def batches(self, size: int, *, seed: int | None = None) -> Iterator[tuple[NDArray[Any], NDArray[Any]]]:
         """Every record once, in batches for a training loop without a data loader.
@@ -90,7 +90,7 @@ class LabelledRecords:
         chosen = self.signal[rows] if whole else self.signal[rows, list(self.channel_places)]
         return chosen.values.astype(np.float32, copy=False)
 
-    def _made(self, signal: NDArray[np.float32], place: int) -> Item:
+    def _item(self, signal: NDArray[np.float32], place: int) -> Item:
         """Item of a signal that was read."""
         label = self.labels[place]
         return (

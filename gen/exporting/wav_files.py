@@ -34,7 +34,7 @@ def write_wav(export: Export, folder: Path) -> str:
     with label_table(export, folder, ["m_s2_per_unit"]) as write:
         for block in export.blocks(_BLOCK_BYTES):
             files = [record_file(folder, number, "wav") for number in block.numbers]
-            for file, signal in zip(files, block.stored()[SIGNAL].values, strict=True):
+            for file, signal in zip(files, block.as_stored()[SIGNAL].values, strict=True):
                 wavfile.write(folder / file, rate, np.ascontiguousarray(signal.T))
             write(block, [(file, scale) for file in files])
     form = "32-bit floating point [m s-2]" if chosen.scale is None else "16-bit counts of the converter"

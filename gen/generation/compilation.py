@@ -22,7 +22,7 @@ from gen.scenarios import Scenario, draw_scenarios, settings_of
 from gen.simulation.kernels import is_compiled, load_kernel
 from gen.simulation.outline import outlined_inputs
 from gen.simulation.timeline import timeline
-from gen.support.garbage import garbage_kept
+from gen.support.garbage import keep_garbage
 
 SAMPLE = 48
 """Number of records from the first on, and of others spread over the corpus, whose kernels are compiled."""
@@ -41,14 +41,14 @@ load_kernel(Shape(*((None,) * count for count in json.loads(sys.argv[1]))))
 
 def compile_kernels(recipe: Recipe, report: Callable[[str], None] = lambda _: None) -> None:
     """Compile the kernels of a recipe into numba's cache on disk; ``report`` is called with a sentence at the start of each."""
-    with garbage_kept():
+    with keep_garbage():
         compile_mixing(draw_scenarios(recipe, 0, 1)[0])
         if recipe.sensor_faults.loose_mount is not None:
             compile_rattle()
         missing = [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
     cores = min(len(os.sched_getaffinity(0)), MOST_AT_ONCE)
     sentences = (
-        f"compiling kernel {number} of {len(missing)} ({described(shape)}) for this machine"
+        f"compiling kernel {number} of {len(missing)} ({shape_in_words(shape)}) for this machine"
         for number, shape in enumerate(missing, 1)
     )
     if len(missing) > 1 and cores > 1:
@@ -82,11 +82,11 @@ def _sample(recipe: Recipe) -> Iterator[Scenario]:
         yield from draw_scenarios(recipe, number, number + 1)
 
 
-def described(shape: Shape) -> str:
+def shape_in_words(shape: Shape) -> str:
     """Number of balls and channels of a kernel, and its parts.
 
     >>> from gen.physics.kernel.layout import make_shape
-    >>> described(make_shape(9, 1, resonator=True, spalled=True))
+    >>> shape_in_words(make_shape(9, 1, resonator=True, spalled=True))
     '9 balls, 1 channel, resonator, spalled'
     """
     channels = f"{len(shape.channels)} channel{'s' if len(shape.channels) > 1 else ''}"

@@ -115,7 +115,7 @@ def generate(
     facts = facts_of(checked, {"seed": seed, "records": records})
     if is_single_file(target) and target.exists():
         return _finished_before(target, folder, checked, facts)
-    with client_of(scheduler, workers) as client, _claimed(folder):
+    with client_of(scheduler, workers) as client, _claim(folder):
         if folder is not target:
             remove_left_behind_of(target)
         named = isinstance(recipe, str | Path)
@@ -158,7 +158,7 @@ def _all_parts(
     if client is None and not all((folder / "parts" / part_name(part)).exists() for part in tally.parts):
         compile_kernels(recipe, notice)
     outcomes: dict[int, Outcome] = {}
-    with closing(_made(tally, folder, workers, client)) as made:
+    with closing(_outcomes(tally, folder, workers, client)) as made:
         for part, outcome in made:
             outcomes[part] = outcome
             tally.note(part, len(recipe.records_of_part(part)))
@@ -180,7 +180,7 @@ def _finish(target: Path, folder: Path, outcomes: list[Outcome], facts: dict[str
 
 
 @contextmanager
-def _claimed(folder: Path) -> Iterator[None]:
+def _claim(folder: Path) -> Iterator[None]:
     """Create the folder and lock it against other calls."""
     if folder.exists() and not folder.is_dir():
         raise CorpusError(f"{folder}: is a file; give a folder, or a file that ends in .nc, for the corpus.")
@@ -279,7 +279,7 @@ def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Cl
     return cluster.client_of(scheduler)
 
 
-def _made(tally: Tally, folder: Path, workers: int, client: "Client | None") -> Generator[tuple[int, Outcome]]:
+def _outcomes(tally: Tally, folder: Path, workers: int, client: "Client | None") -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
     recipe, parts = tally.recipe, tally.parts
     of_this_process = Crew(threads_of(workers))

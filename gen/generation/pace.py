@@ -50,7 +50,7 @@ class _Refusal(event.Listener):
 
 
 @contextmanager
-def _compilation_refused() -> Iterator[None]:
+def _refuse_compilation() -> Iterator[None]:
     with event.install_listener("numba:compile", _Refusal()):
         yield
 
@@ -63,15 +63,15 @@ def measured_pace(scenarios: list[Scenario], codec: Codec, steps: int) -> Pace |
     if LANES * steps > LARGEST_SAMPLE:
         return None
     try:
-        with _compilation_refused():
-            runs = [_timed(scenarios, codec) for _ in range(REPEATS)]
+        with _refuse_compilation():
+            runs = [_time(scenarios, codec) for _ in range(REPEATS)]
     except _NotCompiledError:
         return None
     integration, rest = (min(times) for times in zip(*runs, strict=True))
     return Pace(integration / (filled_lanes(integrations(scenarios)) * steps), rest / len(scenarios))
 
 
-def _timed(scenarios: list[Scenario], codec: Codec) -> tuple[float, float]:
+def _time(scenarios: list[Scenario], codec: Codec) -> tuple[float, float]:
     """Seconds of the simulation, and of measurement, labels and writing."""
     start = time.perf_counter()
     response = simulate(scenarios)

@@ -91,13 +91,13 @@ def make_parts(
 
     def written(made: MadePart) -> tuple[int, Outcome]:
         part = missing[made.place]
-        return part, _written(made, recipe, directory / "parts" / part_name(part))
+        return part, _write(made, recipe, directory / "parts" / part_name(part))
 
     numbers = [recipe.records_of_part(part) for part in missing]
     yield from made_parts(recipe, numbers, written, lambda place, count: report(missing[place], count), meanwhile, crew)
 
 
-def _written(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
+def _write(made: MadePart, recipe: Recipe, path: Path) -> Outcome:
     """Write one part."""
     dataset, failures = dataset_of(made.records, made.step_error)
     if not dataset.sizes["record"]:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.generation.step_checks import has_checks, step_changes, step_checks
-from gen.generation.undetected import Families, Family, Records, picked
+from gen.generation.undetected import Families, Family, Records, pick
 from gen.recipe import Recipe
 from gen.scenarios import settings_of
 from gen.simulation.batches import Integration, Waiting, integrate_together
@@ -76,7 +76,7 @@ class _Pending:
     then: Callable[[], None]
 
 
-def made_records(recipe: Recipe, numbers: range) -> Records:
+def make_records(recipe: Recipe, numbers: range) -> Records:
     """Make the records with the given numbers."""
     (records,) = made_parts(recipe, [numbers], lambda made: made.records)
     return records
@@ -136,7 +136,7 @@ class _Making(Generic[Result]):
     def work(self, report: Report, _thread: int) -> Iterator[Result]:
         """Do steps until every part is complete."""
         try:
-            while (step := self._next_step()) is not None:
+            while (step := self._wait_for_step()) is not None:
                 yield from step(report)
                 with self._change:
                     self._steps -= 1
@@ -146,10 +146,10 @@ class _Making(Generic[Result]):
                 self._over = True
                 self._change.notify_all()
 
-    def _next_step(self) -> Callable[[Report], Iterable[Result]] | None:
+    def _wait_for_step(self) -> Callable[[Report], Iterable[Result]] | None:
         with self._change:
             while not self._over:
-                step = self._chosen()
+                step = self._next_step()
                 if step is not None:
                     self._steps += 1
                     return step
@@ -158,7 +158,7 @@ class _Making(Generic[Result]):
                 self._change.wait()
             return None
 
-    def _chosen(self) -> Callable[[Report], Iterable[Result]] | None:
+    def _next_step(self) -> Callable[[Report], Iterable[Result]] | None:
         """The next step: what completes parts, then full batches, then new records; a batch with idle lanes if nothing else is left."""
         if self._checked:
             return partial(self._write, self._checked.popleft())
@@ -189,8 +189,8 @@ class _Making(Generic[Result]):
 
     def _draw(self, numbers: range, report: Report) -> Iterable[Result]:
         """Draw the next records."""
-        families = self._families.drawn(numbers)
-        waits = [(family.integrations, partial(self._simulated, family, report)) for family in families]
+        families = self._families.draw(numbers)
+        waits = [(family.integrations, partial(self._report_simulated, family, report)) for family in families]
         with self._change:
             self._growing -= 1
             for integrations, then in waits:
@@ -209,16 +209,16 @@ class _Making(Generic[Result]):
 
     def _judge(self, families: list[Family], _report: Report) -> Iterable[Result]:
         """Measure and judge families; those that are final go to their parts."""
-        made, again = self._families.judged(families)
+        made, again = self._families.judge(families)
         made = Records(replace(made.response, twins=None), made.measured)
         redrawn = {one.record.number for family in again for one in family.scenarios}
-        waits = [(family.integrations, partial(self._integrated, family)) for family in again]
+        waits = [(family.integrations, partial(self._make_ready, family)) for family in again]
         # copies, so that no part holds the accelerations of another
         pieces = [
             (
                 part,
                 [number for _, number in rows],
-                picked([(made if part.checked else _light(made), place) for place, _ in rows]),
+                pick([(made if part.checked else _light(made), place) for place, _ in rows]),
             )
             for part, rows in self._final(made, redrawn)
         ]
@@ -244,7 +244,7 @@ class _Making(Generic[Result]):
 
     def _check_steps(self, part: _Part, report: Report) -> Iterable[Result]:
         """Let the step checks of a part wait whose records are final, or write it if it has none."""
-        records = picked([part.rows[number] for number in part.numbers])
+        records = pick([part.rows[number] for number in part.numbers])
         part.rows.clear()
         scenarios, response = records.measured.scenarios, records.response
         finer = step_checks(scenarios, self._recipe, response) if part.checked else {}
@@ -272,16 +272,16 @@ class _Making(Generic[Result]):
         else:
             then()
 
-    def _simulated(self, family: Family, report: Report) -> None:
-        """A family is integrated for the first time."""
-        self._integrated(family)
+    def _report_simulated(self, family: Family, report: Report) -> None:
+        """Report the records of a family that is integrated for the first time."""
+        self._make_ready(family)
         for scenario in family.scenarios:
             part = self._part_of(scenario.record.number)
             if part is not None:
                 part.simulated += 1
                 report(part.place, min(part.simulated, len(part.numbers) - 1))
 
-    def _integrated(self, family: Family) -> None:
+    def _make_ready(self, family: Family) -> None:
         self._ready.append(family)
 
     def _part_of(self, number: int) -> _Part | None:

@@ -62,12 +62,12 @@ class Families:
         size = self.size
         return range(of.start // size * size, min(-(-of.stop // size) * size, self.recipe.n_records))
 
-    def drawn(self, numbers: range) -> list[Family]:
+    def draw(self, numbers: range) -> list[Family]:
         """Families with the given numbers of records, which are those of whole families."""
         scenarios = draw_scenarios(self.recipe, numbers.start, numbers.stop)
         return self._cut(self._with_hits(scenarios) if self._redraws else scenarios, {})
 
-    def judged(self, families: list[Family]) -> tuple[Records, list[Family]]:
+    def judge(self, families: list[Family]) -> tuple[Records, list[Family]]:
         """Records of integrated families, and the families again whose fault is drawn again."""
         made = made_of([run for family in families for run in family.runs], self._other_levels)
         if not self._redraws:
@@ -146,7 +146,7 @@ def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenari
     return Records(response, measure(response.acceleration, scenarios, response.twins, other_levels=other_levels))
 
 
-def picked(rows: list[tuple[Records, int]]) -> Records:
+def pick(rows: list[tuple[Records, int]]) -> Records:
     """Records from some places of others, without their twins."""
     response, measured = rows[0][0].response, rows[0][0].measured
     failures = {

@@ -20,7 +20,7 @@ from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.files import FloatArray, UnusableError, one_column
 from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
-from gen.importers.resampling import resampled
+from gen.importers.resampling import resample
 from gen.physics.catalogue import CATALOGUE
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
@@ -223,7 +223,7 @@ def _at_12_khz(signal: FloatArray) -> tuple[FloatArray, str]:
     """
     if signal.size <= _LONGEST_AT_12_KHZ:
         return signal, f"its {signal.size} samples are taken as resampled from 48 to 12 kHz by somebody else"
-    slower, sentence = resampled(signal, 4 * FS, FS)
+    slower, sentence = resample(signal, 4 * FS, FS)
     return slower, f"its {signal.size} samples are taken as recorded at 48 kHz and {sentence}"
 
 

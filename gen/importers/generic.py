@@ -24,7 +24,7 @@ from gen.importers.mapping_keys import Facts
 from gen.importers.mapping_values import bearing_of
 from gen.importers.matlab import read_number
 from gen.importers.recordings import Candidate, Recording
-from gen.importers.resampling import resampled
+from gen.importers.resampling import resample
 from gen.importers.signals import read_values
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress
@@ -92,8 +92,8 @@ def import_generic(
     recordings, skipped = listed_recordings(source, source.parent if folder is None else folder, mapping)
     fs = _common_rate(source, mapping, recordings)
     target = _Target(fs, resample=mapping.resample_hz is not None)
-    rigs = _numbered(files[0].facts.rig for files in recordings)
-    specimens = _numbered((files[0].facts.rig, files[0].facts.specimen) for files in recordings)
+    rigs = _numbers(files[0].facts.rig for files in recordings)
+    specimens = _numbers((files[0].facts.rig, files[0].facts.specimen) for files in recordings)
     candidates = []
     for number, files in enumerate(recordings):
         facts = files[0].facts
@@ -106,7 +106,7 @@ def import_generic(
     return import_recordings(collection, candidates, output, window=window, skipped=skipped, progress=progress)
 
 
-def _numbered(keys: Iterable[Hashable]) -> dict[Hashable, int]:
+def _numbers(keys: Iterable[Hashable]) -> dict[Hashable, int]:
     """Number of each distinct key, in order of appearance."""
     return {key: number for number, key in enumerate(dict.fromkeys(keys))}
 
@@ -135,11 +135,11 @@ def _common_rate(source: Path, mapping: MappingFile, recordings: list[tuple[File
         return given[0][0]
     for files in recordings:
         with suppress(UnusableError, OSError, MemoryError):
-            return _joined(files).fs
+            return _join(files).fs
     return _NO_RATE
 
 
-def _measured(file: File) -> dict[str, float]:
+def _measured_numbers(file: File) -> dict[str, float]:
     """Numbers that a file holds for keys of the mapping, in the units of the keys."""
     numbers = {}
     for key, reading in file.section.in_file.items():
@@ -155,7 +155,7 @@ def _measured(file: File) -> dict[str, float]:
 
 
 def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, specimen: int) -> Recording:
-    values, rate, stated, absolute, facts = _joined(files)
+    values, rate, stated, absolute, facts = _join(files)
     warnings: list[str] = []
     signals: list[FloatArray] = []
     for sensor, column in zip(files[0].section.sensors(), values, strict=True):
@@ -173,12 +173,12 @@ def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, speci
         if not target.resample:
             message = f"is at {rate:g} Hz and the corpus at {target.fs:g} Hz; give resample_hz at the top, or make a corpus of each"
             raise UnusableError(message)
-        signal, sentence = resampled(signal, rate, target.fs)
+        signal, sentence = resample(signal, rate, target.fs)
         warnings.append(sentence)
     return _recording(facts, signal, number, rig, specimen)._replace(warnings=tuple(warnings))
 
 
-def _joined(files: tuple[File, ...]) -> _Joined:
+def _join(files: tuple[File, ...]) -> _Joined:
     parts: list[list[FloatArray]] = []
     rates: set[float] = set()
     speeds: list[float] = []
@@ -210,7 +210,7 @@ def _facts(file: File) -> Facts:
     if not file.section.in_file:
         return file.facts
     try:
-        return file.section.facts(file.groups, _measured(file))
+        return file.section.facts(file.groups, _measured_numbers(file))
     except ValidationError as error:
         raise UnusableError(sentences(error, Facts)[0]) from None
 

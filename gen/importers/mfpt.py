@@ -16,7 +16,7 @@ from gen.importers.assemble import Collection, Import, import_recordings
 from gen.importers.files import UnusableError, one_column
 from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
-from gen.importers.resampling import resampled
+from gen.importers.resampling import resample
 from gen.physics.catalogue import CATALOGUE
 from gen.support.progress import Progress
 from gen.support.units import POUND_FORCE, STANDARD_GRAVITY
@@ -87,7 +87,7 @@ def _read(path: Path, fault: str, number: int) -> Recording:
         raise UnusableError(message)
     warnings: list[str] = []
     if factor > 1:
-        signal, sentence = resampled(signal, fs, FS)
+        signal, sentence = resample(signal, fs, FS)
         warnings.append(sentence)
     rate, load = _number(path, "bearing.rate"), _number(path, "bearing.load") * POUND_FORCE
     if not rate > 0:

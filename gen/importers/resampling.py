@@ -10,7 +10,7 @@ _FINEST = 10_000  # largest denominator of the ratio of two rates; its rounding 
 _WIDEST = 1000  # ratio of two rates
 
 
-def resampled(signal: FloatArray, fs: float, wanted: float) -> tuple[FloatArray, str]:
+def resample(signal: FloatArray, fs: float, wanted: float) -> tuple[FloatArray, str]:
     """Signal at the rate ``wanted`` [Hz] along its last axis, and a sentence without its end on how it was obtained.
 
     The anti-alias filter is that of ``scipy.signal.resample_poly``: linear phase, Kaiser window with beta 5, half amplitude at the lower

@@ -143,7 +143,7 @@ class Judge:
         if seen.all() or not further:
             return bool(seen.all())
         if len(self._bands) == 1:
-            self._bands += judged_bands([self._spectra], further)
+            self._bands += judge_bands([self._spectra], further)
         return bool((seen | parts_seen(self._bands[1], gains)).all())
 
 
@@ -152,11 +152,11 @@ def judges_of(records: Sequence[Parts]) -> list[Judge]:
     if not records:
         return []
     spectra = spectra_of(records)
-    first = judged_bands(spectra, bands_of(spectra[0].n)[:1])
+    first = judge_bands(spectra, bands_of(spectra[0].n)[:1])
     return [Judge(*both) for both in zip(spectra, first, strict=True)]
 
 
-def judged_bands(spectra: Sequence[Spectra], bands: list[tuple[int, int]]) -> list[Bands]:
+def judge_bands(spectra: Sequence[Spectra], bands: list[tuple[int, int]]) -> list[Bands]:
     """Lines and powers of some records in some of their bands."""
     bands_of_records = [
         Bands(

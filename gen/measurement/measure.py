@@ -28,7 +28,7 @@ from gen.measurement.levels import (
 )
 from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
-from gen.measurement.sensor_faults import SensorFlags, disturbed
+from gen.measurement.sensor_faults import SensorFlags, disturb
 from gen.scenarios import Gains, Purpose, Scenario, common_settings
 from gen.simulation.shaft import shaft_angles
 from gen.simulation.simulate import Twins
@@ -114,11 +114,11 @@ def measure(
             pair = scenario.record.pair
             if pair in levels:
                 scenario = _with_level_of(levels[pair], scenario)
-            level = _levelled(part, judge, scenario, rounding, other_levels)
+            level = _choose_level(part, judge, scenario, rounding, other_levels)
             if pair >= 0 and scenario.record.snr is not None and part.is_finite:
                 level = level._replace(scenario=_with_level_of(level, level.scenario))
                 levels.setdefault(pair, level)
-            mixed, flags[row] = disturbed(_mixed(part, level.gains), level.scenario, axis.fs)
+            mixed, flags[row] = disturb(_mix(part, level.gains), level.scenario, axis.fs)
             if counts_per_unit is not None:
                 clipped[row] = _to_counts(mixed, counts_per_unit)
             signal[row] = mixed
@@ -210,7 +210,7 @@ def _parts(
     return parts
 
 
-def _mixed(part: Part, gains: Gains) -> Float32Array:
+def _mix(part: Part, gains: Gains) -> Float32Array:
     """Bearing plus background, shape (channel, time) [m s-2]."""
     whole = part.healthy + part.fault if part.fault.size else part.healthy
     mixed = np.float32(gains.bearing) * whole
@@ -254,7 +254,7 @@ def _with_level_of(levelled: Levelled, scenario: Scenario) -> Scenario:
     return replace(scenario, record=record)
 
 
-def _levelled(
+def _choose_level(
     part: Part,
     judge: Judge | None,
     scenario: Scenario,
@@ -266,13 +266,13 @@ def _levelled(
     known = scenario.record.gains is not None or not part.fault.size
     for tried in chain([scenario], () if known else other_levels(scenario)):
         gains = gains_of(tried, part.products)
-        levels.append(Levelled(tried, gains, *_seen(part, judge, tried, gains, rounding)))
+        levels.append(Levelled(tried, gains, *_visibility(part, judge, tried, gains, rounding)))
         if levels[-1].detectable:
             return levels[-1]
     return levels[0]
 
 
-def _seen(
+def _visibility(
     part: Part, judge: Judge | None, scenario: Scenario, gains: Gains, rounding: float
 ) -> tuple[float, float, int]:
     """Level of the fault over the rest [dB], its share of the power [1], and whether it can be seen: 1, 0 or ``UNJUDGED``."""

@@ -78,7 +78,7 @@ def rig_filters(rig: Rig, length: int, fs: float, seed: int) -> RigFilters:
     n, background = next_fast_len(length, real=True), rig.background
     frequency = np.arange(n // 2 + 1) * (fs / n)
     own = [path or rig.path for path in rig.own_paths]
-    paths = np.stack([path.direct + base_excited(path.modes, frequency) for path in own]).astype(np.complex64)
+    paths = np.stack([path.direct + base_transmissibility(path.modes, frequency) for path in own]).astype(np.complex64)
     impulses, knocks = background.impulses, background.knocks
     impulse_paths = paths
     if impulses is not None or knocks is not None:
@@ -168,7 +168,7 @@ def along(
     return np.exp(1j * forward) * turned + flatness * np.exp(1j * backward) * np.conj(turned)
 
 
-def base_excited(modes: tuple[Mode, ...], frequency: FloatArray) -> NDArray[np.complex128]:
+def base_transmissibility(modes: tuple[Mode, ...], frequency: FloatArray) -> NDArray[np.complex128]:
     """Sum of the transmissibilities of base-excited resonances, times their gains, shape (frequency,) [1].
 
     ``(1 + 2 i zeta r) / (1 - r^2 + 2 i zeta r)`` with ``r = f / f_mode``; S. S. Rao, Mechanical Vibrations, section 3.6.
@@ -187,7 +187,7 @@ def noise_spectrum(background: Background, frequency: FloatArray) -> FloatArray:
     Its PSD is a white floor plus ``f^-slope``, constant below 10 Hz, times the resonances.
     """
     falling = power(np.maximum(frequency, 10.0), -background.slope / 2)
-    falling *= np.abs(1 + base_excited(background.modes, frequency))
+    falling *= np.abs(1 + base_transmissibility(background.modes, frequency))
     falling[0] = 0.0
     density = falling**2 / np.mean(falling**2) + background.floor**2
     return np.sqrt(density / np.mean(density))

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
 from gen.measurement.rattle import rattling
-from gen.measurement.rig import base_excited
+from gen.measurement.rig import base_transmissibility
 from gen.scenarios import Mode, Purpose, Scenario
 from gen.scenarios.model import Drawn
 from gen.support.units import decibel_to_ratio
@@ -51,7 +51,7 @@ class SensorFlags(NamedTuple):
     """Bursts that start in the record."""
 
 
-def disturbed(signal: FloatArray, scenario: Scenario, fs: float) -> tuple[FloatArray, SensorFlags]:
+def disturb(signal: FloatArray, scenario: Scenario, fs: float) -> tuple[FloatArray, SensorFlags]:
     """Signal with all sensor faults of a scenario, and which of them are in it.
 
     Parameters
@@ -75,7 +75,7 @@ def disturbed(signal: FloatArray, scenario: Scenario, fs: float) -> tuple[FloatA
     # a stream for each fault, so that none moves the random times of another
     mains, drifts, bursts, gaps = scenario.rng(Purpose.SENSOR_NOISE).spawn(4)
     if rig is not None and any(rig.loose_mounts):
-        signal, impacts = loosely_mounted(signal, rig.loose_mounts, fs)
+        signal, impacts = mount_loosely(signal, rig.loose_mounts, fs)
         flags = flags._replace(loose_mount=sum(map(bool, rig.loose_mounts)), rattle=impacts)
     if record is not None and record.drift is not None:
         baseline = drift(record.drift, signal.shape, fs, drifts)
@@ -91,7 +91,7 @@ def disturbed(signal: FloatArray, scenario: Scenario, fs: float) -> tuple[FloatA
         signal = signal * gain_steps(record.gain_steps, signal.shape[1])
         flags = flags._replace(gain_steps=len(record.gain_steps))
     if rig is not None and rig.saturation is not None:
-        signal, count = saturated(signal, rig.saturation, fs)
+        signal, count = saturate(signal, rig.saturation, fs)
         flags = flags._replace(saturated=count)
     if record is not None and record.dropped_samples is not None:
         signal, count = with_gaps(signal, record.dropped_samples, fs, gaps)
@@ -99,7 +99,7 @@ def disturbed(signal: FloatArray, scenario: Scenario, fs: float) -> tuple[FloatA
     return signal.astype(given.dtype, copy=False), flags
 
 
-def loosely_mounted(signal: FloatArray, mounts: tuple[Drawn | None, ...], fs: float) -> tuple[FloatArray, int]:
+def mount_loosely(signal: FloatArray, mounts: tuple[Drawn | None, ...], fs: float) -> tuple[FloatArray, int]:
     """Signal of sensors that resonate and rattle on loose mounts, and the number of impacts.
 
     Parameters
@@ -135,7 +135,7 @@ def through_mount(signal: FloatArray, mount: Drawn, fs: float) -> FloatArray:
     lead = signal[1 : min(settling, len(signal) - 1) + 1][::-1]
     n = next_fast_len(len(signal) + max(settling, len(lead)), real=True)
     frequency = np.arange(n // 2 + 1) * (fs / n)
-    transmitted = base_excited((Mode(mount["frequency"], mount["damping"], 1.0),), frequency)
+    transmitted = base_transmissibility((Mode(mount["frequency"], mount["damping"], 1.0),), frequency)
     spectrum = rfft(np.concatenate([lead, signal]), n) * transmitted
     return irfft(spectrum, n)[len(lead) : len(lead) + len(signal)]
 
@@ -191,7 +191,7 @@ def gain_steps(steps: tuple[Drawn, ...], length: int) -> FloatArray:
     return gain
 
 
-def saturated(signal: FloatArray, drawn: Drawn, fs: float) -> tuple[FloatArray, int]:
+def saturate(signal: FloatArray, drawn: Drawn, fs: float) -> tuple[FloatArray, int]:
     """Signal behind an amplifier of limited output, shape (channel, time) [m s-2], and the number of samples at its limit.
 
     Below the knee the gain is 1; in the knee it falls linearly with the input to 0, where the output reaches the limit. The part of the

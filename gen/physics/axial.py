@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.physics.elementary import power
-from gen.physics.rotor import Machine, solved
+from gen.physics.rotor import Machine, solve
 
 FloatArray = NDArray[np.float64]
 # least axial load, over radial load times the tangent of the contact angle, at which half of the balls are loaded
@@ -129,13 +129,13 @@ def _equilibrium(given: _Balls, start: FloatArray) -> FloatArray:
         if not len(places):
             break
         stiff = given.exponent * given.factor * root * given.directions
-        step = solved(_sum(stiff[:, None] * given.directions), residual)
-        q = _lowered(given, q, step, given.energy(squeeze, q))
+        step = solve(_sum(stiff[:, None] * given.directions), residual)
+        q = _lower_energy(given, q, step, given.energy(squeeze, q))
     equilibrium[:, places] = q
     return equilibrium
 
 
-def _lowered(given: _Balls, q: FloatArray, step: FloatArray, before: FloatArray) -> FloatArray:
+def _lower_energy(given: _Balls, q: FloatArray, step: FloatArray, before: FloatArray) -> FloatArray:
     """Displacements after a step, or after a share of it that does not raise the energy above ``before``, shape (axis, record) [m]."""
     share, before = np.ones(q.shape[1]), before + _ROUNDING * np.abs(before)
     while True:

@@ -54,17 +54,17 @@ def _bearing(row: _Row) -> Bearing:
         ball_diameter=row.ball * 1e-3,
         contact_angle=math.radians(row.angle),
         rolling_element=row.rolling_element,
-        roller_length=_scaled(row.roller_length, 1e-3),
-        dynamic_rating=_scaled(dynamic, 1e3),
-        static_rating=_scaled(static, 1e3),
-        bore=_scaled(bore, 1e-3),
-        outside_diameter=_scaled(outside_diameter, 1e-3),
-        width=_scaled(width, 1e-3),
+        roller_length=_scale(row.roller_length, 1e-3),
+        dynamic_rating=_scale(dynamic, 1e3),
+        static_rating=_scale(static, 1e3),
+        bore=_scale(bore, 1e-3),
+        outside_diameter=_scale(outside_diameter, 1e-3),
+        width=_scale(width, 1e-3),
         source=row.source,
     )
 
 
-def _scaled(value: float | None, factor: float) -> float | None:
+def _scale(value: float | None, factor: float) -> float | None:
     return None if value is None else value * factor
 
 

@@ -193,7 +193,7 @@ def rest(machine: Machine, angles: FloatArray) -> FloatArray:
         # one loaded ball has no stiffness across its direction: a soft spring keeps the step finite, and becomes 0 with the residual
         for row in range(4):
             jacobian[row, row] += 1e-3 * largest / 1e-6 + 1e-3
-        step = solved(jacobian, residual)
+        step = solve(jacobian, residual)
         q += step * np.minimum(1.0, 2e-6 / np.maximum(np.abs(step).max(axis=0), 1e-30))
     equilibrium[:, places] = q
     return equilibrium.T
@@ -243,7 +243,7 @@ def _unbalanced_force(given: _Balance, q: FloatArray) -> tuple[FloatArray, Float
     return residual, jacobian
 
 
-def solved(matrix: FloatArray, right: FloatArray) -> FloatArray:
+def solve(matrix: FloatArray, right: FloatArray) -> FloatArray:
     """Solution of some positive definite equations by elimination, shape (row, record); LAPACK has other bits on other processors.
 
     ``matrix``, of shape (row, column, record), and ``right``, of shape (row, record), are changed.

@@ -151,7 +151,7 @@ def _sensing_problem(recipe: Sections) -> str | None:
 
 def _operation_problem(recipe: Sections, place: str, operation: OperationSection) -> str | None:
     """Error sentence about the operating conditions at a place of the recipe: those of all records, or those of one fault."""
-    if operation.axial_load_n.support()[1] > 0 and not _slanted(recipe):
+    if operation.axial_load_n.support()[1] > 0 and not _has_contact_angle(recipe):
         return (
             f"{place}.axial_load_n: needs a contact angle; give specimen.contact_angle_deg or a bearing that has one."
         )
@@ -170,7 +170,7 @@ def _operation_problem(recipe: Sections, place: str, operation: OperationSection
     return None
 
 
-def _slanted(recipe: Sections) -> bool:
+def _has_contact_angle(recipe: Sections) -> bool:
     """Whether some bearing has a contact angle."""
     bearing = recipe.bearing
     angles = {0.0, *recipe.specimen.contact_angle_deg.support()}

@@ -39,7 +39,7 @@ def fault_entries(value: Any) -> Any:
     if not isinstance(entries, list | tuple) or not all(isinstance(entry, Mapping) for entry in entries):
         return entries
     taken: set[str] = set()
-    filled = [_filled(dict(entry), defaults, taken) for entry in entries]
+    filled = [_fill(dict(entry), defaults, taken) for entry in entries]
     unknown = next((key for key in defaults if key not in taken), None)
     if unknown is not None:
         known = {key for entry in entries for key in _keys(entry)}
@@ -50,10 +50,10 @@ def fault_entries(value: Any) -> Any:
     return filled
 
 
-def _filled(entry: dict[str, Any], defaults: Mapping[str, Any], taken: set[str]) -> dict[str, Any]:
+def _fill(entry: dict[str, Any], defaults: Mapping[str, Any], taken: set[str]) -> dict[str, Any]:
     if isinstance(entry.get("parts"), list | tuple):
         entry["parts"] = [
-            _filled(dict(part), defaults, taken) if isinstance(part, Mapping) else part for part in entry["parts"]
+            _fill(dict(part), defaults, taken) if isinstance(part, Mapping) else part for part in entry["parts"]
         ]
     own = {key: value for key, value in defaults.items() if key in _keys(entry)}
     taken.update(own)

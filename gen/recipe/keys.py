@@ -46,7 +46,7 @@ def recipe_keys(prefix: str = "") -> list[Key]:
     ['corpus.split', 'corpus.split.by', 'corpus.split.validation', 'corpus.split.test']
     """
     wanted = re.sub(r"\[\d*\]", "", prefix)
-    every_key = _merged([*_keys_of((Recipe,), "", set()), *_keys_of(DISTRIBUTIONS, "distribution.", set())])
+    every_key = _merge([*_keys_of((Recipe,), "", set()), *_keys_of(DISTRIBUTIONS, "distribution.", set())])
     keys = [key for key in every_key if key.key.startswith(wanted)]
     if not keys:
         tops = ", ".join([*Recipe.model_fields, "distribution"])
@@ -88,7 +88,7 @@ def _sections_of(field: FieldInfo) -> list[type[Section]]:
     return [model for model in models if not issubclass(model, Changes)]
 
 
-def _merged(keys: list[Key]) -> list[Key]:
+def _merge(keys: list[Key]) -> list[Key]:
     """Keys with those joined that differ in their kinds alone."""
     kinds_of: dict[Key, list[str]] = {}
     for key in keys:

@@ -51,7 +51,7 @@ def fault_of_each_specimen(recipe: Recipe, rig: int) -> list[str]:
     healthy = count * shares.pop("healthy", 0.0)
     n_healthy = math.floor(healthy + _ROUNDING)
     n_healthy += int(offsets[0] < healthy - n_healthy - _ROUNDING)
-    faulty = _shared_out(shares, count - n_healthy, offsets[1])
+    faulty = _share_out(shares, count - n_healthy, offsets[1])
     chosen = [*["healthy"] * n_healthy, *faulty]
     return [chosen[i] for i in stream(recipe.seed, rig, 0, 0, Purpose.CLASSES).permutation(count)]
 
@@ -69,7 +69,7 @@ def _offsets(seed: int, rig: int) -> tuple[float, float]:
     return (float(starts[0]) + rig * _HEALTHY_STEP) % 1, (float(starts[1]) + rig * _FAULTY_STEP) % 1
 
 
-def _shared_out(shares: dict[str, float], count: int, offset: float) -> list[str]:
+def _share_out(shares: dict[str, float], count: int, offset: float) -> list[str]:
     """``count`` classes by systematic sampling: each class its expected number, rounded down or up."""
     if count == 0:
         return []

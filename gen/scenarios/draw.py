@@ -28,7 +28,7 @@ from gen.recipe import (
 from gen.recipe.distributions import weighted_index
 from gen.scenarios.classes import fault_of_each_specimen, possible_entries
 from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
-from gen.scenarios.faults import damaged
+from gen.scenarios.faults import draw_damage
 from gen.scenarios.model import (
     Background,
     Mode,
@@ -245,7 +245,7 @@ def _draw_specimen(
     specimen = Specimen(
         number, bearing, properties, fault, spalls=(), axis={}, split=split, fault_try=fault_try, entry=entry
     )
-    return damaged(draws, recipe.faults[entry], specimen, {**known, **known_of(recipe.specimen, properties)})
+    return draw_damage(draws, recipe.faults[entry], specimen, {**known, **known_of(recipe.specimen, properties)})
 
 
 def _same_conditions(one: Fault, other: Fault) -> bool:

@@ -13,7 +13,7 @@ from gen.support.units import to_si
 _WIDEST = {"inner": 5.0, "outer": 5.0, "ball": 1.4}  # largest width of a spall over the radius of its surface
 
 
-def damaged(draws: Draws, entry: Fault, specimen: Specimen, known: Known) -> Specimen:
+def draw_damage(draws: Draws, entry: Fault, specimen: Specimen, known: Known) -> Specimen:
     """Specimen with the fault of one ``faults`` entry of the recipe; ``known`` are the quantities of rig and specimen."""
     if isinstance(entry, Healthy):
         return specimen

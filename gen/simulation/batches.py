@@ -102,13 +102,13 @@ class Waiting(Generic[Owner]):
 
     def fullest(self) -> list[tuple[Integration, Owner]]:
         """Take the batch with the most records, of several full ones that of the lowest record number."""
-        return self._taken(lambda members: (-min(len(members), LANES), members[0][:2]))
+        return self._take(lambda members: (-min(len(members), LANES), members[0][:2]))
 
     def oldest(self) -> list[tuple[Integration, Owner]]:
         """Take the batch of the lowest record number."""
-        return self._taken(lambda members: members[0][:2])
+        return self._take(lambda members: members[0][:2])
 
-    def _taken(self, order: Callable[[_Members[Owner]], Any]) -> list[tuple[Integration, Owner]]:
+    def _take(self, order: Callable[[_Members[Owner]], Any]) -> list[tuple[Integration, Owner]]:
         members = min((members for members in self._groups.values() if members), key=order)
         return [heappop(members)[2:] for _ in range(min(LANES, len(members)))]
 

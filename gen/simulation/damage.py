@@ -34,7 +34,7 @@ def spall_inputs(scenario: Scenario, ball_load: float) -> tuple[SpallInput, ...]
         known = bare._replace(scatter=spall.scatter, seed=seeds[number])
         if scenario.rig.ball_mass:
             known = known._replace(strikes=_strikes(scenario, number, ball_load))
-        made.append(_tabulated(scenario, number, known, ball_load) if _needs_table(scenario, spall) else known)
+        made.append(_tabulate(scenario, number, known, ball_load) if _needs_table(scenario, spall) else known)
     return tuple(made)
 
 
@@ -85,7 +85,7 @@ def _needs_table(scenario: Scenario, spall: Spall) -> bool:
     return scenario.rig.footprint or spall.profile == "trace" or spall.roughness > 0
 
 
-def _tabulated(scenario: Scenario, number: int, bare: SpallInput, ball_load: float) -> SpallInput:
+def _tabulate(scenario: Scenario, number: int, bare: SpallInput, ball_load: float) -> SpallInput:
     paths = spall_paths(scenario, number)
     if not scenario.rig.footprint:
         return bare._replace(profile="table", table=tuple(tuple(path) for path in paths))

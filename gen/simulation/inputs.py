@@ -36,7 +36,7 @@ def kernel_inputs(scenarios: Sequence[Scenario], timeline: Timeline) -> tuple[li
                 schedule=schedule_of(scenario, timeline),
             )
         except ValueError as error:
-            inputs[place], failures[place] = None, _named(scenario, error)
+            inputs[place], failures[place] = None, _name(scenario, error)
     return resting(inputs), failures
 
 
@@ -62,7 +62,7 @@ def bare_inputs(scenarios: Sequence[Scenario]) -> tuple[list[KernelInput | None]
         try:
             possible[place] = _without_axial_load(scenario)
         except ValueError as error:
-            failures[place] = _named(scenario, error)
+            failures[place] = _name(scenario, error)
     machines = with_axial_loads(
         [given.machine for given in possible.values()],
         [scenarios[place] for place in possible],
@@ -108,5 +108,5 @@ def _without_axial_load(scenario: Scenario) -> KernelInput:
     )
 
 
-def _named(scenario: Scenario, error: ValueError) -> str:
+def _name(scenario: Scenario, error: ValueError) -> str:
     return f"record {scenario.record.number}: {error}"

@@ -21,7 +21,7 @@ from numba.core.caching import FunctionCache
 from gen.physics.kernel.decimate import decimation
 from gen.physics.kernel.integrate import integrate_lanes
 from gen.physics.kernel.layout import Batch, Shape
-from gen.support.garbage import garbage_kept
+from gen.support.garbage import keep_garbage
 
 DIMENSIONS = {"schedule": 3, "tables": 2, "strikes": 3}
 """Dimensions of the arrays of a batch that have more than one."""
@@ -37,7 +37,7 @@ class SharedCache(FunctionCache):
 
     def load(self, types: tuple[Any, ...]) -> None:
         """Load the function for arguments of these types; if it is not on disk, compile it, unless another process does so already."""
-        with nullcontext() if self.has(types) else locked(self._lock_of(types)), garbage_kept():
+        with nullcontext() if self.has(types) else lock_file(self._lock_of(types)), keep_garbage():
             self._dispatcher.compile(types)  # numba looks on disk first
 
     def has(self, types: tuple[Any, ...]) -> bool:
@@ -51,7 +51,7 @@ class SharedCache(FunctionCache):
         Numba reads the index, adds the function and writes it back: of two processes that do so at once one would lose its function, or
         both would write the same file.
         """
-        with locked(Path(self.cache_path) / "index.lock"), suppress(OSError):
+        with lock_file(Path(self.cache_path) / "index.lock"), suppress(OSError):
             super().save_overload(sig, data)
 
     def _key(self, types: tuple[Any, ...]) -> Any:
@@ -94,7 +94,7 @@ def signature(shape: Shape) -> tuple[Any, ...]:
 
 
 @contextmanager
-def locked(path: Path) -> Iterator[None]:
+def lock_file(path: Path) -> Iterator[None]:
     """Hold the lock of a file, once no other process holds it; hold none if the file cannot be made or locked."""
     try:
         handle = os.open(path, os.O_RDWR | os.O_CREAT, 0o666)

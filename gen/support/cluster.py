@@ -159,11 +159,11 @@ def run_tasks(
 
 
 def _call(packed: bytes, item: Any) -> Any:
-    return _unpacked(packed)(item)
+    return _unpack(packed)(item)
 
 
 @lru_cache(maxsize=4)
-def _unpacked(packed: bytes) -> Callable[[Any], Any]:
+def _unpack(packed: bytes) -> Callable[[Any], Any]:
     """Task from its pickled form: to pickle and unpickle a recipe for every item takes 0.6 ms."""
     return loads(packed)
 

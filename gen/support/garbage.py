@@ -8,7 +8,7 @@ _THRESHOLD = gc.get_threshold()
 
 
 @contextmanager
-def garbage_kept() -> Iterator[None]:
+def keep_garbage() -> Iterator[None]:
     """Look for unused objects more seldom while kernels compile.
 
     That makes hundreds of thousands of objects that stay in use. To look through these again and again takes a fifth of the time.

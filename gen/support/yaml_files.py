@@ -106,11 +106,11 @@ def parse_yaml(text: str, where: Path | str, error: type[RacewayError]) -> Any:
     except RacewayError:
         raise
     except Exception as flaw:  # ruamel.yaml raises a dozen unrelated types on damaged text
-        place, reason = _told(flaw)
+        place, reason = _place_and_reason(flaw)
         raise error(f"{where}: {place}is not valid YAML ({reason}); correct it there.") from flaw
 
 
-def _told(flaw: Exception) -> tuple[str, str]:
+def _place_and_reason(flaw: Exception) -> tuple[str, str]:
     """Line of an error, if it is known, and the reason."""
     line = getattr(flaw, "line", None)
     reason = str(flaw)
@@ -147,7 +147,7 @@ class _Document:
     def node(self, event: Any, depth: int) -> _Node:
         """Build the value that begins with ``event``, at ``depth`` levels."""
         if isinstance(event, AliasEvent):
-            return self.repeated(event, depth)
+            return self.repeat(event, depth)
         if depth > DEEPEST:
             raise _Flaw(f"more than {DEEPEST} levels deep", event)
         before = self.count
@@ -176,7 +176,7 @@ class _Document:
                 "yaml_values", self.count, f"{self.where}: up to line {line}, with aliases expanded, holds", self.error
             )
 
-    def repeated(self, event: Any, depth: int) -> _Node:
+    def repeat(self, event: Any, depth: int) -> _Node:
         """Value that an alias repeats; it is counted again."""
         if event.anchor not in self.anchors:
             raise _Flaw(f"there is no &{event.anchor} before *{event.anchor}", event)
@@ -214,7 +214,7 @@ class _Document:
             value, _, below = self.node(event, depth + 1)
             height = max(height, below + 1)
             if merging:
-                merged = _merged(value, event)
+                merged = _merge(value, event)
             else:
                 own[key] = value
         return (own if merged is None else merged | own), height
@@ -222,7 +222,7 @@ class _Document:
     def key(self, event: Any) -> Any:
         """Key of a mapping, which cannot be a list or mapping."""
         if isinstance(event, AliasEvent):
-            key = self.repeated(event, 0).value
+            key = self.repeat(event, 0).value
         elif isinstance(event, ScalarEvent):
             key = _scalar(event)
             if event.anchor is not None:
@@ -234,7 +234,7 @@ class _Document:
         return key
 
 
-def _merged(value: Any, event: Event) -> dict[Any, Any]:
+def _merge(value: Any, event: Event) -> dict[Any, Any]:
     """Keys that ``<<`` merges from one mapping or several; the first mapping takes precedence."""
     merged: dict[Any, Any] = {}
     for mapping in reversed(value) if isinstance(value, list) else (value,):

@@ -14,7 +14,7 @@ from features.signal.spectra import psd
 from gen.corpus import write_durably
 from gen.measurement.gear import gear_mesh
 from gen.measurement.measure import measure
-from gen.measurement.sensor_faults import disturbed
+from gen.measurement.sensor_faults import disturb
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Purpose, Scenario, draw_scenarios
 from gen.simulation.simulate import simulate
@@ -60,7 +60,7 @@ def write_sensor_fault_pictures(output: Path) -> list[str]:
     for name, view in VIEWS.items():
         scenario, signal = of_bearing[view.bearing], clean[view.bearing]
         gear = name == "gear_mesh"
-        shown = _with_gear(signal, scenario, fs) if gear else disturbed(signal, _only(scenario, name), fs)[0]
+        shown = _with_gear(signal, scenario, fs) if gear else disturb(signal, _only(scenario, name), fs)[0]
         names.append(f"sensor-{name.replace('_', '-')}.png")
         write_durably(picture(draw_beside(signal[0], shown[0], fs, view), "png"), output / names[-1])
     return names

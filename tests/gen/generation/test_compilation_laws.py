@@ -17,7 +17,7 @@ from gen.physics.kernel.batch import input_shape
 from gen.physics.kernel.decimate import decimation
 from gen.recipe import read_recipe
 from gen.scenarios import draw_scenarios, settings_of
-from gen.simulation.kernels import SharedCache, locked, signature
+from gen.simulation.kernels import SharedCache, lock_file, signature
 from gen.simulation.outline import outlined_input
 from gen.simulation.simulate import laid_out
 from gen.simulation.timeline import timeline
@@ -70,7 +70,7 @@ def test_the_lock_of_a_killed_process_is_free(tmp_path):
     taken = threading.Event()
 
     def take():
-        with locked(path):
+        with lock_file(path):
             taken.set()
 
     threading.Thread(target=take, daemon=True).start()
@@ -100,7 +100,7 @@ def test_a_function_that_cannot_be_saved_is_compiled_all_the_same(twice, monkeyp
 
 
 def test_nothing_is_locked_where_no_file_can_be_made():
-    with locked(compilation.Path(os.devnull) / "kernel.lock"):
+    with lock_file(compilation.Path(os.devnull) / "kernel.lock"):
         pass
 
 

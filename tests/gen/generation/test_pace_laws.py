@@ -45,7 +45,7 @@ def test_a_refused_kernel_can_be_compiled_afterwards(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr("numba.core.config.CACHE_DIR", str(tmp_path / "cache"))
     twice = njit(cache=True)(__import__("kernel_of_a_test").twice)
-    with pytest.raises(pace._NotCompiledError), pace._compilation_refused():
+    with pytest.raises(pace._NotCompiledError), pace._refuse_compilation():
         twice(1.5)
     assert twice(1.5) == 3.0
 

@@ -5,7 +5,7 @@ import pytest
 
 from gen.corpus import FAULTS
 from gen.generation.labels import part_dataset
-from gen.generation.scheduling import made_records
+from gen.generation.scheduling import make_records
 from gen.generation.undetected import FAULT_TRIES, made_from
 from gen.measurement.measure import measure
 from gen.recipe.sensing import FloatConverter
@@ -36,7 +36,7 @@ def labelled(made):
 @pytest.fixture(scope="module")
 def redrawing(recipe_with):
     recipe = recipe_with(TRAINING | {"truth.undetected": "redraw"})
-    return recipe, made_records(recipe, range(recipe.n_records))
+    return recipe, make_records(recipe, range(recipe.n_records))
 
 
 def test_every_fault_of_a_recipe_that_redraws_can_be_seen(redrawing):
@@ -84,7 +84,7 @@ def test_all_records_of_a_specimen_have_the_same_fault(redrawing):
 @pytest.mark.parametrize("cut", [range(3, 9), range(7, 8), range(24, 32)])
 def test_a_record_does_not_depend_on_the_part_in_which_it_is_made(redrawing, cut):
     recipe, whole = redrawing
-    some = made_records(recipe, cut)
+    some = make_records(recipe, cut)
     np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[cut.start : cut.stop])
     np.testing.assert_array_equal(some.measured.fault_snr, whole.measured.fault_snr[cut.start : cut.stop])
     assert some.measured.scenarios == whole.measured.scenarios[cut.start : cut.stop]
@@ -97,7 +97,7 @@ def test_the_last_record_of_a_specimen_made_alone_has_the_fault_that_all_its_rec
     assert redrawn
     for specimen in redrawn:
         number = (specimen + 1) * per_specimen - 1
-        alone = made_records(recipe, range(number, number + 1))
+        alone = make_records(recipe, range(number, number + 1))
         assert alone.measured.scenarios == whole.measured.scenarios[number : number + 1]
         np.testing.assert_array_equal(alone.measured.signal[0], whole.measured.signal[number])
 
@@ -125,7 +125,7 @@ def test_a_spall_that_no_loaded_ball_meets_adds_exactly_nothing(recipe_with):
     """Records with and without it have the same bits, although they share a kernel with damaged records."""
     unloaded = {"kind": "outer", "width_mm": 0.5, "angle_deg": 170}
     recipe = recipe_with({"faults": [unloaded], "corpus.specimens_per_rig": 1, "specimen.diametral_clearance_um": 30})
-    made = made_records(recipe, range(2))
+    made = make_records(recipe, range(2))
     assert made.measured.fault_snr.tolist() == [-np.inf, -np.inf]
     assert made.measured.fault_share.tolist() == [0.0, 0.0]
     assert made.measured.detectable.tolist() == [0, 0]
@@ -155,7 +155,7 @@ def test_a_record_is_the_same_whether_its_fault_is_known_apart_or_not(recipe_wit
         "path.modulation": {"probability": 1, "first": 0.5, "second": 0.2},
         "level": {"kind": "physical", "background_m_s2": 0.1, "gain": 3},
     }
-    whole, apart = (made_records(recipe_with(changes | {"truth.twins": twins}), range(8)) for twins in (False, True))
+    whole, apart = (make_records(recipe_with(changes | {"truth.twins": twins}), range(8)) for twins in (False, True))
     assert (apart.measured.fault_snr > 0).any()
     for row in range(8):
         np.testing.assert_allclose(
@@ -186,7 +186,7 @@ def test_a_record_whose_twin_diverged_is_left_out(recipe_with, monkeypatch):
 
 def test_without_truth_nothing_is_simulated_twice_and_nothing_judged(recipe_with):
     recipe = recipe_with({"truth.twins": False})
-    made = made_records(recipe, range(8))
+    made = make_records(recipe, range(8))
     assert made.response.twins is None
     healthy = np.array([scenario.specimen.fault == "healthy" for scenario in made.measured.scenarios])
     assert np.isnan(made.measured.fault_snr).all()
@@ -198,7 +198,7 @@ def hidden(recipe_with, undetected):
     unloaded = {"kind": "outer", "width_mm": 0.5, "angle_deg": 170}
     changes = {"faults": [unloaded], "corpus.specimens_per_rig": 1, "specimen.diametral_clearance_um": 30}
     recipe = recipe_with(changes | {"truth.undetected": undetected})
-    return recipe, made_records(recipe, range(2))
+    return recipe, make_records(recipe, range(2))
 
 
 def test_a_fault_that_cannot_be_seen_keeps_its_label_where_the_recipe_says_so(recipe_with):
@@ -220,7 +220,7 @@ def test_a_fault_that_cannot_be_seen_is_called_healthy_where_the_recipe_says_so(
 
 def test_a_fault_that_was_not_judged_is_not_called_healthy(recipe_with):
     recipe = recipe_with({"truth.twins": False, "truth.undetected": "healthy"})
-    made = made_records(recipe, range(8))
+    made = make_records(recipe, range(8))
     faults = [FAULTS.index(scenario.specimen.fault) for scenario in made.measured.scenarios]
     assert any(faults)
     assert labelled(made)["fault"].values.tolist() == faults
@@ -244,7 +244,7 @@ LADDER = {
 @pytest.fixture(scope="module", params=["keep", "redraw"])
 def ladders(recipe_with, request):
     recipe = recipe_with(LADDER | {"truth.undetected": request.param})
-    return recipe, made_records(recipe, range(18))
+    return recipe, make_records(recipe, range(18))
 
 
 def groups_of(made):
@@ -259,7 +259,7 @@ def test_records_of_a_group_differ_in_what_the_fault_adds_alone(ladders):
     """Background and bearing have the same gains at every severity, so the difference to the first rung is the fault."""
     recipe, made = ladders
     exact = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"converter": FLOAT})})
-    signal = made_records(exact, range(18)).measured.signal.astype(float)
+    signal = make_records(exact, range(18)).measured.signal.astype(float)
     groups = groups_of(made)
     assert groups
     for group in groups:
@@ -280,7 +280,7 @@ def test_the_largest_severity_of_a_group_has_the_drawn_level(ladders):
 def test_the_level_of_a_group_is_drawn_again_for_all_of_its_records(recipe_with):
     quiet = LEVEL | {"faulty_db": "uniform(-40, 10)"}
     recipe = recipe_with(LADDER | {"level": quiet, "truth.undetected": "redraw"})
-    made = made_records(recipe, range(18))
+    made = make_records(recipe, range(18))
     tried = 0
     for group in groups_of(made):
         levels = {(one.snr, one.level_try) for one in (made.measured.scenarios[place].record for place in group)}
@@ -296,7 +296,7 @@ def test_a_smaller_severity_that_misses_the_load_zone_does_not_change_the_fault_
     angles = "uniform(20, 180)"
     changes = {"faults": [{"kind": "outer", "width_mm": 12, "angle_deg": angles}], "truth.undetected": "redraw"}
     recipe = recipe_with(LADDER | {"corpus.rungs": [0.1, 1], "corpus.rigs": 6} | changes)
-    made = made_records(recipe, range(recipe.n_records))
+    made = make_records(recipe, range(recipe.n_records))
     tries = {one.specimen.number: one.specimen.fault_try for one in made.measured.scenarios}
     drawn = draw_scenarios(recipe, fault_tries=tries)
     missed = {one.record.number for one, felt in zip(drawn, felt_places(drawn), strict=True) if not felt}
@@ -323,7 +323,7 @@ def test_the_rest_of_a_group_has_the_level_of_its_largest_severity_that_did_not_
 def test_a_group_is_not_cut_by_a_part(ladders):
     recipe, whole = ladders
     for number in (1, 4, 11):
-        some = made_records(recipe, range(number, number + 2))
+        some = make_records(recipe, range(number, number + 2))
         np.testing.assert_array_equal(some.measured.signal, whole.measured.signal[number : number + 2])
         scenario = whole.measured.scenarios[number]
         again = made_from([scenario])
@@ -335,7 +335,7 @@ def test_with_a_physical_level_a_larger_spall_is_a_larger_signal(recipe_with):
     level = {"kind": "physical", "gain": "uniform(0.5, 2)", "background_m_s2": 0.2}
     rungs, width = [0.25, 0.5, 0.75, 1], {"kind": "outer", "width_mm": 0.4}
     recipe = recipe_with({"level": level, "corpus.rungs": rungs, "corpus.specimens_per_rig": 1, "faults": [width]})
-    made = made_records(recipe, range(16))
+    made = make_records(recipe, range(16))
     dataset = labelled(made)
     assert dataset["gain"].values.tolist() == [scenario.rig.gain for scenario in made.measured.scenarios]
     assert dataset["background_rms"].values == pytest.approx(0.2)

@@ -13,7 +13,7 @@ from scipy.io import wavfile
 from gen.corpus import FAULTS, open_corpus, validate_corpus
 from gen.importers import import_generic
 from gen.importers.paths import match_path, parse_pattern
-from gen.importers.resampling import resampled
+from gen.importers.resampling import resample
 from tests.gen.importers.test_importers_generic import COMMON, imported
 
 FS = 2000
@@ -245,7 +245,7 @@ def test_whole_numbers_and_impossible_levels_are_doubted(tmp_path):
 
 @pytest.mark.parametrize(("fs", "wanted"), [(20_001, 20_000), (20_000, 999), (97_656, 12_000)])
 def test_a_ratio_of_rates_is_rounded_by_less_than_6e_5(fs, wanted):
-    up, down = map(int, re.findall(r"x, (\d+), (\d+)", resampled(np.zeros(2), fs, wanted)[1])[0])
+    up, down = map(int, re.findall(r"x, (\d+), (\d+)", resample(np.zeros(2), fs, wanted)[1])[0])
     assert abs(up / down * fs / wanted - 1) < 6e-5
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen.measurement import judging
-from gen.measurement.judging import FALSE_ALARM, Parts, bands_of, judged_bands, judges_of, parts_seen, spectra_of
+from gen.measurement.judging import FALSE_ALARM, Parts, bands_of, judge_bands, judges_of, parts_seen, spectra_of
 from gen.measurement.levels import Gains
 
 FS, N, RATE, ORDER = 12_000, 6000, 30.0, 3.58
@@ -47,7 +47,7 @@ def test_a_line_at_the_threshold_has_the_stated_probability_in_the_whole_search(
     fault = np.concatenate([ringing(ORDER), ringing(ORDER)])
     (spectra,), bands = spectra_of([Parts(fault, np.zeros_like(fault), fault, (ORDER,), ANGLES, True)]), bands_of(N)
     searched = 2 * sum(len(cycles) for band in bands for cycles in spectra.searched(band))
-    for (low, high), threshold in zip(bands, judged_bands([spectra], bands)[0].thresholds, strict=True):
+    for (low, high), threshold in zip(bands, judge_bands([spectra], bands)[0].thresholds, strict=True):
         assert searched * math.exp(-(high - low) * threshold**2) == pytest.approx(FALSE_ALARM)
 
 
@@ -97,8 +97,8 @@ def test_a_fault_that_is_loud_in_one_band_is_seen_behind_noise_in_another():
     hum = 30 * np.sin(2 * np.pi * 700 * time)[None].astype(np.float32)
     record = Parts(ringing(ORDER), np.zeros_like(hum), hum, (ORDER,), ANGLES, True)
     spectra, (whole, *quarters) = spectra_of([record]), bands_of(N)
-    assert parts_seen(judged_bands(spectra, [whole])[0], Gains(1.0, 1.0)).tolist() == [False]
-    assert parts_seen(judged_bands(spectra, quarters)[0], Gains(1.0, 1.0)).tolist() == [True]
+    assert parts_seen(judge_bands(spectra, [whole])[0], Gains(1.0, 1.0)).tolist() == [False]
+    assert parts_seen(judge_bands(spectra, quarters)[0], Gains(1.0, 1.0)).tolist() == [True]
     assert judges_of([record])[0].sees(Gains(1.0, 1.0))
 
 
@@ -124,7 +124,7 @@ def test_what_is_judged_of_a_record_does_not_depend_on_the_others():
         )
     ]
     spectra, bands = spectra_of(records), bands_of(N)
-    for record, together in zip(records, judged_bands(spectra, bands), strict=True):
-        (alone,) = judged_bands(spectra_of([record]), bands)
+    for record, together in zip(records, judge_bands(spectra, bands), strict=True):
+        (alone,) = judge_bands(spectra_of([record]), bands)
         for one, other in zip(alone, together, strict=True):
             np.testing.assert_array_equal(one, other)

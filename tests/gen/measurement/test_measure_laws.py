@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from scipy.signal import welch
 
 from gen.measurement.measure import measure
-from gen.measurement.rig import base_excited
+from gen.measurement.rig import base_transmissibility
 from gen.scenarios import Background, Gear, Mode, Path, ShaftModulation, Tone, draw_scenarios, settings_of, with_level
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import timeline
@@ -153,7 +153,7 @@ def test_a_tone_comes_through_the_path_with_the_transmissibility_of_its_resonanc
 @law
 @given(st.floats(500, 5000), st.floats(0.005, 0.1), st.floats(-2, 2))
 def test_a_resonance_follows_slow_motion_and_amplifies_at_its_frequency(frequency, damping, gain):
-    low, at = base_excited((Mode(frequency, damping, gain),), np.array([1e-3, frequency]))
+    low, at = base_transmissibility((Mode(frequency, damping, gain),), np.array([1e-3, frequency]))
     assert low == pytest.approx(gain, abs=1e-5)
     assert abs(at) == pytest.approx(abs(gain) * np.hypot(1, 2 * damping) / (2 * damping), rel=1e-9)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from gen.measurement.measure import measure
-from gen.measurement.rig import along, base_excited
+from gen.measurement.rig import along, base_transmissibility
 from gen.scenarios import Background, Mode, Path, ShaftModulation, Tone, draw_scenarios, settings_of
 from gen.simulation.shaft import shaft_angles
 from gen.simulation.timeline import timeline
@@ -86,7 +86,9 @@ def test_a_harmonic_passes_through_the_path_of_its_channel_at_its_own_frequency(
     signal = measure(silence, scenarios).signal[0].astype(float)
     axis = timeline(settings_of(recipe))
     lines = signal @ np.exp(-5j * shaft_angles(scenarios[0], axis)[axis.kept])
-    assert lines[1] / lines[0] == pytest.approx(complex(0.5 + base_excited(modes, np.array([150.0]))[0]), rel=0.01)
+    assert lines[1] / lines[0] == pytest.approx(
+        complex(0.5 + base_transmissibility(modes, np.array([150.0]))[0]), rel=0.01
+    )
 
 
 def test_the_knocks_of_all_records_of_a_rig_come_at_the_same_angles_of_the_shaft(recipe_with):

@@ -12,13 +12,13 @@ from hypothesis.extra.numpy import arrays
 from gen.measurement.rattle import rattling
 from gen.measurement.sensor_faults import (
     SensorFlags,
-    disturbed,
+    disturb,
     drift,
     emi_bursts,
     gain_steps,
-    loosely_mounted,
     mains_hum,
-    saturated,
+    mount_loosely,
+    saturate,
     through_mount,
     with_gaps,
 )
@@ -45,7 +45,7 @@ def hiss(seed=0, rms=10.0, shape=(2, 1200)):
 def test_a_record_without_sensor_faults_keeps_every_bit(recipe_with, sections):
     signal = hiss()
     for scenario in draw_scenarios(recipe_with({"sensor_faults": sections})):
-        found, flags = disturbed(signal, scenario, FS)
+        found, flags = disturb(signal, scenario, FS)
         assert np.array_equal(found, signal)
         assert flags == SensorFlags() == (0,) * 8
 
@@ -80,7 +80,7 @@ def test_a_mount_has_settled_at_the_first_sample():
 
 def test_a_sensor_that_is_held_hard_enough_resonates_and_does_not_rattle():
     signal = hiss()
-    found, impacts = loosely_mounted(signal, (None, MOUNT), FS)
+    found, impacts = mount_loosely(signal, (None, MOUNT), FS)
     assert impacts == 0
     np.testing.assert_array_equal(found[0], signal[0])
     np.testing.assert_allclose(found[1], through_mount(signal[1], MOUNT, FS), rtol=1e-6)
@@ -90,7 +90,7 @@ def test_a_loose_sensor_shows_the_impacts_that_are_counted():
     wave = np.zeros((1, N))
     wave[0, 1000:1120] = -60.0
     mount = MOUNT | {"holding": 20.0}
-    found, impacts = loosely_mounted(wave, (mount,), FS)
+    found, impacts = mount_loosely(wave, (mount,), FS)
     held = through_mount(wave[0], mount, FS)
     assert impacts == rattling(held, 1500.0, 0.05, 20.0, FS)[1] >= 1
     assert found.min() >= -20
@@ -104,19 +104,19 @@ LINEAR = {"limit": 20.0, "knee": 0.0, "recovery": 0.0}
 @given(signals, st.floats(1, 90), st.sampled_from([0.0, 0.1, 0.5, 1.0]))
 def test_an_amplifier_never_exceeds_its_limit_and_is_linear_below_its_knee(signal, limit, knee):
     drawn, half_knee = {"limit": limit, "knee": knee, "recovery": 0.0}, knee * limit
-    found, count = saturated(signal, drawn, FS)
+    found, count = saturate(signal, drawn, FS)
     assert np.abs(found).max() <= limit * (1 + 1e-12)
     below = np.abs(signal) <= limit - half_knee
     np.testing.assert_array_equal(found[below], signal[below])
     beyond = np.abs(signal) >= limit + half_knee
     assert count == np.count_nonzero(beyond)
     np.testing.assert_allclose(np.abs(found[beyond]), limit, rtol=1e-12)
-    np.testing.assert_array_equal(saturated(-signal, drawn, FS)[0], -found)
+    np.testing.assert_array_equal(saturate(-signal, drawn, FS)[0], -found)
 
 
 def test_the_knee_is_smooth_and_ends_at_the_limit():
     given = np.linspace(0, 40, 4001)[None]
-    found, count = saturated(given, {"limit": 20.0, "knee": 0.5, "recovery": 0.0}, FS)
+    found, count = saturate(given, {"limit": 20.0, "knee": 0.5, "recovery": 0.0}, FS)
     slope = np.diff(found[0]) / np.diff(given[0])
     assert np.abs(np.diff(slope)).max() < 1e-3
     assert slope[0] == pytest.approx(1.0)
@@ -125,7 +125,7 @@ def test_the_knee_is_smooth_and_ends_at_the_limit():
 
 
 def test_a_limited_sine_has_odd_harmonics_and_no_even_ones():
-    found, _ = saturated(30 * np.cos(2 * np.pi * 100 * TIME)[None], LINEAR, FS)
+    found, _ = saturate(30 * np.cos(2 * np.pi * 100 * TIME)[None], LINEAR, FS)
     spectrum = 2 / N * np.abs(np.fft.rfft(found[0]))
     assert spectrum[300] > 1
     assert spectrum[[0, 200, 400, 600]].max() < 1e-9
@@ -134,7 +134,7 @@ def test_a_limited_sine_has_odd_harmonics_and_no_even_ones():
 def test_an_overload_shifts_the_baseline_to_the_other_side_until_the_amplifier_has_recovered():
     struck = np.zeros((1, N))
     struck[:, 1000:1024] = 100.0
-    found, count = saturated(struck, {**LINEAR, "recovery": 0.02}, FS)
+    found, count = saturate(struck, {**LINEAR, "recovery": 0.02}, FS)
     after = found[0, 1024:]
     assert count == 24
     assert after[0] == pytest.approx(-80 * (1 - math.exp(-24 / 240)), rel=0.01)
@@ -268,7 +268,7 @@ FLAG_OF = {"saturation": "saturated"}
 
 @pytest.mark.parametrize("name", SENSOR_FAULTS)
 def test_a_flag_is_set_by_its_own_fault_and_by_no_other(dirty, name):
-    flags = disturbed(hiss(), only(dirty[0], name), FS)[1]._asdict()
+    flags = disturb(hiss(), only(dirty[0], name), FS)[1]._asdict()
     own = {FLAG_OF.get(name, name)} | ({"rattle"} if name == "loose_mount" else set())
     assert {flag for flag, value in flags.items() if value} == own
 
@@ -277,18 +277,18 @@ def test_a_flag_is_set_by_its_own_fault_and_by_no_other(dirty, name):
 def test_the_random_times_of_a_fault_do_not_depend_on_the_other_faults(dirty, names):
     """Faults ahead of the amplifier add up, so each can be found as a difference."""
     silence = np.zeros((2, 1200))
-    one, other, both = (disturbed(silence, only(dirty[0], *some), FS)[0] for some in (names[:1], names[1:], names))
+    one, other, both = (disturb(silence, only(dirty[0], *some), FS)[0] for some in (names[:1], names[1:], names))
     np.testing.assert_allclose(one + other, both, atol=1e-12)
 
 
 def test_a_disturbed_record_keeps_shape_and_type_and_does_not_depend_on_other_records(dirty):
     signal = hiss()
     before = signal.copy()
-    alone = disturbed(signal, dirty[5], FS)
+    alone = disturb(signal, dirty[5], FS)
     for scenario in dirty:
-        found, _ = disturbed(signal, scenario, FS)
+        found, _ = disturb(signal, scenario, FS)
         assert (found.shape, found.dtype) == (signal.shape, signal.dtype)
-    again = disturbed(signal, dirty[5], FS)
+    again = disturb(signal, dirty[5], FS)
     np.testing.assert_array_equal(alone[0], again[0])
     assert alone[1] == again[1]
     np.testing.assert_array_equal(signal, before)
@@ -296,13 +296,13 @@ def test_a_disturbed_record_keeps_shape_and_type_and_does_not_depend_on_other_re
 
 def test_everything_ahead_of_the_amplifier_stays_within_its_limit(dirty):
     for scenario in dirty:
-        assert np.abs(disturbed(hiss(rms=40.0), scenario, FS)[0]).max() <= 20 * (1 + 1e-6)
+        assert np.abs(disturb(hiss(rms=40.0), scenario, FS)[0]).max() <= 20 * (1 + 1e-6)
 
 
 def test_sensor_faults_of_a_faulty_record_and_of_its_twin_are_the_same(dirty):
     signal = hiss()
     for scenario in dirty[:8]:
-        one, other = disturbed(signal, scenario, FS), disturbed(signal, scenario.without_fault(), FS)
+        one, other = disturb(signal, scenario, FS), disturb(signal, scenario.without_fault(), FS)
         np.testing.assert_array_equal(one[0], other[0])
         assert one[1] == other[1]
 
@@ -318,12 +318,12 @@ def test_flags_count_what_is_in_the_record(recipe_with):
     recipe = recipe_with({"sensor_faults": sections, "recording.channels": channels, "corpus.rigs": 12})
     signal, silence, seen, loose = hiss(), np.zeros((2, 1200)), set(), set()
     for scenario in draw_scenarios(recipe):
-        found, flags = disturbed(signal, only(scenario, "loose_mount"), FS)
+        found, flags = disturb(signal, only(scenario, "loose_mount"), FS)
         assert flags.loose_mount == np.count_nonzero((found != signal).any(axis=1))
         loose.add(flags.loose_mount)
-        found, flags = disturbed(silence, only(scenario, "drift"), FS)
+        found, flags = disturb(silence, only(scenario, "drift"), FS)
         assert flags.drift == np.abs(found).max() > 10
-        found, flags = disturbed(silence, only(scenario, "emi_bursts"), FS)
+        found, flags = disturb(silence, only(scenario, "emi_bursts"), FS)
         assert (flags.emi_bursts > 0) == found.any()
         seen.add(flags.emi_bursts)
     assert loose == {0, 1, 2}
@@ -335,6 +335,6 @@ def test_flags_count_what_is_in_the_record(recipe_with):
 def test_a_record_that_diverged_is_passed_on_without_a_warning(dirty, value):
     signal = hiss()
     signal[:, 600:] = value
-    found, flags = disturbed(signal, dirty[0], FS)
+    found, flags = disturb(signal, dirty[0], FS)
     assert found is signal
     assert flags == SensorFlags()
