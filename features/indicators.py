@@ -21,7 +21,7 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len
 
 from features.band import DEFAULT_BAND, Band, energy_names
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted, running_median
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, running_median, weight_by_hann
 from features.signal.lines import (
     FAMILIES,
     FITTED_NAMES,
@@ -32,9 +32,9 @@ from features.signal.lines import (
     highest_order,
     read_lines,
 )
-from features.signal.rows import ComplexArray, FloatArray, centred, squared_modulus
+from features.signal.rows import ComplexArray, FloatArray, centre, squared_modulus
 from features.signal.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
-from features.signal.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
+from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd, whiten_cepstrally
 
 __all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
 
@@ -140,7 +140,7 @@ def indicators(
     usable = np.flatnonzero(usable_records(x, shaft_rate, orders))
     for start in range(0, len(usable), BATCH):
         rows = usable[start : start + BATCH]
-        batch = centred(x[rows])
+        batch = centre(x[rows])
         nominal = Orders(*(order[rows] for order in orders))
         values[rows] = _features(batch, fs, shaft_rate[rows], nominal, groups, band)
     return values, names
@@ -184,8 +184,8 @@ def _lines_and_shape(
 
 def bands_of(coefficients: ComplexArray, duration: float, fs: float, band: Band = DEFAULT_BAND) -> list[ComplexArray]:
     """Both broad bands of whitened coefficients, and the narrow bands with more than half below the Nyquist frequency."""
-    cepstral = cepstrally_whitened(coefficients)
-    whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
+    cepstral = whiten_cepstrally(coefficients)
+    whitened = whiten_by_psd(coefficients, round(WHITENING_WIDTH * duration))
     narrow = [(whitened, edges) for edges in band.narrow if sum(edges) < fs]
     cuts = [(cepstral, band), (whitened, band), *narrow]
     return [source[:, round(low * duration) : round(high * duration)] for source, (low, high) in cuts]
@@ -203,7 +203,7 @@ def _read(
     for number, band in enumerate(bands):
         z = analytic_band(band, 0, band.shape[-1])
         power = squared_modulus(z)
-        weighted = hann_weighted(np.sqrt(power))
+        weighted = weight_by_hann(np.sqrt(power))
         end = ZERO_PADDING * z.shape[-1] // 2 + 1
         spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, end))
         level[:, number, :end] = log_level(spectrum, width, min(bins, end))

@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from features.band import DEFAULT_BAND
 from features.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, log_level, usable_records
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, weight_by_hann
 from features.signal.lines import Orders
-from features.signal.rows import FloatArray, centred, squared_modulus
+from features.signal.rows import FloatArray, centre, squared_modulus
 from features.signal.spectra import fourier_coefficients
 from features.signal.speed import TOLERANCE, ShaftSpeed, find_speed, levels_at, line_orders
 
@@ -94,7 +94,7 @@ def line_levels(
     for start in range(0, len(chosen), BATCH):
         rows = chosen[start : start + BATCH]
         batch = Orders(*(order[rows] for order in nominal))
-        yield numbers[rows], _levels(centred(cut[rows]), fs, rates[rows], batch, tolerance)
+        yield numbers[rows], _levels(centre(cut[rows]), fs, rates[rows], batch, tolerance)
 
 
 def _levels(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, tolerance: float) -> FloatArray:
@@ -120,5 +120,5 @@ def _levels(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, to
 def _spectrum_level(y: FloatArray, width: FloatArray, bins: int) -> FloatArray:
     """Log level of the amplitude spectra of real signals, shape (record, frequency), at most ``bins`` long."""
     end = ZERO_PADDING * y.shape[-1] // 2 + 1
-    spectrum = fine_amplitudes(hann_weighted(y), min(bins + int(width.max()) + 4, end))
+    spectrum = fine_amplitudes(weight_by_hann(y), min(bins + int(width.max()) + 4, end))
     return log_level(spectrum, width, min(bins, end))

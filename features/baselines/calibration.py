@@ -39,7 +39,7 @@ class Calibration(BaseModel):
     temperature
         Divides the logarithms of the probabilities.
     dependence
-        Correlation of the errors of two records of one recording, as in ``combined``: 0 if they are independent, 1 if they are the same.
+        Correlation of the errors of two records of one recording, as in ``combine``: 0 if they are independent, 1 if they are the same.
     threshold, recording_threshold
         A record is answered if its largest probability is at least ``threshold``, and a recording of several records if its largest is
         at least ``recording_threshold``.
@@ -62,16 +62,16 @@ UNCALIBRATED = Calibration(
 )
 
 
-def calibrated(probabilities: FloatArray, temperature: float) -> FloatArray:
+def calibrate(probabilities: FloatArray, temperature: float) -> FloatArray:
     """Probabilities with a temperature, shape (record, class) to the same.
 
-    >>> calibrated(np.array([[0.2, 0.8]]), 2.0).round(3).tolist()
+    >>> calibrate(np.array([[0.2, 0.8]]), 2.0).round(3).tolist()
     [[0.333, 0.667]]
     """
     return softmax(_logarithms(probabilities) / temperature, axis=1)
 
 
-def combined(probabilities: FloatArray, recording: IntArray, dependence: float) -> FloatArray:
+def combine(probabilities: FloatArray, recording: IntArray, dependence: float) -> FloatArray:
     """Probabilities of each recording from those of its records.
 
     The logarithms of the ``n`` records of a recording are averaged, multiplied by the number of independent records that they are worth,
@@ -90,7 +90,7 @@ def combined(probabilities: FloatArray, recording: IntArray, dependence: float) 
     -------
     Shape (recording, class).
     """
-    total, count = _summed(probabilities, recording)
+    total, count = _sum_logarithms(probabilities, recording)
     return softmax(total / (1 + (count - 1) * dependence)[:, None], axis=1)
 
 
@@ -109,7 +109,7 @@ def fit_calibration(
     truth
         Column of the true class, shape (record,).
     recording
-        As for ``combined``.
+        As for ``combine``.
     by
         Groups that the cross-validation kept together.
     """
@@ -117,9 +117,9 @@ def fit_calibration(
     temperature = float(
         np.exp(_lowest(lambda log: _loss(logarithms / np.exp(log), truth), *np.log(TEMPERATURES).tolist()))
     )
-    records = calibrated(probabilities, temperature)
+    records = calibrate(probabilities, temperature)
     dependence = _fit_dependence(records, truth, recording)
-    threshold, recording_threshold = (answering(rows) for rows in (records, combined(records, recording, dependence)))
+    threshold, recording_threshold = (answering(rows) for rows in (records, combine(records, recording, dependence)))
     return Calibration(
         by=by,
         temperature=temperature,
@@ -132,14 +132,14 @@ def fit_calibration(
 
 def _fit_dependence(probabilities: FloatArray, truth: IntArray, recording: IntArray) -> float:
     """Dependence with the lowest log-loss of recordings; 1, the most cautious, if no recording has several records."""
-    total, count = _summed(probabilities, recording)
+    total, count = _sum_logarithms(probabilities, recording)
     if count.max() < 2:
         return 1.0
     _, first = np.unique(recording, return_index=True)
     return _lowest(lambda dependence: _loss(total / (1 + (count - 1) * dependence)[:, None], truth[first]), 0.0, 1.0)
 
 
-def _summed(probabilities: FloatArray, recording: IntArray) -> tuple[FloatArray, FloatArray]:
+def _sum_logarithms(probabilities: FloatArray, recording: IntArray) -> tuple[FloatArray, FloatArray]:
     """Sum of the logarithms of the records of each recording, shape (recording, class), and their number."""
     count = np.bincount(recording).astype(float)
     total = np.zeros((len(count), probabilities.shape[1]))

@@ -77,7 +77,7 @@ def write_model_file(content: Mapping[str, Any], path: Path) -> None:
     with zipfile.ZipFile(io.BytesIO(skops.io.dumps(dict(content)))) as archive:
         members = {name: archive.read(name) for name in archive.namelist()}
     arrays: dict[bytes, str] = {}
-    schema = _renumbered(json.loads(members.pop(_SCHEMA)), members, arrays, {})
+    schema = _renumber(json.loads(members.pop(_SCHEMA)), members, arrays, {})
     file = io.BytesIO()
     with zipfile.ZipFile(file, "w", zipfile.ZIP_STORED) as archive:
         text = json.dumps(schema, separators=(",", ":")).encode()
@@ -88,7 +88,7 @@ def write_model_file(content: Mapping[str, Any], path: Path) -> None:
     write_durably(file.getvalue(), path)
 
 
-def _renumbered(value: Any, members: Mapping[str, bytes], arrays: dict[bytes, str], numbers: dict[Any, int]) -> Any:
+def _renumber(value: Any, members: Mapping[str, bytes], arrays: dict[bytes, str], numbers: dict[Any, int]) -> Any:
     """Part of a schema with its objects and arrays numbered by first appearance.
 
     Parameters
@@ -101,7 +101,7 @@ def _renumbered(value: Any, members: Mapping[str, bytes], arrays: dict[bytes, st
         New name of each array, and new number of each shared object by the number that skops gave it; both are extended.
     """
     if isinstance(value, list):
-        return [_renumbered(part, members, arrays, numbers) for part in value]
+        return [_renumber(part, members, arrays, numbers) for part in value]
     if not isinstance(value, dict):
         return value
     number = value.get("__id__")
@@ -112,7 +112,7 @@ def _renumbered(value: Any, members: Mapping[str, bytes], arrays: dict[bytes, st
         fields["__id__"] = numbers[number] = len(numbers) + 1
     if fields.get("__loader__") == "NdArrayNode" and fields["type"] == "numpy":
         fields["file"] = arrays.setdefault(_without_padding(members[fields["file"]]), f"{len(arrays)}.npy")
-    return {key: _renumbered(part, members, arrays, numbers) for key, part in fields.items()}
+    return {key: _renumber(part, members, arrays, numbers) for key, part in fields.items()}
 
 
 def _without_padding(content: bytes) -> bytes:

@@ -38,7 +38,7 @@ from features.baselines.records import (
     seen_records,
     title_of,
 )
-from features.baselines.reference_choice import check_durations, compared
+from features.baselines.reference_choice import check_durations, choose_reference
 from features.baselines.references import RELATIVE, paired_table, relative_to, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
@@ -278,7 +278,7 @@ def evaluate(
         if not isinstance(data, xr.Dataset):
             check_durations(data, reference)
         reference = _features_for(model, reference, reference)
-    chosen = compared(table, reference, model.features)
+    chosen = choose_reference(table, reference, model.features)
     return replace(_evaluate(chosen.table, model, chosen.reference, seed), reference=chosen.sentence)
 
 

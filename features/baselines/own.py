@@ -197,12 +197,12 @@ def load_maker(address: str) -> Maker:
         module = importlib.import_module(module_name)
     except ModuleNotFoundError as error:
         if error.name is None or not f"{module_name}.".startswith(f"{error.name}."):
-            raise _not_imported(address, module_name, error) from error
+            raise _import_error(address, module_name, error) from error
         raise EstimatorError(
             f"{address}: no module {error.name} in this folder or among the installed packages; correct the name before the colon."
         ) from error
     except (Exception, SystemExit) as error:
-        raise _not_imported(address, module_name, error) from error
+        raise _import_error(address, module_name, error) from error
     if not hasattr(module, name):
         held = [
             own
@@ -217,7 +217,7 @@ def load_maker(address: str) -> Maker:
     return maker
 
 
-def _not_imported(address: str, module: str, error: BaseException) -> EstimatorError:
+def _import_error(address: str, module: str, error: BaseException) -> EstimatorError:
     return EstimatorError(f"{address}: {module} cannot be imported ({_brief(error)}); RACEWAY_TRACEBACK=1 shows where.")
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from features.baselines.calibration import Calibration, calibrated, combined
+from features.baselines.calibration import Calibration, calibrate, combine
 from features.baselines.records import FloatArray, IntArray
 from gen.corpus import FAULTS
 
@@ -58,8 +58,8 @@ def predictions(
     probabilities: FloatArray, classes: tuple[str, ...], recording: IntArray, calibration: Calibration
 ) -> Predictions:
     """Predictions from the probabilities of an estimator, shape (record, class), which are calibrated here."""
-    records = calibrated(probabilities, calibration.temperature)
-    whole = combined(records, recording, calibration.dependence)
+    records = calibrate(probabilities, calibration.temperature)
+    whole = combine(records, recording, calibration.dependence)
     return Predictions(
         classes=classes,
         probabilities=records,

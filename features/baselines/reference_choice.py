@@ -42,7 +42,7 @@ class Compared(NamedTuple):
         return f"Records are compared with {whose} in the reference, which has {count:,}{left}.{other}"
 
 
-def compared(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> Compared:
+def choose_reference(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> Compared:
     """Choose the records to test and their healthy records, so that no tested record is part of the reference.
 
     If both tables hold the same records, the first healthy recording of each rig is the reference, and rigs without one are not tested.

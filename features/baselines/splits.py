@@ -135,12 +135,12 @@ def score_splits(
     tested = np.sort(np.concatenate([test for _, test in splits]))
     chosen = records._replace(fault=labels).at(tested)
     _, recording = np.unique(chosen.recording, return_inverse=True)
-    together = _pooled(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
+    together = _pool(probabilities[np.ix_(tested, classes)], classes, chosen.fault, recording, estimator)
     pooled = score(chosen, together, seed)
     return replace(pooled, folds=tuple(folds))
 
 
-def _pooled(
+def _pool(
     probabilities: FloatArray, classes: IntArray, labels: IntArray, recording: IntArray, estimator: str | Maker
 ) -> Predictions:
     """Predictions of all folds, calibrated together; an untrained baseline stays uncalibrated.

@@ -7,7 +7,7 @@ import xarray as xr
 
 from features.baselines.models import Model, predict
 from features.baselines.predictions import Predictions
-from features.baselines.reference_choice import compared
+from features.baselines.reference_choice import choose_reference
 from gen.corpus import UNKNOWN_CODE
 
 
@@ -50,7 +50,7 @@ def unlabelled_answers(table: xr.Dataset, model: Model, reference: xr.Dataset | 
     CorpusError
         As ``evaluate``.
     """
-    chosen = None if reference is None else compared(table, reference, model.features)
+    chosen = None if reference is None else choose_reference(table, reference, model.features)
     tested = table if chosen is None else chosen.table
     unknown = tested.isel(record=tested["fault"].values == UNKNOWN_CODE)
     if not unknown.sizes["record"]:

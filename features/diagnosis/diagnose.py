@@ -157,11 +157,11 @@ def diagnose(
         if healthy is None
         else _table(healthy._replace(signal=_beginning(healthy)[0]), model, FAULTS.index(HEALTHY))
     )
-    predicted = _predicted(used._replace(shaft_rate=rate), model, reference)
+    predicted = _predict(used._replace(shaft_rate=rate), model, reference)
     if other_rate is not None:
         warnings.append(_speed_warning(recording.shaft_rate, other_rate, uncertainty))
         if speed == "check":
-            predicted = _agreed(predicted, _predicted(used, model, reference), lines)
+            predicted = _reconcile(predicted, _predict(used, model, reference), lines)
     diagnosis = replace(
         predicted,
         labelled_rate=recording.shaft_rate,
@@ -170,7 +170,7 @@ def diagnose(
         spectrum=_shown_spectrum(spectra, lines),
         warnings=tuple(warnings + _bearing_warning(spectra, lines, rate, recording.orders)),
     )
-    return _worded(diagnosis, other_rate, speed, len(signal) / recording.fs, healthy is not None)
+    return _put_into_words(diagnosis, other_rate, speed, len(signal) / recording.fs, healthy is not None)
 
 
 def _beginning(recording: Recorded) -> tuple[FloatArray, list[str]]:
@@ -212,7 +212,7 @@ def _table(recording: Recorded, model: Model, fault: int) -> "xr.Dataset":
     return table.assign_attrs(title=recording.name)
 
 
-def _predicted(recording: Recorded, model: Model, reference: "xr.Dataset | None") -> Diagnosis:
+def _predict(recording: Recorded, model: Model, reference: "xr.Dataset | None") -> Diagnosis:
     """Diagnosis with the prediction of the model alone."""
     if reference is None:
         predicted = _prediction_of_windows(recording, model)
@@ -241,7 +241,7 @@ def _prediction_of_windows(recording: Recorded, model: Model) -> Predictions:
     return predictions(probabilities, model.classes, np.zeros(len(windows), dtype=np.intp), model.calibration)
 
 
-def _agreed(estimated: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
+def _reconcile(estimated: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
     """Prediction at the estimated speed, unless the classifier says another class at the labelled speed and no line decides."""
     families = {line.fault for line in lines}
     if labelled.verdict in (estimated.verdict, UNSURE) or estimated.verdict in families:
@@ -254,7 +254,7 @@ def _agreed(estimated: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Dia
     return replace(estimated, verdict=UNSURE, sentence=why, advice=(advice,))
 
 
-def _worded(
+def _put_into_words(
     diagnosis: Diagnosis, other_rate: float | None, speed: "Speed", duration: float, compared: bool
 ) -> Diagnosis:
     """Diagnosis with its sentence and advice; the verdict becomes unsure if the lines plainly tell another class."""

@@ -92,7 +92,7 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
         free_bins[slice(*place)].sum()
         for row in families
         for spectrum, free_bins in zip(spectra, free, strict=True)
-        for place in _searched(row, spectrum, shaft_rate, orders)
+        for place in _search_bins(row, spectrum, shaft_rate, orders)
     )
     lines: list[Line] = []
     least = LEAST_LEVEL
@@ -194,7 +194,9 @@ def _harmonics(row: FaultClass) -> range:
     return range(1, (HARMONICS if row.comb else len(row.lines)) + 1)
 
 
-def _searched(row: FaultClass, spectrum: BandSpectrum, shaft_rate: float, orders: Orders) -> Iterator[tuple[int, int]]:
+def _search_bins(
+    row: FaultClass, spectrum: BandSpectrum, shaft_rate: float, orders: Orders
+) -> Iterator[tuple[int, int]]:
     """Bins in which the first line of a family is searched, harmonic by harmonic."""
     for harmonic in range(1, FIRST_HARMONICS + 1):
         frequency = harmonic * _fundamental_order(row, orders) * shaft_rate
@@ -220,7 +222,7 @@ def _first_line(
     best = 0.0, 0, 0.0
     for number, (spectrum, free_bins) in enumerate(zip(spectra, free, strict=True)):
         threshold = spectrum.threshold(probability)
-        for harmonic, (first, last) in enumerate(_searched(row, spectrum, shaft_rate, orders), start=1):
+        for harmonic, (first, last) in enumerate(_search_bins(row, spectrum, shaft_rate, orders), start=1):
             ratio = np.where(free_bins[first:last], spectrum.ratio[first:last], 0.0)
             if ratio.size and ratio.max() > max(threshold, best[0]):
                 best = float(ratio.max()), number, (first + int(ratio.argmax())) * spectrum.resolution / harmonic

@@ -21,7 +21,7 @@ from features.indicators import WHITENING_WIDTH
 from features.signal.demodulation import analytic_band, envelope_spectrum, running_median
 from features.signal.rows import FloatArray
 from features.signal.shape import most_impulsive_band
-from features.signal.spectra import fourier_coefficients, psd_whitened
+from features.signal.spectra import fourier_coefficients, whiten_by_psd
 
 SEGMENT_TURNS = (20, 40)  # least and most shaft revolutions of a segment; 40 resolve a twentieth of an order
 SEGMENT_SECONDS = 0.5  # its least length [s]
@@ -70,7 +70,7 @@ def band_spectra(x: FloatArray, fs: float, shaft_rate: float) -> list[BandSpectr
     """Envelope spectra of a recording, shape (time,), in the bands of `bands_of`, up to 20 orders or the width of the band."""
     segments, duration = _segments(x, fs, shaft_rate)
     coefficients = fourier_coefficients(segments, fs, fs / 2)
-    whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
+    whitened = whiten_by_psd(coefficients, round(WHITENING_WIDTH * duration))
     count = 1 + (len(segments) - 1) / OVERLAP_LOSS
     spectra = []
     for band in bands_of(x, fs):
@@ -91,7 +91,7 @@ def bands_of(x: FloatArray, fs: float) -> list[tuple[float, float]]:
     top = fs / 2
     bands = [(DEFAULT_BAND.low, min(DEFAULT_BAND.high, top)), *(band for band in DEFAULT_BAND.narrow if sum(band) < fs)]
     piece = x[: round(min(len(x), 4 * fs))]
-    coefficients = psd_whitened(fourier_coefficients(piece[None], fs, top), round(WHITENING_WIDTH * len(piece) / fs))
+    coefficients = whiten_by_psd(fourier_coefficients(piece[None], fs, top), round(WHITENING_WIDTH * len(piece) / fs))
     levels = tuple(level for level in KURTOSIS_LEVELS if top / level >= NARROWEST) or (1,)
     low, high = (edge * fs / len(piece) for edge in most_impulsive_band(coefficients, levels))
     return [*bands, (float(max(low, 1.0)), float(min(high, top)))]

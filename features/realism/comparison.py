@@ -111,7 +111,7 @@ def compare(
     for name, folder in zip(["synthetic", *_names(folders[1:])], folders, strict=True):
         measured.append(measured_windows(folder, name, common, records))
         done(1)
-    return contrasted(measured[0], tuple(measured[1:]), common)
+    return contrast(measured[0], tuple(measured[1:]), common)
 
 
 def _names(folders: Sequence[Path]) -> list[str]:
@@ -121,7 +121,7 @@ def _names(folders: Sequence[Path]) -> list[str]:
     return short if clear else [str(folder) for folder in folders]
 
 
-def contrasted(synthetic: Windows, real: tuple[Windows, ...], common: Common) -> Comparison:
+def contrast(synthetic: Windows, real: tuple[Windows, ...], common: Common) -> Comparison:
     """Compare measured windows.
 
     Raises
@@ -172,7 +172,7 @@ def _finite(values: FloatArray) -> FloatArray:
     return values[np.isfinite(values)]
 
 
-def pooled(sets: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
+def pool(sets: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
     """Values of several sets, and weights with which each set that is not too small has the total weight 1."""
     enough = [values for values in sets if len(values) >= FEWEST]
     if not enough:
@@ -182,12 +182,12 @@ def pooled(sets: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
 
 def _auc(sets: dict[str, FloatArray], below: str) -> float | None:
     """AUC of the other sets above the set ``below``; None if either side has too few values."""
-    low, low_weights = pooled([values for name, values in sets.items() if name == below])
-    high, high_weights = pooled([values for name, values in sets.items() if name != below])
+    low, low_weights = pool([values for name, values in sets.items() if name == below])
+    high, high_weights = pool([values for name, values in sets.items() if name != below])
     return auc(low, high, low_weights, high_weights) if len(low) and len(high) else None
 
 
 def _quantiles(sets: dict[str, FloatArray], synthetic: str) -> dict[str, list[float]]:
-    by_corpus = {name: quantiles(*pooled([values]), SHARES) for name, values in sets.items() if len(values) >= FEWEST}
-    values, weights = pooled([values for name, values in sets.items() if name != synthetic])
+    by_corpus = {name: quantiles(*pool([values]), SHARES) for name, values in sets.items() if len(values) >= FEWEST}
+    values, weights = pool([values for name, values in sets.items() if name != synthetic])
     return by_corpus | ({"real": quantiles(values, weights, SHARES)} if len(values) else {})

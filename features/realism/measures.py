@@ -15,12 +15,12 @@ from features.band import DEFAULT_BAND
 from features.faults import CLASSES, COMBS
 from features.indicators import FLOOR_WIDTH, Orders, log_level
 from features.signal.colour import centroid, roll_off, tonality
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, hann_weighted
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, weight_by_hann
 from features.signal.lines import single_lines
 from features.signal.modulation import cyclostationarity, highest_place, phase_wander, sideband_ratio
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.shape import SHAPE_NAMES, envelope_shape, highest_spectral_kurtosis, time_statistics
-from features.signal.spectra import band_energies, fourier_coefficients, psd, psd_whitened
+from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
 UPPER_BAND = 3500.0  # Hz
@@ -72,7 +72,7 @@ MEASURES = (
 NAMES = tuple(measure.name for measure in MEASURES)
 
 
-def band_limited(x: FloatArray, fs: float, rate: float, top: float) -> FloatArray:
+def limit_band(x: FloatArray, fs: float, rate: float, top: float) -> FloatArray:
     """Windows limited to 20 Hz to ``top`` and sampled at about ``rate``, shape (window, time).
 
     The number of samples is the rounded product of rate and length, so that the exact rate is this number over the length.
@@ -94,7 +94,9 @@ def band_limited(x: FloatArray, fs: float, rate: float, top: float) -> FloatArra
     return np.asarray(irfft(coefficients, n=round(rate * seconds), axis=-1, norm="forward"))
 
 
-def measured(x: FloatArray, fs: float, top: float, shaft_rate: FloatArray, orders: Orders, fault: str) -> FloatArray:
+def compute_measures(
+    x: FloatArray, fs: float, top: float, shaft_rate: FloatArray, orders: Orders, fault: str
+) -> FloatArray:
     """Measures of windows of one class, in the order of `NAMES`, shape (window, measure).
 
     Parameters
@@ -174,17 +176,17 @@ class _Envelopes(NamedTuple):
     def of(cls, x: FloatArray, fs: float, top: float, shaft_rate: FloatArray) -> "_Envelopes":
         """Envelopes of windows of shape (window, time) with known shaft rates [Hz], shape (window,)."""
         seconds = x.shape[-1] / fs
-        whitened = psd_whitened(fourier_coefficients(x, fs, top), round(WHITENING_WIDTH * seconds))
+        whitened = whiten_by_psd(fourier_coefficients(x, fs, top), round(WHITENING_WIDTH * seconds))
         z = analytic_band(whitened, round(DEFAULT_BAND.low * seconds), round(top * seconds))
         power = squared_modulus(z)
-        spectrum = fine_amplitudes(hann_weighted(np.sqrt(power)), ZERO_PADDING * z.shape[-1] // 2 + 1)
+        spectrum = fine_amplitudes(weight_by_hann(np.sqrt(power)), ZERO_PADDING * z.shape[-1] // 2 + 1)
         step = 1 / (ZERO_PADDING * seconds)
         width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / step
         return cls(power, z.shape[-1] / seconds, spectrum, log_level(spectrum, width, spectrum.shape[-1]), step)
 
     def shape(self, shaft_rate: FloatArray) -> FloatArray:
         """Share of the power of the envelopes below 0.8 orders, shape (window,)."""
-        weighted = hann_weighted(np.sqrt(self.power))
+        weighted = weight_by_hann(np.sqrt(self.power))
         shapes = envelope_shape(self.power, weighted, self.spectrum, self.rate, shaft_rate)
         return shapes[:, SHAPE_NAMES.index("slow_share")]
 

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from features.indicators import Orders
-from features.realism.measures import NAMES, band_limited, measured
+from features.realism.measures import NAMES, compute_measures, limit_band
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS, SIGNAL, UNKNOWN_CODE, open_corpus
 from gen.support.errors import CorpusError
@@ -114,7 +114,7 @@ def measured_windows(folder: Path, name: str, common: Common, most: int) -> Wind
         record, start = _chosen(columns, known & labelled, corpus.sizes["elapsed_time"], common.window, most)
         values = np.full((len(record), len(NAMES)), np.nan)
         for fault, fs, block in _blocks(columns, record):
-            values[block] = _measured(corpus, columns, common, record[block], start[block], fault, fs)
+            values[block] = _measure_block(corpus, columns, common, record[block], start[block], fault, fs)
     usable = np.isfinite(values).any(axis=1)
     fault, unknown = columns["fault"][record], int((~labelled).sum())
     return Windows(name, folder, record[usable], start[usable], fault[usable], values[usable], unknown)
@@ -161,7 +161,7 @@ def _blocks(columns: dict[str, np.ndarray], record: np.ndarray) -> list[tuple[st
     return blocks
 
 
-def _measured(
+def _measure_block(
     corpus: xr.Dataset,
     columns: dict[str, np.ndarray],
     common: Common,
@@ -175,10 +175,12 @@ def _measured(
     values = np.full((len(x), len(NAMES)), np.nan)
     usable = np.flatnonzero(np.isfinite(x).all(axis=1) & (np.ptp(x, axis=1) > 0))
     if usable.size:
-        limited = band_limited(x[usable], fs, common.rate, common.top)
+        limited = limit_band(x[usable], fs, common.rate, common.top)
         exact = limited.shape[-1] * fs / x.shape[-1]
         orders = Orders(*(columns[key][record[usable]] for key in Orders._fields))
-        values[usable] = measured(limited, exact, common.top, columns["shaft_rate"][record[usable]], orders, fault)
+        values[usable] = compute_measures(
+            limited, exact, common.top, columns["shaft_rate"][record[usable]], orders, fault
+        )
     return values
 
 
@@ -213,5 +215,5 @@ def typical_window(
         known = {key: float(of_record[key]) for key in ("sample_rate", "shaft_rate", *Orders._fields)}
         fs = known["sample_rate"]
         x = read_windows(corpus, record, start, window_length(common, fs))
-    limited = band_limited(x, fs, common.rate, common.top)[0]
+    limited = limit_band(x, fs, common.rate, common.top)[0]
     return int(record[0]), limited, known | {"sample_rate": limited.size * fs / x.shape[-1]}

@@ -24,7 +24,7 @@ from features.faults import FUNDAMENTALS, LOOKS, SHAFT
 from features.indicators import WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray
-from features.signal.spectra import fourier_coefficients, psd, psd_whitened
+from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
 from gen.corpus import FAULT_NAMES, GENERATOR
 
 PictureFormat = Literal["png", "svg", "pdf"]
@@ -108,13 +108,13 @@ def draw_waveform(axes: Axes, shown: Shown) -> None:
     duration = shown.signal.size / shown.fs
     visible = min(duration, TURNS / shown.shaft_rate)
     x = shown.signal[: max(2, round(visible * shown.fs))]
-    time, values = thinned(np.arange(x.size) / shown.fs, x)
+    time, values = thin(np.arange(x.size) / shown.fs, x)
     axes.plot(time, values, color=INK, linewidth=0.6)
     axes.set(xlabel="time [s]", ylabel="acceleration [m/s²]", xlim=(0, visible))
     axes.set_title(f"First {visible:.2g} s of {duration:.3g} s, {visible * shown.shaft_rate:.2g} shaft revolutions")
 
 
-def thinned(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
+def thin(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     """Lowest and highest value in each of at most `COLUMNS` columns; the drawn line looks like that of all samples."""
     step = -(-values.size // COLUMNS)
     if step < 4:
@@ -167,7 +167,7 @@ def squared_envelope(shown: Shown) -> tuple[FloatArray, FloatArray]:
     """Orders of the shaft, and squared envelope spectrum of the whitened band [1], both of shape (order,)."""
     duration = shown.signal.size / shown.fs
     coefficients = fourier_coefficients(shown.signal[None], shown.fs, shown.band.high)
-    whitened = psd_whitened(coefficients, round(WHITENING_WIDTH * duration))
+    whitened = whiten_by_psd(coefficients, round(WHITENING_WIDTH * duration))
     band = analytic_band(whitened, *(round(edge * duration) for edge in shown.band))
     frequencies, spectrum = squared_envelope_spectrum(band, band.shape[-1] / duration)
     scale = np.mean(np.abs(band) ** 2)

@@ -20,7 +20,7 @@ from features.report.pictures import (
     VERMILION,
     WIDTH,
     Shown,
-    thinned,
+    thin,
 )
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
@@ -66,7 +66,7 @@ def _colour(number: int) -> str:
 def _draw_turns(axes: Axes, shown: Shown) -> None:
     """Draw the first revolutions of the shaft."""
     x = shown.signal[: max(2, round(TURNS / shown.shaft_rate * shown.fs))]
-    turns, values = thinned(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
+    turns, values = thin(np.arange(x.size) / shown.fs * shown.shaft_rate, x / np.sqrt(np.mean(shown.signal**2)))
     axes.plot(turns, values, color=INK, linewidth=0.5)
     axes.set(xlabel="revolution of the shaft", xlim=(0, turns[-1]))
 

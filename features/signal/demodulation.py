@@ -80,7 +80,7 @@ def squared_envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray,
 
 def _amplitude_spectrum(y: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
     bins = ZERO_PADDING * y.shape[-1] // 2 + 1
-    return np.arange(bins) * (rate / (ZERO_PADDING * y.shape[-1])), fine_amplitudes(hann_weighted(y), bins)
+    return np.arange(bins) * (rate / (ZERO_PADDING * y.shape[-1])), fine_amplitudes(weight_by_hann(y), bins)
 
 
 @row_kernel
@@ -93,7 +93,7 @@ def _less_mean(y: FloatArray, window: FloatArray) -> FloatArray:
     return out
 
 
-def hann_weighted(y: FloatArray) -> FloatArray:
+def weight_by_hann(y: FloatArray) -> FloatArray:
     """Real signals without their Hann-weighted mean, times the Hann window, shape (record, time)."""
     return _less_mean(y, hann_window(y.shape[-1], y.dtype))
 
@@ -107,7 +107,7 @@ def fine_amplitudes(weighted: FloatArray, bins: int) -> FloatArray:
     Parameters
     ----------
     weighted
-        Signals times a Hann window, as from `hann_weighted`, shape (record, time).
+        Signals times a Hann window, as from `weight_by_hann`, shape (record, time).
     bins
         Number of bins, at most as many as the padded spectrum has.
 
@@ -120,7 +120,7 @@ def fine_amplitudes(weighted: FloatArray, bins: int) -> FloatArray:
     padded = np.zeros((len(weighted), len(window)), weighted.dtype)
     start = (len(window) - n) // 2
     np.multiply(weighted, window[start : start + n], out=padded[:, start : start + n])
-    return _interpolated(np.asarray(rfft(padded, axis=-1)), len(window), first[:bins], weights[:bins])
+    return _interpolate(np.asarray(rfft(padded, axis=-1)), len(window), first[:bins], weights[:bins])
 
 
 @lru_cache(16)
@@ -146,7 +146,7 @@ def _interpolation(n: int, dtype: DTypeLike) -> tuple[FloatArray, np.ndarray, Fl
 
 
 @njit(cache=True, nogil=True)  # without fastmath: vectorised over records, each sum in the order written
-def _interpolated(transform: ComplexArray, n: int, first: np.ndarray, weights: FloatArray) -> FloatArray:
+def _interpolate(transform: ComplexArray, n: int, first: np.ndarray, weights: FloatArray) -> FloatArray:
     """Moduli between the coefficients of real signals of length n, shape (record, bin)."""
     records, reach = len(transform), first[-1] - first[0] + NEIGHBOURS
     real, imag = np.empty((reach, records), weights.dtype), np.empty((reach, records), weights.dtype)
@@ -195,7 +195,7 @@ def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatA
     window = _surroundings(spectrum, width, step, knots)
     window.sort(axis=-1)  # np.median takes eight times as long
     half = MEDIAN_POINTS // 2
-    return _joined(0.5 * (window[..., half - 1] + window[..., half]), step, bins)
+    return _join(0.5 * (window[..., half - 1] + window[..., half]), step, bins)
 
 
 @row_kernel
@@ -214,7 +214,7 @@ def _surroundings(spectrum: FloatArray, width: FloatArray, step: FloatArray, kno
 
 
 @row_kernel
-def _joined(values: FloatArray, step: FloatArray, bins: int) -> FloatArray:
+def _join(values: FloatArray, step: FloatArray, bins: int) -> FloatArray:
     """Straight lines between values ``step`` bins apart, shape (record, bins)."""
     out = np.empty((len(values), bins), values.dtype)
     for row in range(len(values)):

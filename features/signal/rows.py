@@ -46,7 +46,7 @@ def total_with(values: FloatArray, parts: FloatArray) -> float:
 
 
 @row_kernel
-def centred(x: FloatArray) -> FloatArray:
+def centre(x: FloatArray) -> FloatArray:
     """Records without their mean, in single precision, shape (record, time)."""
     out = np.empty(x.shape, np.float32)
     for row in range(len(x)):

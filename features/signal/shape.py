@@ -46,7 +46,7 @@ def envelope_shape(
     power
         Squared envelopes ``|z|^2``, shape (record, time).
     weighted
-        Envelopes times their window, as from `features.signal.demodulation.hann_weighted`, shape (record, time).
+        Envelopes times their window, as from `features.signal.demodulation.weight_by_hann`, shape (record, time).
     spectrum
         Their `features.signal.demodulation.fine_amplitudes` from 0 to at least 0.8 orders, shape (record, frequency).
     rate

@@ -152,18 +152,18 @@ def _taper(n: int, dtype: DTypeLike) -> FloatArray:
     return (taper / n).astype(dtype)
 
 
-def cepstrally_whitened(coefficients: ComplexArray) -> ComplexArray:
+def whiten_cepstrally(coefficients: ComplexArray) -> ComplexArray:
     """Coefficients of modulus one with unchanged phases, shape (record, frequency)."""
-    return _divided(coefficients, squared_modulus(coefficients))
+    return _divide(coefficients, squared_modulus(coefficients))
 
 
-def psd_whitened(coefficients: ComplexArray, width: int) -> ComplexArray:
+def whiten_by_psd(coefficients: ComplexArray, width: int) -> ComplexArray:
     """Coefficients divided by the root of their mean power over ``width`` bins, shape (record, frequency)."""
-    return _divided(coefficients, _running_mean(squared_modulus(coefficients), max(1, width)))
+    return _divide(coefficients, _running_mean(squared_modulus(coefficients), max(1, width)))
 
 
 @row_kernel
-def _divided(coefficients: ComplexArray, power: FloatArray) -> ComplexArray:
+def _divide(coefficients: ComplexArray, power: FloatArray) -> ComplexArray:
     """Coefficients divided by the root of a power, with `FAINTEST` as the lower bound of the root."""
     out = np.empty(coefficients.shape, coefficients.dtype)
     tiny = np.finfo(power.dtype).tiny

@@ -158,7 +158,7 @@ def _all_parts(
     if client is None and not all((folder / "parts" / part_name(part)).exists() for part in tally.parts):
         compile_kernels(recipe, notice)
     outcomes: dict[int, Outcome] = {}
-    with closing(_outcomes(tally, folder, workers, client)) as made:
+    with closing(_made(tally, folder, workers, client)) as made:
         for part, outcome in made:
             outcomes[part] = outcome
             tally.note(part, len(recipe.records_of_part(part)))
@@ -279,7 +279,7 @@ def client_of(scheduler: str | None, workers: int) -> "AbstractContextManager[Cl
     return cluster.client_of(scheduler)
 
 
-def _outcomes(tally: Tally, folder: Path, workers: int, client: "Client | None") -> Generator[tuple[int, Outcome]]:
+def _made(tally: Tally, folder: Path, workers: int, client: "Client | None") -> Generator[tuple[int, Outcome]]:
     """Number and outcome of every part in the order in which they finish: from this process, a local cluster or ``client``."""
     recipe, parts = tally.recipe, tally.parts
     of_this_process = Crew(threads_of(workers))

@@ -108,10 +108,10 @@ def copy(
     if as_json:
         show.as_json(made._asdict())
         return
-    size = f"{show.counted(made.files, 'file')}, {show.size(made.bytes)}"
-    channels_made = f"{show.counted(len(made.channels), 'channel')} ({', '.join(made.channels)})"
+    size = f"{show.count_text(made.files, 'file')}, {show.size(made.bytes)}"
+    channels_made = f"{show.count_text(len(made.channels), 'channel')} ({', '.join(made.channels)})"
     form = "" if made.form in ("folder", "nc") else f" as {made.form}"
-    show.text(f"{output}: {made.records:,} of {show.counted(made.of, 'record')}, {channels_made}{form} in {size}.")
+    show.text(f"{output}: {made.records:,} of {show.count_text(made.of, 'record')}, {channels_made}{form} in {size}.")
     quoted = shlex.quote(str(output))
     if not form:
         show.text(f"Next: raceway info {quoted}")

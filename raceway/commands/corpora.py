@@ -22,7 +22,7 @@ from raceway.console.options import (
     target_option,
     worker_options,
 )
-from raceway.console.progress import compilation_noticed, notice, progress
+from raceway.console.progress import notice, notice_compilation, progress
 from raceway.console.signals import if_interrupted
 
 if TYPE_CHECKING:
@@ -188,7 +188,7 @@ def generate(
     start = time.monotonic()
     workers = workers or _default_workers(wanted)
     with if_interrupted(partial(_kept, output, wanted)):
-        made = _generated(recipe, output, workers=workers, scheduler=scheduler, seed=seed, records=records)
+        made = _generate(recipe, output, workers=workers, scheduler=scheduler, seed=seed, records=records)
     for failure in made.failures:
         notice(f"left out: {failure}")
     useless = complaint(made.signals, made.records)
@@ -203,7 +203,7 @@ def generate(
     return DONE if useless is None else FOUND_WANTING
 
 
-def _generated(recipe: str, output: Path, **options: Any) -> "Generated":
+def _generate(recipe: str, output: Path, **options: Any) -> "Generated":
     from gen import generate as generate_corpus
 
     with progress("generating", "records") as report:
@@ -216,7 +216,7 @@ def _show_generated(made: "Generated") -> None:
     kept = f", {made.kept} of them kept from before" if made.kept else ""
     unusable = f"; {counts_in_words(made.signals)} cannot be used" if any(made.signals) else ""
     failed = f"; {len(made.failures):,} could not be simulated and are left out" if made.failures else ""
-    size = f"{show.counted(made.records, 'record')} in {show.counted(made.parts, 'part')}"
+    size = f"{show.count_text(made.records, 'record')} in {show.count_text(made.parts, 'part')}"
     show.text(f"{made.path}: {size}{kept}{failed}{unusable}.")
     show.text(f"Next: raceway info {shlex.quote(str(made.path))}")
 
@@ -240,7 +240,7 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
         parts = len(read_manifest(corpus).parts)
     except RacewayError:  # before the first part
         parts = 0
-    of_all = f"{parts} of {show.counted(recipe.n_parts, 'part')}"
+    of_all = f"{parts} of {show.count_text(recipe.n_parts, 'part')}"
     return f"interrupted; {of_all} kept in {corpus}; the same command completes the corpus."
 
 
@@ -325,7 +325,7 @@ def replay(corpus: Path, record: int, output: Path | None, as_json: bool) -> int
     from gen import replay as replay_record
     from gen.corpus import write_part
 
-    with compilation_noticed():
+    with notice_compilation():
         again = replay_record(corpus, record)
     if output is not None:
         write_part(again.dataset, output)

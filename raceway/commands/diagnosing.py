@@ -8,7 +8,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import A_PATH, file_option, json_option
-from raceway.console.progress import compilation_noticed, notice
+from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
     from features.diagnosis import Diagnosis, Recorded
@@ -133,13 +133,13 @@ def diagnose(
     paths = [path for path in (recording, healthy) if path is not None]
     signals = [read_signal(path, **reading) for path in paths]
     recorded = [
-        _recorded(signal.values, _rate(path, signal.fs), shaft_rpm, known, path)
+        _recording(signal.values, _rate(path, signal.fs), shaft_rpm, known, path)
         for path, signal in zip(paths, signals, strict=True)
     ]
     loaded, source = _model(model)
     from features.diagnosis import diagnose as run
 
-    with compilation_noticed():
+    with notice_compilation():
         diagnosis = run(recorded[0], loaded, healthy=recorded[1] if healthy else None, speed=speed)
     # the diagnosis itself warns of an implausible rms
     notes = tuple(note for signal in signals for note in signal.warnings if "its rms" not in note)
@@ -148,7 +148,7 @@ def diagnose(
     if output is not None:
         from features.report.diagnosis import write_diagnosis
 
-        facts = _assumed(recorded[0], known, unit, sensitivity, rate, speed, healthy, source, notes)
+        facts = _assumptions(recorded[0], known, unit, sensitivity, rate, speed, healthy, source, notes)
         write_diagnosis(diagnosis, recorded[0], output, name=recording.name, assumed=facts)
     if as_json:
         show.as_json(_facts(diagnosis, recorded[0], recording, source, output, notes))
@@ -164,7 +164,7 @@ def _rate(path: Path, fs: float | None) -> float:
     return fs
 
 
-def _recorded(values: Any, fs: float, shaft_rpm: float, bearing: "Bearing", path: Path) -> "Recorded":
+def _recording(values: Any, fs: float, shaft_rpm: float, bearing: "Bearing", path: Path) -> "Recorded":
     import numpy as np
 
     from features.diagnosis import Recorded
@@ -213,7 +213,7 @@ def _facts(
     }
 
 
-def _assumed(
+def _assumptions(
     recorded: "Recorded",
     bearing: "Bearing",
     unit: str,

@@ -5,7 +5,7 @@ import click
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import json_option
-from raceway.console.progress import compilation_noticed
+from raceway.console.progress import notice_compilation
 
 
 @click.command()
@@ -49,7 +49,7 @@ def doctor(recipe: str | None, records: int | None, as_json: bool) -> int:
         show.as_json({"problems": problems, "findings": [one._asdict() for one in facts]})
     else:
         show.text(
-            "", "Everything that Raceway needs is here." if not problems else f"{show.counted(problems, 'problem')}."
+            "", "Everything that Raceway needs is here." if not problems else f"{show.count_text(problems, 'problem')}."
         )
     return FOUND_WANTING if problems else DONE
 
@@ -60,13 +60,13 @@ def _show_speed(recipe: str, records: int | None, as_json: bool) -> None:
     find_recipe(recipe)
     from raceway.studies.timing import bench
 
-    with compilation_noticed():
+    with notice_compilation():
         times = bench(recipe, records)
     if as_json:
         show.as_json(times)
         return
     show.text(
-        f"{times.recipe}: {show.counted(times.records, 'record')}, median of {show.counted(times.repeats, 'run')} on "
+        f"{times.recipe}: {show.count_text(times.records, 'record')}, median of {show.count_text(times.repeats, 'run')} on "
         f"{times.machine['processor']}",
         "",
     )

@@ -85,14 +85,14 @@ def features(
         other = table.attrs.get("recordings_with_other_speed")  # none if speeds were not estimated
         show.as_json(facts | {"recordings_with_other_speed": other})
         return
-    lacking = f"; some are missing in {show.counted(missing, 'record')}" if missing else ""
-    show.text(f"{output}: {columns} features of {show.counted(records, 'record')}{lacking}.")
+    lacking = f"; some are missing in {show.count_text(missing, 'record')}" if missing else ""
+    show.text(f"{output}: {columns} features of {show.count_text(records, 'record')}{lacking}.")
 
 
 def notice_of_unknown(corpus: Path, unknown: int) -> None:
     """Say how many records of a corpus are left out because their class is not known."""
     if unknown:
-        notice(f"{corpus}: {show.counted(unknown, 'record')} of class unknown left out.")
+        notice(f"{corpus}: {show.count_text(unknown, 'record')} of class unknown left out.")
 
 
 def table_of(

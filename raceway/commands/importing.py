@@ -113,6 +113,6 @@ def _run(bring: "Callable[[Any], Import]", as_json: bool) -> None:
         show.as_json({"corpus": facts.pop("path"), **facts})
         return
     show.text(
-        f"{done.path}: {show.counted(done.records, 'record')} of {show.counted(done.recordings, 'recording')}; "
-        f"{show.counted(len(done.skipped), 'file')} skipped, {show.counted(len(done.warnings), 'warning')}."
+        f"{done.path}: {show.count_text(done.records, 'record')} of {show.count_text(done.recordings, 'recording')}; "
+        f"{show.count_text(len(done.skipped), 'file')} skipped, {show.count_text(len(done.warnings), 'warning')}."
     )

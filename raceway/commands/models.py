@@ -123,14 +123,14 @@ def train(
         )
         return
     show.text(
-        f"{output}: {estimator}, trained on {show.counted(model.records, 'record')}, classes {', '.join(model.classes)}.",
+        f"{output}: {estimator}, trained on {show.count_text(model.records, 'record')}, classes {', '.join(model.classes)}.",
         calibration_text(model.calibration),
         "It also takes healthy records of the tested rig (raceway evaluate --reference)."
         if model.relative
         else "It takes no healthy reference: each class needs records on rigs with two healthy recordings.",
     )
     if scores is not None:
-        show.text("", f"Scores on the test split of {show.counted(scores.records, 'record')}:")
+        show.text("", f"Scores on the test split of {show.count_text(scores.records, 'record')}:")
         _show_scores(scores)
 
 

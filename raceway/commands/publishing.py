@@ -79,7 +79,7 @@ def card(
         "contact": contact,
         "date": date,
     }
-    publication = _published(corpus, {name: value for name, value in given.items() if value})
+    publication = _publication(corpus, {name: value for name, value in given.items() if value})
     from gen.corpus import card_folder
     from raceway.studies.card_pictures import complete_card
 
@@ -91,8 +91,8 @@ def card(
         scored = {row.name: row.score for row in rows}
         show.as_json({"card": written, "pictures": pictures, "scores": scored, "publication": publication.stored})
         return
-    scored = f", scores of {show.counted(len(rows), 'classifier')}" if rows else ""
-    show.text(f"{written}: {show.counted(len(added.pictures), 'picture')}{scored}.")
+    scored = f", scores of {show.count_text(len(rows), 'classifier')}" if rows else ""
+    show.text(f"{written}: {show.count_text(len(added.pictures), 'picture')}{scored}.")
     missing = [
         name
         for name in ("license", "creator", "date")
@@ -104,7 +104,7 @@ def card(
         )
 
 
-def _published(corpus: Path, given: dict[str, Any]) -> "Publication":
+def _publication(corpus: Path, given: dict[str, Any]) -> "Publication":
     """Facts of the corpus after those that are given have replaced others."""
     from gen.corpus import publish, read_manifest
 

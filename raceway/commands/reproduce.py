@@ -8,7 +8,7 @@ import click
 
 from raceway.console import show
 from raceway.console.options import json_option, pages_option
-from raceway.console.progress import compilation_noticed
+from raceway.console.progress import notice_compilation
 
 
 @click.group()
@@ -47,7 +47,7 @@ def ophel2025(
     """
     from raceway.studies.experiments import changed
     from raceway.studies.paper import PRESETS
-    from raceway.studies.statements import reproduced, span
+    from raceway.studies.statements import reproduce, span
 
     if preset is not None and preset not in PRESETS:
         raise click.BadParameter(f"{preset} is none of {', '.join(PRESETS)}", param_hint="'--preset'")
@@ -55,7 +55,7 @@ def ophel2025(
     chosen = {name: constants for name, constants in PRESETS.items() if preset in (None, name)}
     if change:
         chosen = {f"{name}-changed": changed(constants, change) for name, constants in chosen.items()}
-    findings = reproduced(output, chosen)
+    findings = reproduce(output, chosen)
     if as_json:
         show.as_json({"findings": [finding._asdict() for finding in findings]})
         return
@@ -92,12 +92,12 @@ def gallery(output: Path, as_json: bool) -> None:
     from raceway.studies.gallery import write_gallery
 
     start = time.monotonic()
-    with compilation_noticed():
+    with notice_compilation():
         page, pictures = write_gallery(output)
     if as_json:
         show.as_json({"page": page, "pictures": pictures})
         return
-    show.text(f"{page}: {show.counted(len(pictures), 'picture')}, in {show.duration(time.monotonic() - start)}.")
+    show.text(f"{page}: {show.count_text(len(pictures), 'picture')}, in {show.duration(time.monotonic() - start)}.")
 
 
 def _constants(changes: tuple[str, ...]) -> dict[str, float]:

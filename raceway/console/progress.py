@@ -81,7 +81,7 @@ def notice(sentence: str) -> None:
 
 
 @contextmanager
-def compilation_noticed() -> Iterator[None]:
+def notice_compilation() -> Iterator[None]:
     """Print a sentence when numba starts to compile a kernel, which happens once per machine."""
     from numba.core import event
 

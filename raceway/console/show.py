@@ -81,10 +81,10 @@ def counts(numbers: Mapping[str, int]) -> str:
     return ", ".join(f"{name} {number:,}" for name, number in numbers.items())
 
 
-def counted(number: int, noun: str) -> str:
+def count_text(number: int, noun: str) -> str:
     """Number and noun, in the plural unless the number is 1.
 
-    >>> counted(1, "part"), counted(1200, "record")
+    >>> count_text(1, "part"), count_text(1200, "record")
     ('1 part', '1,200 records')
     """
     return f"{number:,} {noun}{'' if number == 1 else 's'}"

@@ -227,7 +227,7 @@ def experiment(preset: str, statement: str) -> Experiment | None:
     return next(made, None)
 
 
-def worded(made: Experiment) -> str:
+def in_words(made: Experiment) -> str:
     """Change in words: constant, old and new value with the unit."""
     preset = PRESETS[made.preset]
     return ", ".join(

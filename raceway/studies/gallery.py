@@ -106,7 +106,7 @@ def _every_fault(output: Path) -> Section:
     corpus = _corpus("every_fault", output)
     kinds: dict[str, int] = {}
     for record, draws in enumerate(corpus["draws"].values):
-        kinds.setdefault(_described(read_scenario(str(draws)).specimen), record)
+        kinds.setdefault(_damage_text(read_scenario(str(draws)).specimen), record)
     shown = [
         _shown(corpus.isel(record=record), kind)
         for kind, record in sorted(kinds.items(), key=lambda item: _rank(corpus, item[1]))
@@ -123,7 +123,7 @@ def _rank(corpus: xr.Dataset, record: int) -> tuple[int, int]:
     return int(corpus["fault"][record]), record
 
 
-def _described(specimen: Specimen) -> str:
+def _damage_text(specimen: Specimen) -> str:
     """Damage of a specimen in a few words."""
     if specimen.wear is not None:
         return f"{specimen.wear.site} race worn all round"
@@ -152,7 +152,7 @@ def _run_up(output: Path) -> Section:
         share = 1.0 if drawn.speed_profile is None else share_at(drawn.speed_profile, times)
         rate = drawn.conditions.shaft_rate * share * np.ones(len(times))
         figure = draw_waterfall(
-            f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _marked(shown)
+            f"Run-up: {shown.fault}", shown.signal, shown.fs, (2000.0, 5000.0), rate, _marked_orders(shown)
         )
         names.append(f"run-up-{shown.fault}.png")
         write_durably(picture(figure, "png"), output / names[-1])
@@ -177,7 +177,7 @@ def _sensor_faults(output: Path) -> Section:
     return Section("Sensor faults and a gear", text, write_sensor_fault_pictures(output))
 
 
-def _marked(shown: Shown) -> dict[str, float]:
+def _marked_orders(shown: Shown) -> dict[str, float]:
     """Orders drawn into a waterfall: the shaft and the first two lines of the fault, or of a healthy bearing all fundamental lines."""
     own, others = fault_lines(shown.orders, shown.fault)
     return {"shaft": 1.0, **dict(list(own.items())[:2])} if own else others

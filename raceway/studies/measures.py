@@ -31,7 +31,7 @@ def asymmetry(x: FloatArray) -> float:
     return float(max(up, down) / min(up, down))
 
 
-def mirrored(frequency: FloatArray, power: FloatArray, other: FloatArray) -> float:
+def similarity(frequency: FloatArray, power: FloatArray, other: FloatArray) -> float:
     """Correlation of the logarithms of two power spectra between 20 and 1000 Hz."""
     both = (frequency >= 20) & (frequency <= 1000)
     return float(np.corrcoef(np.log(power[both]), np.log(other[both]))[0, 1])
@@ -59,6 +59,6 @@ def lines(frequency: FloatArray, power: FloatArray) -> list[Line]:
     return [(float(f), float(below), float(rise)) for f, below, rise in zip(*columns, strict=True)]
 
 
-def clustered(peaks: list[Line], low: float, high: float) -> float:
+def count_lines(peaks: list[Line], low: float, high: float) -> float:
     """Number of lines from ``low`` to ``high`` that are within 20 dB of the highest line of the spectrum."""
     return float(sum(low <= f <= high and below > -20 for f, below, _ in peaks))

@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
 from raceway.console.options import USUAL, Team, cores
-from raceway.console.progress import compilation_noticed, notice, progress
+from raceway.console.progress import notice, notice_compilation, progress
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -71,7 +71,7 @@ def recipe_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
     workers = team.workers or cores()
     with temporary_folder() as folder:
         corpus = folder / "corpus"
-        with compilation_noticed(), progress("generating", "records") as report:
+        with notice_compilation(), progress("generating", "records") as report:
             generate(recipe, corpus, workers=workers, progress=report)
         with progress("computing features", "parts") as report:
             return feature_table(corpus, workers=workers, progress=report)
@@ -146,7 +146,7 @@ def keep_model(
 
     path = kept_path(recipe, estimator)
     before = _stamp(path)
-    with _locked(path):
+    with _lock(path):
         if path.is_file() and not (damaged and _stamp(path) == before):
             return path, None  # it was there, or another process has made it meanwhile
         name = recipe_name(recipe)
@@ -193,7 +193,7 @@ def _stamp(path: Path) -> tuple[int, int] | None:
 
 
 @contextmanager
-def _locked(path: Path) -> Iterator[None]:
+def _lock(path: Path) -> Iterator[None]:
     """Hold the lock of a file in the cache, whose folder is created."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)

@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from features.report.pictures import INK, STYLE, VERMILION, WIDTH, picture, thinned
+from features.report.pictures import INK, STYLE, VERMILION, WIDTH, picture, thin
 from features.signal.spectra import psd
 from gen.corpus import write_durably
 from gen.measurement.gear import gear_mesh
@@ -130,7 +130,7 @@ def draw_beside(clean: FloatArray, shown: FloatArray, fs: float, view: View) -> 
     first = int(np.clip(np.argmax(np.abs(shown - clean)) - size // 3, 0, len(clean) - size))
     window, top = slice(first, first + size), -np.inf
     for signal, colour, width, label in ((shown, VERMILION, 1.0, "with the fault"), (clean, INK, 0.5, "without")):
-        time, values = thinned(np.arange(len(clean))[window] / fs, signal[window])
+        time, values = thin(np.arange(len(clean))[window] / fs, signal[window])
         waveform.plot(time, values, color=colour, linewidth=width, label=label)
         frequencies, power = psd(signal[None], fs, SEGMENT)
         visible = (frequencies >= view.band[0]) & (frequencies <= view.band[1])

@@ -11,16 +11,16 @@ from features.report.pictures import picture
 from gen.corpus import make_result_folder, write_durably, write_numbers
 from gen.support.errors import SimulationError
 from raceway.console.show import plain
-from raceway.studies.experiments import experiment, worded
+from raceway.studies.experiments import experiment, in_words
 from raceway.studies.measures import (
     asymmetry,
-    clustered,
+    count_lines,
     decay,
     envelope_variation,
     highest,
     lines,
-    mirrored,
     sharpest,
+    similarity,
     unrest,
 )
 from raceway.studies.paper import CHANNELS, FS, PRESETS, FloatArray, Preset, Run, draw_figures, power_spectrum, run
@@ -49,7 +49,7 @@ class Finding(NamedTuple):
     def reason(self) -> str:
         """Why it does not hold, and the change with which it does."""
         made = experiment(self.preset, self.id)
-        return "" if self.holds or made is None else f"{made.why} ({worded(made)})"
+        return "" if self.holds or made is None else f"{made.why} ({in_words(made)})"
 
 
 def findings(name: str, made: Run) -> list[Finding]:
@@ -92,7 +92,7 @@ def _healthy(x: FloatArray) -> list[Row]:
         ("H9", "x1 is not modulated", unrest(settled[0]), (0, 0.02)),
         ("H10", "energy of x1 lies at 100-250 Hz", float(shares[0]), (0.6, 1)),
         ("H11", "energy of x2 lies at 100-250 Hz", float(shares[2]), (0.6, 1)),
-        ("H12", "the spectrum of x2 mirrors that of x1", mirrored(frequency, power[0], power[2]), (0.9, 1)),
+        ("H12", "the spectrum of x2 mirrors that of x1", similarity(frequency, power[0], power[2]), (0.9, 1)),
     ]
     for name, spectrum in zip(CHANNELS, power, strict=True):
         rows.append((f"H13.{name}", f"{name} has no sharp peaks", sharpest(frequency, spectrum), (0, 10)))
@@ -101,7 +101,7 @@ def _healthy(x: FloatArray) -> list[Row]:
     for name, displacement, late in zip(CHANNELS[1:], x[1:], settled[1:], strict=True):
         rows.append((f"H3.{name}", f"{name} has decayed after 0.05 s", decay(time, displacement), (0, 0.30)))
         rows.append((f"H9.{name}", f"{name} is not modulated", unrest(late), (0, 0.02)))
-    rows.append(("H12.y", "the spectrum of y2 mirrors that of y1", mirrored(frequency, power[1], power[3]), (0.9, 1)))
+    rows.append(("H12.y", "the spectrum of y2 mirrors that of y1", similarity(frequency, power[1], power[3]), (0.9, 1)))
     return rows
 
 
@@ -138,7 +138,7 @@ def _crack_spectra(x: FloatArray) -> list[Row]:
     _, tapered = power_spectrum(x, "hann")
     lines_of = dict(zip(CHANNELS, (lines(frequency, spectrum) for spectrum in tapered), strict=True))
     rows: list[Row] = [
-        ("C10", "x1 has several sharp peaks at 600-800 Hz", clustered(lines_of["x1"], 600, 800), (3, math.inf))
+        ("C10", "x1 has several sharp peaks at 600-800 Hz", count_lines(lines_of["x1"], 600, 800), (3, math.inf))
     ]
     for name, spectrum in zip(CHANNELS, power, strict=True):
         ratio = highest(frequency, spectrum, 600, 800)[1] / highest(frequency, spectrum, 20, 600)[1]
@@ -151,10 +151,10 @@ def _crack_spectra(x: FloatArray) -> list[Row]:
     low = sum(f < 300 for f, _, _ in lines_of["y2"])
     rows.append(("C14", "y2 has harmonic lines below 300 Hz", float(low), (3, math.inf)))
     for name in CHANNELS:
-        cluster = clustered(lines_of[name], 650, 800)
+        cluster = count_lines(lines_of[name], 650, 800)
         rows.append((f"C16.{name}", f"{name} has a cluster of lines at 650-800 Hz", cluster, (3, math.inf)))
     for axis, shaft, housing in (("x", 0, 2), ("y", 1, 3)):
-        alike = mirrored(frequency, tapered[shaft], tapered[housing])
+        alike = similarity(frequency, tapered[shaft], tapered[housing])
         rows.append((f"C17.{axis}", f"the spectrum of {axis}2 mirrors that of {axis}1", alike, (0.9, 1)))
     return rows
 
@@ -165,7 +165,7 @@ def span(accept: tuple[float, float]) -> str:
     return f"at least {low:g}" if high == float("inf") else f"{low:g} to {high:g}"
 
 
-def reproduced(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> list[Finding]:
+def reproduce(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> list[Finding]:
     """Statements measured with every preset; the figures and ``findings.json`` go into ``folder``.
 
     Raises

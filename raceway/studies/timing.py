@@ -62,7 +62,7 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     response = simulate(scenarios)  # compiles the kernels that are not compiled yet
     if len(response.failures) == wanted:
         raise SimulationError(response.failures[0])
-    seconds = _repeated(checked, scenarios, response)
+    seconds = _repeat(checked, scenarios, response)
     stages = {stage: statistics.median(times) for stage, times in seconds.items()}
     each = zip(scenarios, response.oversampling, strict=True)
     steps = timeline(settings_of(checked)).integrated * sum(
@@ -82,7 +82,7 @@ def bench(recipe: Path | str, records: int | None = None) -> Bench:
     )
 
 
-def _repeated(recipe: Recipe, scenarios: list[Scenario], response: Response) -> dict[str, list[float]]:
+def _repeat(recipe: Recipe, scenarios: list[Scenario], response: Response) -> dict[str, list[float]]:
     """Seconds of each stage in every run; ``response`` belongs to ``scenarios``, the first records of the recipe."""
     seconds: dict[str, list[float]] = {stage: [] for stage in STAGES}
 

@@ -11,8 +11,8 @@ from features.baselines.calibration import (
     COVERAGE,
     UNCALIBRATED,
     answering,
-    calibrated,
-    combined,
+    calibrate,
+    combine,
     fit_calibration,
 )
 from features.baselines.predictions import UNSURE, predictions
@@ -35,14 +35,14 @@ def drawn(temperature: float, records: int = 20_000, seed: int = 0):
     """Probabilities of records whose classes are drawn from the probabilities with that temperature, and the classes."""
     rng = np.random.default_rng(seed)
     probabilities = softmax(1.5 * rng.standard_normal((records, 4)), axis=1)
-    right = calibrated(probabilities, temperature)
+    right = calibrate(probabilities, temperature)
     truth = (rng.random((records, 1)) > right.cumsum(axis=1)).sum(axis=1)
     return probabilities, np.minimum(truth, 3)
 
 
 @given(rows, temperatures)
 def test_a_temperature_keeps_the_order_of_the_classes(probabilities, temperature):
-    found = calibrated(probabilities, temperature)
+    found = calibrate(probabilities, temperature)
     np.testing.assert_allclose(found.sum(axis=1), 1.0)
     ordered = np.take_along_axis(found, probabilities.argsort(axis=1), axis=1)
     assert (np.diff(ordered, axis=1) >= -1e-12).all()
@@ -50,34 +50,34 @@ def test_a_temperature_keeps_the_order_of_the_classes(probabilities, temperature
 
 @given(rows)
 def test_a_temperature_of_one_changes_nothing(probabilities):
-    np.testing.assert_allclose(calibrated(probabilities, 1.0), np.maximum(probabilities, 1e-6), rtol=1e-5)
+    np.testing.assert_allclose(calibrate(probabilities, 1.0), np.maximum(probabilities, 1e-6), rtol=1e-5)
 
 
 @given(drawn_rows(1.0), st.floats(0.5, 2.0), st.floats(0.5, 2.0))
 def test_temperatures_multiply(probabilities, first, second):
     np.testing.assert_allclose(
-        calibrated(calibrated(probabilities, first), second), calibrated(probabilities, first * second), rtol=1e-9
+        calibrate(calibrate(probabilities, first), second), calibrate(probabilities, first * second), rtol=1e-9
     )
 
 
 @given(rows, st.integers(1, 9))
 def test_copies_of_a_record_that_depend_fully_on_each_other_say_no_more_than_one(probabilities, copies):
     recording = np.repeat(np.arange(len(probabilities)), copies)
-    found = combined(np.repeat(probabilities, copies, axis=0), recording, 1.0)
+    found = combine(np.repeat(probabilities, copies, axis=0), recording, 1.0)
     np.testing.assert_allclose(found, probabilities, rtol=1e-9, atol=1e-12)
 
 
 @given(rows, st.integers(1, 9))
 def test_independent_records_multiply(probabilities, copies):
     recording = np.repeat(np.arange(len(probabilities)), copies)
-    found = combined(np.repeat(probabilities, copies, axis=0), recording, 0.0)
+    found = combine(np.repeat(probabilities, copies, axis=0), recording, 0.0)
     expected = probabilities**copies
     np.testing.assert_allclose(found, expected / expected.sum(axis=1, keepdims=True), rtol=1e-9, atol=1e-12)
 
 
 @given(rows, st.floats(0, 1))
 def test_a_recording_of_one_record_has_the_probabilities_of_the_record(probabilities, dependence):
-    np.testing.assert_allclose(combined(probabilities, np.arange(len(probabilities)), dependence), probabilities)
+    np.testing.assert_allclose(combine(probabilities, np.arange(len(probabilities)), dependence), probabilities)
 
 
 @given(rows, st.floats(0, 1), st.randoms(use_true_random=False))
@@ -86,7 +86,7 @@ def test_the_order_of_the_records_of_a_recording_does_not_matter(probabilities, 
     random.shuffle(order)
     recording = np.arange(len(probabilities)) % 2 if len(probabilities) > 1 else np.zeros(1, int)
     np.testing.assert_allclose(
-        combined(probabilities[order], recording[order], dependence), combined(probabilities, recording, dependence)
+        combine(probabilities[order], recording[order], dependence), combine(probabilities, recording, dependence)
     )
 
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from features import feature_table
 from features.baselines import evaluate, load_model, predict, save_model, train
-from features.baselines.reference_choice import OTHER_BEARING, check_durations, compared, recording_reference
+from features.baselines.reference_choice import OTHER_BEARING, check_durations, choose_reference, recording_reference
 from features.baselines.references import ENERGIES, NEAREST, relative_names, relative_to, virtual_references
 from features.faults import EVIDENCE
 from features.indicators import Orders
@@ -125,7 +125,7 @@ def test_healthy_records_without_features_are_no_reference(table):
     silent["features"].values[np.flatnonzero(table["fault"].values == 0)[::4]] = np.nan
     kept = silent.isel(record=np.isfinite(silent["features"].values).all(axis=1))
     assert np.isfinite(silent["features"].values[virtual_references(silent, LINES, 0)[1]]).all()
-    assert compared(table, silent, LINES).reference.sizes["record"] == (kept["fault"].values == 0).sum()
+    assert choose_reference(table, silent, LINES).reference.sizes["record"] == (kept["fault"].values == 0).sum()
 
 
 def test_records_are_compared_with_their_own_rig_if_the_reference_has_all_rigs(table):
@@ -164,7 +164,7 @@ def test_a_reference_tells_classes_that_differ_less_than_rigs(model):
 
 
 def test_the_first_healthy_recording_of_each_rig_is_the_reference_in_the_tested_corpus_itself(table, model):
-    chosen = compared(table, table, LINES)
+    chosen = choose_reference(table, table, LINES)
     assert sorted(chosen.reference["recording"].values.tolist()) == list(range(0, 64, 8))
     assert set(chosen.table["recording"].values) == set(range(64)) - set(range(0, 64, 8))
     scores = evaluate(table, model, reference=table)
@@ -176,18 +176,18 @@ def test_the_first_healthy_recording_of_each_rig_is_the_reference_in_the_tested_
 def test_a_reference_of_another_bearing_is_told(table):
     other = make_table(seed=5)
     mine, its = (each.assign(bpfo=("record", np.full(each.sizes["record"], 3.58))) for each in (table, other))
-    assert OTHER_BEARING not in compared(mine, its, LINES).sentence
-    assert OTHER_BEARING in compared(mine, its.assign(bpfo=its["bpfo"] + 0.1), LINES).sentence
+    assert OTHER_BEARING not in choose_reference(mine, its, LINES).sentence
+    assert OTHER_BEARING in choose_reference(mine, its.assign(bpfo=its["bpfo"] + 0.1), LINES).sentence
 
 
 def test_a_rig_without_a_healthy_record_is_not_tested_on_its_own_corpus(table):
     less = table.isel(record=(table["rig"].values != 3) | (table["fault"].values != 0))
-    assert 3 not in compared(less, less, LINES).table["rig"].values
+    assert 3 not in choose_reference(less, less, LINES).table["rig"].values
 
 
 def test_a_tested_record_that_is_also_in_the_reference_is_left_out(table, model):
     mixed = table.isel(record=np.random.default_rng(2).permutation(64)[:40])
-    chosen = compared(table, mixed, LINES)
+    chosen = choose_reference(table, mixed, LINES)
     healthy = mixed["fault"].values == 0
     assert chosen.left_out == healthy.sum()
     assert not set(chosen.table["recording"].values) & set(mixed["recording"].values[healthy])
@@ -260,7 +260,7 @@ def test_a_reference_recording_has_the_features_of_the_same_records_in_a_corpus(
     found = recording_reference(signal, FS, corpus, tmp_path / "one" / "0.npy")
     expected = tested["features"].values[tested["fault"].values == 0]
     np.testing.assert_allclose(found["features"].values, expected, atol=0.02)  # the corpus is quantised
-    chosen = compared(tested, found, [str(name) for name in tested["feature"].values])
+    chosen = choose_reference(tested, found, [str(name) for name in tested["feature"].values])
     assert chosen.left_out == 2  # known by the name of the file
     assert (chosen.table["fault"].values > 0).all()
 

@@ -9,7 +9,15 @@ import pytest
 from features.band import DEFAULT_BAND
 from features.baselines.predictions import UNSURE
 from features.diagnosis import diagnose
-from features.diagnosis.diagnose import CONTRADICTING, LONGEST, Diagnosis, Recorded, _agreed, _beginning, _worded
+from features.diagnosis.diagnose import (
+    CONTRADICTING,
+    LONGEST,
+    Diagnosis,
+    Recorded,
+    _beginning,
+    _put_into_words,
+    _reconcile,
+)
 from features.diagnosis.evidence import Line
 from features.indicators import Orders, feature_names
 from features.recording_table import recording_table, windows_of
@@ -44,7 +52,7 @@ def line(fault, harmonic=1, level=CONTRADICTING + 1, *, sideband=False):
     ],
 )
 def test_two_classes_at_two_speeds_are_unsure_unless_a_line_decides(found, labelled, lines, expected):
-    assert _agreed(verdict(found), verdict(labelled), lines).verdict == expected
+    assert _reconcile(verdict(found), verdict(labelled), lines).verdict == expected
 
 
 @pytest.mark.parametrize(
@@ -61,7 +69,7 @@ def test_two_classes_at_two_speeds_are_unsure_unless_a_line_decides(found, label
     ],
 )
 def test_a_verdict_falls_to_high_harmonics_of_another_class_alone(name, lines, expected):
-    assert _worded(verdict(name, lines), None, "check", 10.0, compared=False).verdict == expected
+    assert _put_into_words(verdict(name, lines), None, "check", 10.0, compared=False).verdict == expected
 
 
 def recorded(seed, name="recording"):
@@ -78,7 +86,7 @@ def references(monkeypatch):
         return verdict("inner" if recording.shaft_rate == FASTER else "outer")
 
     monkeypatch.setattr(MODULE, "_speed", lambda _: (FASTER, 0.1))
-    monkeypatch.setattr(MODULE, "_predicted", predicted)
+    monkeypatch.setattr(MODULE, "_predict", predicted)
     return given
 
 

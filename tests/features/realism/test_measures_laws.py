@@ -6,7 +6,7 @@ from scipy.signal import resample_poly
 
 from features.faults import CLASSES
 from features.indicators import Orders
-from features.realism.measures import MEASURES, NAMES, band_limited, measured
+from features.realism.measures import MEASURES, NAMES, compute_measures, limit_band
 from gen.corpus import FAULTS
 from tests.paths import ROOT
 from tests.pulses import LINES, ORDERS, pulse_train
@@ -16,8 +16,8 @@ ONE = Orders(*(np.array([ORDERS[name]]) for name in Orders._fields))
 
 
 def measures_of(signal, fault, fs=FS):
-    x = band_limited(signal[None], fs, 12_000.0, TOP)
-    values = measured(x, x.shape[-1] * fs / signal.size, TOP, np.array([SHAFT]), ONE, fault)
+    x = limit_band(signal[None], fs, 12_000.0, TOP)
+    values = compute_measures(x, x.shape[-1] * fs / signal.size, TOP, np.array([SHAFT]), ONE, fault)
     return dict(zip(NAMES, values[0], strict=True))
 
 

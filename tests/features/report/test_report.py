@@ -23,7 +23,7 @@ from features.report.pictures import (
     fault_lines,
     picture,
     squared_envelope,
-    thinned,
+    thin,
 )
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
@@ -335,7 +335,7 @@ def test_a_compound_fault_has_the_lines_of_all_parts_and_a_cage_only_its_own():
 def test_a_thinned_waveform_keeps_its_highest_peak(length, place, seed):
     values = np.random.default_rng(seed).standard_normal(length)
     values[int(place * length * 0.9)] = 20.0
-    time, drawn = thinned(np.arange(length) / FS, values)
+    time, drawn = thin(np.arange(length) / FS, values)
     assert drawn.max() == 20.0
     assert time.shape == drawn.shape
     assert drawn.size < 6100

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.signal.windows import tukey
 
-from features.signal.demodulation import fine_amplitudes, hann_weighted
+from features.signal.demodulation import fine_amplitudes, weight_by_hann
 from features.signal.modulation import TAPERED, cyclostationarity, highest_place, phase_wander, sideband_ratio
 
 law = settings(deadline=None, max_examples=20)
@@ -67,7 +67,7 @@ def test_the_highest_place_is_searched_within_the_tolerance_alone():
 @given(st.floats(0.1, 0.9), st.floats(20.0, 40.0))
 def test_the_sidebands_of_an_amplitude_modulation_are_half_its_depth(depth, spacing):
     envelope = (3 + (1 + depth * np.cos(2 * np.pi * spacing * TIME)) * np.cos(2 * np.pi * 120.0 * TIME))[None]
-    spectrum = fine_amplitudes(hann_weighted(envelope), 2 * N + 1)
+    spectrum = fine_amplitudes(weight_by_hann(envelope), 2 * N + 1)
     per_hz = 4 * N / RATE
     found = sideband_ratio(spectrum, np.array([round(120 * per_hz)]), of(spacing * per_hz), 2)
     assert found[0] == pytest.approx(depth / 2, rel=0.02)

@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.signal.demodulation import fine_amplitudes, hann_weighted
+from features.signal.demodulation import fine_amplitudes, weight_by_hann
 from features.signal.shape import envelope_shape, highest_spectral_kurtosis
 from features.signal.spectra import fourier_coefficients
 
@@ -16,7 +16,7 @@ law = settings(deadline=None, max_examples=25)
 def test_the_shape_of_an_envelope_follows_its_definitions(seed, n, shaft_rate):
     rate = 2000.0
     power = np.random.default_rng(seed).exponential(size=(2, n)) * (1 + 0.5 * np.sin(np.arange(n) * 20 / rate))
-    weighted = hann_weighted(np.sqrt(power))
+    weighted = weight_by_hann(np.sqrt(power))
     spectrum = fine_amplitudes(weighted, 2 * n + 1)
     slow = np.arange(2 * n + 1) * rate / (4 * n) < 0.8 * shaft_rate
     span = round(0.5 * rate / shaft_rate)

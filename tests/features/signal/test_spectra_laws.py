@@ -12,11 +12,11 @@ from features.signal.demodulation import (
     analytic_band,
     envelope_spectrum,
     fine_amplitudes,
-    hann_weighted,
     running_median,
     squared_envelope_spectrum,
+    weight_by_hann,
 )
-from features.signal.spectra import band_energies, cepstrally_whitened, fourier_coefficients, psd, psd_whitened
+from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd, whiten_cepstrally
 
 law = settings(deadline=None, max_examples=25)
 seeds = st.integers(0, 2**32 - 1)
@@ -157,7 +157,7 @@ def test_a_band_does_not_depend_on_the_sample_rate(seed):
 @given(seeds)
 def test_cepstral_whitening_keeps_all_phases_and_makes_all_moduli_one(seed):
     coefficients = fourier_coefficients(noise(seed), 12_000.0, 5000.0)
-    white = cepstrally_whitened(coefficients)[:, 1:]
+    white = whiten_cepstrally(coefficients)[:, 1:]
     np.testing.assert_allclose(np.abs(white), 1.0)
     np.testing.assert_allclose(np.angle(white), np.angle(coefficients[:, 1:]))
 
@@ -167,7 +167,7 @@ def test_cepstral_whitening_keeps_all_phases_and_makes_all_moduli_one(seed):
 def test_a_psd_whitened_spectrum_has_the_same_power_in_every_band(seed, colour):
     coefficients = fourier_coefficients(noise(seed, n=12_000), 12_000.0, 5000.0)
     coloured = coefficients * (1.0 + np.arange(coefficients.shape[1])) ** colour
-    power = np.abs(psd_whitened(coloured, 100)[:, 500:4500]) ** 2
+    power = np.abs(whiten_by_psd(coloured, 100)[:, 500:4500]) ** 2
     np.testing.assert_allclose(power.reshape(3, 4, 1000).mean(axis=2), 1.0, atol=0.1)
 
 
@@ -176,20 +176,20 @@ def test_a_psd_whitened_spectrum_has_the_same_power_in_every_band(seed, colour):
 def test_a_spectrum_is_whitened_by_its_running_mean_mirrored_at_its_ends(seed, bins, width):
     coefficients = noise(seed, n=bins) * np.exp(1j * noise(seed + 1, n=bins))
     mean = uniform_filter1d(np.abs(coefficients) ** 2, width, mode="mirror")
-    np.testing.assert_allclose(psd_whitened(coefficients, width), coefficients / np.sqrt(mean), rtol=1e-6)
+    np.testing.assert_allclose(whiten_by_psd(coefficients, width), coefficients / np.sqrt(mean), rtol=1e-6)
 
 
 @law
 @given(seeds, st.integers(50, 6000), st.sampled_from([np.float32, np.float64]), st.floats(0.0, 1.0))
 def test_an_interpolated_spectrum_is_that_of_the_padded_signal(seed, n, precision, part):
-    weighted = hann_weighted(np.abs(noise(seed, n=n)).astype(precision))
+    weighted = weight_by_hann(np.abs(noise(seed, n=n)).astype(precision))
     padded = 4 / n * np.abs(np.fft.rfft(weighted, 4 * n))
     bins = max(1, round(part * padded.shape[1]))
     near = 5e-5 * np.sqrt(np.mean(padded**2))
     np.testing.assert_allclose(fine_amplitudes(weighted, bins), padded[:, :bins], rtol=0, atol=near)
 
 
-@pytest.mark.parametrize("whiten", [cepstrally_whitened, lambda c: psd_whitened(c, 25)])
+@pytest.mark.parametrize("whiten", [whiten_cepstrally, lambda c: whiten_by_psd(c, 25)])
 def test_a_signal_of_zeros_is_whitened_to_zeros(whiten):
     assert not whiten(np.zeros((2, 100), complex)).any()
 
@@ -218,7 +218,7 @@ def test_a_record_does_not_depend_on_the_records_beside_it(seed):
     widths = np.array([40.0, 90.0, 77.0, 300.0, 51.0])
 
     def floors(rows):
-        z = analytic_band(psd_whitened(fourier_coefficients(x[rows], 12_000.0, 5000.0), 25), 250, 750)
+        z = analytic_band(whiten_by_psd(fourier_coefficients(x[rows], 12_000.0, 5000.0), 25), 250, 750)
         _, spectrum = envelope_spectrum(z, 2000.0)
         return running_median(spectrum, widths[rows], 500)
 
