@@ -9,7 +9,7 @@ FLOORS := .venv-floors
 FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/support/test_yaml_files_laws.py \
 	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
-.PHONY: quickstart test lint generated bench thorough floors clean
+.PHONY: quickstart test tests lint generated bench thorough floors clean
 
 $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Raceway needs Python 3.11 or later; set PYTHON=..."; exit 2; }
@@ -32,7 +32,11 @@ lint: $(VENV)/installed
 	$(BIN)/ruff check .
 	$(BIN)/basedpyright
 
-test: lint
+# types are checked by one process while others run the tests
+test: $(VENV)/installed
+	@$(MAKE) --jobs=2 --no-print-directory lint tests
+
+tests: $(VENV)/installed
 	$(BIN)/python -m pytest -n logical --dist loadfile
 
 generated: $(VENV)/installed

@@ -95,6 +95,7 @@ def test_facts_pictures_and_scores_reach_the_card_and_no_part_changes(told, copi
             assert len(drawn.convert("RGB").getcolors() or ()) > 10  # more than a background
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_second_call_changes_no_byte_and_removes_what_a_killed_one_left(told, copied):
     told("card", copied, "--license", "CC-BY-4.0")
     before = contents(copied)
