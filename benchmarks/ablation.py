@@ -22,7 +22,7 @@ from ruamel.yaml import YAML
 
 from benchmarks.realism import UESTC, UESTC_LABELLED
 from features import feature_table
-from features.baselines import DEFAULT_ESTIMATOR, Scores, evaluate, train
+from features.baselines import DEFAULT_ESTIMATOR, Model, Scores
 from gen import generate
 from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.recipe import find_recipe
@@ -118,8 +118,8 @@ def scores_of(recipe: Mapping[str, Any], seed: int, tests: Mapping[str, xr.Datas
         path = Path(name) / "recipe.yaml"
         YAML().dump(dict(recipe), path)
         corpus = generate(path, Path(name) / "corpus", workers=workers, seed=seed).path
-        model = train(feature_table(corpus, groups=GROUPS), DEFAULT_ESTIMATOR, seed=seed)
-    return {test: evaluate(table, model) for test, table in tests.items()}
+        model = Model(DEFAULT_ESTIMATOR, seed=seed).fit(feature_table(corpus, groups=GROUPS))
+    return {test: model.score(table) for test, table in tests.items()}
 
 
 def plain(scores: Scores) -> dict[str, float]:

@@ -19,7 +19,7 @@ import xarray as xr
 from benchmarks.realism import UESTC_LABELLED
 from benchmarks.transfer_pages import RESULTS, write_pages
 from features import feature_table
-from features.baselines import Model, Scores, cross_validate, evaluate, train
+from features.baselines import Model, Scores, cross_validate
 from gen import generate
 from gen.corpus import FAULTS
 from gen.importers import import_cwru, import_generic, import_mfpt
@@ -78,7 +78,7 @@ def with_reference(table: xr.Dataset, model: Model) -> Figures | None:
     if not len(recordings):
         return None
     chosen = (healthy & (table["recording"].values == number) for number in recordings)
-    found = [figures(evaluate(table, model, reference=table.isel(record=rows))) for rows in chosen]
+    found = [figures(model.score(table, reference=table.isel(record=rows))) for rows in chosen]
     return {name: _mean([each[name] for each in found]) for name in found[0]}
 
 
@@ -104,15 +104,15 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
         folder = Path(name)
         labelled, found = real_tables(real, folder)
         for seed, table in enumerate(_corpora(recipe, seeds, folder, workers)):
-            models = {estimator: train(table, estimator, seed=seed) for estimator in ESTIMATORS}
+            models = {estimator: Model(estimator, seed=seed).fit(table) for estimator in ESTIMATORS}
             for test, other in labelled.items():
                 for estimator, model in models.items():
-                    scores = evaluate(other, model)
+                    scores = model.score(other)
                     zero_shot[estimator].setdefault(test, []).append(figures(scores))
                     if estimator == BEST:
                         held = confusion.setdefault(test, {"true": scores.classes, "predicted": scores.model_classes})
                         held["windows"] = np.add(held.get("windows", 0), scores.confusion).tolist()
-                corrected.setdefault(test, []).append(figures(evaluate(found[test], models[BEST])))
+                corrected.setdefault(test, []).append(figures(models[BEST].score(found[test])))
                 if (referred := with_reference(other, models[BEST])) is not None:
                     reference.setdefault(test, []).append(referred)
             for test, sets in TEACHERS.items():
@@ -120,7 +120,7 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
                     if "synthetic" not in teaching and seed > 0:
                         continue
                     taught = pooled([labelled.get(one, table) for one in teaching])
-                    scores = evaluate(labelled[test], train(taught, BEST, seed=seed))
+                    scores = Model(BEST, seed=seed).fit(taught).score(labelled[test])
                     teachers[test].setdefault(" + ".join(teaching), []).append(figures(scores))
             if seed == 0:
                 own = {name: figures(cross_validate(table, name, track="rig", seed=seed)) for name in ESTIMATORS}

@@ -2,7 +2,7 @@
 
 It uses the format of a corpus and not the simulator, so that recordings of real machines are treated in the same way.
 
-``corpus -> feature_table -> evaluate -> report``, and ``one recording -> diagnose -> report``
+``corpus -> feature_table -> Model -> report``, and ``one recording -> diagnose -> report``
 
 ================ =================================================================================
 module           responsibility

@@ -1,5 +1,6 @@
 from .auditing import audit_splits as audit_splits
-from .baselines import evaluate as evaluate
+from .baselines import Model as Model
 from .speed import shaft_speed as shaft_speed
 from .table import feature_table as feature_table
+from .transformer import IndicatorTransformer as IndicatorTransformer
 from .waveforms import open_waveforms as open_waveforms

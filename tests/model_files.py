@@ -11,7 +11,7 @@ from unittest import mock
 import numpy as np
 import xarray as xr
 
-from features.baselines import ESTIMATORS, estimators, save_model, train
+from features.baselines import ESTIMATORS, Model, estimators
 from features.faults import EVIDENCE
 
 NAMES = (*EVIDENCE, "raw_kurtosis")
@@ -38,7 +38,7 @@ def write_models(folder: Path, classes: int, seed: int = 0) -> dict[str, Path]:
     paths = {name: folder / f"{name}_{classes}.skops" for name in ESTIMATORS}
     with mock.patch.multiple(estimators, TREES=2, ROUNDS=2):
         for name, path in paths.items():
-            save_model(train(make_table(classes), name, seed=seed), path)
+            Model(name, seed=seed).fit(make_table(classes)).save(path)
     return paths
 
 

@@ -30,7 +30,7 @@ from features.baselines.benchmark import Baseline, Results, TrackResults, benchm
 from features.baselines.calibration import Calibration
 from features.baselines.curves import CurvePoint, learning_curve
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
-from features.baselines.models import Model, evaluate, load_model, predict, save_model, train
+from features.baselines.models import Model, predict
 from features.baselines.own import EstimatorError, load_maker
 from features.baselines.predictions import UNSURE, Predictions
 from features.baselines.records import DEFAULT_GROUPS, count_unknown
@@ -60,14 +60,10 @@ __all__ = [
     "controls",
     "count_unknown",
     "cross_validate",
-    "evaluate",
     "interval_text",
     "learning_curve",
     "load_maker",
-    "load_model",
     "predict",
-    "save_model",
     "severity_warning",
-    "train",
     "unlabelled_answers",
 ]

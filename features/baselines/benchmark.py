@@ -17,7 +17,7 @@ from pandas import DataFrame
 
 from features.baselines.curves import CurvePoint, curve_points, curve_sizes
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, UNTRAINED
-from features.baselines.models import evaluate, record_digests, seen_records, train
+from features.baselines.models import Model, record_digests, seen_records
 from features.baselines.own import Maker
 from features.baselines.records import (
     DEFAULT_GROUPS,
@@ -204,7 +204,7 @@ def benchmark(
             }
             tested = None
             if test is not None and track == first and isinstance(given.features, DataFrame):
-                tested = evaluate(test, train(table, estimator, groups=groups, seed=seed, workers=workers), seed=seed)
+                tested = Model(estimator, groups=groups, seed=seed).fit(table, workers=workers).score(test, seed=seed)
             scored[track][name] = Baseline(**scores, test=tested)
             done(1)
     return Results(

@@ -1,20 +1,21 @@
-"""A trained baseline: fitted, calibrated, applied to feature tables, scored, saved and loaded.
+"""A classifier with the names of its features, its classes and a description of its training.
 
 Model files contain no pickle, and loading one runs no code from it: see `features.baselines.model_file`.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import KW_ONLY, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self, cast
 
 import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
+from sklearn.exceptions import NotFittedError
 
-from features.band import Band, band_of
-from features.baselines.calibration import Calibration
+from features.band import DEFAULT_BAND, Band, band_of
+from features.baselines.calibration import UNCALIBRATED, Calibration
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
@@ -53,24 +54,36 @@ if TYPE_CHECKING:
 
 FORMAT = 4
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
+_TRAINING = ("corpus", "records", "seed", "widths", "digests", "versions")
+_STORED = ("estimator", "name", "classes", "features", "groups", "band", *_TRAINING, "calibration")
+"""Fields in a model file."""
+
+Data = xr.Dataset | Path | str
+"""A feature table, or the folder or file of a corpus."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False, repr=False)
 class Model:
-    """A fitted baseline.
+    """A classifier of bearing faults, fitted to a corpus and calibrated on records outside the training.
+
+    ``Model("random_forest").fit("corpus").predict("other")`` reads as an estimator of scikit-learn; data are feature tables or corpora.
 
     Attributes
     ----------
+    classifier
+        Name of a baseline, or a classifier of the user.
+    groups
+        Groups of features.
+    seed
+        Of the classifier, of the splits and of the references.
     estimator
-        The fitted scikit-learn estimator, from features to indices into ``gen.corpus.FAULTS``.
-    name
-        Its name in ``ESTIMATORS``.
+        After the fit: the scikit-learn estimator, from features to indices into ``gen.corpus.FAULTS``.
     classes
         The classes it can predict.
-    features, groups, band
-        The features it takes, their groups, and the band that they are computed from.
-    corpus, records, seed
-        Title and number of records of the training corpus, and the seed.
+    features, band
+        The features it takes, and the band that they are computed from.
+    corpus, records
+        Title and number of records of the training corpus.
     widths
         Intervals of fault width [m] that the training covered, by class, as in `features.baselines.severities`.
     digests
@@ -84,103 +97,166 @@ class Model:
         training corpus has no virtual references.
     """
 
-    estimator: Estimator
-    name: str
-    classes: tuple[str, ...]
-    features: tuple[str, ...]
-    groups: tuple[str, ...]
-    band: tuple[float, float]
-    corpus: str
-    records: int
-    seed: int
-    widths: Covered
-    digests: NDArray[np.uint64]
-    versions: Mapping[str, str]
-    calibration: Calibration
+    classifier: str | Maker = DEFAULT_ESTIMATOR
+    _: KW_ONLY
+    groups: Sequence[str] = DEFAULT_GROUPS
+    seed: int = 0
+    estimator: Estimator = None
+    classes: tuple[str, ...] = ()
+    features: tuple[str, ...] = ()
+    band: tuple[float, float] = DEFAULT_BAND
+    corpus: str = ""
+    records: int = 0
+    widths: Covered = field(default_factory=dict)
+    digests: NDArray[np.uint64] = field(default_factory=lambda: np.empty(0, np.uint64))
+    versions: Mapping[str, str] = field(default_factory=dict)
+    calibration: Calibration = UNCALIBRATED
     relative: "Model | None" = None
 
+    @property
+    def name(self) -> str:
+        """Name of the classifier."""
+        return self.classifier if isinstance(self.classifier, str) else maker_name(self.classifier)
 
-_OWN = tuple(field.name for field in fields(Model) if field.name != "relative")
+    def __repr__(self) -> str:
+        """Classifier and training."""
+        trained = "not fitted" if self.estimator is None else f"fitted to {self.records:,} records of {self.corpus}"
+        return f"<Model {self.name}: {trained}>"
 
+    def fit(self, data: Data, *, workers: int = 1, progress: Progress | None = None) -> Self:
+        """Fit the classifier to all labelled records, and calibrate it.
 
-def train(
-    table: xr.Dataset,
-    estimator: str | Maker = DEFAULT_ESTIMATOR,
-    *,
-    groups: Sequence[str] = DEFAULT_GROUPS,
-    seed: int = 0,
-    workers: int = 1,
-    progress: Progress | None = None,
-) -> Model:
-    """Fit a baseline or a classifier of the user to all records of a feature table, and calibrate it on records outside the training.
+        It is calibrated by a cross-validation that keeps each rig together, or each specimen if there are too few rigs. If there are too
+        few specimens too, or if the baseline is untrained, the probabilities stay as they are and every record is answered.
 
-    It is calibrated by a cross-validation that keeps each rig together, or each specimen if there are too few rigs. If there are too few
-    specimens too, or if the baseline is untrained, the probabilities stay as they are and every record is answered.
+        If each class has records on rigs with two healthy recordings, and the table has shaft rates and the group ``bands``, a second
+        baseline is fitted to the records relative to another healthy recording of their rig: see `features.baselines.references`.
 
-    If each class has records on rigs with two healthy recordings, and the table has shaft rates and the group ``bands``, a second baseline
-    is fitted to the records relative to another healthy recording of their rig: see `features.baselines.references`.
+        Parameters
+        ----------
+        data
+            A feature table, or a corpus to compute features of.
+        workers
+            Number of fits at a time, in threads of this process; the model does not depend on it.
+        progress
+            Called after each fit with the number of fits done and of all that may be needed: four, and again as many for a second baseline.
 
-    Parameters
-    ----------
-    table
-        A feature table.
-    estimator
-        Name of a baseline, or a classifier of the user.
-    groups
-        Groups of features.
-    seed
-        Of the estimator, of the splits and of the references.
-    workers
-        Number of fits at a time, in threads of this process; the model does not depend on it.
-    progress
-        Called after each fit with the number of fits done and of all that may be needed: four, and again as many for a second baseline.
+        Raises
+        ------
+        CorpusError
+            If the table has only one class, or lacks a group of features.
+        ValueError
+            For an unknown baseline.
+        """
+        table = data if isinstance(data, xr.Dataset) else _feature_table(data, GROUPS)
+        compares = isinstance(self.classifier, str) and self.classifier not in UNTRAINED
+        fits = (1 + FOLDS) * (1 + compares)
+        done = counter(progress, fits)
+        _fit(self, table, workers, done)
+        paired = paired_table(table, self.features, self.seed) if compares else None
+        self.relative = None
+        if paired is not None:
+            self.relative = Model(relative_name(self.name), groups=(RELATIVE,), seed=self.seed)
+            _fit(self.relative, paired, workers, done)
+        done(fits)
+        return self
 
-    Raises
-    ------
-    CorpusError
-        If the table has only one class, or lacks a group of features.
-    ValueError
-        For an unknown estimator.
-    """
-    compares = isinstance(estimator, str) and estimator not in UNTRAINED
-    fits = (1 + FOLDS) * (1 + compares)
-    done = counter(progress, fits)
-    model = _train(table, estimator, groups, seed, workers, done)
-    paired = paired_table(table, model.features, seed) if compares else None
-    if paired is not None:
-        relative = _train(paired, relative_name(str(estimator)), (RELATIVE,), seed, workers, done)
-        model = replace(model, relative=relative)
-    done(fits)
-    return model
+    def predict(self, data: Data, *, reference: Data | None = None) -> NDArray[np.str_]:
+        """Most probable class of each record, shape (record,); the parameters are those of `score`."""
+        table, healthy = self._tables(data, reference)
+        return np.array(predict(table, self, healthy).predicted)
 
+    def predict_proba(self, data: Data, *, reference: Data | None = None) -> FloatArray:
+        """Calibrated probability of each of ``classes``, shape (record, class); the parameters are those of `score`."""
+        table, healthy = self._tables(data, reference)
+        return predict(table, self, healthy).probabilities
 
-def _train(
-    table: xr.Dataset,
-    estimator: str | Maker,
-    groups: Sequence[str],
-    seed: int,
-    workers: int,
-    done: Callable[[int], None],
-) -> Model:
-    names = features_of(table, groups)
-    records, band = labelled_records(table, names), band_of(table.attrs)
-    check_classes(records)
-    fitted, calibration = fit_and_calibrate(records, estimator, seed, workers=workers, done=done)
-    return Model(
-        estimator=fitted,
-        name=estimator if isinstance(estimator, str) else maker_name(estimator),
-        classes=fault_names(fitted.classes_),
-        features=names,
-        groups=tuple(groups),
-        band=(band.low, band.high),
-        corpus=records.title,
-        records=len(records.fault),
-        seed=seed,
-        widths=covered_widths(records),
-        digests=record_digests(records.features.to_numpy()),
-        versions={library: version(library) for library in _LIBRARIES},
-        calibration=calibration,
-    )
+    def score(self, data: Data, *, reference: Data | None = None, seed: int = 0) -> Scores:
+        """Scores on all labelled records, over the classes present there.
+
+        Parameters
+        ----------
+        data
+            A feature table, or a corpus to compute features of.
+        reference
+            A feature table or corpus with healthy records of the tested rigs, which records are compared with. Records whose class is
+            unknown count as healthy if there are no others. If it holds the records of ``data``, the first healthy recording of each rig
+            is the reference. Tested records that belong to the reference are left out.
+        seed
+            Of the bootstrap.
+
+        Raises
+        ------
+        CorpusError
+            If a corpus cannot be read, the table lacks a feature of the model, or the reference cannot be used.
+        """
+        table, healthy = self._tables(data, reference)
+        if healthy is None:
+            return self._scores(table, None, seed)
+        chosen = choose_reference(table, healthy, self.features)
+        return replace(self._scores(chosen.table, chosen.reference, seed), reference=chosen.sentence)
+
+    def _scores(self, table: xr.Dataset, reference: xr.Dataset | None, seed: int) -> Scores:
+        records = labelled_records(table, self.features)
+        table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
+        scores = score(records, predict(table, self, reference), seed)
+        seen = seen_records(records.features.to_numpy(), self.digests)
+        return replace(scores, seen=seen, uncovered_widths=uncovered_widths(self.widths, records))
+
+    def _tables(self, data: Data, reference: Data | None) -> tuple[xr.Dataset, xr.Dataset | None]:
+        """Feature tables of the data and of its reference, with ``bands`` if there is one."""
+        if self.estimator is None:
+            raise NotFittedError("the model is not fitted; call fit first.")
+        if reference is not None and not isinstance(data, xr.Dataset) and not isinstance(reference, xr.Dataset):
+            check_durations(data, reference)
+        groups = self.groups if reference is None else with_energies(tuple(self.groups))
+        table, healthy = (
+            one if one is None or isinstance(one, xr.Dataset) else _feature_table(one, groups, Band(*self.band))
+            for one in (data, reference)
+        )
+        return cast("xr.Dataset", table), healthy
+
+    def save(self, path: Path | str) -> None:
+        """Write a model file, whole or not at all; equal models give equal bytes.
+
+        Raises
+        ------
+        CorpusError
+            If the disk refuses the file, it lies in a corpus or is no model, or the model is not one of the baselines: only those can be
+            read without running code.
+        """
+        if self.name not in ESTIMATORS:
+            raise CorpusError(
+                f"{path}: {self.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
+            )
+        check_result(Path(path), "model")
+        relative = None if self.relative is None else _content(self.relative)
+        write_model_file({"raceway_model": FORMAT, **_content(self), "relative": relative}, Path(path))
+
+    @classmethod
+    def load(cls, path: Path | str) -> Self:
+        """Read a model file; no code of the file runs, but load only models of people you trust.
+
+        Raises
+        ------
+        CorpusError
+            If the file is missing, damaged, larger than the limit, or no model of this version.
+        """
+        content = read_model_file(Path(path))
+        if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
+            raise CorpusError(f"{path}: not a model of this version of raceway; train it again with raceway train.")
+        relative = content.pop("relative", None)
+        model = cls._of(path, content)
+        model.relative = None if relative is None else cls._of(path, relative)
+        return model
+
+    @classmethod
+    def _of(cls, path: Path | str, content: Mapping[str, Any]) -> Self:
+        """Model of the fields in a model file."""
+        if set(content) != set(_STORED):
+            raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
+        own = {name: value for name, value in content.items() if name != "name"}
+        return cls(content["name"], **{**own, "calibration": Calibration(**content["calibration"])})
 
 
 def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None) -> Predictions:
@@ -243,56 +319,33 @@ def estimator_probabilities(model: Model, features: "DataFrame", where: str) -> 
     return probabilities
 
 
-def evaluate(
-    data: xr.Dataset | Path | str,
-    model: Model | Path | str,
-    *,
-    reference: xr.Dataset | Path | str | None = None,
-    seed: int = 0,
-) -> Scores:
-    """Scores of a model on all records of a feature table or corpus, over the classes present there.
-
-    Parameters
-    ----------
-    data
-        A feature table, or the folder or file of a corpus to compute features of.
-    model
-        A model, or the path of a model file.
-    reference
-        A feature table or corpus with healthy records of the tested rigs, which records are compared with. Records whose class is unknown
-        count as healthy if there are no others. If it holds the records of ``data``, the first healthy recording of each rig is the
-        reference. Tested records that belong to the reference are left out.
-    seed
-        Of the bootstrap.
-
-    Raises
-    ------
-    CorpusError
-        If corpus or model cannot be read, the table lacks a feature of the model, or the reference cannot be used.
-    """
-    model = model if isinstance(model, Model) else load_model(model)
-    table = data if isinstance(data, xr.Dataset) else _features_for(model, data, reference)
-    if reference is None:
-        return _evaluate(table, model, None, seed)
-    if not isinstance(reference, xr.Dataset):
-        if not isinstance(data, xr.Dataset):
-            check_durations(data, reference)
-        reference = _features_for(model, reference, reference)
-    chosen = choose_reference(table, reference, model.features)
-    return replace(_evaluate(chosen.table, model, chosen.reference, seed), reference=chosen.sentence)
+def _fit(model: Model, table: xr.Dataset, workers: int, done: Callable[[int], None]) -> None:
+    model.features = features_of(table, model.groups)
+    records, band = labelled_records(table, model.features), band_of(table.attrs)
+    check_classes(records)
+    model.groups, model.band, model.corpus, model.records = (
+        tuple(model.groups),
+        (band.low, band.high),
+        records.title,
+        len(records.fault),
+    )
+    model.estimator, model.calibration = fit_and_calibrate(
+        records, model.classifier, model.seed, workers=workers, done=done
+    )
+    model.classes = fault_names(model.estimator.classes_)
+    model.widths = covered_widths(records)
+    model.digests = record_digests(records.features.to_numpy())
+    model.versions = {library: version(library) for library in _LIBRARIES}
 
 
-def _evaluate(table: xr.Dataset, model: Model, reference: xr.Dataset | None, seed: int) -> Scores:
-    records = labelled_records(table, model.features)
-    table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
-    scores = score(records, predict(table, model, reference), seed)
-    seen = seen_records(records.features.to_numpy(), model.digests)
-    return replace(scores, seen=seen, uncovered_widths=uncovered_widths(model.widths, records))
+def _content(model: Model) -> dict[str, Any]:
+    """Fields of a model file without the relative part."""
+    return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration.model_dump()}
 
 
-def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dataset:
-    """Feature table of a corpus with the groups of a model, and with ``bands`` if there is a reference."""
-    unknown = [group for group in model.groups if group not in GROUPS]
+def _feature_table(corpus: Path | str, groups: Sequence[str], band: tuple[float, float] = DEFAULT_BAND) -> xr.Dataset:
+    """Feature table of a corpus."""
+    unknown = [group for group in groups if group not in GROUPS]
     if unknown:
         message = (
             f"{corpus}: the model takes features of the group {unknown[0]!r}, and the groups are "
@@ -301,51 +354,4 @@ def _features_for(model: Model, corpus: Path | str, reference: object) -> xr.Dat
         raise CorpusError(message)
     from features.table import feature_table  # not at the top: dask takes a sixth of the time of a diagnosis
 
-    groups = model.groups if reference is None else with_energies(model.groups)
-    return feature_table(corpus, groups, band=Band(*model.band))
-
-
-def save_model(model: Model, path: Path | str) -> None:
-    """Write a model file, whole or not at all; equal models give equal bytes.
-
-    Raises
-    ------
-    CorpusError
-        If the disk refuses the file, it lies in a corpus or is no model, or the model is not one of the baselines: only those can be read
-        without running code.
-    """
-    if model.name not in ESTIMATORS:
-        raise CorpusError(
-            f"{path}: {model.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."
-        )
-    check_result(Path(path), "model")
-    relative = None if model.relative is None else _content(model.relative)
-    write_model_file({"raceway_model": FORMAT, **_content(model), "relative": relative}, Path(path))
-
-
-def _content(model: Model) -> dict[str, Any]:
-    """Fields of a model without its relative part."""
-    return {name: getattr(model, name) for name in _OWN} | {"calibration": model.calibration.model_dump()}
-
-
-def load_model(path: Path | str) -> Model:
-    """Read a model file; no code of the file runs, but load only models of people you trust.
-
-    Raises
-    ------
-    CorpusError
-        If the file is missing, damaged, larger than the limit, or no model of this version.
-    """
-    content = read_model_file(Path(path))
-    if not isinstance(content, dict) or content.pop("raceway_model", None) != FORMAT:
-        raise CorpusError(f"{path}: not a model of this version of raceway; train it again with raceway train.")
-    relative = content.pop("relative", None)
-    model = _model(path, content)
-    return model if relative is None else replace(model, relative=_model(path, relative))
-
-
-def _model(path: Path | str, content: Mapping[str, Any]) -> Model:
-    """Model of the fields in a model file."""
-    if set(content) != set(_OWN):
-        raise CorpusError(f"{path}: not a complete model; train it again with raceway train.")
-    return Model(**{**content, "calibration": Calibration(**content["calibration"])})
+    return feature_table(corpus, groups, band=band)

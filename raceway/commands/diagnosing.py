@@ -182,9 +182,9 @@ def _model(path: Path | None) -> tuple[Any, Path]:
         from raceway.studies.reference_model import load_reference_model
 
         return load_reference_model()
-    from features.baselines.models import load_model
+    from features.baselines.models import Model
 
-    return load_model(path), path
+    return Model.load(path), path
 
 
 def _facts(

@@ -88,7 +88,7 @@ def train(
 
     Next: raceway evaluate OTHER --model MODEL
     """
-    from features.baselines import count_unknown, save_model
+    from features.baselines import count_unknown
     from raceway.studies.reference_model import kept_model, recipe_table, train_and_score
 
     folder = Path(source)
@@ -112,7 +112,7 @@ def train(
         table = recipe_table(source, team) if corpus is None else table_of(corpus, "off", team, analysis)
         notice_of_unknown(corpus or folder, count_unknown(table))
         model, scores = train_and_score(table, estimator, team)
-        save_model(model, output)
+        model.save(output)
     warn_of_severities(scores)
     if as_json:
         names = ("records", "classes", "groups")
@@ -167,13 +167,12 @@ def evaluate(
       raceway evaluate pump --model model.skops --reference pump
       raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
-    from features.baselines import count_unknown, load_model, unlabelled_answers
-    from features.baselines import evaluate as score
+    from features.baselines import Model, count_unknown, unlabelled_answers
 
     given = [name for name, value in reading.items() if value is not None]
     if reference is None and given:
         raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
-    loaded = load_model(model)
+    loaded = Model.load(model)
     team = Team(workers, scheduler)
     analysis = Analysis(channel, loaded.band)
     table = table_of(corpus, speed, team, analysis)
@@ -182,7 +181,7 @@ def evaluate(
     if count_unknown(table) == table.sizes["record"]:
         _show_answers_alone(corpus, model, loaded.name, answers, as_json=as_json)
         return
-    scores = score(table, loaded, reference=healthy)
+    scores = loaded.score(table, reference=healthy)
     warn_of_severities(scores)
     if scores.seen:
         notice(

@@ -43,15 +43,15 @@ def train_and_score(table: "xr.Dataset", estimator: str, team: Team = USUAL) -> 
     CorpusError
         If the training has only one class, or the table lacks features.
     """
-    from features.baselines import evaluate, train
+    from features.baselines import Model
     from gen.corpus import SPLITS
 
     test = table["split"].values == SPLITS.index("test")
     whole = not test.any() or test.all()
     with progress("training", "fits") as report:
         workers = team.options(len(test))["workers"]
-        model = train(table if whole else table.isel(record=~test), estimator, workers=workers, progress=report)
-    return model, None if whole else evaluate(table.isel(record=test), model)
+        model = Model(estimator).fit(table if whole else table.isel(record=~test), workers=workers, progress=report)
+    return model, None if whole else model.score(table.isel(record=test))
 
 
 def recipe_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
@@ -102,17 +102,17 @@ def kept_model(
     RecipeError, SimulationError, CorpusError
         As `keep_model`.
     """
-    from features.baselines.models import load_model
+    from features.baselines.models import Model
 
     path, damaged = kept_path(recipe, estimator), False
     if path.is_file():
         try:
-            return load_model(path), path, None
+            return Model.load(path), path, None
         except CorpusError as error:
             notice(f"{error} It is made again.")
             damaged = True
     _, scores = keep_model(recipe, estimator, damaged=damaged, team=team)
-    return load_model(path), path, scores
+    return Model.load(path), path, scores
 
 
 def keep_model(
@@ -142,8 +142,6 @@ def keep_model(
     CorpusError
         If the cache cannot be written.
     """
-    from features.baselines import save_model
-
     path = kept_path(recipe, estimator)
     before = _stamp(path)
     with _lock(path):
@@ -154,7 +152,7 @@ def keep_model(
         notice(f"training a model on the recipe {name}{duration}; it is kept as {path}.")
         model, scores = train_and_score(recipe_table(recipe, team), estimator, team)
         path.unlink(missing_ok=True)  # what is damaged may be no model, and nothing else is replaced
-        save_model(model, path)
+        model.save(path)
     return path, scores
 
 

@@ -8,7 +8,7 @@ from benchmarks import transfer
 from benchmarks.transfer import RECIPE, TEACHERS, figures, pooled, with_reference
 from benchmarks.transfer_pages import PAGES, ROOT, TABLES, mean, read_results, spread, with_tables
 from features import feature_table
-from features.baselines import evaluate, train
+from features.baselines import Model
 from gen.corpus import FAULTS
 from tests.pulses import write_pulses
 
@@ -71,8 +71,8 @@ def test_pooled_tables_keep_their_rigs_apart(tables):
 
 def test_figures_are_those_of_the_model(tables):
     first, second = tables
-    model = train(first, "logistic_regression")
-    scores = evaluate(second, model)
+    model = Model("logistic_regression").fit(first)
+    scores = model.score(second)
     assert scores.by_recording is not None
     found = figures(scores)
     assert (found["window"], found["recording"]) == (scores.balanced_accuracy, scores.by_recording.balanced_accuracy)
@@ -84,10 +84,10 @@ def test_every_healthy_recording_is_the_reference_in_turn(tables, monkeypatch):
 
     def seen(table, model, *, reference):
         used.append(set(reference["recording"].values.tolist()))
-        return evaluate(table, model)
+        return model.score(table)
 
     monkeypatch.setattr(transfer, "evaluate", seen)
-    model = train(first, "majority")
-    assert with_reference(second, model) == figures(evaluate(second, model))
+    model = Model("majority").fit(first)
+    assert with_reference(second, model) == figures(model.score(second))
     assert used == [{0}, {1}, {2}, {3}]
     assert with_reference(second.isel(record=second["fault"].values != FAULTS.index("healthy")), model) is None

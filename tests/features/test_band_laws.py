@@ -6,8 +6,7 @@ import xarray as xr
 
 from features import feature_table
 from features.band import DEFAULT_BAND, ENERGY_EDGES, Band, checked_band
-from features.baselines import evaluate, load_model, save_model, train
-from features.baselines.models import predict
+from features.baselines import Model, predict
 from features.indicators import Orders, feature_names, indicators
 from gen.support.errors import CorpusError
 from tests.tone_corpora import write_corpus
@@ -65,13 +64,13 @@ def test_a_band_that_cannot_be_used_is_refused(edges):
 def test_a_model_keeps_its_band_and_refuses_features_of_another(tmp_path):
     write_corpus(tmp_path / "corpus")
     band = Band(100.0, 1800.0)
-    save_model(train(feature_table(tmp_path / "corpus", band=band), "logistic_regression"), tmp_path / "model.skops")
-    model = load_model(tmp_path / "model.skops")
+    Model("logistic_regression").fit(feature_table(tmp_path / "corpus", band=band)).save(tmp_path / "model.skops")
+    model = Model.load(tmp_path / "model.skops")
     assert model.band == band
     xr.testing.assert_identical(
         feature_table(tmp_path / "corpus", band=tuple(band)), feature_table(tmp_path / "corpus", band=band)
     )
-    assert evaluate(tmp_path / "corpus", model).records == 48
+    assert model.score(tmp_path / "corpus").records == 48
     with pytest.raises(
         CorpusError, match=r"computed from 300-5000 Hz, .* trained on 100-1800 Hz; .* --band 100 1800\.$"
     ):

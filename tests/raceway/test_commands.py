@@ -29,10 +29,10 @@ def leaves(command, path=("raceway",)):
 @pytest.fixture(scope="module")
 def model(tiny_corpus, tmp_path_factory):
     from features import feature_table
-    from features.baselines import save_model, train
+    from features.baselines import Model
 
     path = tmp_path_factory.mktemp("model") / "model.skops"
-    save_model(train(feature_table(tiny_corpus), "logistic_regression"), path)
+    Model("logistic_regression").fit(feature_table(tiny_corpus)).save(path)
     return path
 
 

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 from scipy.io import wavfile
 
 from features import feature_table
-from features.baselines import save_model, train
+from features.baselines import Model
 from gen import generate, open_corpus
 from gen.corpus import FAULTS
 from raceway.cli import cli
@@ -47,7 +47,7 @@ def corpus(folder, **values):
 def model(tmp_path_factory):
     folder = tmp_path_factory.mktemp("training")
     table = feature_table(corpus(folder, seed=5, rigs=6, records=2, duration=0.5))
-    save_model(train(table, "logistic_regression"), folder / "model.skops")
+    Model("logistic_regression").fit(table).save(folder / "model.skops")
     return folder / "model.skops"
 
 

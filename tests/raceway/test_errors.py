@@ -7,7 +7,7 @@ import shutil
 import h5py
 import pytest
 
-from features.baselines import save_model, train
+from features.baselines import Model
 from features.table import feature_table
 from features.table_files import write_table
 from raceway.console import ending, show
@@ -23,7 +23,7 @@ def places(tiny_recipe, tiny_corpus, tmp_path_factory):
     (here / "folder" / "something").write_text("of another kind\n")
     (here / "binary.yaml").write_bytes(bytes(range(256)))
     table = feature_table(tiny_corpus)
-    save_model(train(table, "majority"), here / "model.skops")
+    Model("majority").fit(table).save(here / "model.skops")
     write_table(table, here / "table.nc")
     whole = (here / "model.skops").read_bytes()
     (here / "cut.skops").write_bytes(whole[: len(whole) // 2])

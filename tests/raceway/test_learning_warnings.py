@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from features.baselines import save_model, train
+from features.baselines import Model
 from raceway.commands import benchmarking, feature_tables, models
 from tests.model_files import make_table
 
@@ -23,7 +23,7 @@ def table(widths_of_inner=(1e-3,), test_split=()):
 
 @pytest.fixture
 def model(tmp_path):
-    save_model(train(table(), "logistic_regression"), tmp_path / "model.skops")
+    Model("logistic_regression").fit(table()).save(tmp_path / "model.skops")
     return tmp_path / "model.skops"
 
 

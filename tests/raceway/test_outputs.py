@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from features.baselines import save_model, train
+from features.baselines import Model
 from features.report.examples import plot_record
 from features.table import feature_table
 from features.table_files import write_table
@@ -45,7 +45,7 @@ def originals(tiny_recipe, tiny_corpus, tmp_path_factory):
     folder = tmp_path_factory.mktemp("originals")
     shutil.copytree(tiny_corpus, folder / "corpus")
     shutil.copy(tiny_recipe, folder / "recipe.yaml")
-    save_model(train(feature_table(tiny_corpus), "majority"), folder / "model.skops")
+    Model("majority").fit(tiny_corpus).save(folder / "model.skops")
     np.save(folder / "recording.npy", np.random.default_rng(0).standard_normal(12_000))
     (folder / "raw").mkdir()
     return folder
@@ -164,9 +164,9 @@ def test_the_python_writers_keep_the_same_rule(places, tmp_path):
         with pytest.raises(CorpusError, match="is in the corpus"):
             write_table(table, path)
         with pytest.raises(CorpusError, match="is in the corpus"):
-            save_model(train(table, "majority"), path)
+            Model("majority").fit(table).save(path)
     with pytest.raises(CorpusError, match="exists and is no model"):
-        save_model(train(table, "majority"), places["recipe"])
+        Model("majority").fit(table).save(places["recipe"])
     assert contents(tmp_path) == before
 
 

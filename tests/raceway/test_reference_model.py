@@ -9,7 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from features import feature_table
-from features.baselines import load_model
+from features.baselines import Model
 from gen.recipe import shipped_recipes
 from raceway.cli import cli
 from raceway.studies import reference_model
@@ -61,7 +61,7 @@ def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
     path.write_bytes(damage(path.read_bytes()))
     assert call("train", "domain_randomised").exit_code == 0
     assert len(trainings) == 3
-    load_model(path)
+    Model.load(path)
 
 
 def test_two_that_need_it_at_once_train_it_once(trainings):
@@ -74,7 +74,7 @@ def test_two_that_need_it_at_once_train_it_once(trainings):
     for thread in threads:
         thread.join()
     assert len(trainings) == 1
-    load_model(reference_model.kept_path("quickstart", "logistic_regression"))
+    Model.load(reference_model.kept_path("quickstart", "logistic_regression"))
 
 
 @pytest.mark.usefixtures("trainings")
@@ -86,7 +86,7 @@ def test_train_on_a_recipe_keeps_the_model_or_writes_it(tiny_recipe, tmp_path):
     assert facts["test"]["records"] == 12
     written = call("train", tiny_recipe, "--estimator", "logistic_regression", "-o", tmp_path / "model.skops")
     assert written.exit_code == 0, written.output
-    assert load_model(tmp_path / "model.skops").records == load_model(facts["model"]).records == facts["records"]
+    assert Model.load(tmp_path / "model.skops").records == Model.load(facts["model"]).records == facts["records"]
 
 
 def test_train_on_a_folder_needs_a_place_for_the_model(tiny_corpus, trainings):

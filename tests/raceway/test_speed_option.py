@@ -41,7 +41,7 @@ def test_recordings_that_are_tested_are_checked_and_others_are_not(run, monkeypa
 
     for module in ("models", "benchmarking"):
         monkeypatch.setattr(f"raceway.commands.{module}.table_of", table_of)
-    monkeypatch.setattr("features.baselines.load_model", lambda _: SimpleNamespace(band=DEFAULT_BAND))
+    monkeypatch.setattr("features.baselines.Model.load", lambda _: SimpleNamespace(band=DEFAULT_BAND))
     line = {
         "evaluate": ("evaluate", corpus, "--model", tmp_path / "model"),
         "benchmark": ("benchmark", corpus, "--test", corpus, "-o", tmp_path / "report"),

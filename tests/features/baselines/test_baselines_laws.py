@@ -10,16 +10,7 @@ import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.baselines import (
-    ESTIMATORS,
-    benchmark,
-    cross_validate,
-    evaluate,
-    load_model,
-    save_model,
-    splits,
-    train,
-)
+from features.baselines import ESTIMATORS, Model, benchmark, cross_validate, splits
 from features.baselines.benchmark import write_results
 from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
@@ -235,9 +226,9 @@ def test_a_baseline_is_unchanged_after_its_file_and_accepts_missing_features(nam
     holed["features"][::5] = np.nan
     holed["features"][:, 2] = np.nan
     for known in (table, holed):
-        model = train(known, name, seed=3)
-        save_model(model, tmp_path / "model.skops")
-        again = load_model(tmp_path / "model.skops")
+        model = Model(name, seed=3).fit(known)
+        model.save(tmp_path / "model.skops")
+        again = Model.load(tmp_path / "model.skops")
         frame = records_of(holed).features
         np.testing.assert_array_equal(
             class_probabilities(again.estimator, frame), class_probabilities(model.estimator, frame)
@@ -245,7 +236,7 @@ def test_a_baseline_is_unchanged_after_its_file_and_accepts_missing_features(nam
         assert (again.name, again.classes, again.features, again.groups, again.corpus, again.records, again.seed) == (
             name, FOUR, NAMES, ("lines", "shape"), "a made-up corpus", 48, 3
         )  # fmt: skip
-        assert evaluate(holed, again) == evaluate(holed, tmp_path / "model.skops")
+        assert again.score(holed) == Model.load(tmp_path / "model.skops").score(holed)
     assert not list(tmp_path.glob(".*"))
 
 
@@ -253,7 +244,7 @@ def test_a_baseline_is_unchanged_after_its_file_and_accepts_missing_features(nam
 def test_probabilities_sum_to_one_and_their_largest_is_the_prediction(name):
     for classes in (2, 4, 6):
         table = make_table(12, 4, told=0.3, classes=classes)
-        model = train(table, name)
+        model = Model(name).fit(table)
         frame = records_of(table).features
         found = class_probabilities(model.estimator, frame)
         np.testing.assert_allclose(found.sum(axis=1), 1.0)
@@ -261,28 +252,28 @@ def test_probabilities_sum_to_one_and_their_largest_is_the_prediction(name):
 
 
 def test_the_order_of_the_columns_of_a_table_does_not_matter():
-    model = train(make_table(), "ensemble")
+    model = Model("ensemble").fit(make_table())
     other = make_table(seed=1, told=0.5)
-    assert evaluate(other.isel(feature=slice(None, None, -1)), model) == evaluate(other, model)
+    assert model.score(other.isel(feature=slice(None, None, -1))) == model.score(other)
 
 
 def test_records_seen_in_training_are_counted():
     table, other = make_table(), make_table(seed=1)
-    model = train(table, "svm")
-    assert evaluate(table, model).seen == 80
-    assert evaluate(other, model).seen == 0
-    assert evaluate(xr.concat([other, table.isel(record=[4, 5])], "record"), model).seen == 2
+    model = Model("svm").fit(table)
+    assert model.score(table).seen == 80
+    assert model.score(other).seen == 0
+    assert model.score(xr.concat([other, table.isel(record=[4, 5])], "record")).seen == 2
 
 
 def test_records_without_any_feature_do_not_count_as_seen_in_training():
     table, other = make_table(), make_table(seed=1)
     for made in (table, other):
         made["features"][:3] = np.nan
-    assert evaluate(other, train(table, "logistic_regression")).seen == 0
+    assert Model("logistic_regression").fit(table).score(other).seen == 0
 
 
 def test_records_of_a_class_that_was_not_trained_count_as_errors():
-    found = evaluate(make_table(classes=4), train(make_table(classes=2), "logistic_regression"))
+    found = Model("logistic_regression").fit(make_table(classes=2)).score(make_table(classes=4))
     assert found.classes == FOUR
     assert found.model_classes == ("healthy", "inner")
     assert found.balanced_accuracy <= 0.5
@@ -292,15 +283,15 @@ def test_records_of_a_class_that_was_not_trained_count_as_errors():
 def test_the_envelope_rule_does_not_depend_on_its_training_labels():
     table = make_table()
     shuffled = table.assign(fault=("record", np.roll(table.fault.values, 7)))
-    assert evaluate(table, train(table, "envelope_rule")) == evaluate(table, train(shuffled, "envelope_rule"))
+    assert Model("envelope_rule").fit(table).score(table) == Model("envelope_rule").fit(shuffled).score(table)
     with pytest.raises(ValueError, match="give a data frame with the lines features"):
-        train(table.isel(feature=slice(3, None)), "envelope_rule")
+        Model("envelope_rule").fit(table.isel(feature=slice(3, None)))
 
 
 @pytest.fixture(scope="module")
 def model_file(tmp_path_factory) -> Path:
     path = tmp_path_factory.mktemp("model") / "model.skops"
-    save_model(train(make_table(8, 2), "logistic_regression"), path)
+    Model("logistic_regression").fit(make_table(8, 2)).save(path)
     return path
 
 
@@ -317,10 +308,10 @@ def test_a_damaged_model_is_refused_in_one_sentence_or_unchanged(model_file, dat
     path.write_bytes(content)
     sentence = ""
     try:
-        found = load_model(path)
+        found = Model.load(path)
     except CorpusError as error:
-        found, sentence = load_model(model_file), str(error)
-    assert evaluate(make_table(), found) == evaluate(make_table(), model_file)
+        found, sentence = Model.load(model_file), str(error)
+    assert found.score(make_table()) == Model.load(model_file).score(make_table())
     assert not sentence or (sentence.startswith(str(path)) and "\n" not in sentence)
 
 
@@ -355,4 +346,4 @@ def test_a_test_corpus_with_training_records_is_refused():
 
 def test_an_unknown_baseline_is_refused_with_the_names_of_all_baselines():
     with pytest.raises(ValueError, match="'forest' is no baseline; choose from majority, envelope_rule"):
-        train(make_table(), "forest")
+        Model("forest").fit(make_table())

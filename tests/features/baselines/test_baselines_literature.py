@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from features.baselines import cross_validate, evaluate, train
+from features.baselines import Model, cross_validate
 from features.baselines.estimators import EnvelopeRule
 from features.faults import COMBS
 from features.indicators import Orders, feature_names, indicators
@@ -48,14 +48,14 @@ def test_white_noise_exceeds_the_threshold_of_the_rule_in_fewer_than_one_record_
 
 def test_the_rule_scores_on_cwru_as_comparable_rules_do(cwru):
     # rules with other floors and thresholds reach 0.59-0.65; no rule on lines alone exceeds 0.83
-    found = evaluate(cwru, train(cwru, "envelope_rule"))
+    found = Model("envelope_rule").fit(cwru).score(cwru)
     assert 0.59 < found.balanced_accuracy < 0.80
     assert found.by_recording is not None
     assert found.by_recording.records == 64
 
 
 def test_the_rule_finds_every_fault_of_mfpt(cwru, mfpt):
-    assert evaluate(mfpt, train(cwru, "envelope_rule")).balanced_accuracy > 0.98
+    assert Model("envelope_rule").fit(cwru).score(mfpt).balanced_accuracy > 0.98
 
 
 def test_a_set_with_one_healthy_bearing_cannot_be_cross_validated_by_bearing(cwru):

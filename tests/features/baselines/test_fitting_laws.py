@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from features.baselines import benchmark, save_model, train
+from features.baselines import Model, benchmark
 from features.indicators import feature_groups, feature_names
 
 
@@ -34,9 +34,9 @@ def small_forests(monkeypatch):
 def test_a_model_file_does_not_depend_on_the_number_of_workers(table, tmp_path, name):
     written = set()
     for workers in (1, 2, 4):
-        model = train(table, name, workers=workers)
+        model = Model(name).fit(table, workers=workers)
         assert model.relative is not None
-        save_model(model, tmp_path / "m.skops")
+        model.save(tmp_path / "m.skops")
         written.add((tmp_path / "m.skops").read_bytes())
     assert len(written) == 1
 
@@ -52,7 +52,7 @@ def test_scores_do_not_depend_on_the_number_of_workers(table):
 
 def test_progress_counts_up_to_the_end(table):
     told = []
-    train(table, "logistic_regression", workers=2, progress=lambda *counts: told.append(counts))
+    Model("logistic_regression").fit(table, workers=2, progress=lambda *counts: told.append(counts))
     done, totals = zip(*told, strict=True)
     assert done == tuple(sorted(set(done)))
     assert set(totals) == {done[-1]}
@@ -74,6 +74,6 @@ def test_a_classifier_of_the_user_is_fitted_once_at_a_time(table):
         def predict(self, X):
             return np.repeat(self.constant, len(X))
 
-    train(table, Alone, workers=4)
+    Model(Alone).fit(table, workers=4)
     assert set(most) == {1}
     assert len(most) > 1

@@ -8,7 +8,7 @@ import pytest
 import skops.io
 from sklearn.base import BaseEstimator
 
-from features.baselines import ESTIMATORS, estimators, load_model, predict, save_model, train
+from features.baselines import ESTIMATORS, Model, estimators, predict
 from features.baselines.model_file import TRUSTED
 from gen.support.errors import CorpusError
 from tests.model_files import Archive, make_table, write_models
@@ -23,7 +23,7 @@ def files(tmp_path_factory) -> dict[str, Path]:
 def refusal(path: Path) -> str:
     """The sentence that a model file is refused with."""
     with pytest.raises(CorpusError) as caught:
-        load_model(path)
+        Model.load(path)
     sentence = str(caught.value)
     assert sentence.startswith(f"{path}: ")
     assert "\n" not in sentence
@@ -34,11 +34,11 @@ def refusal(path: Path) -> str:
 def test_a_model_trained_again_has_the_same_bytes_and_a_loaded_one_predicts_the_same(tmp_path, name, monkeypatch):
     monkeypatch.setattr(estimators, "TREES", 3)
     table = make_table(6, 61, seed=2).isel(record=np.arange(61) != 5)
-    model = train(table, name, seed=2)
-    save_model(model, tmp_path / "m")
-    save_model(train(table, name, seed=2), tmp_path / "again")
+    model = Model(name, seed=2).fit(table)
+    model.save(tmp_path / "m")
+    Model(name, seed=2).fit(table).save(tmp_path / "again")
     assert (tmp_path / "again").read_bytes() == (tmp_path / "m").read_bytes()
-    loaded = load_model(tmp_path / "m")
+    loaded = Model.load(tmp_path / "m")
     np.testing.assert_array_equal(predict(table, loaded).probabilities, predict(table, model).probabilities)
     assert (loaded.seed, loaded.features, loaded.calibration) == (2, model.features, model.calibration)
 
@@ -107,7 +107,7 @@ def test_a_model_larger_than_the_limit_is_refused(files, monkeypatch):
 
 @pytest.mark.parametrize("name", list(ESTIMATORS))
 def test_a_model_that_was_loaded_is_saved_with_the_same_bytes(files, tmp_path, name):
-    save_model(load_model(files[name]), tmp_path / "m")
+    Model.load(files[name]).save(tmp_path / "m")
     assert (tmp_path / "m").read_bytes() == files[name].read_bytes()
 
 

@@ -10,7 +10,7 @@ from tests.features.report.test_report import write_corpus
 from tests.paths import ROOT
 
 PAGE = (ROOT / "docs" / "own-classifiers.md").read_text(encoding="utf-8")
-MINE, FROM_FEATURES, FROM_WAVEFORMS, NETWORK, WITH_NETWORK = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+MINE, FROM_FEATURES, MODEL, FROM_WAVEFORMS, NETWORK, WITH_NETWORK = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 
 
 @pytest.fixture
@@ -34,6 +34,11 @@ def run(*blocks):
 def test_the_example_with_features_runs(folder, capsys):  # noqa: ARG001
     assert run(FROM_FEATURES)["scores"].balanced_accuracy > 0.5
     assert len(capsys.readouterr().out.splitlines()) == 2
+
+
+def test_the_example_of_a_model_runs(folder):
+    run(MODEL)
+    assert (folder / "model.skops").is_file()
 
 
 def test_the_example_with_waveforms_runs(folder, capsys):  # noqa: ARG001

@@ -8,7 +8,7 @@ from sklearn.linear_model import LogisticRegression, RidgeClassifier
 from sklearn.naive_bayes import GaussianNB
 from sklearn.svm import SVC
 
-from features.baselines import EstimatorError, benchmark, cross_validate, evaluate, load_maker, save_model, train
+from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import OwnClassifier
 from gen.corpus import FAULTS
@@ -98,10 +98,10 @@ def test_an_own_classifier_is_benchmarked_beside_the_untrained_baselines_and_on_
 
 
 def test_an_own_model_is_evaluated_and_not_saved(tmp_path):
-    model = train(make_table(), Nearest)
-    assert evaluate(make_table(seed=1), model).balanced_accuracy > 0.95
+    model = Model(Nearest).fit(make_table())
+    assert model.score(make_table(seed=1)).balanced_accuracy > 0.95
     with pytest.raises(CorpusError, match="Nearest is no baseline; a model file holds only one of majority"):
-        save_model(model, tmp_path / "model.skops")
+        model.save(tmp_path / "model.skops")
     assert not list(tmp_path.iterdir())
 
 

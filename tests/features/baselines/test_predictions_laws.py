@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+from sklearn.exceptions import NotFittedError
 
-from features.baselines import UNSURE, evaluate, load_model, predict, save_model, train
+from features.baselines import UNSURE, Model, predict
 from features.baselines.calibration import COVERAGE, UNCALIBRATED
 from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
 from features.baselines.records import features_of, labelled_records
@@ -33,9 +34,9 @@ def windowed(records: int = 96, windows: int = 4, seed: int = 0, rigs: int = 6) 
 
 @pytest.mark.parametrize("name", ["ensemble", "svm", "envelope_rule"])
 def test_a_model_and_its_file_give_the_same_predictions(tmp_path, name):
-    model, other = train(windowed(), name), windowed(seed=1)
-    save_model(model, tmp_path / "m")
-    loaded = load_model(tmp_path / "m")
+    model, other = Model(name).fit(windowed()), windowed(seed=1)
+    model.save(tmp_path / "m")
+    loaded = Model.load(tmp_path / "m")
     assert loaded.calibration == model.calibration
     one, again = predict(other, model), predict(other, loaded)
     np.testing.assert_array_equal(one.probabilities, again.probabilities)
@@ -46,27 +47,27 @@ def test_a_model_and_its_file_give_the_same_predictions(tmp_path, name):
 
 
 def test_the_order_of_the_records_of_a_table_does_not_matter():
-    model, table = train(windowed()), windowed(seed=1)
+    model, table = Model().fit(windowed()), windowed(seed=1)
     order = np.random.default_rng(0).permutation(table.sizes["record"])
     straight, shuffled = predict(table, model), predict(table.isel(record=order), model)
     np.testing.assert_allclose(shuffled.probabilities, straight.probabilities[order])
     assert straight.by_recording is not None
     assert shuffled.by_recording is not None
     np.testing.assert_allclose(shuffled.by_recording.probabilities, straight.by_recording.probabilities)
-    one, other = evaluate(table, model), evaluate(table.isel(record=order), model)
+    one, other = model.score(table), model.score(table.isel(record=order))
     assert (one.confusion, one.coverage, one.interval) == (other.confusion, other.coverage, other.interval)
     assert other.log_loss == pytest.approx(one.log_loss)
 
 
 def test_labels_change_no_probability():
-    model, table = train(windowed()), windowed(seed=1)
+    model, table = Model().fit(windowed()), windowed(seed=1)
     other = table.assign(fault=("record", (table.fault.values + 1) % 3))
     np.testing.assert_array_equal(predict(other, model).probabilities, predict(table, model).probabilities)
 
 
 def test_predictions_are_those_that_are_scored():
-    model, table = train(windowed(), "logistic_regression"), windowed(seed=1)
-    found, scores = predict(table, model), evaluate(table, model)
+    model, table = Model("logistic_regression").fit(windowed()), windowed(seed=1)
+    found, scores = predict(table, model), model.score(table)
     right = np.array(found.predicted) == np.array(model.classes)[table.fault.values]
     assert scores.accuracy == pytest.approx(right.mean())
     assert scores.coverage == np.mean([answer != UNSURE for answer in found.answers])
@@ -76,7 +77,7 @@ def test_predictions_are_those_that_are_scored():
 
 
 def test_training_calibrates_by_rig_and_states_the_coverage():
-    found = train(windowed(), "logistic_regression").calibration
+    found = Model("logistic_regression").fit(windowed()).calibration
     assert found.by == "rig"
     assert COVERAGE <= found.coverage < COVERAGE + 1 / 96
     assert 0 < found.dependence < 1  # windows with errors of their own
@@ -120,13 +121,22 @@ def test_no_record_that_calibrates_was_trained_on():
 
 def test_without_enough_specimens_and_without_training_nothing_is_calibrated():
     few = windowed(24).isel(record=slice(0, 24))
-    assert train(few.assign(specimen=few.specimen % 3, rig=few.rig * 0), "svm").calibration == UNCALIBRATED
+    assert Model("svm").fit(few.assign(specimen=few.specimen % 3, rig=few.rig * 0)).calibration == UNCALIBRATED
     for name in ("majority", "envelope_rule"):
-        assert train(windowed(), name).calibration == UNCALIBRATED
+        assert Model(name).fit(windowed()).calibration == UNCALIBRATED
 
 
 def test_calibration_improves_the_log_loss_of_records_outside_the_training():
-    model, other = train(windowed(480, rigs=40), "svm"), windowed(480, seed=1)
-    plain = evaluate(other, replace(model, calibration=UNCALIBRATED))
-    assert evaluate(other, model).log_loss < plain.log_loss
-    assert evaluate(other, model).ece < plain.ece
+    model, other = Model("svm").fit(windowed(480, rigs=40)), windowed(480, seed=1)
+    plain = replace(model, calibration=UNCALIBRATED).score(other)
+    assert model.score(other).log_loss < plain.log_loss
+    assert model.score(other).ece < plain.ece
+
+
+def test_a_model_predicts_classes_and_probabilities_once_it_is_fitted():
+    model, table = Model("logistic_regression"), windowed(seed=1)
+    with pytest.raises(NotFittedError, match="the model is not fitted; call fit first"):
+        model.predict(table)
+    found = predict(table, model.fit(windowed()))
+    assert model.predict(table).tolist() == list(found.predicted)
+    np.testing.assert_array_equal(model.predict_proba(table), found.probabilities)

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from features import feature_table
-from features.baselines import evaluate, load_model, predict, save_model, train
+from features.baselines import Model, predict
 from features.baselines.reference_choice import OTHER_BEARING, check_durations, choose_reference, recording_reference
 from features.baselines.references import ENERGIES, NEAREST, relative_names, relative_to, virtual_references
 from features.faults import EVIDENCE
@@ -66,7 +66,7 @@ def table():
 
 @pytest.fixture(scope="module")
 def model(table):
-    return train(table)
+    return Model().fit(table)
 
 
 def changes(found: xr.Dataset) -> np.ndarray:
@@ -159,15 +159,15 @@ def test_a_missing_feature_of_a_reference_record_is_taken_from_the_others(table)
 
 def test_a_reference_tells_classes_that_differ_less_than_rigs(model):
     other = make_table(seed=5)
-    assert evaluate(other, model).balanced_accuracy < 0.6
-    assert evaluate(other, model, reference=other).balanced_accuracy > 0.95
+    assert model.score(other).balanced_accuracy < 0.6
+    assert model.score(other, reference=other).balanced_accuracy > 0.95
 
 
 def test_the_first_healthy_recording_of_each_rig_is_the_reference_in_the_tested_corpus_itself(table, model):
     chosen = choose_reference(table, table, LINES)
     assert sorted(chosen.reference["recording"].values.tolist()) == list(range(0, 64, 8))
     assert set(chosen.table["recording"].values) == set(range(64)) - set(range(0, 64, 8))
-    scores = evaluate(table, model, reference=table)
+    scores = model.score(table, reference=table)
     assert (scores.records, chosen.left_out) == (56, 8)
     assert scores.reference == chosen.sentence
     assert "8 tested records that belong to it are left out" in scores.reference
@@ -192,13 +192,13 @@ def test_a_tested_record_that_is_also_in_the_reference_is_left_out(table, model)
     assert chosen.left_out == healthy.sum()
     assert not set(chosen.table["recording"].values) & set(mixed["recording"].values[healthy])
     with pytest.raises(CorpusError, match="every tested record belongs to the reference; give another"):
-        evaluate(table.isel(record=[0, 1]), model, reference=table)
+        model.score(table.isel(record=[0, 1]), reference=table)
 
 
 def test_a_model_of_a_corpus_without_two_healthy_recordings_takes_no_reference(table):
     one = table.isel(record=(table["fault"].values > 0) | (table["recording"].values % 8 == 0))
     for lacking in (one, table.drop_vars("shaft_rate"), table.isel(feature=table["group"].values != "bands")):
-        found = train(lacking, "random_forest")
+        found = Model("random_forest").fit(lacking)
         assert found.relative is None
     with pytest.raises(CorpusError, match="the model takes no reference, because a made-up corpus has no rig with two"):
         predict(table, found, table)
@@ -222,9 +222,9 @@ def test_sample_rates_may_differ_if_both_reach_the_highest_band(table, model, te
 
 def test_a_model_file_holds_both_parts(table, model, tmp_path):
     for path in (tmp_path / "a.skops", tmp_path / "b.skops"):
-        save_model(model, path)
+        model.save(path)
     assert path.read_bytes() == (tmp_path / "a.skops").read_bytes()
-    read = load_model(path)
+    read = Model.load(path)
     assert read.relative is not None
     assert read.relative.calibration == model.relative.calibration != read.calibration
     assert read.relative.features == relative_names(LINES)
@@ -302,8 +302,8 @@ def several_rigs(table: xr.Dataset) -> xr.Dataset:
 
 def test_evaluate_takes_a_corpus_or_a_recording_as_reference(tmp_path):
     corpus, path = imported(tmp_path / "one"), tmp_path / "m.skops"
-    save_model(train(several_rigs(feature_table(corpus))), path)
-    assert load_model(path).relative is not None
+    Model().fit(several_rigs(feature_table(corpus))).save(path)
+    assert Model.load(path).relative is not None
 
     def run(*options):
         done = CliRunner().invoke(cli, ["evaluate", str(corpus), "--model", str(path), *map(str, options)])

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.baselines import benchmark, cross_validate, evaluate, load_model, save_model, train
+from features.baselines import Model, benchmark, cross_validate
 from features.baselines.benchmark import write_results
 from features.baselines.records import Records
 from features.baselines.severities import covered_widths, severity_warning, uncovered_in_splits, uncovered_widths
@@ -93,12 +93,12 @@ def table():
 
 
 def test_a_model_knows_its_widths_after_it_was_saved_and_says_which_others_it_is_tested_on(table, tmp_path):
-    save_model(train(table, "logistic_regression"), tmp_path / "m")
-    model = load_model(tmp_path / "m")
+    Model("logistic_regression").fit(table).save(tmp_path / "m")
+    model = Model.load(tmp_path / "m")
     assert {name: len(intervals) for name, intervals in model.widths.items()} == {"inner": 2, "outer": 1}
-    assert evaluate(table, model).uncovered_widths == {}
+    assert model.score(table).uncovered_widths == {}
     other = with_widths(make_table(records=48, seed=1), [0.7e-3, 2e-3])
-    assert evaluate(other, model).uncovered_widths == {"inner": (0.7e-3, 2e-3)}
+    assert model.score(other).uncovered_widths == {"inner": (0.7e-3, 2e-3)}
 
 
 @settings(deadline=None)

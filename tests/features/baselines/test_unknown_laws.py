@@ -8,17 +8,7 @@ import pytest
 from click.testing import CliRunner
 
 from features import feature_table
-from features.baselines import (
-    DEFAULT_GROUPS,
-    UNSURE,
-    benchmark,
-    count_unknown,
-    evaluate,
-    predict,
-    save_model,
-    train,
-    unlabelled_answers,
-)
+from features.baselines import DEFAULT_GROUPS, UNSURE, Model, benchmark, count_unknown, predict, unlabelled_answers
 from features.baselines.records import all_records, features_of, labelled_records
 from features.realism.windows import common_ground, measured_windows
 from features.report.examples import draw_examples
@@ -77,7 +67,7 @@ def test_training_and_cross_validation_leave_unknown_records_out(corpus, table, 
     assert count_unknown(table) == 4
     assert np.unique(labelled_records(table, names).fault).tolist() == [0, 1]
     assert np.unique(all_records(table, names).fault).tolist() == [0, 1, UNKNOWN_CODE]
-    assert train(table, "majority").records == 12
+    assert Model("majority").fit(table).records == 12
     results = benchmark(table, table.isel(record=slice(12, None)).assign(fault=table.fault[:4]), folds=2)
     assert (results.corpus.records, results.corpus.unknown) == (12, 4)
     assert results.test is not None
@@ -108,14 +98,14 @@ def test_train_says_how_many_records_are_left_out(corpus, tmp_path):
 
 
 def test_scores_are_those_of_the_records_whose_class_is_known(table):
-    model = train(table, "majority")
+    model = Model("majority").fit(table)
     shuffled = table.isel(record=np.random.default_rng(0).permutation(table.sizes["record"]))
-    assert evaluate(shuffled, model).records == 12
-    assert evaluate(shuffled, model).accuracy == evaluate(table.isel(record=slice(12)), model).accuracy
+    assert model.score(shuffled).records == 12
+    assert model.score(shuffled).accuracy == model.score(table.isel(record=slice(12))).accuracy
 
 
 def test_recordings_of_unknown_class_are_answered_and_not_scored(table):
-    model = train(table, "logistic_regression")
+    model = Model("logistic_regression").fit(table)
     answers = unlabelled_answers(table, model)
     assert [(one.source, one.records) for one in answers] == [("6.npy", 2), ("7.npy", 2)]
     found = predict(table.isel(record=slice(12, None)), model).by_recording
@@ -129,7 +119,7 @@ def test_recordings_of_unknown_class_are_answered_and_not_scored(table):
 
 
 def test_evaluate_lists_the_answers_for_recordings_of_unknown_class(corpus, table, tmp_path, monkeypatch):
-    save_model(train(table, "logistic_regression"), tmp_path / "m.skops")
+    Model("logistic_regression").fit(table).save(tmp_path / "m.skops")
     command = ["evaluate", str(corpus), "--model", str(tmp_path / "m.skops")]
     done = CliRunner().invoke(cli, [*command, "--json"], prog_name="raceway")
     assert done.exit_code == 0, done.output

@@ -10,7 +10,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.baselines import ESTIMATORS, benchmark, evaluate, train
+from features.baselines import ESTIMATORS, Model, benchmark
 from features.indicators import Orders
 from features.report import examples
 from features.report.examples import plot_record
@@ -151,10 +151,10 @@ def test_the_page_contains_the_counts_of_the_corpus_and_every_score(page, result
 
 def test_a_model_scores_the_folder_of_a_corpus_as_its_feature_table(corpus):
     table = feature_table(corpus)
-    model = train(table, "envelope_rule")
-    assert evaluate(corpus, model) == evaluate(table, model)
+    model = Model("envelope_rule").fit(table)
+    assert model.score(corpus) == model.score(table)
     with pytest.raises(CorpusError, match="the model takes features of the group 'colour', and the groups are lines"):
-        evaluate(corpus, replace(model, groups=("colour",)))
+        replace(model, groups=("colour",)).score(corpus)
 
 
 def test_all_classes_are_counted_drawn_and_scored(results_of, tmp_path):
