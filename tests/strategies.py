@@ -212,17 +212,16 @@ def ball_waves(seed, rms):
 
 
 @st.composite
-def troubled_records(draw, *, rollers=False):
-    """A record with every mechanism of a recipe: also a support with play, and schedules of shaft rate and load."""
+def troubled_records(draw):
+    """A record with every mechanism of a recipe: also rollers, a support with play, and schedules of shaft rate and load."""
     seed, rms = draw(seeds), draw(st.floats(1e-9, 1e-7))
     some = draw(st.lists(profiled_spalls(), min_size=2, max_size=4))
     machine = draw(machines())._replace(looseness=draw(st.floats(1e-8, 5e-6)))
-    if rollers:
-        machine = machine._replace(load_deflection_factor=draw(st.floats(1e8, 1e9)), contact_exponent=LINE_EXPONENT)
+    machine = machine._replace(load_deflection_factor=draw(st.floats(1e8, 1e9)), contact_exponent=LINE_EXPONENT)
     there = record(machine, draw(troubled_turnings()), some, seed=seed, waviness=rms)
     schedule = np.random.default_rng(seed).uniform(0.7, 1.3, (draw(st.integers(1, 10)), 2))
     return there._replace(
-        bearing=replace(there.bearing, roller_length=8e-3) if rollers else there.bearing,
+        bearing=replace(there.bearing, roller_length=8e-3),
         waviness=there.waviness._replace(balls=ball_waves(seed, rms)),
         schedule=schedule,
         ball_mass=2e-3,

@@ -4,17 +4,14 @@ Bearing and background are correlated where both have lines of the shaft, so gai
 """
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from gen.measurement.measure import measure
-from gen.recipe import Recipe, read_recipe, shipped_recipes
+from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios, settings_of
-from gen.simulation.simulate import simulate
 from gen.simulation.timeline import timeline
 from tests.gen.conftest import small_with
-from tests.paths import ROOT
 
 TOLERANCE = 1e-3
 LEVEL = {
@@ -68,18 +65,6 @@ def test_a_record_has_the_drawn_rms_where_bearing_and_background_have_the_same_l
     recipe = Recipe.model_validate(small_with(changes | LINES))
     scenarios = draw_scenarios(recipe)
     check(lines_of_the_shaft(recipe, scenarios, orders, seed), scenarios)
-
-
-def shipped():
-    """Shipped recipes whose records have a drawn rms."""
-    recipes = (read_recipe(ROOT / "recipes" / f"{name}.yaml") for name in shipped_recipes())
-    return [recipe for recipe in recipes if recipe.level.kind == "snr"]
-
-
-@pytest.mark.parametrize("recipe", shipped(), ids=lambda recipe: recipe.name)
-def test_the_records_of_a_shipped_recipe_have_the_drawn_rms(recipe):
-    scenarios = draw_scenarios(recipe, 0, 24)
-    check(simulate(scenarios).acceleration, scenarios)
 
 
 def test_a_record_of_noise_has_the_drawn_rms_too():

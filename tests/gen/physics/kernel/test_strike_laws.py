@@ -21,7 +21,7 @@ BEARING = CATALOGUE["6205"]
 BALL, MASS = BEARING.ball_diameter / 2, rolling_mass(BEARING)
 # next to nothing but load and contacts acts on the two rings, so that the sum of their momenta changes by outer forces alone
 FREE = RIG._replace(
-    sensor_mass=0.0, sensor_stiffness_x=0.0, sensor_stiffness_y=0.0, sensor_damping=0.0, ring_damping=0.0,
+    sensor_stiffness_x=0.0, sensor_stiffness_y=0.0, sensor_damping=0.0, ring_damping=0.0,
     shaft_damping=0.0, support_stiffness_x=1.0, support_stiffness_y=1.0,
     support_damping_x=0.0, support_damping_y=0.0, contact_damping=100.0, load_x=0.0,
 )  # fmt: skip
