@@ -4,6 +4,7 @@ VENV := .venv
 BIN := $(VENV)/bin
 OUT ?= out/quickstart
 export OMP_NUM_THREADS ?= 1
+unexport PYTHONDONTWRITEBYTECODE # each process would compile every module again
 FLOORS := .venv-floors
 # the fast half: everything that needs no kernel of the full model
 FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/support/test_yaml_files_laws.py \

@@ -30,7 +30,7 @@ from gen.corpus import (
 from gen.support.errors import CorpusError
 from tests.corpora import physical, write_corpus
 
-MANY = (1,) * 90
+MANY = (1,) * 70
 
 
 def open_handles():
@@ -180,7 +180,7 @@ def test_processes_of_a_data_loader_read_the_same_while_the_parent_reads_too(man
         reader.start()
         try:
             with multiprocessing.get_context("fork").Pool(2) as pool:
-                blocks = [slice(start, start + 9) for start in range(0, 90, 9)]
+                blocks = [slice(start, start + 7) for start in range(0, 70, 7)]
                 sums = pool.starmap(_sum, [(corpus, block) for block in blocks])
         finally:
             stop.set()
