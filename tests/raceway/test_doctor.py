@@ -9,7 +9,6 @@ from click.testing import CliRunner
 
 from raceway.cli import cli
 from raceway.studies import doctor
-from tests.paths import ROOT
 
 
 @pytest.fixture
@@ -53,9 +52,3 @@ def test_a_slow_machine_is_told_so_and_an_unknown_one_gets_no_verdict(monkeypatc
         monkeypatch.setattr(doctor, "PUBLISHED", published)
         assert doctor._speed().state == state
     assert "no figure is published" in doctor._speed().value
-
-
-def test_the_published_speed_is_that_of_the_page():
-    page = (ROOT / "docs" / "performance.md").read_text(encoding="utf-8")
-    for name, rate in doctor.PUBLISHED.items():
-        assert f"It is {rate / 1e6:.0f} million record-steps/s on {name}." in page

@@ -6,7 +6,6 @@ import time
 
 import numpy as np
 import pytest
-from numba import njit
 
 from gen.generation import pace
 from gen.generation.corpus import generate
@@ -37,17 +36,6 @@ def test_a_plan_does_not_know_its_time_where_no_kernel_is_compiled(compiled, tmp
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, env=environment)
     assert run.stdout == "None\n"
     assert not list(tmp_path.rglob("*integrate*.nbc"))
-
-
-def test_a_refused_kernel_can_be_compiled_afterwards(tmp_path, monkeypatch):
-    source = tmp_path / "kernel_of_a_test.py"
-    source.write_text("def twice(x):\n    return 2 * x\n")
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr("numba.core.config.CACHE_DIR", str(tmp_path / "cache"))
-    twice = njit(cache=True)(__import__("kernel_of_a_test").twice)
-    with pytest.raises(pace._NotCompiledError), pace._refuse_compilation():
-        twice(1.5)
-    assert twice(1.5) == 3.0
 
 
 def test_a_batch_of_too_many_steps_is_not_timed(compiled, monkeypatch):

@@ -15,7 +15,6 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import POINT_EXPONENT, effective_modulus, load_deflection_factor
 from gen.physics.lubricant import (
@@ -29,7 +28,6 @@ from gen.physics.lubricant import (
     point_film_thickness,
     point_squeeze_damping,
 )
-from gen.physics.rotor import STRIBECK
 from tests.cases import for_each
 from tests.paths import ROOT
 
@@ -152,13 +150,3 @@ def test_the_oil_table_of_the_model_page_is_what_the_formulas_give():
     }
     for name, values in rows.items():
         assert f"| {name} | {' | '.join(f'{value:.3g}' for value in values)} |" in PAGE
-
-
-def test_the_damping_of_a_fall_that_the_model_page_leaves_out_is_what_it_says():
-    """In the middle of the spall, where the ball changes edges, its path is as steep as its sagitta on the race."""
-    bearing = CATALOGUE["6205"]
-    rolling = 2 * math.pi * 30 * (1 - orders(bearing).ftf) * bearing.inner_radius
-    falling = rolling * 0.53e-3 / 2 * (2 / bearing.ball_diameter + 1 / bearing.inner_radius)
-    damping = film_of_the_page(60).damping
-    assert f"{falling:.2f} m/s x {damping:.0f} N s/m = {falling * damping:.0f} N on a ball that carries" in PAGE
-    assert f"carries {STRIBECK * 300 / bearing.n_balls:.0f} N of the 300 N" in PAGE

@@ -6,7 +6,6 @@ Closed forms are those of K. L. Johnson, *Contact Mechanics*, Cambridge Universi
 import math
 from dataclasses import replace
 
-import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -14,8 +13,6 @@ from scipy.special import ellipk
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import effective_modulus, ellipticity, footprints, race_curvatures, race_factors
-from gen.physics.trace import ball_path, contact_mean
-from tests.paths import ROOT
 from tests.strategies import bearings
 
 law = settings(deadline=None, max_examples=60)
@@ -72,12 +69,3 @@ def test_the_contact_of_a_roller_is_the_strip_of_two_cylinders():
         together = 1 / (2 / bearing.ball_diameter + 1 / radius)
         strip = math.sqrt(4 * LOAD * together / (math.pi * bearing.roller_length * STEEL / 2))
         assert width == pytest.approx(strip, rel=1e-12)
-
-
-def test_the_model_page_says_how_far_a_ball_drops_into_a_narrow_spall_through_its_contact():
-    bearing, width = CATALOGUE["6205"], 0.18e-3
-    path = ball_path(np.full(3, 280e-6), width, bearing.ball_diameter / 2, bearing.inner_radius)
-    footprint = footprints(bearing, LOAD)[0]
-    through = contact_mean(path, width, footprint, footprint).max()
-    page = " ".join((ROOT / "docs" / "model.md").read_text(encoding="utf-8").split())
-    assert f"under {LOAD:.0f} N by {1e6 * through:.2f} um instead of {1e6 * path.max():.2f} um" in page
