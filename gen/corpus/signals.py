@@ -89,7 +89,7 @@ def sum_counts(counts: Iterable[SignalCounts]) -> SignalCounts:
 def counts_in_words(counts: SignalCounts) -> str:
     """Counts in words; counts of 0 are left out.
 
-    >>> counts_in_words(SignalCounts(clipped=1204, not_finite=2)), described(SignalCounts())
+    >>> counts_in_words(SignalCounts(clipped=1204, not_finite=2)), counts_in_words(SignalCounts())
     ('1,204 clipped, 2 not finite', 'none')
     """
     return ", ".join(f"{n:,} {kind.replace('_', ' ')}" for kind, n in counts._asdict().items() if n) or "none"

@@ -5,17 +5,19 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from gen.support.progress import Progress
 from raceway.console import show
+
+if TYPE_CHECKING:
+    from gen.support.progress import Progress
 
 SECONDS_BETWEEN_LINES = 10.0
 REPORTS_IN_SPEED = 32
 
 
 @contextmanager
-def progress(doing: str, unit: str) -> Iterator[Progress]:
+def progress(doing: str, unit: str) -> "Iterator[Progress]":
     """Show progress; yields a function to call with the number of units done and of all units.
 
     ``doing`` is the activity, such as "generating"; ``unit`` is the unit that is counted, such as "records".
@@ -28,7 +30,7 @@ def progress(doing: str, unit: str) -> Iterator[Progress]:
 
 
 @contextmanager
-def _bar(doing: str, unit: str) -> Iterator[Progress]:
+def _bar(doing: str, unit: str) -> "Iterator[Progress]":
     from rich import progress as rich  # not at the top: help needs no rich
     from rich.console import Console
 
@@ -45,7 +47,7 @@ def _bar(doing: str, unit: str) -> Iterator[Progress]:
         yield lambda done, total: bars.update(task, completed=done, total=total, pace=pace(done, total))
 
 
-def _lines(doing: str, unit: str) -> Progress:
+def _lines(doing: str, unit: str) -> "Progress":
     last, pace = time.monotonic(), _pace(unit)
 
     def report(done: int, total: int) -> None:

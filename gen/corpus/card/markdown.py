@@ -47,7 +47,7 @@ def _row(cells: Sequence[object]) -> str:
 def enumeration(words: Sequence[str]) -> str:
     """Words joined for a sentence.
 
-    >>> enumeration(["a"]), listed(["a", "b", "c"])
+    >>> enumeration(["a"]), enumeration(["a", "b", "c"])
     ('a', 'a, b and c')
     """
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

@@ -23,8 +23,8 @@ from gen.simulation.simulate import laid_out
 from gen.simulation.timeline import timeline
 
 ENVIRONMENT = os.environ | {"PYTHONPATH": os.pathsep.join(sys.path)}
-HOLD = "import sys, time; from gen.simulation.kernels import locked; from pathlib import Path\n"
-HOLD += "with locked(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"
+HOLD = "import sys, time; from gen.simulation.kernels import lock_file; from pathlib import Path\n"
+HOLD += "with lock_file(Path(sys.argv[1])): print('held', flush=True); time.sleep(60)"
 # loads a small function, and says when it compiles it
 LOAD = """
 import sys, time, numba
