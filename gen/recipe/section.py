@@ -27,9 +27,16 @@ class Section(BaseModel):
         bounds = cls.model_fields[info.field_name or ""].json_schema_extra
         return check_bounds(value, bounds) if isinstance(bounds, dict) else value
 
+    def __str__(self) -> str:
+        """Kind of the section, and the keys that were given."""
+        return repr(self)
+
+    def __repr_name__(self) -> str:
+        return getattr(self, "kind", type(self).__name__)
+
     def __repr_args__(self) -> Iterator[tuple[str | None, Any]]:
-        """Keys that were given; the kind of a section names it."""
-        return ((key, value) for key, value in super().__repr_args__() if key in self.model_fields_set)
+        given = self.model_fields_set - {"kind"}
+        return ((key, value) for key, value in super().__repr_args__() if key in given)
 
 
 def plain(value: Any) -> Any:
