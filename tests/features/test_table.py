@@ -1,9 +1,7 @@
 """The feature table: computed from signal and operating variables, with all other variables copied."""
 
-import os
 import re
 import sys
-import tracemalloc
 
 import netCDF4
 import numpy as np
@@ -171,25 +169,6 @@ def test_threads_give_the_same_numbers(corpus, table, workers):
     found = feature_table(corpus, workers=workers, progress=lambda *counts: done.append(counts))
     xr.testing.assert_identical(found, table)
     assert done == [(1, 3), (2, 3), (3, 3)]
-
-
-def test_memory_beside_the_table_does_not_grow_with_the_parts(tmp_path):
-    """What Python and NumPy allocate at the same time is the table and the signals of one part, not of all."""
-    dataset = part_dataset(0, np.random.default_rng(0))
-    peaks = []
-    for parts in (2, 12):
-        folder = tmp_path / f"{parts}"
-        with new_corpus(folder, title="many") as corpus:
-            for _ in range(parts):
-                corpus.write(dataset)
-        for part in folder.rglob("*.nc"):
-            os.utime(part, (0, 0))  # hashes of files that have just changed are computed each time
-        feature_table(folder)
-        tracemalloc.start()
-        held = feature_table(folder).nbytes
-        peaks.append(tracemalloc.get_traced_memory()[1] - held)
-        tracemalloc.stop()
-    assert peaks[1] - peaks[0] < dataset[SIGNAL].nbytes / 2
 
 
 def test_features_do_not_change_when_labels_latents_and_provenance_are_shuffled(tmp_path, table):
