@@ -67,4 +67,4 @@ def test_a_worker_without_raceway_is_named_before_anything_is_written(run, tiny_
         result = run("generate", tiny_recipe, "-o", tmp_path / "new", "--scheduler", cluster.scheduler_address)
     assert result.exit_code == 2
     assert f"its worker {worker} has no Raceway; install it there" in result.stderr
-    assert not tmp_path / "new".exists()
+    assert not (tmp_path / "new").exists()
