@@ -205,8 +205,7 @@ class Model:
 
     def _tables(self, data: Data, reference: Data | None) -> tuple[xr.Dataset, xr.Dataset | None]:
         """Feature tables of the data and of its reference, with ``bands`` if there is one."""
-        if self.estimator is None:
-            raise NotFittedError("the model is not fitted; call fit first.")
+        self._check_fitted()
         if reference is not None and not isinstance(data, xr.Dataset) and not isinstance(reference, xr.Dataset):
             check_durations(data, reference)
         groups = self.groups if reference is None else with_energies(tuple(self.groups))
@@ -216,6 +215,10 @@ class Model:
         )
         return cast("xr.Dataset", table), healthy
 
+    def _check_fitted(self) -> None:
+        if self.estimator is None:
+            raise NotFittedError("the model is not fitted; call fit first.")
+
     def save(self, path: Path | str) -> None:
         """Write a model file, whole or not at all; equal models give equal bytes.
 
@@ -224,7 +227,10 @@ class Model:
         CorpusError
             If the disk refuses the file, it lies in a corpus or is no model, or the model is not one of the baselines: only those can be
             read without running code.
+        NotFittedError
+            If it is not fitted.
         """
+        self._check_fitted()
         if self.name not in ESTIMATORS:
             raise CorpusError(
                 f"{path}: {self.name} is no baseline; a model file holds only one of {', '.join(ESTIMATORS)}."

@@ -45,12 +45,11 @@ def read_scenarios(records: "xr.Dataset") -> list[Scenario]:
     CorpusError
         If a record has no scenario, or one that cannot be simulated.
     """
-    if DRAWS not in getattr(records, "variables", ()):
-        raise CorpusError(
-            f"no Dataset with the variable {DRAWS}; give records that gen.records or gen.open_corpus gave."
-        )
+    if not hasattr(records, "variables"):
+        raise CorpusError(f"{type(records).__name__} given in place of a Dataset; give records that gen.records gave.")
     scenarios = []
-    for place, text in enumerate(np.atleast_1d(records[DRAWS].values)):
+    texts = np.atleast_1d(records[DRAWS].values) if DRAWS in records.variables else [""]
+    for place, text in enumerate(texts):
         if not text:
             raise CorpusError(f"record {place} has no scenario: it was not simulated, or its signal was changed since.")
         try:

@@ -137,6 +137,8 @@ def test_a_model_predicts_classes_and_probabilities_once_it_is_fitted():
     model, table = Model("logistic_regression"), windowed(seed=1)
     with pytest.raises(NotFittedError, match="the model is not fitted; call fit first"):
         model.predict(table)
+    with pytest.raises(NotFittedError, match="the model is not fitted; call fit first"):
+        model.save("model.skops")
     found = predict(table, model.fit(windowed()))
     assert model.predict(table).tolist() == list(found.predicted)
     np.testing.assert_array_equal(model.predict_proba(table), found.probabilities)

@@ -121,7 +121,7 @@ def test_a_corpus_that_stores_no_scenarios_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(corpora, "EXTRA", ())
     monkeypatch.setattr(corpora, "columns", lambda *part: {k: v for k, v in with_draws(*part).items() if k != "draws"})
     corpora.write_corpus(tmp_path / "corpus")
-    with pytest.raises(CorpusError, match="no Dataset with the variable draws"):
+    with pytest.raises(CorpusError, match="record 0 has no scenario"):
         replay(tmp_path / "corpus", 0)
 
 
