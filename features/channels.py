@@ -1,4 +1,4 @@
-"""The channel of a corpus that features are computed from, by name or number."""
+"""The channel or channels of a corpus that features are computed from, by name or number."""
 
 import difflib
 from pathlib import Path
@@ -24,3 +24,10 @@ def channel_number(corpus: xr.Dataset, channel: int | str, where: Path | str) ->
     near = difflib.get_close_matches(str(channel), names, n=1)
     meant = f"; did you mean {near[0]}?" if near else "."
     raise CorpusError(f"{where}: no channel {channel!r}; give one of {', '.join(names)}, or its number from 0{meant}")
+
+
+def channels_of(table: xr.Dataset) -> list[xr.Dataset]:
+    """Feature tables of the single channels of a feature table."""
+    if "channel" not in table["features"].dims:
+        return [table]
+    return [table.isel(channel=number) for number in range(table.sizes["channel"])]

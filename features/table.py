@@ -47,7 +47,7 @@ def feature_table(
     groups: Sequence[str] = GROUPS,
     *,
     speed: Speed = "off",
-    channel: int | str = 0,
+    channel: int | str | Sequence[str] = 0,
     band: tuple[float, float] = DEFAULT_BAND,
     workers: int = 1,
     scheduler: "Client | str | None" = None,
@@ -65,7 +65,7 @@ def feature_table(
         ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does so too and
         computes the features at the estimated speed where it is clear. Simulated corpora are not checked.
     channel
-        Name of the channel, or its number from 0.
+        Name of the channel, or its number from 0; or the names of several, such as the axes of one housing.
     band
         Band that lines and shape are computed from [Hz], such as ``(300, 9000)``.
     workers
@@ -78,8 +78,9 @@ def feature_table(
     Returns
     -------
     Dataset
-        ``features (record, feature)``, coordinates ``feature`` (names) and ``group``, all variables of the records
-        except ``draws``, which is larger than the rest of the table, and the attributes of the corpus with the ``channel``,
+        ``features (record, feature)``, or ``(channel, record, feature)`` of several channels, coordinates ``feature`` (names) and
+        ``group``, all variables of the records except ``draws``, which is larger than the rest of the table, and the attributes of the
+        corpus with the ``channel``,
         band and ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and
         ``shaft_rate_uncertainty`` [Hz], ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of
         ``recordings_with_other_speed``.
@@ -92,6 +93,11 @@ def feature_table(
         For a group or a treatment of speeds that does not exist, or a band that is too narrow or out of range.
     """
     band = checked_band(*band)
+    if not isinstance(channel, int | str):
+        each = partial(feature_table, corpus, groups, speed=speed, band=band, workers=workers, scheduler=scheduler)
+        tables = [each(channel=name, progress=progress) for name in channel]
+        several = xr.concat([table["features"] for table in tables], xr.Variable("channel", list(channel)))
+        return tables[0].assign(features=several).assign_attrs(channel=", ".join(channel))
     names = feature_names(groups, band)
     with open_corpus(corpus) as opened:
         number = channel_number(opened, channel, corpus)

@@ -11,6 +11,7 @@ estimators        the registry of baselines, from majority class to ensemble
 calibration       calibrated probabilities, and thresholds of answers
 references        features relative to healthy records of the same rig
 reference_choice  records tested against a reference, without those that belong to it
+colour            distance of the colour of a record from healthy recordings of its rig
 predictions       predicted classes of records and of whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
 severities        fault widths that a test contains and its training does not

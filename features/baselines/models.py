@@ -16,6 +16,7 @@ from sklearn.exceptions import NotFittedError
 
 from features.band import DEFAULT_BAND, Band, band_of
 from features.baselines.calibration import UNCALIBRATED, Calibration
+from features.baselines.colour import Colour
 from features.baselines.cross_calibration import FOLDS, fit_and_calibrate
 from features.baselines.estimators import (
     DEFAULT_ESTIMATOR,
@@ -40,9 +41,10 @@ from features.baselines.records import (
     title_of,
 )
 from features.baselines.reference_choice import check_durations, choose_reference
-from features.baselines.references import RELATIVE, paired_table, relative_to, with_energies
+from features.baselines.references import RELATIVE, colour_of, paired_table, relative_to, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
+from features.channels import channels_of
 from features.indicators import GROUPS
 from features.recording_speeds import recording_numbers
 from gen.corpus import UNKNOWN_CODE, check_result
@@ -200,7 +202,7 @@ class Model:
         records = labelled_records(table, self.features)
         table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
         scores = score(records, predict(table, self, reference), seed)
-        seen = seen_records(records.features.to_numpy(), self.digests)
+        seen = seen_records(records.features.to_numpy()[:, : len(self.features)], self.digests)
         return replace(scores, seen=seen, uncovered_widths=uncovered_widths(self.widths, records))
 
     def _tables(self, data: Data, reference: Data | None) -> tuple[xr.Dataset, xr.Dataset | None]:
@@ -284,6 +286,7 @@ def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None
         If the table lacks a feature of the model or is computed from another band, features or model contain numbers too large to
         compute with, or the model or the records cannot be used with the reference.
     """
+    tables, used, colour = channels_of(table), model, None
     if reference is not None:
         if model.relative is None:
             message = (
@@ -291,7 +294,22 @@ def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None
                 "recordings and records of each other class; leave the reference out, or train on another corpus."
             )
             raise CorpusError(message)
-        return predict(relative_to(table, reference, model.features), model.relative)
+        references = channels_of(reference)
+        if len(references) != len(tables):
+            raise CorpusError(
+                f"{title_of(reference)}: the reference has {len(references)} channels and the records have {len(tables)}; give "
+                "a corpus with the same channels."
+            )
+        pairs = list(zip(tables, references, strict=True))
+        used, tables = model.relative, [relative_to(*pair, model.features) for pair in pairs]
+        colours = [colour_of(*pair) for pair in pairs]
+        colour = Colour(*map(np.concatenate, zip(*colours, strict=True)))
+    probabilities = np.stack([_probabilities(one, used) for one in tables])
+    return predictions(probabilities, used.classes, recording_numbers(table), used.calibration, colour)
+
+
+def _probabilities(table: xr.Dataset, model: Model) -> FloatArray:
+    """Probabilities as of `estimator_probabilities` of the records of a feature table of one channel."""
     band = band_of(table.attrs)
     if band != model.band:
         low, high = model.band
@@ -299,9 +317,7 @@ def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None
             f"{title_of(table)}: its features are computed from {band.low:g}-{band.high:g} Hz, and the model was trained on "
             f"{low:g}-{high:g} Hz; compute them with --band {low:g} {high:g}."
         )
-    rows = feature_rows(table, model.features)
-    probabilities = estimator_probabilities(model, rows, title_of(table))
-    return predictions(probabilities, model.classes, recording_numbers(table), model.calibration)
+    return estimator_probabilities(model, feature_rows(table, model.features), title_of(table))
 
 
 def estimator_probabilities(model: Model, features: "DataFrame", where: str) -> FloatArray:

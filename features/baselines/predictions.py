@@ -1,14 +1,19 @@
 """Predicted classes of records and of whole recordings, with calibrated probabilities.
 
-``probabilities -> calibrated -> combined by recording -> answers``
+``probabilities of each channel -> calibrated -> combined by record and by recording -> answers``
+
+A record far from its healthy reference in colour is less probably healthy, and is never answered so: many faults change the colour of a
+machine and show no line.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from features.baselines.calibration import Calibration, calibrate, combine
+from features.baselines.colour import Colour, in_colour
 from features.baselines.records import FloatArray, IntArray
+from features.faults import HEALTHY
 from gen.corpus import FAULTS
 
 UNSURE = "unsure"
@@ -28,6 +33,8 @@ class Predictions:
         A record is answered if its largest probability is at least this.
     recording
         Number of the recording of each record, from 0 and without a gap; in ``by_recording``, 0, 1, 2, ....
+    distance
+        Of the colour from that of the healthy reference, in scatters of healthy recordings, shape (record,); 0 without a reference.
     by_recording
         The same by recording, with the records of each combined; None in itself.
     """
@@ -36,6 +43,7 @@ class Predictions:
     probabilities: FloatArray
     threshold: float
     recording: IntArray
+    distance: FloatArray
     by_recording: "Predictions | None" = None
 
     @property
@@ -45,8 +53,9 @@ class Predictions:
 
     @property
     def answered(self) -> np.ndarray:
-        """Whether the largest probability is at least the threshold, shape (record,)."""
-        return self.probabilities.max(axis=1) >= self.threshold
+        """Whether the largest probability is at least the threshold, and no "healthy" has a strange colour, shape (record,)."""
+        strange = (self.distance > 1) & (np.array(self.predicted) == HEALTHY)
+        return (self.probabilities.max(axis=1) >= self.threshold) & ~strange
 
     @property
     def answers(self) -> tuple[str, ...]:
@@ -55,18 +64,44 @@ class Predictions:
 
 
 def predictions(
-    probabilities: FloatArray, classes: tuple[str, ...], recording: IntArray, calibration: Calibration
+    probabilities: FloatArray,
+    classes: tuple[str, ...],
+    recording: IntArray,
+    calibration: Calibration,
+    colour: Colour | None = None,
 ) -> Predictions:
-    """Predictions from the probabilities of an estimator, shape (record, class), which are calibrated here."""
-    records = calibrate(probabilities, calibration.temperature)
-    whole = combine(records, recording, calibration.dependence)
-    return Predictions(
-        classes=classes,
-        probabilities=records,
-        threshold=calibration.threshold,
-        recording=recording,
-        by_recording=Predictions(classes, whole, calibration.recording_threshold, np.arange(len(whole))),
-    )
+    """Predictions from the probabilities of an estimator, which are calibrated and combined here.
+
+    Those of the channels of a record are averaged as logarithms, since a machine moves all of them.
+
+    Parameters
+    ----------
+    probabilities
+        Shape (record, class), or (channel, record, class) of the channels of one housing.
+    classes
+        Of the columns.
+    recording
+        Number of the recording of each record, from 0 and without a gap, shape (record,).
+    calibration
+        Of the model.
+    colour
+        Change of each record from its healthy reference; None without one.
+    """
+    calibrated = calibrate(probabilities.reshape(-1, len(classes)), calibration.temperature)
+    every = np.arange(len(recording))
+    each = combine(calibrated, np.tile(every, len(calibrated) // len(every)), dependence=1.0)
+
+    def combined(numbers: IntArray, threshold: float) -> Predictions:
+        pooled = combine(each, numbers, calibration.dependence)
+        distance = np.zeros(len(pooled))
+        if colour is not None:
+            distance = colour.distances(numbers)
+            pooled = in_colour(pooled, np.array(classes) == HEALTHY, distance)
+        return Predictions(classes, pooled, threshold, np.arange(len(pooled)), distance)
+
+    records = combined(every, calibration.threshold)
+    whole = combined(recording, calibration.recording_threshold)
+    return replace(records, recording=recording, by_recording=whole)
 
 
 def fault_names(codes: IntArray) -> tuple[str, ...]:

@@ -129,6 +129,8 @@ def records_of(data: "xr.Dataset | Waveforms", groups: Sequence[str]) -> Records
 def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
     """Rows of a feature table with some of its features, in the order given, whatever their labels.
 
+    A table of several channels has the features of each, one channel after the other.
+
     Raises
     ------
     CorpusError
@@ -143,6 +145,8 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
     held = table["features"]
     if list(table["feature"].values) != list(features):  # a selection is a copy
         held = held.sel(feature=list(features))
+    if held.ndim > 2:
+        held = held.stack(column=("channel", "feature"), create_index=False)
     return cast("DataFrame", held.to_pandas())
 
 

@@ -11,8 +11,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from features.band import band_of
+from features.baselines.colour import COUNTED, ENERGIES, Colour, scatter_of
 from features.baselines.records import (
     FloatArray,
     IntArray,
@@ -20,14 +22,13 @@ from features.baselines.records import (
     record_digests,
     title_of,
 )
+from features.channels import channels_of
 from features.faults import HEALTHY
-from features.indicators import NAMES
 from features.recording_speeds import recording_numbers
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)
-ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))
 RELATIVE = "relative"  # group of the features of a relative table
 NEAREST = 3  # recordings, nearest in speed, that a virtual reference is chosen from
 
@@ -87,15 +88,37 @@ def relative_to(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str
     CorpusError
         If a table lacks a feature, the reference has no healthy record, or their sample rates cannot be compared.
     """
+    healthy, number, members = _healthy_of(table, reference)
+    values = feature_rows(healthy, (*features, *ENERGIES)).to_numpy()
+    return relative_table(table, features, np.stack([_mean(values[rows]) for rows in members])[number])
+
+
+def colour_of(table: xr.Dataset, reference: xr.Dataset) -> Colour:
+    """Change of the colour of records from the references of `relative_to`.
+
+    Raises
+    ------
+    CorpusError
+        As `relative_to`.
+    """
+    healthy, number, members = _healthy_of(table, reference)
+    energies, recording = feature_rows(healthy, COUNTED).to_numpy(), recording_numbers(healthy)
+    of_recordings = [
+        np.stack([_mean(energies[rows & (recording == one)]) for one in np.unique(recording[rows])]) for rows in members
+    ]
+    references = np.stack([_mean(energies[rows]) for rows in members])
+    changes = feature_rows(table, COUNTED).to_numpy() - references[number]
+    return Colour(changes[None], np.array([scatter_of(one) for one in of_recordings])[None, number])
+
+
+def _healthy_of(table: xr.Dataset, reference: xr.Dataset) -> tuple[xr.Dataset, IntArray, list[NDArray[np.bool_]]]:
+    """Healthy records of a reference, number of the set of them that each record is compared with, and the members of each set."""
     healthy = healthy_records(reference)
     check_rates(table, healthy)
-    values = feature_rows(healthy, (*features, *ENERGIES)).to_numpy()
-    if by_rig(table, healthy):
-        rigs, number = np.unique(table["rig"].values, return_inverse=True)
-        references = np.stack([_mean(values[healthy["rig"].values == rig]) for rig in rigs])[number]
-    else:
-        references = np.repeat(_mean(values)[None], table.sizes["record"], axis=0)
-    return relative_table(table, features, references)
+    if not by_rig(table, healthy):
+        return healthy, np.zeros(table.sizes["record"], np.intp), [np.ones(healthy.sizes["record"], np.bool_)]
+    rigs, number = np.unique(table["rig"].values, return_inverse=True)
+    return healthy, number, [healthy["rig"].values == rig for rig in rigs]
 
 
 def healthy_records(reference: xr.Dataset) -> xr.Dataset:
@@ -108,7 +131,8 @@ def healthy_records(reference: xr.Dataset) -> xr.Dataset:
     """
     fault = reference["fault"].values
     rows = (fault == HEALTHY_CODE) | bool((fault == UNKNOWN_CODE).all())
-    rows &= np.isfinite(reference["features"].values).any(axis=1)  # too short or constant signals have no features
+    finite = [np.isfinite(one["features"].values).any(axis=1) for one in channels_of(reference)]
+    rows &= np.logical_or.reduce(finite)  # too short or constant signals have no features
     if not rows.any():
         message = (
             f"{title_of(reference)}: the reference holds no healthy record with features; give a healthy recording of "

@@ -73,6 +73,8 @@ class Scores:
         Records by their largest probability, in bins of equal width.
     coverage, answered_accuracy
         Share of the records that are answered, and the accuracy of these; None without any.
+    faulty_among_healthy
+        Share of the faulty recordings among those that are answered "healthy"; None if none is.
     reference
         What the records were compared with, in one sentence; empty without a reference.
     seen
@@ -98,6 +100,7 @@ class Scores:
     reliability: tuple[Bin, ...] = ()
     coverage: float = 1.0
     answered_accuracy: float | None = None
+    faulty_among_healthy: float | None = None
     reference: str = ""
     seen: int = 0
     uncovered_widths: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
@@ -124,9 +127,18 @@ def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
         Of the bootstrap.
     """
     _, first = np.unique(predictions.recording, return_index=True)
+    by_record = _score(records.fault, records.specimen, predictions, seed)
     whole = predictions.by_recording
-    by_recording = None if whole is None else _score(records.fault[first], records.specimen[first], whole, seed)
-    return replace(_score(records.fault, records.specimen, predictions, seed), by_recording=by_recording)
+    if whole is None:
+        return by_record
+    healthy = np.array(whole.answers) == HEALTHY
+    share = _share(records.fault[first][healthy] != HEALTHY_CODE)
+    by_recording = _score(records.fault[first], records.specimen[first], whole, seed)
+    return replace(
+        by_record,
+        faulty_among_healthy=share,
+        by_recording=replace(by_recording, faulty_among_healthy=share),
+    )
 
 
 def _score(fault: IntArray, specimen: IntArray, predictions: Predictions, seed: int) -> Scores:

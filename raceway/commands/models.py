@@ -15,7 +15,7 @@ from raceway.console.options import (
     Analysis,
     Team,
     analysis_options,
-    channel_option,
+    channels_option,
     corpus_argument,
     corpus_path,
     file_option,
@@ -137,7 +137,7 @@ def train(
 @click.command()
 @corpus_argument
 @click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
-@channel_option
+@channels_option
 @reference_options
 @speed_option
 @worker_options
@@ -145,7 +145,7 @@ def train(
 def evaluate(
     corpus: Path,
     model: Path,
-    channel: str | None,
+    channel: tuple[str, ...] | None,
     reference: Path | None,
     speed: "Speed",
     workers: int | None,
@@ -161,9 +161,11 @@ def evaluate(
     scored; the answer for each of them is listed.
 
     With --reference, records are compared with healthy records of their rig: those of a corpus, which may be DIR itself, or a recording
-    (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores.
+    (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores. A "healthy" is answered only
+    if the spectral colour is near that of the reference.
 
       raceway evaluate cwru --model model.skops
+      raceway evaluate pump --model model.skops --channel x,y,z
       raceway evaluate pump --model model.skops --reference pump
       raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
@@ -264,6 +266,7 @@ FIGURES = (
     "calibration error",
     "answered",
     "accuracy of the answered",
+    'faulty among "healthy"',
     "number",
 )
 
@@ -283,6 +286,7 @@ def _figures(scores: "Scores") -> tuple[str, ...]:
         f"{scores.ece:.3f}",
         f"{scores.coverage:.3f}",
         _shown(scores.answered_accuracy),
+        _shown(scores.faulty_among_healthy),
         f"{scores.records:,}",
     )
 

@@ -68,7 +68,7 @@ def worker_options(command: Any) -> Any:
 class Analysis(NamedTuple):
     """Values of the options ``--channel`` and ``--band``; None for the first channel and for the default band."""
 
-    channel: str | None = None
+    channel: str | tuple[str, ...] | None = None
     band: tuple[float, float] | None = None
 
     def options(self) -> dict[str, Any]:
@@ -97,6 +97,20 @@ def _checked_band(
 channel_option: Decorator = click.option(
     "--channel", metavar="NAME", help="Channel by its name; by default the first (raceway info DIR lists them)."
 )
+
+
+def _names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...] | None:
+    """Names separated by commas."""
+    return None if text is None else tuple(name.strip() for name in text.split(","))
+
+
+channels_option: Decorator = click.option(
+    "--channel",
+    metavar="NAME[,NAME]",
+    callback=_names,
+    help="Channel by its name, or several that are axes of one housing, whose answers are combined; by default the first "
+    "(raceway info DIR lists them).",
+)
 band_option: Decorator = click.option(
     "--band",
     type=(float, float),
@@ -109,11 +123,6 @@ band_option: Decorator = click.option(
 def analysis_options(command: Any) -> Any:
     """Add the options ``--channel`` and ``--band``."""
     return channel_option(band_option(command))
-
-
-def _names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...] | None:
-    """Names separated by commas."""
-    return None if text is None else tuple(name.strip() for name in text.split(","))
 
 
 _where: Decorator = click.option(

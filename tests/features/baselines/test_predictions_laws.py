@@ -10,6 +10,7 @@ from sklearn.exceptions import NotFittedError
 from features.baselines import UNSURE, Model, predict
 from features.baselines.calibration import COVERAGE, UNCALIBRATED
 from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
+from features.baselines.predictions import predictions
 from features.baselines.records import features_of, labelled_records
 from tests.model_files import make_table
 
@@ -142,3 +143,26 @@ def test_a_model_predicts_classes_and_probabilities_once_it_is_fitted():
     found = predict(table, model.fit(windowed()))
     assert model.predict(table).tolist() == list(found.predicted)
     np.testing.assert_array_equal(model.predict_proba(table), found.probabilities)
+
+
+def channels(*tables: xr.Dataset) -> xr.Dataset:
+    """Table of several channels of the same records."""
+    return tables[0].assign(features=xr.concat([table["features"] for table in tables], "channel"))
+
+
+def test_the_same_channel_twice_tells_no_more_than_once():
+    model, table = Model().fit(windowed()), windowed(seed=1)
+    alone, twice = predict(table, model), predict(channels(table, table), model)
+    np.testing.assert_allclose(twice.probabilities, alone.probabilities)
+    one, other = model.score(table), model.score(channels(table, table))
+    assert (other.confusion, other.records) == (one.confusion, one.records)
+    assert model.score(channels(windowed(), windowed())).seen == 96
+
+
+def test_a_fault_that_one_channel_does_not_show_is_known_from_the_others():
+    unseen, seen = np.array([0.9, 0.04, 0.06]), np.array([0.03, 0.02, 0.95])
+    found = predictions(
+        np.stack([unseen, seen, seen])[:, None], ("healthy", "inner", "outer"), np.array([0]), UNCALIBRATED
+    )
+    assert found.predicted == ("outer",)
+    assert found.probabilities[0, 2] > 0.7

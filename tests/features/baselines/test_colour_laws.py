@@ -1,0 +1,76 @@
+"""Laws of colour: gain has none, several references set the scale, and no record in a strange colour is answered healthy."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from features.baselines.calibration import UNCALIBRATED
+from features.baselines.colour import COUNTED, DECIBELS, SCATTER, Colour, distance, in_colour, scatter_of
+from features.baselines.predictions import UNSURE, predictions
+
+CLASSES = ("healthy", "inner", "outer")
+TILT = np.linspace(-1, 1, len(COUNTED)) / DECIBELS  # about 0.7 dB
+SURE = np.array([[0.98, 0.01, 0.01]])
+
+
+def coloured(decibels: float, records: int = 1, channels: int = 1) -> Colour:
+    """Changes of a distance, in the direction of ``TILT``."""
+    change = np.full((channels, records, 1), decibels) * TILT / distance(TILT)
+    return Colour(change, np.full((channels, records), SCATTER))
+
+
+def test_frequencies_of_the_shaft_do_not_count():
+    assert COUNTED[0] == "energy_200-400_Hz"
+
+
+@given(st.floats(-50, 50), st.floats(0, 40))
+def test_a_gain_has_no_colour_and_a_change_of_all_bands_is_its_size(gain, decibels):
+    change = coloured(decibels).changes[0, 0]
+    assert distance(change + gain) == pytest.approx(decibels, abs=1e-9)
+
+
+def test_the_scatter_is_that_of_the_references_if_it_is_larger_than_usual():
+    assert scatter_of(TILT[None]) == scatter_of(np.stack([TILT, 1.1 * TILT])) == SCATTER
+    assert scatter_of(np.stack([10 * TILT, -10 * TILT])) == pytest.approx(20 * distance(TILT))
+    assert scatter_of(np.stack([TILT, TILT, 30 * TILT])) == pytest.approx(29 * distance(TILT))
+
+
+@given(st.floats(0, 20), st.floats(0, 20))
+def test_a_stranger_colour_is_less_probably_healthy_and_tells_no_class_of_fault(one, other):
+    given_one, given_other = (
+        in_colour(SURE * [1, 1, 2], np.array([1, 0, 0], bool), np.array([d])) for d in (one, other)
+    )
+    assert np.sign(np.round(given_one - given_other, 12))[0, 0] in (0, np.sign(other - one))
+    np.testing.assert_allclose(given_one[:, 2] / given_one[:, 1], 2)
+
+
+def test_healthy_is_answered_near_the_reference_alone():
+    for decibels, answer in ((0.0, "healthy"), (0.9 * SCATTER, "healthy"), (1.1 * SCATTER, UNSURE)):
+        found = predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, coloured(decibels))
+        assert found.answers == (answer,)
+    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, coloured(4 * SCATTER)).predicted != ("healthy",)
+    fault = SURE[:, ::-1]
+    assert predictions(fault, CLASSES, np.array([0]), UNCALIBRATED, coloured(4 * SCATTER)).answers == ("outer",)
+
+
+def test_windows_of_one_recording_are_averaged_in_their_colour():
+    changes = coloured(2 * SCATTER, records=2).changes * [[[1.0], [-1.0]]]
+    found = predictions(
+        np.repeat(SURE, 2, axis=0), CLASSES, np.array([0, 0]), UNCALIBRATED, Colour(changes, np.full((1, 2), SCATTER))
+    )
+    assert found.answers == (UNSURE, UNSURE)
+    assert found.by_recording is not None
+    assert found.by_recording.answers == ("healthy",)
+
+
+def test_one_channel_in_a_strange_colour_is_enough():
+    colour = coloured(0.0, channels=2)
+    colour.changes[1] = coloured(2 * SCATTER).changes[0]
+    assert predictions(np.stack([SURE, SURE]), CLASSES, np.array([0]), UNCALIBRATED, colour).answers == (UNSURE,)
+
+
+def test_a_record_without_energies_has_no_colour():
+    colour = coloured(2 * SCATTER)
+    colour.changes[:] = np.nan
+    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour).answers == ("healthy",)
