@@ -4,7 +4,7 @@ Estimators are over- or underconfident: of the records that an ensemble of fores
 the class. A temperature [1]_ corrects this: the logarithms of the probabilities are divided by it, and the result is normalised. The order
 of the classes of a record does not change.
 
-``probabilities of records outside the training -> temperature -> combination of the windows of a recording -> thresholds``
+``probabilities of records outside the training -> temperature -> threshold``
 
 .. [1] C. Guo, G. Pleiss, Y. Sun, K. Q. Weinberger, "On calibration of modern neural networks", ICML 2017.
 """
@@ -38,11 +38,8 @@ class Calibration(BaseModel):
         was not calibrated.
     temperature
         Divides the logarithms of the probabilities.
-    dependence
-        Correlation of the errors of two records of one recording, as in ``combine``: 0 if they are independent, 1 if they are the same.
-    threshold, recording_threshold
-        A record is answered if its largest probability is at least ``threshold``, and a recording of several records if its largest is
-        at least ``recording_threshold``.
+    threshold
+        A record or recording is answered if its largest probability is at least this.
     coverage
         Share of the records outside the training that are answered.
     """
@@ -51,15 +48,11 @@ class Calibration(BaseModel):
 
     by: Groups
     temperature: Temperature
-    dependence: Share
     threshold: Share
-    recording_threshold: Share
     coverage: Share
 
 
-UNCALIBRATED = Calibration(
-    by="nothing", temperature=1.0, dependence=1.0, threshold=0.0, recording_threshold=0.0, coverage=1.0
-)
+UNCALIBRATED = Calibration(by="nothing", temperature=1.0, threshold=0.0, coverage=1.0)
 
 
 def calibrate(probabilities: FloatArray, temperature: float) -> FloatArray:
@@ -71,38 +64,24 @@ def calibrate(probabilities: FloatArray, temperature: float) -> FloatArray:
     return softmax(_logarithms(probabilities) / temperature, axis=1)
 
 
-def combine(probabilities: FloatArray, recording: IntArray, dependence: float) -> FloatArray:
-    """Probabilities of each recording from those of its records.
+def combine(probabilities: FloatArray, group: IntArray) -> FloatArray:
+    """Geometric mean of the probabilities of the records of each group, shape (record, class) to (group, class).
 
-    The logarithms of the ``n`` records of a recording are averaged, multiplied by the number of independent records that they are worth,
-    ``n / (1 + (n - 1) * dependence)``, and normalised. With a dependence of 1, the result is the geometric mean; with 0, the product.
-
-    Parameters
-    ----------
-    probabilities
-        Shape (record, class).
-    recording
-        Numbers from 0, without a gap, shape (record,).
-    dependence
-        Correlation of the errors of two records of one recording.
-
-    Returns
-    -------
-    Shape (recording, class).
+    ``group`` holds numbers from 0 without a gap, shape (record,).
     """
-    if np.array_equal(recording, np.arange(len(probabilities))):
+    if np.array_equal(group, np.arange(len(probabilities))):
         return probabilities
-    total, count = _sum_logarithms(probabilities, recording)
-    return softmax(total / (1 + (count - 1) * dependence)[:, None], axis=1)
+    count = np.bincount(group)
+    total = np.zeros((len(count), probabilities.shape[1]))
+    np.add.at(total, group, np.log(np.maximum(probabilities, np.finfo(float).tiny)))
+    return softmax(total / count[:, None], axis=1)
 
 
-def fit_calibration(
-    probabilities: FloatArray, truth: IntArray, recording: IntArray, by: Groups = "record"
-) -> Calibration:
+def fit_calibration(probabilities: FloatArray, truth: IntArray, by: Groups = "record") -> Calibration:
     """Calibration from the probabilities of records outside the training.
 
-    Temperature and dependence minimise the log-loss of records and recordings, with the same total weight for each class, as in training.
-    The thresholds are those at which a share of ``COVERAGE`` is answered.
+    The temperature minimises the log-loss, with the same total weight for each class, as in training. The threshold is that at which a
+    share of ``COVERAGE`` is answered.
 
     Parameters
     ----------
@@ -110,8 +89,6 @@ def fit_calibration(
         Shape (record, class).
     truth
         Column of the true class, shape (record,).
-    recording
-        As for ``combine``.
     by
         Groups that the cross-validation kept together.
     """
@@ -120,33 +97,9 @@ def fit_calibration(
         np.exp(_lowest(lambda log: _loss(logarithms / np.exp(log), truth), *np.log(TEMPERATURES).tolist()))
     )
     records = calibrate(probabilities, temperature)
-    dependence = _fit_dependence(records, truth, recording)
-    threshold, recording_threshold = (answering(rows) for rows in (records, combine(records, recording, dependence)))
-    return Calibration(
-        by=by,
-        temperature=temperature,
-        dependence=dependence,
-        threshold=threshold,
-        recording_threshold=recording_threshold,
-        coverage=float(np.mean(records.max(axis=1) >= threshold)),
-    )
-
-
-def _fit_dependence(probabilities: FloatArray, truth: IntArray, recording: IntArray) -> float:
-    """Dependence with the lowest log-loss of recordings; 1, the most cautious, if no recording has several records."""
-    total, count = _sum_logarithms(probabilities, recording)
-    if count.max() < 2:
-        return 1.0
-    _, first = np.unique(recording, return_index=True)
-    return _lowest(lambda dependence: _loss(total / (1 + (count - 1) * dependence)[:, None], truth[first]), 0.0, 1.0)
-
-
-def _sum_logarithms(probabilities: FloatArray, recording: IntArray) -> tuple[FloatArray, FloatArray]:
-    """Sum of the logarithms of the records of each recording, shape (recording, class), and their number."""
-    count = np.bincount(recording).astype(float)
-    total = np.zeros((len(count), probabilities.shape[1]))
-    np.add.at(total, recording, np.log(np.maximum(probabilities, np.finfo(float).tiny)))
-    return total, count
+    threshold = answering(records)
+    coverage = float(np.mean(records.max(axis=1) >= threshold))
+    return Calibration(by=by, temperature=temperature, threshold=threshold, coverage=coverage)
 
 
 def _loss(logarithms: FloatArray, truth: IntArray) -> float:

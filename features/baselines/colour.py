@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.baselines.records import FloatArray, IntArray
+from features.baselines.records import FloatArray, IntArray, group_means
 from features.indicators import NAMES
 
 ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))
@@ -40,9 +40,7 @@ class Colour(NamedTuple):
 
         It is the largest of all channels, shape (number,), and 0 without energies.
         """
-        from pandas import DataFrame
-
-        means = np.stack([DataFrame(channel).groupby(numbers).mean().to_numpy() for channel in self.changes])
+        means = np.stack([group_means(channel, numbers) for channel in self.changes])
         _, first = np.unique(numbers, return_index=True)
         return np.nan_to_num(np.fmax.reduce(distance(means) / self.scatter[:, first], axis=0))
 

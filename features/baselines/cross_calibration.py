@@ -40,7 +40,7 @@ def fit_and_calibrate(
     probabilities = np.zeros((len(truth), len(classes)))
     for (_, test), fold in zip(splits, folds, strict=True):
         probabilities[test] = fold.probabilities
-    return whole.estimator, fit_calibration(probabilities, truth, records.recording, by)
+    return whole.estimator, fit_calibration(probabilities, truth, by)
 
 
 def calibration_splits(records: Records, seed: int) -> tuple[Literal["rig", "specimen"], list[Split]] | None:

@@ -35,6 +35,7 @@ from features.baselines.records import (
     check_classes,
     feature_rows,
     features_of,
+    group_means,
     labelled_records,
     record_digests,
     seen_records,
@@ -54,7 +55,7 @@ from gen.support.progress import Progress, counter
 if TYPE_CHECKING:
     from pandas import DataFrame
 
-FORMAT = 4
+FORMAT = 5
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
 _TRAINING = ("corpus", "records", "seed", "widths", "digests", "versions")
 _STORED = ("estimator", "name", "classes", "features", "groups", "band", *_TRAINING, "calibration")
@@ -270,6 +271,8 @@ class Model:
 def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None) -> Predictions:
     """Predictions of a model for all records of a feature table, labelled or not.
 
+    Those of a recording are made from the mean features of its records, in which noise counts less.
+
     Parameters
     ----------
     table
@@ -304,12 +307,17 @@ def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None
         used, tables = model.relative, [relative_to(*pair, model.features) for pair in pairs]
         colours = [colour_of(*pair) for pair in pairs]
         colour = Colour(*map(np.concatenate, zip(*colours, strict=True)))
-    probabilities = np.stack([_probabilities(one, used) for one in tables])
-    return predictions(probabilities, used.classes, recording_numbers(table), used.calibration, colour)
+    recording = recording_numbers(table)
+    rows = [_rows(one, used) for one in tables]
+    means = [type(one)(group_means(one.to_numpy(), recording), columns=one.columns) for one in rows]
+    each, whole = (
+        np.stack([estimator_probabilities(used, some, title_of(table)) for some in values]) for values in (rows, means)
+    )
+    return predictions(each, used.classes, recording, used.calibration, of_recordings=whole, colour=colour)
 
 
-def _probabilities(table: xr.Dataset, model: Model) -> FloatArray:
-    """Probabilities as of `estimator_probabilities` of the records of a feature table of one channel."""
+def _rows(table: xr.Dataset, model: Model) -> "DataFrame":
+    """Features that a model takes of the records of a feature table of one channel."""
     band = band_of(table.attrs)
     if band != model.band:
         low, high = model.band
@@ -317,7 +325,7 @@ def _probabilities(table: xr.Dataset, model: Model) -> FloatArray:
             f"{title_of(table)}: its features are computed from {band.low:g}-{band.high:g} Hz, and the model was trained on "
             f"{low:g}-{high:g} Hz; compute them with --band {low:g} {high:g}."
         )
-    return estimator_probabilities(model, feature_rows(table, model.features), title_of(table))
+    return feature_rows(table, model.features)
 
 
 def estimator_probabilities(model: Model, features: "DataFrame", where: str) -> FloatArray:

@@ -68,6 +68,8 @@ def predictions(
     classes: tuple[str, ...],
     recording: IntArray,
     calibration: Calibration,
+    *,
+    of_recordings: FloatArray | None = None,
     colour: Colour | None = None,
 ) -> Predictions:
     """Predictions from the probabilities of an estimator, which are calibrated and combined here.
@@ -84,24 +86,29 @@ def predictions(
         Number of the recording of each record, from 0 and without a gap, shape (record,).
     calibration
         Of the model.
+    of_recordings
+        Probabilities of the recordings, shape (recording, class) or (channel, recording, class); by default the geometric means over
+        their records.
     colour
         Change of each record from its healthy reference; None without one.
     """
-    calibrated = calibrate(probabilities.reshape(-1, len(classes)), calibration.temperature)
     every = np.arange(len(recording))
-    each = combine(calibrated, np.tile(every, len(calibrated) // len(every)), dependence=1.0)
+    records = _over_channels(probabilities, calibration)
+    whole = combine(records, recording) if of_recordings is None else _over_channels(of_recordings, calibration)
 
-    def combined(numbers: IntArray, threshold: float) -> Predictions:
-        pooled = combine(each, numbers, calibration.dependence)
-        distance = np.zeros(len(pooled))
-        if colour is not None:
-            distance = colour.distances(numbers)
-            pooled = in_colour(pooled, np.array(classes) == HEALTHY, distance)
-        return Predictions(classes, pooled, threshold, np.arange(len(pooled)), distance)
+    def coloured(pooled: FloatArray, numbers: IntArray) -> Predictions:
+        distance = np.zeros(len(pooled)) if colour is None else colour.distances(numbers)
+        in_it = pooled if colour is None else in_colour(pooled, np.array(classes) == HEALTHY, distance)
+        return Predictions(classes, in_it, calibration.threshold, np.arange(len(pooled)), distance)
 
-    records = combined(every, calibration.threshold)
-    whole = combined(recording, calibration.recording_threshold)
-    return replace(records, recording=recording, by_recording=whole)
+    return replace(coloured(records, every), recording=recording, by_recording=coloured(whole, recording))
+
+
+def _over_channels(probabilities: FloatArray, calibration: Calibration) -> FloatArray:
+    """Calibrated probabilities, geometric means over the channels, ([channel,] record, class) to (record, class)."""
+    records, classes = probabilities.shape[-2:]
+    rows = calibrate(probabilities.reshape(-1, classes), calibration.temperature)
+    return combine(rows, np.tile(np.arange(records), len(rows) // records))
 
 
 def fault_names(codes: IntArray) -> tuple[str, ...]:

@@ -150,6 +150,20 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
     return cast("DataFrame", held.to_pandas())
 
 
+def group_means(values: FloatArray, group: IntArray) -> FloatArray:
+    """`mean_row` of the rows of each group, in the order of their numbers, shape (record, feature) to (group, feature)."""
+    order = np.argsort(group, kind="stable")
+    _, first = np.unique(group[order], return_index=True)
+    return np.stack([mean_row(rows) for rows in np.split(values[order], first[1:])])
+
+
+def mean_row(values: FloatArray) -> FloatArray:
+    """Mean of each feature over the records that have it, NaN without any; the order of the records has no effect."""
+    values = np.sort(values, axis=0)  # NaN comes last
+    count = np.isfinite(values).sum(axis=0)
+    return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
+
+
 def _column(table: xr.Dataset, name: str) -> FloatArray:
     """Values of a variable, shape (record,); NaN if the table lacks it."""
     return np.asarray(table[name].values, dtype=float) if name in table else np.full(table.sizes["record"], np.nan)

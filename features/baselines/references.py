@@ -19,6 +19,8 @@ from features.baselines.records import (
     FloatArray,
     IntArray,
     feature_rows,
+    group_means,
+    mean_row,
     record_digests,
     title_of,
 )
@@ -90,7 +92,7 @@ def relative_to(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str
     """
     healthy, number, members = _healthy_of(table, reference)
     values = feature_rows(healthy, (*features, *ENERGIES)).to_numpy()
-    return relative_table(table, features, np.stack([_mean(values[rows]) for rows in members])[number])
+    return relative_table(table, features, np.stack([mean_row(values[rows]) for rows in members])[number])
 
 
 def colour_of(table: xr.Dataset, reference: xr.Dataset) -> Colour:
@@ -103,10 +105,8 @@ def colour_of(table: xr.Dataset, reference: xr.Dataset) -> Colour:
     """
     healthy, number, members = _healthy_of(table, reference)
     energies, recording = feature_rows(healthy, COUNTED).to_numpy(), recording_numbers(healthy)
-    of_recordings = [
-        np.stack([_mean(energies[rows & (recording == one)]) for one in np.unique(recording[rows])]) for rows in members
-    ]
-    references = np.stack([_mean(energies[rows]) for rows in members])
+    of_recordings = [group_means(energies[rows], recording[rows]) for rows in members]
+    references = np.stack([mean_row(energies[rows]) for rows in members])
     changes = feature_rows(table, COUNTED).to_numpy() - references[number]
     return Colour(changes[None], np.array([scatter_of(one) for one in of_recordings])[None, number])
 
@@ -211,10 +211,3 @@ def paired_table(table: xr.Dataset, features: Sequence[str], seed: int) -> xr.Da
         return None
     values = feature_rows(table, (*features, *ENERGIES)).to_numpy()[references]
     return relative_table(paired, features, values)
-
-
-def _mean(values: FloatArray) -> FloatArray:
-    """Mean of each feature over the records that have it, NaN without any; the order of the records has no effect."""
-    values = np.sort(values, axis=0)  # NaN comes last
-    count = np.isfinite(values).sum(axis=0)
-    return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)

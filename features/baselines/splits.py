@@ -145,11 +145,11 @@ def _pool(
 ) -> Predictions:
     """Predictions of all folds, calibrated together; an untrained baseline stays uncalibrated.
 
-    Temperature, dependence and thresholds are fitted to these same predictions, so log-loss and calibration error are those of a model
+    Temperature and threshold are fitted to these same predictions, so log-loss and calibration error are those of a model
     that was calibrated on the tested machines.
     """
     truth = np.searchsorted(classes, labels)
-    calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth, recording)
+    calibration = UNCALIBRATED if estimator in UNTRAINED else fit_calibration(probabilities, truth)
     return predictions(probabilities, fault_names(classes), recording, calibration)
 
 

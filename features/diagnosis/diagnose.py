@@ -237,8 +237,11 @@ def _prediction_of_windows(recording: Recorded, model: Model) -> Predictions:
     values, names = indicators(windows, recording.fs, rates, each, model.groups, Band(*model.band))
     columns = [names.index(name) for name in model.features]
     rows = DataFrame(values[:, columns], columns=Index(model.features))
-    probabilities = estimator_probabilities(model, rows, recording.name)
-    return predictions(probabilities, model.classes, np.zeros(len(windows), dtype=np.intp), model.calibration)
+    each, whole = (
+        estimator_probabilities(model, some, recording.name) for some in (rows, rows.mean().to_frame().transpose())
+    )
+    alone = np.zeros(len(windows), dtype=np.intp)
+    return predictions(each, model.classes, alone, model.calibration, of_recordings=whole)
 
 
 def _reconcile(estimated: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:

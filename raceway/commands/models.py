@@ -156,7 +156,7 @@ def evaluate(
     """Score a model on every record of the corpus in DIR.
 
     Scores cover the classes present in DIR; predicting a class absent from DIR counts as wrong. Records cut from one recording are also
-    scored together, by the geometric mean of their probabilities. The interval is a bootstrap over specimens. A record is answered if
+    scored together, by the mean of their features. The interval is a bootstrap over specimens. A record is answered if
     its largest probability reaches the threshold of the model, and otherwise the answer is "unsure". Recordings of class unknown are not
     scored; the answer for each of them is listed.
 

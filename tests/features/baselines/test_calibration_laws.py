@@ -61,39 +61,24 @@ def test_temperatures_multiply(probabilities, first, second):
 
 
 @given(rows, st.integers(1, 9))
-def test_copies_of_a_record_that_depend_fully_on_each_other_say_no_more_than_one(probabilities, copies):
+def test_copies_of_a_record_say_no_more_than_one(probabilities, copies):
     recording = np.repeat(np.arange(len(probabilities)), copies)
-    found = combine(np.repeat(probabilities, copies, axis=0), recording, 1.0)
+    found = combine(np.repeat(probabilities, copies, axis=0), recording)
     np.testing.assert_allclose(found, probabilities, rtol=1e-9, atol=1e-12)
 
 
-@given(rows, st.integers(1, 9))
-def test_independent_records_multiply(probabilities, copies):
-    recording = np.repeat(np.arange(len(probabilities)), copies)
-    found = combine(np.repeat(probabilities, copies, axis=0), recording, 0.0)
-    expected = probabilities**copies
-    np.testing.assert_allclose(found, expected / expected.sum(axis=1, keepdims=True), rtol=1e-9, atol=1e-12)
-
-
-@given(rows, st.floats(0, 1))
-def test_a_recording_of_one_record_has_the_probabilities_of_the_record(probabilities, dependence):
-    np.testing.assert_allclose(combine(probabilities, np.arange(len(probabilities)), dependence), probabilities)
-
-
-@given(rows, st.floats(0, 1), st.randoms(use_true_random=False))
-def test_the_order_of_the_records_of_a_recording_does_not_matter(probabilities, dependence, random):
+@given(rows, st.randoms(use_true_random=False))
+def test_the_order_of_the_records_of_a_recording_does_not_matter(probabilities, random):
     order = list(range(len(probabilities)))
     random.shuffle(order)
     recording = np.arange(len(probabilities)) % 2 if len(probabilities) > 1 else np.zeros(1, int)
-    np.testing.assert_allclose(
-        combine(probabilities[order], recording[order], dependence), combine(probabilities, recording, dependence)
-    )
+    np.testing.assert_allclose(combine(probabilities[order], recording[order]), combine(probabilities, recording))
 
 
 @pytest.mark.parametrize("temperature", [0.5, 1.0, 2.0])
 def test_the_temperature_that_the_classes_were_drawn_with_is_found(temperature):
     probabilities, truth = drawn(temperature)
-    found = fit_calibration(probabilities, truth, np.arange(len(truth)))
+    found = fit_calibration(probabilities, truth)
     # 20,000 records determine a temperature to about 2 %
     assert found.temperature == pytest.approx(temperature, rel=0.06)
 
@@ -102,38 +87,17 @@ def test_the_temperature_that_the_classes_were_drawn_with_is_found(temperature):
 def test_the_number_of_records_of_a_class_has_no_effect_on_the_temperature(times):
     probabilities, truth = drawn(2.0, 500)
     more = np.concatenate([np.arange(500), np.tile(np.flatnonzero(truth == 0), times)])
-    found = [fit_calibration(probabilities[rows], truth[rows], np.arange(len(rows))) for rows in (np.arange(500), more)]
+    found = [fit_calibration(probabilities[rows], truth[rows]) for rows in (np.arange(500), more)]
     assert found[1].temperature == pytest.approx(found[0].temperature, rel=1e-3)
-    assert found[1].dependence == found[0].dependence
-
-
-@pytest.mark.parametrize(("copies", "dependence"), [(1, 1.0), (5, 1.0)])
-def test_records_that_are_copies_of_each_other_depend_fully(copies, dependence):
-    probabilities, truth = drawn(1.0, 4000)
-    recording = np.arange(copies * len(truth)) // copies
-    found = fit_calibration(np.repeat(probabilities, copies, axis=0), np.repeat(truth, copies), recording)
-    assert found.dependence == pytest.approx(dependence, abs=0.05)
-
-
-def test_records_with_independent_errors_are_found_independent():
-    """Each record sees its class in noise of its own, so that the product of the probabilities is the right one."""
-    rng = np.random.default_rng(1)
-    truth = np.repeat(rng.integers(4, size=4000), 5)
-    seen = np.eye(4)[truth] + rng.standard_normal((len(truth), 4))
-    found = fit_calibration(softmax(seen, axis=1), truth, np.arange(len(truth)) // 5)
-    assert found.temperature == pytest.approx(1.0, rel=0.06)
-    assert found.dependence < 0.05
 
 
 @given(st.integers(0, 999), st.integers(1, 200))
 def test_the_stated_share_of_the_records_is_answered(seed, records):
     probabilities, truth = drawn(1.0, records, seed)
-    found = fit_calibration(probabilities, truth, np.arange(records))
+    found = fit_calibration(probabilities, truth)
     pooled = predictions(probabilities, FOUR, np.arange(records), found)
     assert pooled.answered.mean() == found.coverage
     assert COVERAGE <= found.coverage < COVERAGE + 1 / records
-    assert pooled.by_recording is not None
-    assert pooled.by_recording.answered.mean() >= COVERAGE
 
 
 def test_the_threshold_is_the_highest_one_that_answers_enough():
@@ -143,9 +107,7 @@ def test_the_threshold_is_the_highest_one_that_answers_enough():
 
 def test_the_answer_below_the_threshold_is_unsure():
     probabilities = np.array([[0.6, 0.2, 0.1, 0.1], [0.1, 0.8, 0.05, 0.05]])
-    half = UNCALIBRATED.model_copy(update={"threshold": 0.7, "recording_threshold": 0.5})
+    half = UNCALIBRATED.model_copy(update={"threshold": 0.7})
     found = predictions(probabilities, FOUR, np.array([0, 1]), half)
     assert found.predicted == ("healthy", "inner")
     assert found.answers == (UNSURE, "inner")
-    assert found.by_recording is not None
-    assert found.by_recording.answers == ("healthy", "inner")

@@ -47,17 +47,23 @@ def test_a_stranger_colour_is_less_probably_healthy_and_tells_no_class_of_fault(
 
 def test_healthy_is_answered_near_the_reference_alone():
     for decibels, answer in ((0.0, "healthy"), (0.9 * SCATTER, "healthy"), (1.1 * SCATTER, UNSURE)):
-        found = predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, coloured(decibels))
+        found = predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(decibels))
         assert found.answers == (answer,)
-    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, coloured(4 * SCATTER)).predicted != ("healthy",)
+    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(4 * SCATTER)).predicted != (
+        "healthy",
+    )
     fault = SURE[:, ::-1]
-    assert predictions(fault, CLASSES, np.array([0]), UNCALIBRATED, coloured(4 * SCATTER)).answers == ("outer",)
+    assert predictions(fault, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(4 * SCATTER)).answers == ("outer",)
 
 
 def test_windows_of_one_recording_are_averaged_in_their_colour():
     changes = coloured(2 * SCATTER, records=2).changes * [[[1.0], [-1.0]]]
     found = predictions(
-        np.repeat(SURE, 2, axis=0), CLASSES, np.array([0, 0]), UNCALIBRATED, Colour(changes, np.full((1, 2), SCATTER))
+        np.repeat(SURE, 2, axis=0),
+        CLASSES,
+        np.array([0, 0]),
+        UNCALIBRATED,
+        colour=Colour(changes, np.full((1, 2), SCATTER)),
     )
     assert found.answers == (UNSURE, UNSURE)
     assert found.by_recording is not None
@@ -67,10 +73,10 @@ def test_windows_of_one_recording_are_averaged_in_their_colour():
 def test_one_channel_in_a_strange_colour_is_enough():
     colour = coloured(0.0, channels=2)
     colour.changes[1] = coloured(2 * SCATTER).changes[0]
-    assert predictions(np.stack([SURE, SURE]), CLASSES, np.array([0]), UNCALIBRATED, colour).answers == (UNSURE,)
+    assert predictions(np.stack([SURE, SURE]), CLASSES, np.array([0]), UNCALIBRATED, colour=colour).answers == (UNSURE,)
 
 
 def test_a_record_without_energies_has_no_colour():
     colour = coloured(2 * SCATTER)
     colour.changes[:] = np.nan
-    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour).answers == ("healthy",)
+    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=colour).answers == ("healthy",)

@@ -113,7 +113,7 @@ def test_recordings_of_unknown_class_are_answered_and_not_scored(table):
     assert [one.answer for one in answers] == list(found.answers)
     assert [[*one.probabilities.values()] for one in answers] == found.probabilities.tolist()
     assert unlabelled_answers(table.isel(record=slice(12)), model) == ()
-    strict = replace(model, calibration=model.calibration.model_copy(update={"recording_threshold": 1.0}))
+    strict = replace(model, calibration=model.calibration.model_copy(update={"threshold": 1.0}))
     assert [one.answer for one in unlabelled_answers(table, strict)] == [UNSURE] * 2
     assert unlabelled_answers(table.isel(record=slice(None, None, -1)), model) == answers[::-1]
 
