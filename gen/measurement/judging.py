@@ -1,33 +1,40 @@
-"""Can the fault of a record be seen in it? A test of the line of its class in the squared envelope spectrum.
+"""Can the fault of a record be seen in it? Its line in the squared envelope spectrum is compared with that of its twin.
 
-The fault's own part of a record is its difference to the same record without the fault. In every band, the largest line of that part at
-the fault order of the class, or at twice or three times that order, is compared with the power of the whole record in the band. In the
-squared envelope of Gaussian noise of that power and of ``N`` independent complex samples, a line of ``I`` times the mean has a probability
-of ``exp(-N I^2)`` [1]_. A fault is detectable if in some band its line would be a false alarm of noise with a probability of less than
-``FALSE_ALARM`` in the whole search. Where several parts are damaged, each of them must show its line.
+The twin is the same record without its fault. In every band, the largest line of the record near a harmonic of the fault order is compared
+with the largest line of the twin in the same place. A line of noise is a complex Gaussian number [1]_; let ``s^2`` be its mean square. A
+line of two recordings of one machine, which differ in their noise alone, differs by more than ``m`` with a probability of at most
+``exp(-m^2 / (2 s^2))``, whatever the machine itself adds to it. A fault is detectable if, in some band and at some harmonic, its line
+
+- exceeds that of the twin by more than noise would, with the probability ``FALSE_ALARM`` in the whole search, and
+- is ``CLEAR`` times as large as the floor of the record's own spectrum: an impulse raises all lines, and none of them stands out.
+
+``s`` and the floor come from the medians over the lines around the harmonic, which include colour, modulation and impulses of the machine.
+Where several parts are damaged, each of them must show its line.
 
 .. [1] P. Borghesani, P. Pennacchi, R. Ricci, S. Chatterton, Testing second order cyclostationarity in the squared envelope spectrum of
    non-white vibration signals, Mechanical Systems and Signal Processing 40 (2013) 38-55.
 """
 
 import math
-from bisect import bisect_right
 from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.fft import ifft, rfft
+from scipy.fft import ifft, next_fast_len, rfft
 
 from gen.scenarios import Gains
 
 FloatArray = NDArray[np.floating]
+ComplexArray = NDArray[np.complexfloating]
 Float32Array = NDArray[np.float32]
 
 FALSE_ALARM = 1e-3
+CLEAR = 2.0  # amplitude of a line over the floor around it: 6 dB
 BANDS = 4  # of equal width up to half the sample rate, searched beside the whole
 HARMONICS = 3
 TOLERANCE = 0.01  # of a fault order, beyond one line of the spectrum: slip and ball motion widen a line
+AROUND = 32  # lines on either side of a searched window that tell its floor
 _LEAST_SAMPLES = 16  # of a band
 
 
@@ -48,39 +55,61 @@ class Parts(NamedTuple):
     """True if the speed is nearly constant, so that lines in frequency are lines in order."""
 
 
-class Spectra(NamedTuple):
-    """Spectra of the parts of a record, and the lines that are searched; every spectrum has the shape (channel, frequency)."""
+class Window(NamedTuple):
+    """Lines of a spectrum, in cycles per record, that are searched for one harmonic of a damaged part."""
 
-    fault: NDArray[np.complexfloating]
-    bearing: NDArray[np.complexfloating]
-    """With the fault."""
-    background: NDArray[np.complexfloating]
-    n: int
-    """Samples of the record."""
-    angles: FloatArray | None
-    """Angle of the shaft at each sample, None if the speed is nearly constant [rad]."""
-    cycles: tuple[list[int], ...]
-    """For each damaged part the cycles per record, in rising order, at which its line may lie."""
-    chance: float
-    """Logarithm of the number of searched lines, in all bands of all channels, over the probability of a false alarm."""
+    part: int
+    first: int
+    stop: int
 
-    def searched(self, band: tuple[int, int]) -> list[list[int]]:
-        """Cycles per record at which the squared envelope of a band is searched for the line of each damaged part."""
-        return _within(self.cycles, band)
+    @property
+    def around(self) -> slice:
+        """Lines that tell the floor."""
+        return slice(max(1, self.first - AROUND), self.stop + AROUND)
 
 
-class Bands(NamedTuple):
-    """Powers of a record in some bands of each channel, before the gains, shape (channel, band), and the lines of its fault."""
+Lines = list[tuple[Window, ComplexArray]]
+"""Windows of a band with the lines around each, shape (product, channel, line), of the products of :func:`_lines_of`."""
 
-    lines: FloatArray
-    """Largest line of the fault's squared envelope at the orders of each damaged part, shape (part, channel, band)."""
-    bearing: FloatArray
-    """Power of the bearing with its fault."""
-    background: FloatArray
-    cross: FloatArray
-    """Mean product of both."""
-    thresholds: FloatArray
-    """Line over power at which noise gives a false alarm, shape (band,)."""
+
+class Judge:
+    """Tells for any gains whether the fault of a record can be seen; a band is transformed once, when it is needed."""
+
+    def __init__(self, record: Parts, spectra: ComplexArray) -> None:
+        n = record.fault.shape[1]
+        turns = (record.angles[-1] - record.angles[0]) / (2 * math.pi) * n / (n - 1)
+        self._spectra, self._angles = spectra, None if record.steady else record.angles
+        windows = [
+            _window(part, harmonic * order * turns)
+            for part, order in enumerate(record.orders)
+            for harmonic in range(1, HARMONICS + 1)
+        ]
+        self._bands = [(band, [one for one in windows if one.stop <= _lines_in(band)]) for band in bands_of(n)]
+        searched = len(record.fault) * sum(one.stop - one.first for _, some in self._bands for one in some)
+        self._margin = math.sqrt(2 * math.log(max(searched, 1) / FALSE_ALARM))
+        self._lines: list[Lines] = []
+        self._n_parts = len(record.orders)
+
+    def sees(self, gains: Gains) -> bool:
+        """Whether every damaged part can be seen in some band of some channel."""
+        seen: set[int] = set()
+        for place, (band, windows) in enumerate(self._bands):
+            if place == len(self._lines):
+                self._lines.append(_lines_of(self._spectra, band, windows, self._angles))
+            seen |= {
+                window.part for window, lines in self._lines[place] if _stands_out(window, lines, gains, self._margin)
+            }
+            if len(seen) == self._n_parts:
+                return True
+        return False
+
+
+def judges_of(records: Sequence[Parts]) -> list[Judge]:
+    """Judges of records of one length; they are transformed side by side, which takes a third of the time."""
+    if not records:
+        return []
+    transformed = rfft(np.stack([part for record in records for part in record[:3]]))
+    return [Judge(record, transformed[3 * place : 3 * place + 3]) for place, record in enumerate(records)]
 
 
 def bands_of(n: int) -> list[tuple[int, int]]:
@@ -90,117 +119,56 @@ def bands_of(n: int) -> list[tuple[int, int]]:
     return [(low, high) for low, high in every if high - low >= _LEAST_SAMPLES]
 
 
-def spectra_of(records: Sequence[Parts]) -> list[Spectra]:
-    """Spectra of records of one length; they are transformed side by side, which takes a third of the time."""
-    n = records[0].fault.shape[1]
-    transformed = rfft(np.stack([part for record in records for part in record[:3]]))
-    spectra = []
-    for record, of_fault, of_healthy, of_background in zip(
-        records, transformed[::3], transformed[1::3], transformed[2::3], strict=True
-    ):
-        turns = (record.angles[-1] - record.angles[0]) / (2 * math.pi) * n / (n - 1)
-        cycles = tuple(_cycles(order * turns) for order in record.orders)
-        lines = len(of_fault) * sum(len(some) for band in bands_of(n) for some in _within(cycles, band))
-        angles, chance = None if record.steady else record.angles, math.log(max(lines, 1) / FALSE_ALARM)
-        spectra.append(Spectra(of_fault, of_fault + of_healthy, of_background, n, angles, cycles, chance))
-    return spectra
+def _window(part: int, middle: float) -> Window:
+    """Lines within the tolerance of ``middle`` cycles per record."""
+    reach = 1 + TOLERANCE * middle
+    return Window(part, max(1, math.ceil(middle - reach)), math.floor(middle + reach) + 1)
 
 
-def _cycles(once: float) -> list[int]:
-    """Whole numbers of cycles within the tolerance of the multiples of ``once``."""
-    cycles: set[int] = set()
-    for multiple in range(1, HARMONICS + 1):
-        middle = multiple * once
-        reach = 1 + TOLERANCE * middle
-        cycles.update(range(max(1, math.ceil(middle - reach)), math.floor(middle + reach) + 1))
-    return sorted(cycles)
+def _lines_in(band: tuple[int, int]) -> int:
+    """Number of lines that the squared envelope of a band has, that at 0 included."""
+    return (band[1] - band[0]) // 2 + 1
 
 
-def _within(cycles: Sequence[list[int]], band: tuple[int, int]) -> list[list[int]]:
-    """Those cycles that the squared envelope of a band can have."""
-    highest = (band[1] - band[0]) // 2
-    return [some[: bisect_right(some, highest)] for some in cycles]
+def _lines_of(
+    spectra: ComplexArray, band: tuple[int, int], windows: Sequence[Window], angles: FloatArray | None
+) -> Lines:
+    """Lines of the products that make up the squared envelope of a band, around each window, before the gains.
 
-
-def parts_seen(bands: Bands, gains: Gains) -> NDArray[np.bool_]:
-    """Whether the line of each damaged part stands out of the record in some band of some channel, shape (part,)."""
-    b, n = gains.bearing, gains.background
-    whole = b * b * bands.bearing + 2 * b * n * bands.cross + n * n * bands.background
-    return np.any(b * b * bands.lines > bands.thresholds * whole, axis=(1, 2))
-
-
-class Judge:
-    """Tells for any gains whether the fault of a record can be seen; bands beyond the first are searched when one needs them."""
-
-    def __init__(self, spectra: Spectra, first: Bands) -> None:
-        self._spectra = spectra
-        self._bands = [first]
-
-    def sees(self, gains: Gains) -> bool:
-        """Whether every damaged part can be seen in some band."""
-        seen = parts_seen(self._bands[0], gains)
-        further = bands_of(self._spectra.n)[1:]
-        if seen.all() or not further:
-            return bool(seen.all())
-        if len(self._bands) == 1:
-            self._bands += judge_bands([self._spectra], further)
-        return bool((seen | parts_seen(self._bands[1], gains)).all())
-
-
-def judges_of(records: Sequence[Parts]) -> list[Judge]:
-    """Judges of records of one length."""
-    if not records:
+    With bearing ``b`` and background ``n``, ``|b + n|^2 = |b|^2 + 2 Re(b n*) + |n|^2``. The products are ``|b|^2`` with and without
+    the fault, ``2 Re(b n*)`` with and without it, and ``|n|^2``.
+    """
+    if not windows:
         return []
-    spectra = spectra_of(records)
-    first = judge_bands(spectra, bands_of(spectra[0].n)[:1])
-    return [Judge(*both) for both in zip(spectra, first, strict=True)]
+    signals = ifft(spectra[..., slice(*band)], next_fast_len(band[1] - band[0]), norm="forward")
+    fault, healthy, background = signals
+    bearing = np.stack([fault + healthy, healthy])
+    products = np.concatenate([_squared(bearing), 2 * (bearing * np.conj(background)).real, _squared(background)[None]])
+    if angles is not None:
+        products = _over_angle(products, angles)
+    lines = rfft(products)
+    return [(window, lines[..., window.around]) for window in windows]
 
 
-def judge_bands(spectra: Sequence[Spectra], bands: list[tuple[int, int]]) -> list[Bands]:
-    """Lines and powers of some records in some of their bands."""
-    bands_of_records = [
-        Bands(
-            lines=np.zeros((len(one.cycles), len(one.fault), len(bands))),
-            bearing=np.zeros((len(one.fault), len(bands))),
-            background=np.zeros((len(one.fault), len(bands))),
-            cross=np.zeros((len(one.fault), len(bands))),
-            thresholds=np.array([math.sqrt(one.chance / (high - low)) for low, high in bands]),
-        )
-        for one in spectra
-    ]
-    for place, (low, high) in enumerate(bands):
-        _set_lines(bands_of_records, spectra, place, (low, high))
-        for one, of_one in zip(spectra, bands_of_records, strict=True):
-            bearing, background = one.bearing[:, low:high], one.background[:, low:high]
-            cross = np.sum((bearing * np.conj(background)).real, axis=1, dtype=np.float64)
-            powers = _power(bearing), _power(background), cross
-            for row, power in zip((of_one.bearing, of_one.background, of_one.cross), powers, strict=True):
-                row[:, place] = (2 / one.n) ** 2 * power
-    return bands_of_records
+def _squared(signal: ComplexArray) -> FloatArray:
+    return signal.real**2 + signal.imag**2
 
 
-def _power(spectrum: NDArray[np.complexfloating]) -> FloatArray:
-    return np.asarray(np.sum(spectrum.real**2 + spectrum.imag**2, axis=1, dtype=np.float64))
+def _stands_out(window: Window, lines: ComplexArray, gains: Gains, margin: float) -> bool:
+    """Whether the line of the record in a window exceeds that of the twin by ``margin`` times the floor, and is clear, in some channel."""
+    b, n = gains.bearing, gains.background
+    sizes = np.abs(b * b * lines[:2] + b * n * lines[2:4] + n * n * lines[4])
+    # the square of a line of noise has an exponential distribution, whose median is ln 2 of its mean
+    middle = sizes.shape[-1] // 2
+    floor, floor_of_twin = np.partition(sizes, middle)[..., middle] / math.sqrt(math.log(2))
+    first = window.first - window.around.start
+    line, line_of_twin = sizes[..., first : first + window.stop - window.first].max(axis=-1)
+    return bool(np.any((line - line_of_twin > margin * floor_of_twin) & (line > CLEAR * floor)))
 
 
-def _set_lines(bands_of_records: list[Bands], spectra: Sequence[Spectra], place: int, band: tuple[int, int]) -> None:
-    """Set the largest lines of the squared envelopes of a band, the one at ``place``; they stay 0 where the band is too narrow."""
-    wide = [(of_one, one) for of_one, one in zip(bands_of_records, spectra, strict=True) if any(one.searched(band))]
-    if not wide:
-        return
-    signal = ifft(np.stack([one.fault[:, slice(*band)] for _, one in wide]) * (2 / wide[0][1].n), norm="forward")
-    envelopes = signal.real**2 + signal.imag**2
-    every = np.abs(rfft(envelopes)) / envelopes.shape[2]
-    for (of_one, one), envelope, lines in zip(wide, envelopes, every, strict=True):
-        of_orders = lines if one.angles is None else _over_angle(envelope, one.angles)
-        for part, cycles in enumerate(one.searched(band)):
-            if cycles:
-                of_one.lines[part, :, place] = of_orders[:, cycles].max(axis=1)
-
-
-def _over_angle(envelope: FloatArray, angles: FloatArray) -> FloatArray:
-    """Lines of an envelope over the angle of the shaft, shape (channel, cycle); ``angles`` are those of a whole record."""
-    count, n = envelope.shape[1], len(angles)
+def _over_angle(signals: FloatArray, angles: FloatArray) -> FloatArray:
+    """Signals of a band over the angle of the shaft, at even steps, shape (..., sample); ``angles`` are those of a whole record."""
+    count, n = signals.shape[-1], len(angles)
     at = np.interp(np.arange(count) * (n / count), np.arange(n), angles)
     even = np.linspace(at[0], at[-1], count)
-    return np.abs(rfft(np.stack([np.interp(even, at, row) for row in envelope]))) / count
+    return np.apply_along_axis(lambda row: np.interp(even, at, row), -1, signals)

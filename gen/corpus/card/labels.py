@@ -24,7 +24,7 @@ def _visible_faults(corpus: xr.Dataset) -> list[str]:
         return ["", "What the faults add to the records is not known: `truth.twins` of the recipe is `false`."]
     seen = (
         f"Of {counts.records} records labelled with a fault, the fault can be seen in {counts.detectable} (`detectable`): its line in the "
-        f"squared envelope of some band would be a false alarm of noise with a probability below one in a thousand."
+        f"squared envelope of some band stands out of the lines that the same record shows there without the fault."
     )
     again = f"the fault of {counts.redrawn_specimens} specimens, the level of {counts.redrawn_levels} records"
     return ["", f"{seen} Drawn again because the fault could not be seen: {again}."]
