@@ -3,13 +3,12 @@
 The twin is the same record without its fault. In every band, the largest line of the record near a harmonic of the fault order is compared
 with the largest line of the twin in the same place. A line of noise is a complex Gaussian number [1]_; let ``s^2`` be its mean square. A
 line of two recordings of one machine, which differ in their noise alone, differs by more than ``m`` with a probability of at most
-``exp(-m^2 / (2 s^2))``, whatever the machine itself adds to it. A fault is detectable if, in some band and at some harmonic, its line
+``exp(-m^2 / (2 s^2))``, whatever the machine itself adds to it. A fault is detectable if in some band and at some harmonic its line exceeds
+that of the twin by more than that, with the probability ``FALSE_ALARM`` in the whole search. Where several parts are damaged, each of them
+must show its line.
 
-- exceeds that of the twin by more than noise would, with the probability ``FALSE_ALARM`` in the whole search, and
-- is ``CLEAR`` times as large as the floor of the record's own spectrum: an impulse raises all lines, and none of them stands out.
-
-``s`` and the floor come from the medians over the lines around the harmonic, which include colour, modulation and impulses of the machine.
-Where several parts are damaged, each of them must show its line.
+``s`` comes from the median over the lines of the twin around the harmonic, which includes colour and modulation of the noise. Impulses at
+random times may be many in one recording and none in another, so their mean square is added.
 
 .. [1] P. Borghesani, P. Pennacchi, R. Ricci, S. Chatterton, Testing second order cyclostationarity in the squared envelope spectrum of
    non-white vibration signals, Mechanical Systems and Signal Processing 40 (2013) 38-55.
@@ -30,10 +29,11 @@ ComplexArray = NDArray[np.complexfloating]
 Float32Array = NDArray[np.float32]
 
 FALSE_ALARM = 1e-3
-CLEAR = 2.0  # amplitude of a line over the floor around it: 6 dB
 BANDS = 4  # of equal width up to half the sample rate, searched beside the whole
 HARMONICS = 3
 TOLERANCE = 0.01  # of a fault order, beyond one line of the spectrum: slip and ball motion widen a line
+LOWEST = 2  # lines of a Hann window beside that of the mean
+WINDOW_RMS = math.sqrt(3 / 8)  # of a Hann window
 AROUND = 32  # lines on either side of a searched window that tell its floor
 _LEAST_SAMPLES = 16  # of a band
 
@@ -47,6 +47,10 @@ class Parts(NamedTuple):
     """The bearing without it [m s-2]."""
     background: Float32Array
     """[1]."""
+    impulses: Float32Array
+    """Rms of the lines that its impulses at random times make in squared envelopes, by the frequency of the impulses from 0 to half the
+    sample rate, shape (channel, frequency) [1].
+    """
     orders: tuple[float, ...]
     """Order of the shaft at which the fault of each damaged part repeats [1]."""
     angles: FloatArray
@@ -65,11 +69,16 @@ class Window(NamedTuple):
     @property
     def around(self) -> slice:
         """Lines that tell the floor."""
-        return slice(max(1, self.first - AROUND), self.stop + AROUND)
+        return slice(max(LOWEST, self.first - AROUND), self.stop + AROUND)
 
 
-Lines = list[tuple[Window, ComplexArray]]
-"""Windows of a band with the lines around each, shape (product, channel, line), of the products of :func:`_lines_of`."""
+class Band(NamedTuple):
+    """Lines of the squared envelope of a band, before the gains."""
+
+    lines: list[tuple[Window, ComplexArray]]
+    """Windows with the lines around each, shape (product, channel, line), of the products of :func:`_products`."""
+    impulses: FloatArray
+    """Rms of the lines of impulses at random times, shape (channel,)."""
 
 
 class Judge:
@@ -78,37 +87,57 @@ class Judge:
     def __init__(self, record: Parts, spectra: ComplexArray) -> None:
         n = record.fault.shape[1]
         turns = (record.angles[-1] - record.angles[0]) / (2 * math.pi) * n / (n - 1)
-        self._spectra, self._angles = spectra, None if record.steady else record.angles
+        self._record, self._spectra = record, spectra
         windows = [
             _window(part, harmonic * order * turns)
             for part, order in enumerate(record.orders)
             for harmonic in range(1, HARMONICS + 1)
         ]
-        self._bands = [(band, [one for one in windows if one.stop <= _lines_in(band)]) for band in bands_of(n)]
-        searched = len(record.fault) * sum(one.stop - one.first for _, some in self._bands for one in some)
+        self._searched = [
+            (band, [one for one in windows if one.first < one.stop <= _lines_in(band)]) for band in bands_of(n)
+        ]
+        searched = len(record.fault) * sum(one.stop - one.first for _, some in self._searched for one in some)
         self._margin = math.sqrt(2 * math.log(max(searched, 1) / FALSE_ALARM))
-        self._lines: list[Lines] = []
-        self._n_parts = len(record.orders)
+        self._bands: list[Band] = []
 
     def sees(self, gains: Gains) -> bool:
         """Whether every damaged part can be seen in some band of some channel."""
         seen: set[int] = set()
-        for place, (band, windows) in enumerate(self._bands):
-            if place == len(self._lines):
-                self._lines.append(_lines_of(self._spectra, band, windows, self._angles))
+        for place, (frequencies, windows) in enumerate(self._searched):
+            if place == len(self._bands):
+                self._bands.append(self._band(frequencies, windows))
+            band = self._bands[place]
             seen |= {
-                window.part for window, lines in self._lines[place] if _stands_out(window, lines, gains, self._margin)
+                window.part
+                for window, lines in band.lines
+                if _stands_out(window, lines, gains, self._margin, band.impulses)
             }
-            if len(seen) == self._n_parts:
+            if len(seen) == len(self._record.orders):
                 return True
         return False
+
+    def _band(self, band: tuple[int, int], windows: Sequence[Window]) -> Band:
+        if not windows:
+            return Band([], np.empty(0))
+        n, impulses = self._record.fault.shape[1], self._record.impulses
+        products = _products(self._spectra[..., slice(*band)])
+        if not self._record.steady:
+            products = _over_angle(products, self._record.angles)
+        # the window takes out the step from the end of a record to its start, which the transforms join
+        lines = rfft(products * np.hanning(products.shape[-1]).astype(products.dtype))
+        share = n / 2 / (impulses.shape[1] - 1)  # of the frequencies of the record in those of the impulses
+        places = slice(round(band[0] / share), round(band[1] / share))
+        of_impulses = WINDOW_RMS * products.shape[-1] * share**1.5 * impulses[:, places].sum(axis=1)
+        return Band([(window, lines[..., window.around]) for window in windows], of_impulses)
 
 
 def judges_of(records: Sequence[Parts]) -> list[Judge]:
     """Judges of records of one length; they are transformed side by side, which takes a third of the time."""
     if not records:
         return []
-    transformed = rfft(np.stack([part for record in records for part in record[:3]]))
+    transformed = rfft(
+        np.stack([part for record in records for part in (record.fault, record.healthy, record.background)])
+    )
     return [Judge(record, transformed[3 * place : 3 * place + 3]) for place, record in enumerate(records)]
 
 
@@ -122,7 +151,7 @@ def bands_of(n: int) -> list[tuple[int, int]]:
 def _window(part: int, middle: float) -> Window:
     """Lines within the tolerance of ``middle`` cycles per record."""
     reach = 1 + TOLERANCE * middle
-    return Window(part, max(1, math.ceil(middle - reach)), math.floor(middle + reach) + 1)
+    return Window(part, max(LOWEST, math.ceil(middle - reach)), math.floor(middle + reach) + 1)
 
 
 def _lines_in(band: tuple[int, int]) -> int:
@@ -130,40 +159,32 @@ def _lines_in(band: tuple[int, int]) -> int:
     return (band[1] - band[0]) // 2 + 1
 
 
-def _lines_of(
-    spectra: ComplexArray, band: tuple[int, int], windows: Sequence[Window], angles: FloatArray | None
-) -> Lines:
-    """Lines of the products that make up the squared envelope of a band, around each window, before the gains.
+def _products(spectra: ComplexArray) -> FloatArray:
+    """Products that make up the squared envelope of a band, before the gains, shape (product, channel, sample).
 
     With bearing ``b`` and background ``n``, ``|b + n|^2 = |b|^2 + 2 Re(b n*) + |n|^2``. The products are ``|b|^2`` with and without
     the fault, ``2 Re(b n*)`` with and without it, and ``|n|^2``.
     """
-    if not windows:
-        return []
-    signals = ifft(spectra[..., slice(*band)], next_fast_len(band[1] - band[0]), norm="forward")
-    fault, healthy, background = signals
+    fault, healthy, background = ifft(spectra, next_fast_len(spectra.shape[-1]), norm="forward")
     bearing = np.stack([fault + healthy, healthy])
-    products = np.concatenate([_squared(bearing), 2 * (bearing * np.conj(background)).real, _squared(background)[None]])
-    if angles is not None:
-        products = _over_angle(products, angles)
-    lines = rfft(products)
-    return [(window, lines[..., window.around]) for window in windows]
+    return np.concatenate([_squared(bearing), 2 * (bearing * np.conj(background)).real, _squared(background)[None]])
 
 
 def _squared(signal: ComplexArray) -> FloatArray:
     return signal.real**2 + signal.imag**2
 
 
-def _stands_out(window: Window, lines: ComplexArray, gains: Gains, margin: float) -> bool:
-    """Whether the line of the record in a window exceeds that of the twin by ``margin`` times the floor, and is clear, in some channel."""
+def _stands_out(window: Window, lines: ComplexArray, gains: Gains, margin: float, impulses: FloatArray) -> bool:
+    """Whether the line of the record in a window exceeds that of the twin by ``margin`` times the rms of noise in some channel."""
     b, n = gains.bearing, gains.background
-    sizes = np.abs(b * b * lines[:2] + b * n * lines[2:4] + n * n * lines[4])
+    record, twin = np.abs(b * b * lines[:2] + b * n * lines[2:4] + n * n * lines[4])
+    middle = twin.shape[-1] // 2
     # the square of a line of noise has an exponential distribution, whose median is ln 2 of its mean
-    middle = sizes.shape[-1] // 2
-    floor, floor_of_twin = np.partition(sizes, middle)[..., middle] / math.sqrt(math.log(2))
+    noise = np.partition(twin, middle)[..., middle] / math.sqrt(math.log(2))
     first = window.first - window.around.start
-    line, line_of_twin = sizes[..., first : first + window.stop - window.first].max(axis=-1)
-    return bool(np.any((line - line_of_twin > margin * floor_of_twin) & (line > CLEAR * floor)))
+    searched = slice(first, first + window.stop - window.first)
+    rise = record[..., searched].max(axis=-1) - twin[..., searched].max(axis=-1)
+    return bool(np.any(rise > margin * np.hypot(noise, n * n * impulses)))
 
 
 def _over_angle(signals: FloatArray, angles: FloatArray) -> FloatArray:

@@ -138,6 +138,8 @@ class Part(NamedTuple):
     """The bearing without it, or the whole bearing, shape (channel, time) [m s-2]."""
     background: Float32Array
     """Shape (channel, time) [1]."""
+    impulses: Float32Array
+    """As for :class:`gen.measurement.judging.Parts`."""
     products: Products
     angles: FloatArray
     """Angle of the shaft, shape (time,) [rad]."""
@@ -206,7 +208,8 @@ def _parts(
         added, bearing, noise = (some[..., axis.kept] if some.size else some for some in one)
         orders = twins.orders[first + row] if twins is not None else ()
         steady = scenarios[row].record.speed_profile is None
-        parts.append(Part(added, bearing, noise, products, angles[row][axis.kept], orders, steady))
+        lines_of_impulses = filters[row].impulse_lines
+        parts.append(Part(added, bearing, noise, lines_of_impulses, products, angles[row][axis.kept], orders, steady))
     return parts
 
 
@@ -239,7 +242,7 @@ def _judges(parts: Sequence[Part]) -> list[Judge | None]:
     """Judges of those records whose fault has a line."""
     wanted = [bool(part.orders) and part.fault.size > 0 and part.is_finite for part in parts]
     given = [
-        Parts(part.fault, part.healthy, part.background, part.orders, part.angles, part.steady)
+        Parts(part.fault, part.healthy, part.background, part.impulses, part.orders, part.angles, part.steady)
         for part, is_wanted in zip(parts, wanted, strict=True)
         if is_wanted
     ]
