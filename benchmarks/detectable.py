@@ -18,14 +18,14 @@ from scipy.signal import butter, hilbert, sosfiltfilt
 from gen.generation.scheduling import make_records
 from gen.measurement.judging import FALSE_ALARM, Parts, judges_of
 from gen.measurement.measure import measure
+from gen.measurement.rig import rig_filters
 from gen.recipe import Recipe, read_recipe
 from gen.scenarios import Gains, Purpose, Scenario, stream
 from gen.simulation.simulate import simulate
+from gen.simulation.timeline import timeline
 from gen.simulation.truth import lines_of_faults
 
 FloatArray = NDArray[np.float64]
-AROUND = 60.0  # Hz
-PEAK = 2.5  # of a peak over the median of the lines around it
 
 
 class Case(NamedTuple):
@@ -37,6 +37,8 @@ class Case(NamedTuple):
     twin: FloatArray
     again: FloatArray
     """Another recording of the twin."""
+    impulses: NDArray[np.float32]
+    """Lines of the impulses of the machine, as for the judge."""
     orders: tuple[float, ...]
     shaft_rate: float
     """[Hz]."""
@@ -67,17 +69,38 @@ def cases(recipe: Recipe, pairs: int) -> list[Case]:
         orders = lines_of_faults(scenarios[place], response.truth[place].orders)
         if orders:
             signals = made.measured.signal[place], made.measured.signal[place - 1], again[place // 2]
-            record, twin, other = (signal[0].astype(float) for signal in signals)
+            record, twin, other = (signal[0] / (made.measured.counts_per_unit or 1.0) for signal in signals)
             seen, rate = bool(made.measured.detectable[place]), response.truth[place].true_shaft_rate
-            found.append(Case(scenarios[place].specimen.fault, seen, record, twin, other, orders, rate))
+            found.append(
+                Case(
+                    scenarios[place].specimen.fault,
+                    seen,
+                    record,
+                    twin,
+                    other,
+                    _impulses(scenarios[place]),
+                    orders,
+                    rate,
+                )
+            )
     return found
+
+
+def _impulses(scenario: Scenario) -> NDArray[np.float32]:
+    """Lines of the impulses of a machine behind the gain of its record."""
+    axis, gains = timeline(scenario.settings), scenario.record.gains
+    assert gains is not None
+    filters = rig_filters(scenario.rig, axis.returned, axis.fs, scenario.settings.seed)
+    return np.float32(gains.background**2) * filters.impulse_lines
 
 
 def rule_alarms(case: Case, fs: float) -> bool:
     """Whether the rule takes the noise of another recording of a healthy machine for a fault."""
     angles = 2 * np.pi * case.shaft_rate / fs * np.arange(len(case.twin))
     twin, again = (signal[None].astype(np.float32) for signal in (case.twin, case.again))
-    (judge,) = judges_of([Parts(again - twin, np.zeros_like(twin), twin, case.orders, angles, steady=True)])
+    (judge,) = judges_of(
+        [Parts(again - twin, np.zeros_like(twin), twin, case.impulses, case.orders, angles, steady=True)]
+    )
     return judge.sees(Gains(1.0, 1.0))
 
 
@@ -86,8 +109,6 @@ class Line(NamedTuple):
 
     size: float
     """Over the mean of the squared envelope [1]."""
-    around: float
-    """Median of the lines within ``AROUND`` of the place, over that mean [1]."""
     searched: int
     """Number of lines."""
     samples: float
@@ -105,15 +126,8 @@ def envelope_lines(signal: FloatArray, fs: float, frequency: float) -> list[Line
             places = np.arange(math.ceil(0.99 * middle - 1), math.floor(1.01 * middle + 1) + 1)
             places = places[(places > 0) & (places < (high - low) * len(signal) / 4)]
             if len(places):
-                size, around = spectrum[places].max(), _median_around(spectrum, places, duration)
-                found.append(Line(float(size), around, len(places), (high - low) * len(signal) / 2))
+                found.append(Line(float(spectrum[places].max()), len(places), (high - low) * len(signal) / 2))
     return found
-
-
-def _median_around(spectrum: FloatArray, places: NDArray[np.int_], duration: float) -> float:
-    frequencies = np.arange(len(spectrum)) / duration
-    near = np.abs(frequencies - places.mean() / duration) < AROUND
-    return float(np.median(spectrum[near & (frequencies > 0)]))
 
 
 def noise_alarms(signal: FloatArray, fs: float, frequency: float) -> list[bool]:
@@ -124,8 +138,8 @@ def noise_alarms(signal: FloatArray, fs: float, frequency: float) -> list[bool]:
 
 
 def analyst_sees(case: Case, fs: float) -> bool:
-    """Whether an analyst who has both recordings finds, for each damaged part, a line of the record that noise does not make, that is a
-    peak, and that is twice as large as that of the twin.
+    """Whether an analyst who has both recordings finds, for each damaged part, a line of the record that noise does not make and that is
+    twice as large as that of the twin.
     """
     return all(_finds_line(case, fs, order * case.shaft_rate) for order in case.orders)
 
@@ -135,7 +149,7 @@ def _finds_line(case: Case, fs: float, frequency: float) -> bool:
     louder = np.mean(case.record**2) / np.mean(case.twin**2)
     clear = noise_alarms(case.record, fs, frequency)
     return any(
-        is_clear and one.size > PEAK * one.around and one.size * louder > 2 * other.size
+        is_clear and one.size * louder > 2 * other.size
         for is_clear, one, other in zip(clear, record, twin, strict=True)
     )
 
