@@ -197,7 +197,7 @@ class PhysicalLevel(Section):
     """Keeps the level of the simulation, so that a larger fault gives a larger signal."""
     gain: Distribution = within(0, 1000, open_low=True, default=1.0)
     """Factor on bearing signal and background, such as the sensitivity of a sensor."""
-    background_m_s2: Distribution = within(0, 1000, default=0.3)
+    background_m_s2: Distribution = within(0, 1000, default=1.0)
     """Rms of the background noise before the gain; lines and impulses are added at their levels relative to it."""
 
 
