@@ -14,7 +14,7 @@ from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_ampli
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centre, squared_modulus
 from features.signal.spectra import fourier_coefficients
-from features.signal.speed import TOLERANCE, ShaftSpeed, find_speed, levels_at, line_orders
+from features.signal.speed import TOLERANCE, ShaftSpeed, find_speed, levels_at, line_orders, near_label
 
 LONGEST = 1.0  # seconds; the lines of a longer signal are narrower than a candidate, and wander with the speed
 
@@ -99,11 +99,23 @@ def line_levels(
 
 def _levels(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, tolerance: float) -> FloatArray:
     """Levels of the lines of the envelope, mean of all bands, and of the signal, shape (window, line, candidate)."""
-    duration = x.shape[-1] / fs
-    resolution = 1 / (ZERO_PADDING * duration)
     in_envelope, in_signal = line_orders(orders)
     highest = (1 + 2 * tolerance) * shaft_rate * in_envelope.max(axis=-1)
-    bins = int(np.max(highest) / resolution) + 2
+    resolution, envelope, signal = level_spectra(x, fs, shaft_rate, float(highest.max()))
+    places, factors = shaft_rate[:, None] / resolution, near_label(tolerance)
+    both = (levels_at(envelope, in_envelope * places, factors), levels_at(signal, in_signal * places, factors))
+    return np.concatenate(both, axis=1)
+
+
+def level_spectra(x: FloatArray, fs: float, shaft_rate: FloatArray, top: float) -> tuple[float, FloatArray, FloatArray]:
+    """Resolution [Hz], and log levels over the floor: of the envelope, mean of all bands, and of the signal.
+
+    The spectra have the shape (record, frequency) and end at ``top`` [Hz], or before. The floor is a running median over
+    some orders of the shaft rates, shape (record,).
+    """
+    duration = x.shape[-1] / fs
+    resolution = 1 / (ZERO_PADDING * duration)
+    bins = int(top / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
     mean = np.zeros((len(x), bins), np.float32)
     bands = bands_of(fourier_coefficients(x, fs, DEFAULT_BAND.high), duration, fs)
@@ -111,10 +123,7 @@ def _levels(x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, to
         z = analytic_band(band, 0, band.shape[-1])
         level = _spectrum_level(np.sqrt(squared_modulus(z)), width, bins)
         mean[:, : level.shape[-1]] += level / len(bands)
-    places = shaft_rate[:, None] / resolution
-    envelope = levels_at(mean, in_envelope * places, tolerance)
-    signal = levels_at(_spectrum_level(x, width, bins), in_signal * places, tolerance)
-    return np.concatenate([envelope, signal], axis=1)
+    return resolution, mean, _spectrum_level(x, width, bins)
 
 
 def _spectrum_level(y: FloatArray, width: FloatArray, bins: int) -> FloatArray:

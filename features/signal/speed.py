@@ -2,9 +2,10 @@
 
 ``levels of lines at each candidate speed -> mean over windows -> evidence -> rate, uncertainty, clear``
 
-A candidate is a relative error of the labelled speed. Its evidence is the comb of the best of three fault families in
-the envelope, plus the shaft harmonics in the envelope and in the signal itself. No class label is needed: a faulty
-bearing raises one comb, and a healthy machine only its shaft. That many orders vote for one speed is the idea of [1]_.
+A candidate is a multiple of the labelled speed. Its evidence is the comb of the best of three fault families in the
+envelope, plus the shaft harmonics in the envelope and in the signal itself. No class label is needed: a faulty bearing
+raises one comb, and a healthy machine only its shaft, or the even harmonics of the outer race, as its balls pass the
+load zone. That many orders vote for one speed is the idea of [1]_.
 
 .. [1] Q. Leclere, H. Andre, J. Antoni, "A multi-order probabilistic approach for Instantaneous Angular Speed
        tracking: debriefing of the CMMNO'14 diagnosis contest", *Mech. Syst. Signal Process.* 81 (2016) 375-386.
@@ -14,12 +15,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.signal.lines import COMB_HARMONICS, FAMILIES, Orders, families
+from features.signal.lines import FAMILIES, Orders, families
 from features.signal.rows import FloatArray, row_kernel
 
 TOLERANCE = 0.08  # relative, largest speed error that is searched
 STEP = 0.001  # relative, between two candidates
 SHAFT_HARMONICS = 6
+COMBS = ((0, (1, 2, 3)), (1, (1, 2, 3)), (2, (1, 2, 3)), (0, (2, 4, 6)))
+"""Combs that tell a speed: number of the family, and harmonics."""
 SHAFT_SHIFT = 10  # candidates: slip and contact angle move fault lines by 1 % against the shaft
 EVIDENCE = ("unclear", *FAMILIES, "shaft")
 """Lines that tell the speed: none, those of a fault family, or shaft harmonics alone."""
@@ -71,16 +74,20 @@ def candidates(tolerance: float = TOLERANCE) -> FloatArray:
 def line_orders(orders: Orders) -> tuple[FloatArray, FloatArray]:
     """Orders read in the envelope, shape (record, line), and in the signal, shape (line,).
 
-    The first are harmonics 1 to 3 of each family, then those of the shaft.
+    The first are the lines of `COMBS`, then those of the shaft.
     """
-    fault = families(orders)[:, :, None] * np.arange(1, COMB_HARMONICS + 1)
+    fault = np.concatenate([families(orders)[:, [family]] * harmonics for family, harmonics in COMBS], axis=1)
     shaft = np.arange(1.0, SHAFT_HARMONICS + 1)
-    both = np.concatenate([fault.reshape(len(fault), -1), np.broadcast_to(shaft, (len(fault), len(shaft)))], axis=1)
-    return both, shaft
+    return np.concatenate([fault, np.broadcast_to(shaft, (len(fault), len(shaft)))], axis=1), shaft
 
 
-def levels_at(level: FloatArray, bins: FloatArray, tolerance: float = TOLERANCE) -> FloatArray:
-    """Levels of lines at every candidate speed and `SHAFT_SHIFT` candidates beyond, shape (record, line, candidate).
+def near_label(tolerance: float = TOLERANCE) -> FloatArray:
+    """Candidate speeds over the labelled one, with `SHAFT_SHIFT` more at each end, shape (candidate,)."""
+    return 1 + candidates(tolerance + SHAFT_SHIFT * STEP)
+
+
+def levels_at(level: FloatArray, bins: FloatArray, factors: FloatArray) -> FloatArray:
+    """Levels of lines at every candidate speed, shape (record, line, candidate).
 
     Parameters
     ----------
@@ -89,10 +96,10 @@ def levels_at(level: FloatArray, bins: FloatArray, tolerance: float = TOLERANCE)
     bins
         Places of the lines at the labelled speed, in bins, shape (record, line). A line beyond the end of the spectrum
         has the level 0.
-    tolerance
-        Largest relative error of the label.
+    factors
+        Candidate speeds over the labelled one, shape (candidate,).
     """
-    return _interpolated(level, bins, 1 + candidates(tolerance + SHAFT_SHIFT * STEP))
+    return _interpolated(level, bins, factors)
 
 
 @row_kernel
@@ -116,8 +123,8 @@ def find_speed(levels: FloatArray, windows: int, shaft_rate: float, tolerance: f
     Parameters
     ----------
     levels
-        Mean over the windows of the levels of `levels_at`: lines of the envelope, then of the signal, shape (line,
-        candidate).
+        Mean over the windows of the levels of `levels_at` at the speeds of `near_label`: lines of the envelope, then of
+        the signal, shape (line, candidate).
     windows
         Number of windows, 0 if none could be used.
     shaft_rate
@@ -127,40 +134,56 @@ def find_speed(levels: FloatArray, windows: int, shaft_rate: float, tolerance: f
     """
     if windows == 0:
         return ShaftSpeed(np.nan, np.nan, clear=False, agrees=True, evidence=EVIDENCE[0], labelled_rate=shaft_rate)
-    combs, shaft = _deviations(levels, windows)
+    combs, shaft = evidence_of(levels, windows)
     error = candidates(tolerance)
     evidence = combs.max(axis=0) + shaft - PENALTY * (error / TOLERANCE) ** 2
     best = int(evidence.argmax())
     rivals = np.abs(error - error[best]) > RIVALS_BEYOND
     ahead = rivals.any() and evidence[best] - evidence[rivals].max() > CLEAR_MARGIN
     clear = bool(ahead and shaft.max() - shaft[best] < SHAFT_BEHIND)
-    probability = np.exp(SHARPNESS * (evidence - evidence[best]))
-    variance = np.average((error - error[best]) ** 2, weights=probability)
-    rate, uncertainty = shaft_rate * (1 + error[best]), shaft_rate * np.sqrt(variance + SLIP**2)
-    family = int(combs[:, best].argmax())
-    named = family if combs[family, best] > CLEAR_FAMILY else len(FAMILIES)
+    rate, uncertainty = shaft_rate * (1 + error[best]), shaft_rate * spread_of(error, evidence, best)
     return ShaftSpeed(
         rate=float(rate),
         uncertainty=float(uncertainty),
         clear=clear,
         agrees=not (clear and abs(rate - shaft_rate) > DISAGREEMENT * uncertainty),
-        evidence=EVIDENCE[1 + named if clear else 0],
+        evidence=name_of(combs[:, best]) if clear else EVIDENCE[0],
         labelled_rate=float(shaft_rate),
     )
 
 
-def _deviations(levels: FloatArray, windows: int) -> tuple[FloatArray, FloatArray]:
-    """Combs of the families, shape (family, candidate), and the shaft, shape (candidate,), in standard deviations."""
-    lines = len(FAMILIES) * COMB_HARMONICS
-    envelope, signal = np.split(levels - FLOOR, [lines + SHAFT_HARMONICS])
-    envelope = envelope / np.hypot(ENVELOPE_NOISE[0] / np.sqrt(windows), ENVELOPE_NOISE[1])
-    signal = signal / np.hypot(SIGNAL_NOISE[0] / np.sqrt(windows), SIGNAL_NOISE[1])
-    ordered = np.sort(envelope[:lines].reshape(len(FAMILIES), COMB_HARMONICS, -1), axis=1)
-    ordered[:, -1] = np.minimum(ordered[:, -1], ordered[:, -2] + AHEAD)  # one line alone is no comb
-    combs = ordered.mean(axis=1)[:, SHAFT_SHIFT:-SHAFT_SHIFT]
+def spread_of(error: FloatArray, evidence: FloatArray, best: int) -> float:
+    """Relative standard deviation of the speed, slip included, from the evidence of candidates."""
+    probability = np.exp(SHARPNESS * (evidence - evidence[best]))
+    return float(np.sqrt(np.average((error - error[best]) ** 2, weights=probability) + SLIP**2))
+
+
+def name_of(combs: FloatArray) -> str:
+    """Lines that tell a speed, one of `EVIDENCE`, from the height of each comb there, shape (comb,)."""
+    highest = int(combs.argmax())
+    return EVIDENCE[1 + COMBS[highest][0]] if combs[highest] > CLEAR_FAMILY else EVIDENCE[-1]
+
+
+def evidence_of(levels: FloatArray, windows: int) -> tuple[FloatArray, FloatArray]:
+    """Heights of `COMBS`, shape (comb, candidate), and of the shaft, shape (candidate,), in standard deviations.
+
+    The first and last `SHAFT_SHIFT` candidates of the levels are left out.
+    """
+    lines = sum(len(harmonics) for _, harmonics in COMBS)
+    envelope, signal = np.split(levels, [lines + SHAFT_HARMONICS])
+    combs = comb_height(envelope[:lines].reshape(len(COMBS), -1, envelope.shape[-1]), windows)
+    noise = [np.hypot(one / np.sqrt(windows), lasting) for one, lasting in (ENVELOPE_NOISE, SIGNAL_NOISE)]
     shaft = sum(
-        weight * np.clip(part, -1.0, HIGHEST).mean(axis=0)
-        for weight, part in zip(WEIGHTS, (envelope[lines:], signal), strict=True)
+        weight * np.clip((part - FLOOR) / deviation, -1.0, HIGHEST).mean(axis=0)
+        for weight, part, deviation in zip(WEIGHTS, (envelope[lines:], signal), noise, strict=True)
     )
     near = np.lib.stride_tricks.sliding_window_view(np.asarray(shaft), 2 * SHAFT_SHIFT + 1)
-    return combs, near.max(axis=-1)
+    return combs[:, SHAFT_SHIFT:-SHAFT_SHIFT], near.max(axis=-1)
+
+
+def comb_height(levels: FloatArray, windows: int) -> FloatArray:
+    """Height of combs in standard deviations of noise, from levels (..., harmonic, candidate) to (..., candidate)."""
+    deviation = np.hypot(ENVELOPE_NOISE[0] / np.sqrt(windows), ENVELOPE_NOISE[1])
+    ordered = np.sort((levels - FLOOR) / deviation, axis=-2)
+    highest = np.minimum(ordered[..., -1, :], ordered[..., -2, :] + AHEAD)  # one line alone is no comb
+    return (ordered[..., :-1, :].sum(axis=-2) + highest) / ordered.shape[-2]

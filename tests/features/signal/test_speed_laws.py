@@ -5,8 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.signal.lines import COMB_HARMONICS, FAMILIES, Orders
+from features.signal.lines import FAMILIES, Orders
 from features.signal.speed import (
+    COMBS,
     EVIDENCE,
     FLOOR,
     SHAFT_HARMONICS,
@@ -16,10 +17,12 @@ from features.signal.speed import (
     find_speed,
     levels_at,
     line_orders,
+    near_label,
 )
 
 law = settings(deadline=None, max_examples=50)
-COMB_LINES = len(FAMILIES) * COMB_HARMONICS
+HARMONICS = 3  # of each comb
+COMB_LINES = len(COMBS) * HARMONICS
 LINES = COMB_LINES + 2 * SHAFT_HARMONICS
 CANDIDATES = len(candidates()) + 2 * SHAFT_SHIFT
 errors = st.integers(-75, 75)  # candidates beside the label
@@ -31,7 +34,7 @@ def levels_with(comb=None, shaft=None, height=2.0):
     middle = CANDIDATES // 2
     if comb is not None:
         family, place = comb
-        levels[family * COMB_HARMONICS : (family + 1) * COMB_HARMONICS, middle + place] = height
+        levels[family * HARMONICS : (family + 1) * HARMONICS, middle + place] = height
     if shaft is not None:
         levels[COMB_LINES:, middle + shaft] = height
     return levels
@@ -49,20 +52,21 @@ def test_candidates_are_symmetric_and_hold_the_label():
 def test_the_level_of_a_line_is_read_at_the_candidate_that_hits_it(order, error, bins_per_order):
     place = order * bins_per_order * (1 + error)
     level = np.maximum(0.0, 1.0 - np.abs(np.arange(400) - place) / 3)[None].astype(np.float32)
-    read = levels_at(level, np.array([[order * bins_per_order]]))[0, 0]
+    read = levels_at(level, np.array([[order * bins_per_order]]), near_label())[0, 0]
     found = candidates(0.08 + SHAFT_SHIFT * 0.001)[read.argmax()]
     assert abs(found - error) * order * bins_per_order <= 1.0  # a bin
 
 
 def test_lines_beyond_the_end_of_a_spectrum_have_the_level_of_the_floor():
-    assert (levels_at(np.ones((1, 50), np.float32), np.array([[80.0]])) == 0).all()
+    assert (levels_at(np.ones((1, 50), np.float32), np.array([[80.0]]), near_label()) == 0).all()
 
 
-def test_line_orders_are_three_harmonics_of_each_family_and_those_of_the_shaft():
+def test_line_orders_are_those_of_combs_and_shaft():
     one = np.ones(1)
     envelope, signal = line_orders(Orders(0.4 * one, 3.6 * one, 5.4 * one, 2.4 * one))
     np.testing.assert_allclose(envelope[0, :9], [3.6, 7.2, 10.8, 5.4, 10.8, 16.2, 4.8, 9.6, 14.4])
-    np.testing.assert_array_equal(envelope[0, 9:], signal)
+    np.testing.assert_allclose(envelope[0, 9:12], [7.2, 14.4, 21.6])
+    np.testing.assert_array_equal(envelope[0, 12:], signal)
 
 
 @law
