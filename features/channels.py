@@ -1,6 +1,7 @@
 """The channel or channels of a corpus that features are computed from, by name or number."""
 
 import difflib
+from collections.abc import Mapping
 from pathlib import Path
 
 import xarray as xr
@@ -31,3 +32,10 @@ def channels_of(table: xr.Dataset) -> list[xr.Dataset]:
     if "channel" not in table["features"].dims:
         return [table]
     return [table.isel(channel=number) for number in range(table.sizes["channel"])]
+
+
+def joined_channels(tables: Mapping[str, xr.Dataset]) -> xr.Dataset:
+    """Feature table of several channels of the same records, by name; all but the features are those of the first."""
+    first = next(iter(tables.values()))
+    features = xr.concat([table["features"] for table in tables.values()], xr.Variable("channel", [*tables]))
+    return first.assign(features=features).assign_attrs(channel=", ".join(tables))

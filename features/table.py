@@ -19,7 +19,7 @@ import numpy as np
 import xarray as xr
 
 from features.band import DEFAULT_BAND, Band, band_attributes, checked_band
-from features.channels import channel_number
+from features.channels import channel_number, joined_channels
 from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
 from features.recording_speeds import (
     Speed,
@@ -95,9 +95,7 @@ def feature_table(
     band = checked_band(*band)
     if not isinstance(channel, int | str):
         each = partial(feature_table, corpus, groups, speed=speed, band=band, workers=workers, scheduler=scheduler)
-        tables = [each(channel=name, progress=progress) for name in channel]
-        several = xr.concat([table["features"] for table in tables], xr.Variable("channel", list(channel)))
-        return tables[0].assign(features=several).assign_attrs(channel=", ".join(channel))
+        return joined_channels({name: each(channel=name, progress=progress) for name in channel})
     names = feature_names(groups, band)
     with open_corpus(corpus) as opened:
         number = channel_number(opened, channel, corpus)

@@ -1,19 +1,33 @@
 """Diagnosis of one recording: a class with its probability, and the lines in the signal that speak for it.
 
-``recording -> quality, speed, prediction, evidence -> Diagnosis``
+``recording -> quality, bearing and speed, prediction, evidence -> Diagnosis``
 
 ======== ==================================================================================
 module   responsibility
 ======== ==================================================================================
 spectrum averaged envelope spectra in several bands, and the level that noise exceeds
 evidence lines of fault families that stand above the floor
+search   pairs of bearing and speed that explain the lines
 quality  signals that tell nothing, and signals to be read with care
 wording  sentences
+verdict  agreement of classifier and lines
 diagnose verdict, probabilities and evidence of a recording
 ======== ==================================================================================
 """
 
 from features.diagnosis.diagnose import Diagnosis, Recorded, diagnose
 from features.diagnosis.evidence import FALSE_ALARM, LEAST_LEVEL, Line, line_facts
+from features.diagnosis.search import ANY_RATE, Given, Pair
 
-__all__ = ["FALSE_ALARM", "LEAST_LEVEL", "Diagnosis", "Line", "Recorded", "diagnose", "line_facts"]
+__all__ = [
+    "ANY_RATE",
+    "FALSE_ALARM",
+    "LEAST_LEVEL",
+    "Diagnosis",
+    "Given",
+    "Line",
+    "Pair",
+    "Recorded",
+    "diagnose",
+    "line_facts",
+]

@@ -1,14 +1,14 @@
 """One recording in, a diagnosis out: class, probabilities, and the lines that stand above the floor.
 
-``recording -> quality -> shaft speed -> windows -> features -> prediction``, and beside it ``-> band spectra -> evidence``
+``recording -> quality -> pairs of bearing and speed -> of each: features -> prediction, band spectra -> evidence -> verdict``
 
-The verdict is that of the classifier. It becomes "unsure" if the classifier is, if the signal tells nothing, if the
-labelled speed is clearly wrong and the classifier says different classes at both speeds without a line that decides, or
-if the lines plainly tell another class. Evidence is measured in the signal alone, whatever the verdict.
+Bearing and speed are searched within what is given. The verdict is that of the classifier if the lines agree with it, and
+"unsure" if they do not, if pairs that cannot be told apart give different classes, if no pair explains a strong comb, or if
+the signal tells nothing. Evidence is measured in the signal alone, whatever the verdict.
 """
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -17,46 +17,54 @@ from features.band import Band
 from features.baselines.models import Model, estimator_probabilities, predict
 from features.baselines.predictions import UNSURE, Predictions, predictions
 from features.baselines.references import with_energies
-from features.diagnosis.evidence import Line, find_evidence, strange_series
-from features.diagnosis.quality import quality_of
+from features.channels import joined_channels
+from features.diagnosis.evidence import Line, find_evidence
+from features.diagnosis.quality import Quality, quality_of
+from features.diagnosis.search import Found, Given, Pair, find_pairs, mean_spectra, strange_comb
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
+from features.diagnosis.verdict import judge
 from features.diagnosis.wording import (
-    by_family,
+    answer_in_words,
     candidates,
-    family_in_words,
-    probability_in_words,
-    reasons,
-    speed_in_words,
+    different_classes,
+    pair_in_words,
+    speed_warning,
+    unexplained,
 )
-from features.faults import CLASSES, HEALTHY
+from features.faults import HEALTHY
 from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray
-from features.signal.speed import TOLERANCE
-from features.speed import shaft_speed
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     import xarray as xr
-
-    from features.recording_speeds import Speed
+    from pandas import DataFrame
 
 LONGEST = 60.0  # s; of a longer recording the beginning is used
-# dB; lines of another class this high contradict the classifier, if they are a fundamental and a harmonic, or three harmonics
-CONTRADICTING = 15.0
-NEARLY_AS_HIGH = 5.0  # dB; lines of no part of the bearing are reported unless they are further below the evidence
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
 
 
 class Recorded(NamedTuple):
-    """A recording: signal [m s-2], shape (time,), sample rate and labelled shaft rate [Hz], nominal orders as numbers, and name."""
+    """A recording: signals [m s-2] of equal length by the name of their channel, shape (time,), sample rate [Hz], and name."""
 
-    signal: FloatArray
+    signals: Mapping[str, FloatArray]
     fs: float
-    shaft_rate: float
-    orders: Orders
     name: str = "the recording"
+
+
+class Judged(NamedTuple):
+    """Verdict, probabilities and evidence at one pair of bearing and speed; ``why`` is the reason of "unsure"."""
+
+    pair: Pair
+    verdict: str
+    why: str
+    probabilities: Mapping[str, float]
+    threshold: float
+    windows: int
+    lines: list[Line]
+    spectra: list[BandSpectrum]
 
 
 @dataclass(frozen=True)
@@ -68,16 +76,19 @@ class Diagnosis:
     verdict
         A class of the model, or "unsure".
     probabilities
-        Of each class that the model can predict, combined over the windows; all equal if there is no prediction.
+        Of each class that the model can predict, combined over windows and channels; all equal if there is no prediction.
     threshold
         The least probability that is answered; NaN if there is no prediction.
-    labelled_rate
-        Shaft rate as given [Hz].
-    shaft_rate
-        Shaft rate [Hz] that the orders of the evidence refer to: the one found where the recording clearly tells another
-        than the labelled one, else the labelled one.
+    given
+        Bearings and speeds as given.
+    bearing, orders, shaft_rate
+        Name, nominal orders and shaft rate [Hz] that the evidence refers to.
     evidence
         Lines that stand above the floor, strongest family first.
+    explanations
+        Pairs of bearing and speed within those given that explain the lines, the one of the evidence first.
+    elsewhere
+        Other pairs, which explain a strong comb that the given ones do not explain.
     sentence
         The verdict with its reason.
     advice
@@ -93,240 +104,193 @@ class Diagnosis:
     verdict: str
     probabilities: Mapping[str, float]
     threshold: float
-    labelled_rate: float
+    given: Given
+    bearing: str
+    orders: Orders
     shaft_rate: float
     evidence: tuple[Line, ...]
     sentence: str
     advice: tuple[str, ...] = ()
     warnings: tuple[str, ...] = ()
+    explanations: tuple[Pair, ...] = ()
+    elsewhere: tuple[Pair, ...] = ()
     windows: int = 0
     spectrum: BandSpectrum | None = field(default=None, repr=False, compare=False)
 
 
-def diagnose(
-    recording: Recorded, model: Model, *, healthy: Recorded | None = None, speed: "Speed" = "check"
-) -> Diagnosis:
+def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Recorded | None = None) -> Diagnosis:
     """Diagnose one recording.
 
     Parameters
     ----------
     recording
-        At least 0.05 s; of more than 60 s the first 60 s are used.
+        At least 0.05 s; of more than 60 s the first 60 s are used. Several channels are axes of one housing.
+    given
+        The bearings it may be of, and the lowest and highest shaft rate. One bearing and one speed are believed unless
+        the lines clearly tell another speed within 8 %.
     model
         A trained model.
     healthy
-        A recording of the same machine with a healthy bearing, from the same sensor.
-    speed
-        ``check`` searches the shaft speed in the recording; if the label is clearly wrong it warns, and answers only if
-        the classifier says the same class at both speeds or if lines tell that of the estimated speed. ``correct`` takes
-        the estimated speed, and ``off`` believes the label.
+        A recording of the same machine with a healthy bearing, with the same channels.
 
     Raises
     ------
     CorpusError
         If a recording has values that are not finite, or the model cannot take its features or the healthy recording.
     """
-    for checked in (recording, healthy):
-        wrong = 0 if checked is None else int(np.count_nonzero(~np.isfinite(checked.signal)))
-        if checked is not None and wrong:
-            raise CorpusError(
-                f"{checked.name}: {wrong:,} of {checked.signal.size:,} samples are not finite numbers; export it again."
-            )
     if not set(model.groups) <= set(GROUPS) or not set(model.features) <= set(
         feature_names(model.groups, Band(*model.band))
     ):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
-    signal, warnings = _beginning(recording)
-    quality = quality_of(signal, recording.fs, recording.shaft_rate, recording.orders)
+    used, quality = _usable(recording, given)
     if quality.useless:
-        return _useless(recording, model, quality.useless, quality.advice)
-    warnings += quality.warnings
+        return _useless(given, model, quality)
+    reference = None
     if healthy is not None:
-        reason = quality_of(healthy.signal, healthy.fs, healthy.shaft_rate, healthy.orders).useless
-        if reason:
+        reference, reason = _usable(healthy, given)
+        if reason.useless or not set(used.signals) <= set(reference.signals):
+            why = reason.useless or " ".join(reason.warnings)
             raise CorpusError(
-                f"{healthy.name}: cannot be used as the healthy recording, since {reason}; give another, or none."
+                f"{healthy.name}: cannot be used as the healthy recording, since {why}; give another, or none."
             )
-    used = recording._replace(signal=signal)
-    other_rate, uncertainty = _speed(used) if speed != "off" else (None, 0.0)
-    rate = recording.shaft_rate if other_rate is None else other_rate
-    spectra = band_spectra(signal, recording.fs, rate)
-    lines = find_evidence(spectra, rate, recording.orders)
-    reference = (
-        None
-        if healthy is None
-        else _table(healthy._replace(signal=_beginning(healthy)[0]), model, FAULTS.index(HEALTHY))
-    )
-    predicted = _predict(used._replace(shaft_rate=rate), model, reference)
-    if other_rate is not None:
-        warnings.append(_speed_warning(recording.shaft_rate, other_rate, uncertainty))
-        if speed == "check":
-            predicted = _reconcile(predicted, _predict(used, model, reference), lines)
-    diagnosis = replace(
-        predicted,
-        labelled_rate=recording.shaft_rate,
-        shaft_rate=rate,
-        evidence=tuple(lines),
-        spectrum=_shown_spectrum(spectra, lines),
-        warnings=tuple(warnings + _bearing_warning(spectra, lines, rate, recording.orders)),
-    )
-    return _put_into_words(diagnosis, other_rate, speed, len(signal) / recording.fs, healthy is not None)
+    spectra = mean_spectra(list(used.signals.values()), used.fs, given)
+    found = find_pairs(spectra, given)
+    judged = [_judge(used, pair, model, reference) for pair in found.pairs]
+    strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
+    return _conclude(judged, found, given, strange, quality.warnings)
 
 
-def _beginning(recording: Recorded) -> tuple[FloatArray, list[str]]:
-    """At most the first 60 s, and a sentence if there is more."""
+def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
+    """At most the first 60 s of the channels that tell something, and warnings; or why no channel tells anything."""
+    wrong = sum(int(np.count_nonzero(~np.isfinite(signal))) for signal in recording.signals.values())
+    if wrong:
+        total = sum(signal.size for signal in recording.signals.values())
+        raise CorpusError(f"{recording.name}: {wrong:,} of {total:,} samples are not finite numbers; export it again.")
     most = round(LONGEST * recording.fs)
-    if len(recording.signal) <= most:
-        return recording.signal, []
-    duration = len(recording.signal) / recording.fs
-    return recording.signal[:most], [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."]
+    signals = {name: signal[:most] for name, signal in recording.signals.items()}
+    rate, orders = float(np.sqrt(np.prod(given.rates))), next(iter(given.bearings.values()))
+    checked = {name: quality_of(signal, recording.fs, rate, orders) for name, signal in signals.items()}
+    kept = {name: signals[name] for name, quality in checked.items() if not quality.useless}
+    if not kept:
+        return recording, next(iter(checked.values()))
+    duration = max(map(len, recording.signals.values())) / recording.fs
+    warnings = [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."] if duration > LONGEST else []
+    warnings += [f"Channel {name} is left out, since {checked[name].useless}." for name in checked.keys() - kept.keys()]
+    several = len(signals) > 1
+    for name in kept:
+        warnings += [f"Channel {name}: {one}" if several else one for one in checked[name].warnings]
+    return recording._replace(signals=kept), Quality("", "", tuple(warnings))
 
 
-def _useless(recording: Recorded, model: Model, reason: str, advice: str) -> Diagnosis:
+def _useless(given: Given, model: Model, quality: Quality) -> Diagnosis:
+    name, orders = next(iter(given.bearings.items()))
     return Diagnosis(
         verdict=UNSURE,
         probabilities=dict.fromkeys(model.classes, 1 / len(model.classes)),
         threshold=np.nan,
-        labelled_rate=recording.shaft_rate,
-        shaft_rate=recording.shaft_rate,
+        given=given,
+        bearing=name,
+        orders=orders,
+        shaft_rate=given.rates[0],
         evidence=(),
-        sentence=f"Unsure: {reason}; {advice}.",
-        advice=(f"{advice[0].upper()}{advice[1:]}.",),
+        sentence=f"Unsure: {quality.useless}; {quality.advice}.",
+        advice=(f"{quality.advice[0].upper()}{quality.advice[1:]}.",),
     )
 
 
-def _speed(recording: Recorded) -> tuple[float | None, float]:
-    """Shaft rate found, if it is clearly another than the labelled one, and its uncertainty [Hz]."""
-    estimate = shaft_speed(
-        windows_of(recording.signal, recording.fs), recording.fs, recording.shaft_rate, recording.orders
-    )
-    return (float(estimate.rate) if estimate.clear and not estimate.agrees else None), float(estimate.uncertainty)
-
-
-def _table(recording: Recorded, model: Model, fault: int) -> "xr.Dataset":
-    windows = windows_of(recording.signal, recording.fs)
-    groups = with_energies(model.groups)
-    table = recording_table(
-        windows, recording.fs, recording.shaft_rate, recording.orders, fault, groups, Band(*model.band)
-    )
-    return table.assign_attrs(title=recording.name)
-
-
-def _predict(recording: Recorded, model: Model, reference: "xr.Dataset | None") -> Diagnosis:
-    """Diagnosis with the prediction of the model alone."""
-    if reference is None:
-        predicted = _prediction_of_windows(recording, model)
-    else:
-        predicted = predict(_table(recording, model, UNKNOWN_CODE), model, reference)
+def _judge(recording: Recorded, pair: Pair, model: Model, reference: Recorded | None) -> Judged:
+    """Prediction and evidence at one pair of bearing and speed."""
+    spectra = [
+        spectrum
+        for name, signal in recording.signals.items()
+        for spectrum in band_spectra(signal, recording.fs, pair.rate, name)
+    ]
+    lines = find_evidence(spectra, pair.rate, pair.orders)
+    predicted = _predict(recording, pair, model, reference)
     whole = predicted.by_recording
     assert whole is not None  # noqa: S101 - only the predictions by recording have none
     probabilities = dict(zip(whole.classes, map(float, whole.probabilities[0]), strict=True))
-    return Diagnosis(
-        whole.answers[0], probabilities, whole.threshold, recording.shaft_rate, recording.shaft_rate, (), "",
-        windows=len(predicted.probabilities),
-    )  # fmt: skip
+    verdict, why = judge(probabilities, whole.threshold, lines, float(whole.distance[0]))
+    return Judged(pair, verdict, why, probabilities, whole.threshold, len(predicted.probabilities), lines, spectra)
 
 
-def _prediction_of_windows(recording: Recorded, model: Model) -> Predictions:
-    """Predictions as of `predict`, without xarray, whose first use imports dask: a tenth of the time of a diagnosis."""
-    from pandas import DataFrame, Index
-
-    windows = windows_of(recording.signal, recording.fs)
-    each = Orders(*(np.full(len(windows), order) for order in recording.orders))
-    rates = np.full(len(windows), recording.shaft_rate)
-    values, names = indicators(windows, recording.fs, rates, each, model.groups, Band(*model.band))
-    columns = [names.index(name) for name in model.features]
-    rows = DataFrame(values[:, columns], columns=Index(model.features))
+def _predict(recording: Recorded, pair: Pair, model: Model, reference: Recorded | None) -> Predictions:
+    """Predictions of windows and recording; without a reference they need no xarray, whose first use imports dask."""
+    if reference is not None:
+        table = _table(recording, recording.signals, pair, model, UNKNOWN_CODE)
+        return predict(table, model, _table(reference, recording.signals, pair, model, FAULTS.index(HEALTHY)))
+    rows = [_rows(recording, name, pair, model) for name in recording.signals]
     each, whole = (
-        estimator_probabilities(model, some, recording.name) for some in (rows, rows.mean().to_frame().transpose())
+        np.stack([estimator_probabilities(model, some, recording.name) for some in values])
+        for values in (rows, [some.mean().to_frame().transpose() for some in rows])
     )
-    alone = np.zeros(len(windows), dtype=np.intp)
+    alone = np.zeros(each.shape[1], dtype=np.intp)
     return predictions(each, model.classes, alone, model.calibration, of_recordings=whole)
 
 
-def _reconcile(estimated: Diagnosis, labelled: Diagnosis, lines: list[Line]) -> Diagnosis:
-    """Prediction at the estimated speed, unless the classifier says another class at the labelled speed and no line decides."""
-    families = {line.fault for line in lines}
-    if labelled.verdict in (estimated.verdict, UNSURE) or estimated.verdict in families:
-        return estimated
-    why = (
-        f"at the labelled speed the classifier says {labelled.verdict} ({candidates(labelled.probabilities, 1)}) and at the "
-        f"estimated speed {estimated.verdict} ({candidates(estimated.probabilities, 1)})"
-    )
-    advice = "Measure the speed again and give it with --rpm, or take the estimated speed with --speed correct."
-    return replace(estimated, verdict=UNSURE, sentence=why, advice=(advice,))
+def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Model, fault: int) -> "xr.Dataset":
+    groups, band = with_energies(model.groups), Band(*model.band)
+    tables = {
+        name: recording_table(
+            windows_of(recording.signals[name], recording.fs), recording.fs, pair.rate, pair.orders, fault, groups, band
+        )
+        for name in channels
+    }
+    return joined_channels(tables).assign_attrs(title=recording.name)
 
 
-def _put_into_words(
-    diagnosis: Diagnosis, other_rate: float | None, speed: "Speed", duration: float, compared: bool
+def _rows(recording: Recorded, channel: str, pair: Pair, model: Model) -> "DataFrame":
+    """Features of the windows of a channel that the model takes."""
+    from pandas import DataFrame, Index
+
+    windows = windows_of(recording.signals[channel], recording.fs)
+    each = Orders(*(np.full(len(windows), float(order)) for order in pair.orders))
+    rates = np.full(len(windows), pair.rate)
+    values, names = indicators(windows, recording.fs, rates, each, model.groups, Band(*model.band))
+    columns = [names.index(name) for name in model.features]
+    return DataFrame(values[:, columns], columns=Index(model.features))
+
+
+def _conclude(
+    judged: list[Judged], found: Found, given: Given, strange: float | None, warnings: tuple[str, ...]
 ) -> Diagnosis:
-    """Diagnosis with its sentence and advice; the verdict becomes unsure if the lines plainly tell another class."""
-    at_speed = speed_in_words(diagnosis.labelled_rate, other_rate, speed != "off")
-    contradiction = "" if diagnosis.verdict == UNSURE else _contradiction(diagnosis)
-    if diagnosis.verdict != UNSURE and not contradiction:
-        probability = probability_in_words(diagnosis.probabilities[diagnosis.verdict])
-        why = reasons(diagnosis.verdict, diagnosis.evidence)
-        text = f"{CLASSES[diagnosis.verdict].words} (probability {probability}): {why}; {at_speed}."
-        advice = (WATCH,) if diagnosis.verdict == HEALTHY and diagnosis.evidence else ()
-        return replace(diagnosis, sentence=text, advice=advice)
-    why = contradiction or diagnosis.sentence or _doubt(diagnosis)
-    likely = candidates(diagnosis.probabilities)
-    advice = diagnosis.advice or _advice(duration, compared)
-    return replace(diagnosis, verdict=UNSURE, sentence=f"Unsure ({likely}): {why}; {at_speed}.", advice=advice)
-
-
-def _contradiction(diagnosis: Diagnosis) -> str:
-    """Clause on lines that plainly tell another class than the verdict; empty if there are none."""
-    families = by_family(diagnosis.evidence)
-    linked = diagnosis.verdict == HEALTHY or CLASSES[diagnosis.verdict].evidence
-    if diagnosis.verdict in families or not linked:
-        return ""
-    for fault, lines in families.items():
-        harmonics = {line.harmonic for line in lines if not line.sideband}
-        plain = len(harmonics) >= (2 if 1 in harmonics else 3)
-        if plain and max(line.level for line in lines) >= CONTRADICTING:
-            return f"the classifier says {diagnosis.verdict}, but {family_in_words(lines)}, which tells of {fault}"
-    return ""
-
-
-def _doubt(diagnosis: Diagnosis) -> str:
-    """Why the classifier does not answer, and what the strongest lines tell."""
-    families = by_family(diagnosis.evidence)
-    least = f"no class reaches the probability of {diagnosis.threshold:.2f} from which the classifier answers"
-    if not families:
-        return f"{least}, and no line stands out"
-    fault, lines = next(iter(families.items()))
-    return f"{least}; {family_in_words(lines)}, which tells of {fault}"
-
-
-def _advice(duration: float, compared: bool) -> tuple[str, ...]:
-    sentences = []
-    if duration < 10:
-        sentences.append(f"Record longer: 10 s instead of {duration:.2g} s.")
-    if not compared:
-        sentences.append("Give a recording of the machine with a healthy bearing (--healthy).")
-    return (*sentences, "Measure the speed during the recording, and check the bearing designation.")
-
-
-def _speed_warning(labelled: float, other: float, uncertainty: float) -> str:
-    off = 100 * (other / labelled - 1)
-    return (
-        f"The labelled speed of {60 * labelled:,.0f} rpm does not fit the lines of this recording; they fit {60 * other:,.0f} rpm "
-        f"(± {60 * uncertainty:.0f}), {off:+.1f} %."
+    """Diagnosis at the first pair, "unsure" if others give another class or if a strong comb is not explained."""
+    first = judged[0]
+    why = first.why
+    advice: tuple[str, ...] = ()
+    if found.elsewhere or strange is not None:
+        why = unexplained(first.pair, found.elsewhere, strange)
+        advice = (
+            "Measure the speed, check the bearing, and give them as ranges or alternatives if they are not known.",
+        )
+    elif len({one.verdict for one in judged}) > 1:
+        why = different_classes([(one.pair, one.verdict) for one in judged])
+        advice = ("Measure the speed during the recording, or give a narrower range.",)
+    verdict = UNSURE if why else first.verdict
+    told = pair_in_words(first.pair, given, len(judged) - 1)
+    if why:
+        sentence = f"Unsure ({candidates(first.probabilities)}): {why}; {told}."
+        advice = (*advice, "Record 10 s or more, and the machine with a healthy bearing, too (--healthy).")
+    else:
+        sentence = answer_in_words(verdict, first.probabilities[verdict], first.lines) + f"; {told}."
+        advice = (WATCH,) if verdict == HEALTHY and first.lines else ()
+    return Diagnosis(
+        verdict=verdict,
+        probabilities=first.probabilities,
+        threshold=first.threshold,
+        given=given,
+        bearing=first.pair.bearing,
+        orders=first.pair.orders,
+        shaft_rate=first.pair.rate,
+        evidence=tuple(first.lines),
+        sentence=sentence,
+        advice=advice,
+        warnings=(*warnings, *speed_warning(first.pair, given)),
+        explanations=found.pairs,
+        elsewhere=found.elsewhere,
+        windows=first.windows,
+        spectrum=_shown_spectrum(first.spectra, first.lines),
     )
-
-
-def _bearing_warning(spectra: list[BandSpectrum], lines: list[Line], shaft_rate: float, orders: Orders) -> list[str]:
-    """Warning of a series of lines that belongs to no part of the bearing and is about as high as the evidence, or higher."""
-    series = strange_series(spectra, shaft_rate, orders, lines)
-    if series is None or series.level < max((line.level for line in lines), default=0.0) - NEARLY_AS_HIGH:
-        return []
-    sentence = (
-        f"A line at {series.order:.2f} orders and its harmonics stand {series.level:.0f} dB above the floor, and no part of this bearing "
-        f"has that order: the bearing may be another one, or the speed wrong by more than {100 * TOLERANCE:g} %, or the lines come from "
-        "another part of the machine."
-    )
-    return [sentence]
 
 
 def _shown_spectrum(spectra: list[BandSpectrum], lines: list[Line]) -> BandSpectrum:
@@ -334,4 +298,4 @@ def _shown_spectrum(spectra: list[BandSpectrum], lines: list[Line]) -> BandSpect
     if not lines:
         return spectra[-1]
     best = max(lines, key=lambda line: line.level)
-    return next(spectrum for spectrum in spectra if spectrum.band == best.band)
+    return next(one for one in spectra if (one.band, one.channel) == (best.band, best.channel))

@@ -53,8 +53,10 @@ class Line(NamedTuple):
         Power over the floor [dB].
     band
         Of the envelope [Hz].
-    sideband
-        Whether it lies beside a harmonic.
+    side
+        Rate at whose distance it lies beside a harmonic, ``shaft`` or ``ftf``; empty for the harmonic itself.
+    channel
+        Of the recording.
     """
 
     fault: str
@@ -64,14 +66,8 @@ class Line(NamedTuple):
     frequency: float
     level: float
     band: tuple[float, float]
-    sideband: bool = False
-
-
-class Series(NamedTuple):
-    """Lines at multiples of a frequency that belongs to no family: order of the first, and level of the weakest [dB]."""
-
-    order: float
-    level: float
+    side: str = ""
+    channel: str = ""
 
 
 def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Orders) -> list[Line]:
@@ -102,68 +98,21 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
             _family(row, spectra[number], free[number], fundamental, shaft_rate, orders) if ratio else []
             for row, (ratio, number, fundamental) in zip(families, first_lines, strict=True)
         ]
-        strongest = int(np.argmax([sum(line.level for line in family) for family in held]))
+        sums = [
+            sum(line.level for line in family if line.side in ("", row.side))
+            for row, family in zip(families, held, strict=True)
+        ]
+        strongest = int(np.argmax(sums))
         ratio, _, fundamental = first_lines[strongest]
         row, family = families.pop(strongest), held[strongest]
         level = 10 * float(np.log10(max(ratio, 1.0)))
-        if not family or level < least or (not row.comb and sum(not line.sideband for line in family) < CAGE_LINES):
+        if not family or level < least or (not row.comb and sum(not line.side for line in family) < CAGE_LINES):
             continue
         lines += family
         least = max(least, level - SPREAD)
         for spectrum, free_bins in zip(spectra, free, strict=True):
             _remove(spectrum, free_bins, row, fundamental, shaft_rate, orders)
     return lines
-
-
-def strange_series(
-    spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Orders, lines: Sequence[Line]
-) -> Series | None:
-    """Strongest series of three harmonics that belongs neither to the shaft nor to a part of the bearing.
-
-    It is searched between 1.5 orders and a third of the spectrum. None if noise has such a series with more than 1 %,
-    if it lies at multiples of 50 or 60 Hz, where mains can make it, or if its first line differs from a harmonic of the
-    evidence ``lines`` by a multiple of the shaft rate.
-    """
-    families = [_fundamental_order(row, orders) for row in CLASSES.values() if row.evidence]
-    plain = [line for line in lines if not line.sideband]
-    strongest = {line.fault: line for line in sorted(plain, key=lambda line: line.level)}
-    modulated = [line.order / line.harmonic for line in strongest.values()]
-    best: Series | None = None
-    for spectrum in spectra:
-        free = ~_near_shaft(spectrum, shaft_rate)
-        order = np.arange(len(free)) * spectrum.resolution / shaft_rate
-        first = free.copy()
-        for family in families:
-            first &= np.abs(order - family) > TOLERANCE * family + spectrum.width / shaft_rate
-        for fundamental in modulated:
-            for harmonic in range(1, 4):
-                beside = order - harmonic * fundamental
-                first &= np.abs(beside - np.rint(beside)) > spectrum.width / shaft_rate + DRIFT * order
-        candidate = _series(spectrum, first, free, shaft_rate, len(spectra))
-        if candidate is not None and (best is None or candidate.level > best.level):
-            best = candidate
-    return best
-
-
-def _series(
-    spectrum: BandSpectrum, first: np.ndarray, free: np.ndarray, shaft_rate: float, bands: int
-) -> Series | None:
-    """Strongest series of one band that noise does not have; its first line and the others are in some bins, shape (frequency,)."""
-    ratio = np.where(free, spectrum.ratio, 0.0)
-    lobe = max(1, round(spectrum.width / spectrum.resolution / 2))
-    highest = np.max([np.roll(ratio, shift) for shift in range(-lobe, lobe + 1)], axis=0)
-    bins = np.arange(int(np.ceil(1.5 * shaft_rate / spectrum.resolution)), len(ratio) // 3)
-    if not bins.size:
-        return None
-    weakest = np.minimum.reduce([np.where(first, ratio, 0.0)[bins], highest[2 * bins], highest[3 * bins]])
-    frequency = bins * spectrum.resolution
-    for mains in (50.0, 60.0):
-        weakest[np.abs(frequency / mains - np.rint(frequency / mains)) * mains < spectrum.width] = 0.0
-    place = int(np.argmax(weakest))
-    each = (FALSE_ALARM / (TRIALS_PER_BIN * bins.size * bands)) ** (1 / 3) / (TRIALS_PER_BIN * (2 * lobe + 1))
-    if weakest[place] <= max(spectrum.threshold(each), 10 ** (LEAST_LEVEL / 10)):
-        return None
-    return Series(float(frequency[place]) / shaft_rate, 10 * float(np.log10(weakest[place])))
 
 
 def line_facts(line: Line) -> dict[str, object]:
@@ -176,7 +125,8 @@ def line_facts(line: Line) -> dict[str, object]:
         "frequency_hz": round(line.frequency, 3),
         "level_db": round(line.level, 2),
         "band": [round(edge, 1) for edge in line.band],
-        "sideband": line.sideband,
+        "sideband": bool(line.side),
+        "channel": line.channel,
     }
 
 
@@ -185,7 +135,7 @@ def _fundamental_order(row: FaultClass, orders: Orders) -> float:
     return line.multiple * float(getattr(orders, line.base))
 
 
-def _side(row: FaultClass, orders: Orders) -> float:
+def side_of(row: FaultClass, orders: Orders) -> float:
     """Distance of the sidebands of a class, in orders."""
     return 1.0 if row.side == SHAFT.base else float(getattr(orders, row.side))
 
@@ -232,31 +182,32 @@ def _first_line(
 def _family(
     row: FaultClass, spectrum: BandSpectrum, free: np.ndarray, fundamental: float, shaft_rate: float, orders: Orders
 ) -> list[Line]:
-    """Harmonics of a fundamental [Hz], and the sidebands of those found."""
-    side = _side(row, orders) * shaft_rate
-    beside = row.side if row.side == SHAFT.base else row.side.upper()
-    label = row.lines[0].label
+    """Harmonics of a fundamental [Hz], and the sidebands of those found at the rate of the family and of the shaft."""
+    rates = {"": 0.0, row.side: side_of(row, orders) * shaft_rate, SHAFT.base: shaft_rate}
     base = row.lines[0].multiple
-    places = [(harmonic, 0) for harmonic in _harmonics(row)]
-    places += [(harmonic, sign) for harmonic in (1, 2) for sign in (-1, 1) if row.comb]
+    places = [(harmonic, "", 0) for harmonic in _harmonics(row)]
+    if row.comb:
+        places += [(harmonic, side, sign) for harmonic in (1, 2) for side in rates if side for sign in (-1, 1)]
     searches = {}
-    for harmonic, sign in places:
-        frequency = harmonic * fundamental + sign * side
-        searches[harmonic, sign] = spectrum.bins(frequency, 0.5 * spectrum.width + DRIFT * frequency)
+    for harmonic, side, sign in places:
+        frequency = harmonic * fundamental + sign * rates[side]
+        searches[harmonic, side, sign] = spectrum.bins(frequency, 0.5 * spectrum.width + DRIFT * frequency)
     trials = max(1.0, TRIALS_PER_BIN * sum(last - first for first, last in searches.values()))
     threshold = spectrum.threshold(FALSE_ALARM / trials)
-    lines: dict[tuple[int, int], Line] = {}
-    for (harmonic, sign), (first, last) in searches.items():
+    lines: dict[tuple[int, str, int], Line] = {}
+    for (harmonic, side, sign), (first, last) in searches.items():
         ratio = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
-        if not ratio.size or ratio.max() <= threshold or (sign and (harmonic, 0) not in lines):
+        if not ratio.size or ratio.max() <= threshold or (sign and (harmonic, "", 0) not in lines):
             continue
         frequency = (first + int(ratio.argmax())) * spectrum.resolution
-        name = label if harmonic == 1 else f"{base * harmonic} {row.lines[0].base.upper()}"
-        name += {0: "", -1: f" - {beside}", 1: f" + {beside}"}[sign]
-        lines[harmonic, sign] = Line(
-            row.name, name, harmonic, frequency / shaft_rate, frequency, 10 * float(np.log10(ratio.max())), spectrum.band, sign != 0
-        )  # fmt: skip
-    return [lines[key] for key in sorted(lines, key=lambda key: (key[1] != 0, *key))]
+        name = row.lines[0].label if harmonic == 1 else f"{base * harmonic} {row.lines[0].base.upper()}"
+        if sign:
+            name += f" {'-+'[sign > 0]} {side if side == SHAFT.base else side.upper()}"
+        level = 10 * float(np.log10(ratio.max()))
+        lines[harmonic, side, sign] = Line(
+            row.name, name, harmonic, frequency / shaft_rate, frequency, level, spectrum.band, side, spectrum.channel
+        )
+    return [lines[key] for key in sorted(lines, key=lambda key: (key[2] != 0, *key))]
 
 
 def _remove(
@@ -264,7 +215,7 @@ def _remove(
 ) -> None:
     """Mark the bins that a family explains: harmonics, and sidebands at the rates of shaft and cage."""
     sides = {0.0, *(n * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1))}
-    sides |= {n * _side(row, orders) * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1)}
+    sides |= {n * side_of(row, orders) * shaft_rate for n in range(-SIDEBANDS, SIDEBANDS + 1)}
     last = int(TOP_ORDER * shaft_rate / fundamental) + 1
     for harmonic in range(last + 1):  # 0: the sidebands of the mean are lines at the rates themselves
         for side in sides:

@@ -48,6 +48,8 @@ class BandSpectrum(NamedTuple):
         Mean power over the power expected in noise, shape (frequency,).
     segments
         Number of independent segments.
+    channel
+        Of the recording.
     """
 
     band: tuple[float, float]
@@ -55,6 +57,7 @@ class BandSpectrum(NamedTuple):
     width: float
     ratio: FloatArray
     segments: float
+    channel: str = ""
 
     def threshold(self, probability: float) -> float:
         """Ratio that a bin of noise exceeds with a probability."""
@@ -66,8 +69,8 @@ class BandSpectrum(NamedTuple):
         return first, max(first, min(int((frequency + tolerance) / self.resolution) + 1, len(self.ratio)))
 
 
-def band_spectra(x: FloatArray, fs: float, shaft_rate: float) -> list[BandSpectrum]:
-    """Envelope spectra of a recording, shape (time,), in the bands of `bands_of`, up to 20 orders or the width of the band."""
+def band_spectra(x: FloatArray, fs: float, shaft_rate: float, channel: str = "") -> list[BandSpectrum]:
+    """Envelope spectra of a channel, shape (time,), in the bands of `bands_of`, up to 20 orders or the width of the band."""
     segments, duration = _segments(x, fs, shaft_rate)
     coefficients = fourier_coefficients(segments, fs, fs / 2)
     whitened = whiten_by_psd(coefficients, round(WHITENING_WIDTH * duration))
@@ -82,7 +85,7 @@ def band_spectra(x: FloatArray, fs: float, shaft_rate: float) -> list[BandSpectr
         bins = min(int(top / resolution) + 1, amplitude.shape[-1])
         power = np.mean(amplitude.astype(float) ** 2, axis=0)
         ratio = power[:bins] / _floor(power, resolution, shaft_rate, count, bins)
-        spectra.append(BandSpectrum(band, resolution, 2 / duration, ratio, count))
+        spectra.append(BandSpectrum(band, resolution, 2 / duration, ratio, count, channel))
     return spectra
 
 

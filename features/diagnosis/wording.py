@@ -3,23 +3,24 @@
 from collections.abc import Mapping, Sequence
 
 from features.diagnosis.evidence import LEAST_LEVEL, Line
+from features.diagnosis.search import Given, Pair
 from features.faults import CLASSES, HEALTHY, SIDES
+from features.signal.speed import DISAGREEMENT
 
 PARTS = tuple(row.part for row in CLASSES.values() if row.part)
 
 
 def family_in_words(lines: Sequence[Line]) -> str:
     """Lines of one family, such as "BPFI at 5.41 orders and 2 harmonics stand up to 18 dB above the floor"."""
-    plain = [line for line in lines if not line.sideband]
+    plain = [line for line in lines if not line.side]
     first = min(plain, key=lambda line: line.harmonic)
     level = max(line.level for line in plain)
     further = len(plain) - 1
     more = "" if not further else " and 1 further harmonic" if further == 1 else f" and {further} further harmonics"
     verb = "stand up to" if further else "stands"
-    sides = ""
-    if any(line.sideband for line in lines):
-        sides = f" with sidebands at the rate of the {SIDES[CLASSES[first.fault].side]}"
-    return f"{first.name} at {first.order:.2f} orders{more} {verb} {level:.0f} dB above the floor{sides}"
+    sides = [part for side, part in SIDES.items() if any(line.side == side for line in lines)]
+    beside = f" with sidebands at the rate of the {_listed(sides, 'and')}" if sides else ""
+    return f"{first.name} at {first.order:.2f} orders{more} {verb} {level:.0f} dB above the floor{beside}"
 
 
 def by_family(lines: Sequence[Line]) -> dict[str, list[Line]]:
@@ -63,13 +64,64 @@ def candidates(probabilities: Mapping[str, float], number: int = 2) -> str:
     return ", ".join(f"{name} {probabilities[name]:.2f}" for name in ranked)
 
 
-def speed_in_words(labelled: float, other: float | None, checked: bool) -> str:
-    """Speed of the shaft; rates in Hz, ``other`` None if the label stands."""
-    text = f"shaft {60 * labelled:,.0f} rpm"
-    if other is not None:
-        return f"shaft {60 * other:,.0f} rpm as found, {60 * labelled:,.0f} rpm as labelled"
-    return f"{text} as labelled" if checked else f"{text} as labelled, not checked"
+def answer_in_words(verdict: str, probability: float, lines: Sequence[Line]) -> str:
+    """Such as "Inner race fault (probability 0.94): BPFI at 5.40 orders stands 18 dB above the floor"."""
+    return f"{CLASSES[verdict].words} (probability {probability_in_words(probability)}): {reasons(verdict, lines)}"
+
+
+def pair_in_words(pair: Pair, given: Given, others: int) -> str:
+    """Bearing, if several are given, and speed of the shaft with its source; ``others`` is the number of other pairs that fit."""
+    return _pair(pair, given) + (
+        f", one of {others + 1} pairs of bearing and speed that fit the lines" if others else ""
+    )
+
+
+def _pair(pair: Pair, given: Given) -> str:
+    bearing = "" if len(given.bearings) == 1 else f"bearing {_bearing(pair)} as found, "
+    low, high = (f"{60 * rate:,.0f}" for rate in given.rates)
+    if low != high:
+        return f"{bearing}shaft {60 * pair.rate:,.0f} rpm as found between {low} and {high} rpm"
+    if pair.rate != given.rates[0]:
+        return f"{bearing}shaft {60 * pair.rate:,.0f} rpm as found, {low} rpm as labelled"
+    return f"{bearing}shaft {low} rpm as labelled"
+
+
+def speed_warning(pair: Pair, given: Given) -> tuple[str, ...]:
+    """Sentence on a label that does not fit the lines."""
+    (low, high), uncertainty = given.rates, 60 * pair.uncertainty
+    if low != high or abs(pair.rate - low) <= DISAGREEMENT * pair.uncertainty:
+        return ()
+    sentence = (
+        f"The labelled speed of {60 * low:,.0f} rpm does not fit the lines of this recording; they fit {60 * pair.rate:,.0f} rpm "
+        f"(± {uncertainty:.0f}), {100 * (pair.rate / low - 1):+.1f} %."
+    )
+    return (sentence,)
+
+
+def different_classes(judged: Sequence[tuple[Pair, str]]) -> str:
+    """Clause on pairs that cannot be told apart and give different classes."""
+    each = [f"{_place(pair)} ({verdict})" for pair, verdict in judged]
+    return f"the lines cannot tell apart {_listed(each, 'and')}"
+
+
+def unexplained(pair: Pair, elsewhere: Sequence[Pair], strange: float | None) -> str:
+    """Clause on a strong comb that a pair does not explain, and on those that would explain it."""
+    if not elsewhere:
+        return (
+            f"a line at {strange:.2f} orders and its harmonics stand out, and no part of {pair.bearing} has that order, so that the "
+            "bearing or the speed may be another, or the lines come from another part of the machine"
+        )
+    each = [f"{_place(one)} ({one.lines.upper()})" for one in elsewhere]
+    return f"{_place(pair)} does not explain the strongest lines, but {_listed(each, 'or')} would"
+
+
+def _place(pair: Pair) -> str:
+    return f"{_bearing(pair)} at {60 * pair.rate:,.0f} rpm"
+
+
+def _bearing(pair: Pair) -> str:
+    return f"{pair.bearing} or alike" if pair.alike else pair.bearing
 
 
 def _listed(words: Sequence[str], last: str) -> str:
-    return f"{', '.join(words[:-1])} {last} {words[-1]}"
+    return f"{', '.join(words[:-1])} {last} {words[-1]}" if len(words) > 1 else words[0]

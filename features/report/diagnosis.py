@@ -25,6 +25,8 @@ from features.report.pictures import (
     name_lines,
     picture,
 )
+from features.signal.lines import Orders
+from features.signal.rows import FloatArray
 from gen.corpus import check_result, write_text_durably
 
 LOWEST_DB, MARGIN_DB = -5.0, 4.0  # ends of the axis of levels: below the floor, and above the highest
@@ -70,8 +72,9 @@ def write_diagnosis(
         colours={fault: row.colour for fault, row in CLASSES.items()},
         least=LEAST_LEVEL,
         false_alarm=FALSE_ALARM,
-        duration=len(recording.signal) / recording.fs,
+        duration=len(_shown_signal(diagnosis, recording)) / recording.fs,
         fs=recording.fs,
+        pairs=[(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere],
         assumed=assumed,
     )
     check_result(Path(output), "page")
@@ -86,23 +89,24 @@ def _bars(probabilities: Mapping[str, float]) -> list[Bar]:
 @rc_context(STYLE)
 def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded) -> Figure:
     """Waveform, power spectral density, and envelope spectrum over its floor, one above the other."""
-    shown = Shown("", recording.signal, recording.fs, diagnosis.shaft_rate, recording.orders, HEALTHY)
+    signal = _shown_signal(diagnosis, recording)
+    shown = Shown("", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY)
     figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
     band = DEFAULT_BAND if diagnosis.spectrum is None else diagnosis.spectrum.band
     draw_waveform(waveform, shown)
     draw_density(density, shown, band)
     if diagnosis.spectrum is not None:
-        _draw_levels(envelope, diagnosis.spectrum, diagnosis, recording)
+        _draw_levels(envelope, diagnosis.spectrum, diagnosis)
     figure.align_ylabels()
     return figure
 
 
-def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis, recording: Recorded) -> None:
+def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> None:
     """Level of the envelope spectrum over its floor, with the lines of each family, and the evidence marked."""
     order = np.arange(len(spectrum.ratio)) * spectrum.resolution / diagnosis.shaft_rate
     level = 10 * np.log10(np.maximum(spectrum.ratio, 1e-3))
-    families = _families(recording)
+    families = _families(diagnosis.orders)
     top = min(order[-1], (DRAWN_HARMONICS + 0.15) * max(lines[0] for lines in families.values()))
     visible = (order > 0) & (order <= top)
     names: dict[str, float] = {SHAFT.label: 1.0}
@@ -116,12 +120,11 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis, recor
     axes.axvline(1.0, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
     axes.plot(order[visible], level[visible], color=INK, linewidth=0.7)
     axes.axhline(LEAST_LEVEL, color=FAINT, linewidth=0.7, linestyle=(0, (4, 3)))
-    marked = [line for line in diagnosis.evidence if line.band == spectrum.band and line.order <= top]
+    shown = (spectrum.band, spectrum.channel)
+    marked = [line for line in diagnosis.evidence if (line.band, line.channel) == shown and line.order <= top]
     for line in marked:
-        marker = "o" if not line.sideband else "s"
-        axes.plot(
-            line.order, line.level, marker, color=CLASSES[line.fault].colour, markersize=4 if line.sideband else 6
-        )
+        marker = "o" if not line.side else "s"
+        axes.plot(line.order, line.level, marker, color=CLASSES[line.fault].colour, markersize=4 if line.side else 6)
     highest = max(float(level[visible].max(initial=LEAST_LEVEL)), LEAST_LEVEL)
     axes.set(
         xlabel="order of the shaft",
@@ -130,16 +133,23 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis, recor
         ylim=(LOWEST_DB, highest + MARGIN_DB),
     )
     name_lines(axes, {}, names, INK, top)
-    axes.set_title(f"Envelope spectrum of {_kilohertz(spectrum.band)}; dots mark the evidence", pad=30)
+    channel = f" of channel {spectrum.channel}" if spectrum.channel else ""
+    axes.set_title(f"Envelope spectrum of {_kilohertz(spectrum.band)}{channel}; dots mark the evidence", pad=30)
+
+
+def _shown_signal(diagnosis: Diagnosis, recording: Recorded) -> FloatArray:
+    """Signal of the channel whose spectrum is shown, or of the first one."""
+    first = next(iter(recording.signals.values()))
+    return first if diagnosis.spectrum is None else recording.signals[diagnosis.spectrum.channel]
 
 
 def _kilohertz(band: tuple[float, float]) -> str:
     return f"{band[0] / 1e3:.3g}-{band[1] / 1e3:.3g} kHz"
 
 
-def _families(recording: Recorded) -> dict[str, list[float]]:
+def _families(orders: Orders) -> dict[str, list[float]]:
     """Orders of the first harmonics of each family, by its class."""
-    nominal = {name: float(value) for name, value in recording.orders._asdict().items()}
+    nominal = {name: float(value) for name, value in orders._asdict().items()}
     fundamental = {
         row.name: row.lines[0].multiple * nominal[row.lines[0].base] for row in CLASSES.values() if row.evidence
     }

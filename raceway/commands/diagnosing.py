@@ -2,7 +2,7 @@
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
@@ -11,14 +11,36 @@ from raceway.console.options import A_PATH, file_option, json_option
 from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
-    from features.diagnosis import Diagnosis, Recorded
+    from features.diagnosis import Diagnosis, Given, Pair, Recorded
     from gen.physics.bearing import Bearing
 
 UNITS = ("g", "m/s2", "V")
+SPEEDS = click.FloatRange(0.001, 1e7)  # rpm
 
 
-def _number_or_name(_context: click.Context, _option: click.Parameter, text: str | None) -> int | str | None:
-    return int(text) if text is not None and text.isdecimal() else text
+class Reading(NamedTuple):
+    """How the files are read: options of the same names."""
+
+    channels: tuple[str, ...]
+    variable: str | None
+    unit: Any
+    sensitivity: float | None
+    rate: float | None
+
+
+def _names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...]:
+    return () if text is None else tuple(part.strip() for part in text.split(","))
+
+
+def _speeds(context: click.Context, option: click.Parameter, text: str | None) -> tuple[float, float] | None:
+    """Lowest and highest speed [rpm]; equal for one number."""
+    if not text:
+        return None
+    low, _, high = text[1:].partition("-")  # a minus sign is no range
+    first, last = (SPEEDS(part, option, context) for part in (text[0] + low, high or text[0] + low))
+    if not first <= last:  # nan, too
+        raise click.BadParameter(f"{text} is no number and no range such as 1400-1900")
+    return first, last
 
 
 def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
@@ -31,18 +53,18 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 @click.argument("recording", metavar="RECORDING", type=A_PATH)
 @click.option(
     "--bearing",
-    required=True,
+    "bearings",
+    multiple=True,
     metavar="BEARING",
-    help="Designation in the catalogue, such as 6205, or a geometry: n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938.",
+    help="Designation in the catalogue, such as 6205, or a geometry: n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938. "
+    "Repeat it for alternatives; without it, the whole catalogue is searched.",
 )
 @click.option(
     "--rpm",
-    "shaft_rpm",
-    type=click.FloatRange(0.001, 1e7),
-    required=True,
-    callback=_a_number,
+    "speeds",
+    callback=_speeds,
     metavar="RPM",
-    help="Speed of the shaft during the recording.",
+    help="Speed of the shaft during the recording, or a range such as 1400-1900; without it, 300 to 6,000 rpm are searched.",
 )
 @click.option(
     "--rate",
@@ -66,12 +88,14 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     help="Of the sensor [mV per g], with --unit V.",
 )
 @click.option(
-    "--column",
-    callback=_number_or_name,
-    metavar="NAME",
-    help="Column of a table by name or number from 0; channel of a WAV file.",
+    "--channel",
+    "channels",
+    callback=_names,
+    metavar="A,B,C",
+    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
+    "of one housing.",
 )
-@click.option("--variable", metavar="NAME", help="Variable of a MATLAB file; by default the only signal in it.")
+@click.option("--variable", metavar="NAME", help="Variable of a MATLAB file whose columns --channel counts.")
 @click.option(
     "--healthy",
     type=A_PATH,
@@ -79,27 +103,19 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     help="Recording of the same machine with a healthy bearing, read in the same way.",
 )
 @click.option("--model", type=A_PATH, metavar="MODEL", help="Model file; by default the reference model of this user.")
-@click.option(
-    "--speed",
-    type=click.Choice(["off", "check", "correct"]),
-    default="check",
-    show_default=True,
-    help="Believe --rpm, check it against the lines of the recording, or replace it where they clearly tell another speed.",
-)
 @file_option("REPORT", "Page with pictures: .html.", (".html",), kind="page", required=False)
 @json_option
 def diagnose(
     recording: Path,
-    bearing: str,
-    shaft_rpm: float,
+    bearings: tuple[str, ...],
+    speeds: tuple[float, float] | None,
     rate: float | None,
     unit: Any,
     sensitivity: float | None,
-    column: int | str | None,
+    channels: tuple[str, ...],
     variable: str | None,
     healthy: Path | None,
     model: Path | None,
-    speed: Any,
     output: Path | None,
     as_json: bool,
 ) -> None:
@@ -109,46 +125,38 @@ def diagnose(
     sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason and what would help.
 
       raceway diagnose pump.csv --bearing 6205 --rpm 1772 --rate 12000 --unit g -o pump.html
-      raceway diagnose fan.wav --bearing 6205 --rpm 1480
-      raceway diagnose motor.mat --variable DE_time --bearing 6205 --rpm 1750 --rate 12000 --unit g
-      raceway diagnose volts.csv --column 2 --unit V --sensitivity 100 --bearing 6308 --rpm 990 --rate 25600
+      raceway diagnose fan.wav --bearing 6205 --rpm 1400-1600
+      raceway diagnose fan.wav --bearing 6203 --bearing 6205 --rpm 1480
+      raceway diagnose motor.mat --channel X106_DE_time --bearing 6205 --rpm 1750 --rate 12000 --unit g
+      raceway diagnose volts.csv --channel x,y,z --unit V --sensitivity 100 --bearing 6308 --rpm 990 --rate 25600
       raceway diagnose pump.csv --healthy new.csv --bearing 6205 --rpm 1772 --rate 12000 --json
 
-    --json prints verdict, probabilities, shaft_rpm and evidence (line, order, frequency_hz, level_db, harmonic, band) and further facts.
+    Give a speed, a bearing or both. The answer names the pair of bearing and speed that explains the lines, and is "unsure" if pairs
+    that cannot be told apart give different answers.
+
+    --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band) and explanations
+    (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
 
     Without --model the reference model is used; the first call trains it, which takes some minutes, and so does
     raceway train domain_randomised. docs/diagnose.md tells how to record and how to read the page.
     """
-    from gen.importers.bearing_text import bearing_from_text
-    from gen.importers.signals import read_signal
-
-    known = bearing_from_text(bearing)
-    reading: dict[str, Any] = {
-        "variable": variable,
-        "column": column,
-        "unit": unit,
-        "sensitivity": sensitivity,
-        "rate": rate,
-    }
-    paths = [path for path in (recording, healthy) if path is not None]
-    signals = [read_signal(path, **reading) for path in paths]
-    recorded = [
-        _recording(signal.values, _rate(path, signal.fs), shaft_rpm, known, path)
-        for path, signal in zip(paths, signals, strict=True)
-    ]
+    known = _bearings(bearings, speeds)
+    given = _given(known, speeds)
+    reading = Reading(channels, variable, unit, sensitivity, rate)
+    read = [_read(path, reading) for path in (recording, healthy) if path is not None]
+    recorded = [one for one, _ in read]
     loaded, source = _model(model)
     from features.diagnosis import diagnose as run
 
     with notice_compilation():
-        diagnosis = run(recorded[0], loaded, healthy=recorded[1] if healthy else None, speed=speed)
-    # the diagnosis itself warns of an implausible rms
-    notes = tuple(note for signal in signals for note in signal.warnings if "its rms" not in note)
+        diagnosis = run(recorded[0], given, loaded, healthy=recorded[1] if healthy else None)
+    notes = tuple(dict.fromkeys(note for _, found in read for note in found))
     for sentence in (*notes, *diagnosis.warnings):
         notice(f"warning: {sentence}")
     if output is not None:
         from features.report.diagnosis import write_diagnosis
 
-        facts = _assumptions(recorded[0], known, unit, sensitivity, rate, speed, healthy, source, notes)
+        facts = _assumptions(recorded[0], known, diagnosis, reading, healthy, source, notes)
         write_diagnosis(diagnosis, recorded[0], output, name=recording.name, assumed=facts)
     if as_json:
         show.as_json(_facts(diagnosis, recorded[0], recording, source, output, notes))
@@ -158,22 +166,57 @@ def diagnose(
         show.text("", f"{output}: pictures, evidence and what was assumed.")
 
 
-def _rate(path: Path, fs: float | None) -> float:
-    if fs is None:
-        raise click.UsageError(f"{path} does not state its sample rate; give it with --rate HZ")
-    return fs
+def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dict[str, "Bearing"]:
+    """Bearings by name: those that are given, or the catalogue."""
+    from gen.importers.bearing_text import bearing_from_text
+    from gen.physics.catalogue import CATALOGUE
+
+    if not texts:
+        if speeds is None:
+            raise click.UsageError("give --bearing, --rpm or both: the lines alone fit many bearings")
+        return dict(CATALOGUE)
+    return {
+        text if "=" in text else bearing.designation: bearing for text in texts for bearing in [bearing_from_text(text)]
+    }
 
 
-def _recording(values: Any, fs: float, shaft_rpm: float, bearing: "Bearing", path: Path) -> "Recorded":
+def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -> "Given":
     import numpy as np
 
-    from features.diagnosis import Recorded
+    from features.diagnosis import ANY_RATE, Given
     from features.indicators import Orders
     from gen.physics.bearing import orders
     from gen.support.units import rpm_to_hertz
 
-    nominal = Orders(*(np.asarray(order) for order in orders(bearing)))
-    return Recorded(values, fs, rpm_to_hertz(shaft_rpm), nominal, str(path))
+    nominal = {name: Orders(*(np.asarray(order) for order in orders(one))) for name, one in bearings.items()}
+    return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))
+
+
+def _read(path: Path, reading: Reading) -> tuple["Recorded", tuple[str, ...]]:
+    """Channels of a file, and sentences on what was assumed; the diagnosis itself warns of an implausible rms."""
+    from features.diagnosis import Recorded
+    from gen.importers.signals import read_signal
+
+    signals = {}
+    notes: list[str] = []
+    for channel in reading.channels or (None,):
+        number = int(channel) if channel is not None and channel.isdecimal() else channel
+        named = path.suffix.lower() == ".mat" and isinstance(number, str)
+        place = {"variable": number, "column": None} if named else {"variable": reading.variable, "column": number}
+        signal = read_signal(
+            path,
+            **place,
+            unit=reading.unit,
+            sensitivity=reading.sensitivity,
+            rate=reading.rate,  # type: ignore[arg-type]
+        )
+        if signal.fs is None:
+            raise click.UsageError(f"{path} does not state its sample rate; give it with --rate HZ")
+        signals[channel or ""] = signal
+        notes += [note for note in signal.warnings if "its rms" not in note]
+    shortest = min(signal.values.size for signal in signals.values())
+    cut = {name: signal.values[:shortest] for name, signal in signals.items()}
+    return Recorded(cut, next(iter(signals.values())).fs, str(path)), tuple(notes)
 
 
 def _model(path: Path | None) -> tuple[Any, Path]:
@@ -192,19 +235,23 @@ def _facts(
 ) -> dict[str, Any]:
     from features.diagnosis import FALSE_ALARM, line_facts
 
+    pairs = [(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere]
     return {
         "verdict": diagnosis.verdict,
         "probabilities": diagnosis.probabilities,
+        "bearing": diagnosis.bearing,
         "shaft_rpm": 60 * diagnosis.shaft_rate,
         "evidence": [line_facts(line) for line in diagnosis.evidence],
+        "explanations": [_pair_facts(pair, as_given=as_given) for pair, as_given in pairs],
         "sentence": diagnosis.sentence,
         "advice": diagnosis.advice,
         "warnings": (*notes, *diagnosis.warnings),
-        "labelled_rpm": 60 * diagnosis.labelled_rate,
+        "given_rpm": [60 * rate for rate in diagnosis.given.rates],
         "threshold": diagnosis.threshold,
         "false_alarm": FALSE_ALARM,
         "band": None if diagnosis.spectrum is None else [round(edge, 1) for edge in diagnosis.spectrum.band],
-        "duration_s": len(recorded.signal) / recorded.fs,
+        "channels": list(recorded.signals),
+        "duration_s": _length(recorded) / recorded.fs,
         "sample_rate_hz": recorded.fs,
         "windows": diagnosis.windows,
         "recording": path,
@@ -213,27 +260,45 @@ def _facts(
     }
 
 
+def _pair_facts(pair: "Pair", *, as_given: bool) -> dict[str, Any]:
+    return {
+        "bearing": pair.bearing,
+        "alike": list(pair.alike),
+        "shaft_rpm": round(60 * pair.rate, 2),
+        "uncertainty_rpm": round(60 * pair.uncertainty, 2),
+        "lines": pair.lines,
+        "as_given": as_given,
+    }
+
+
+def _length(recorded: "Recorded") -> int:
+    return len(next(iter(recorded.signals.values())))
+
+
 def _assumptions(
     recorded: "Recorded",
-    bearing: "Bearing",
-    unit: str,
-    sensitivity: float | None,
-    rate: float | None,
-    speed: str,
+    bearings: dict[str, "Bearing"],
+    diagnosis: "Diagnosis",
+    reading: Reading,
     healthy: Path | None,
     source: Path,
     notes: tuple[str, ...],
 ) -> list[tuple[str, str]]:
     """Facts for the page, by name."""
-    orders = ", ".join(f"{name.upper()} {float(order):.3f}" for name, order in recorded.orders._asdict().items())
+    bearing = bearings[diagnosis.bearing]
+    orders = ", ".join(f"{name.upper()} {float(order):.3f}" for name, order in diagnosis.orders._asdict().items())
     angle = f", contact angle {math.degrees(bearing.contact_angle):.3g}°"
+    low, high = (f"{60 * rate:,.6g}" for rate in diagnosis.given.rates)
+    sensitivity = "" if reading.sensitivity is None else f", {reading.sensitivity:g} mV per g"
     facts = {
         "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of {1e3 * bearing.ball_diameter:.4g} mm on "
         f"{1e3 * bearing.pitch_diameter:.4g} mm{angle}, outer ring fixed",
         "orders": orders,
-        "labelled speed": f"{60 * recorded.shaft_rate:,.6g} rpm ({speed})",
-        "sample rate": f"{recorded.fs:,.6g} Hz, {'as given' if rate is not None else 'as the file states'}",
-        "unit": unit + (f", {sensitivity:g} mV per g" if sensitivity is not None else ""),
+        "given bearings": ", ".join(bearings) if len(bearings) > 1 else "",
+        "given speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",
+        "channels": ", ".join(recorded.signals),
+        "sample rate": f"{recorded.fs:,.6g} Hz, {'as given' if reading.rate is not None else 'as the file states'}",
+        "unit": f"{reading.unit}{sensitivity}",
         "healthy recording": "none" if healthy is None else healthy.name,
         "model": source.name,
         "notes": " ".join(notes),

@@ -1,116 +1,127 @@
-"""Laws of the verdict: when speed or lines make it unsure, and what each treatment of the speed believes."""
-
-from importlib import import_module
-from types import SimpleNamespace
+"""Laws of the verdict: when it is unsure, and how windows, channels and references are used."""
 
 import numpy as np
 import pytest
 
-from features.band import DEFAULT_BAND
 from features.baselines.predictions import UNSURE
-from features.diagnosis import diagnose
-from features.diagnosis.diagnose import (
-    CONTRADICTING,
-    LONGEST,
-    Diagnosis,
-    Recorded,
-    _beginning,
-    _put_into_words,
-    _reconcile,
-)
+from features.diagnosis import Given, Pair, Recorded
+from features.diagnosis.diagnose import LONGEST, Judged, _conclude, _usable
 from features.diagnosis.evidence import Line
-from features.indicators import Orders, feature_names
-from features.recording_table import recording_table, windows_of
+from features.diagnosis.search import Found
+from features.diagnosis.verdict import OBVIOUS, PLAIN, SURE, judge
+from features.indicators import Orders
+from features.recording_table import windows_of
 from gen.corpus import FAULTS
 
-FS, RATE, FASTER = 12_000.0, 25.0, 26.0
+FS, RATE = 12_000.0, 25.0
 ORDERS = Orders(*map(np.asarray, (0.3983, 3.5848, 5.4152, 2.3567)))
-MODEL = SimpleNamespace(
-    name="made up", groups=("lines",), features=feature_names(("lines",)), classes=FAULTS[:4], band=DEFAULT_BAND
-)
-MODULE = import_module("features.diagnosis.diagnose")  # the package has a function of this name
+GIVEN = Given({"6205": ORDERS}, (RATE, RATE))
 
 
-def verdict(name, lines=()):
-    probabilities = {fault: 0.91 if fault == name else 0.03 for fault in FAULTS[:4]}
-    return Diagnosis(name, probabilities, 0.5, RATE, RATE, tuple(lines), "")
+def probabilities(name, likely=0.91):
+    rest = (1 - likely) / 3
+    return {fault: likely if fault == name else rest for fault in FAULTS[:4]}
 
 
-def line(fault, harmonic=1, level=CONTRADICTING + 1, *, sideband=False):
-    return Line(fault, f"{harmonic}", harmonic, 3.0 * harmonic, 75.0 * harmonic, level, (1000.0, 3000.0), sideband)
+def line(fault, harmonic=1, level=PLAIN + 1, side=""):
+    return Line(fault, f"{harmonic}", harmonic, 3.0 * harmonic, 75.0 * harmonic, level, (1000.0, 3000.0), side)
 
 
-@pytest.mark.parametrize(
-    ("found", "labelled", "lines", "expected"),
-    [
-        ("inner", "inner", [], "inner"),
-        ("inner", UNSURE, [], "inner"),
-        ("inner", "outer", [], UNSURE),
-        ("inner", "outer", [line("outer")], UNSURE),
-        ("inner", "outer", [line("inner")], "inner"),
-        (UNSURE, "outer", [], UNSURE),
-    ],
-)
-def test_two_classes_at_two_speeds_are_unsure_unless_a_line_decides(found, labelled, lines, expected):
-    assert _reconcile(verdict(found), verdict(labelled), lines).verdict == expected
+PLAIN_OUTER = [line("outer", level=OBVIOUS - 1), line("outer", 2)]
 
 
 @pytest.mark.parametrize(
     ("name", "lines", "expected"),
     [
-        ("healthy", [line("inner"), line("inner", 2)], UNSURE),
-        ("outer", [line("inner"), line("inner", 2)], UNSURE),
-        ("outer", [line("inner"), line("inner", 2), line("outer", level=10.0)], "outer"),
-        ("healthy", [line("inner")], "healthy"),
-        ("healthy", [line("inner"), line("inner", sideband=True)], "healthy"),
-        ("healthy", [line("inner", level=14.0), line("inner", 2, 14.0)], "healthy"),
-        ("healthy", [line("inner", 2), line("inner", 3)], "healthy"),
-        ("healthy", [line("inner", 2), line("inner", 3), line("inner", 4)], UNSURE),
+        ("inner", [line("inner")], "inner"),
+        ("inner", [], UNSURE),
+        ("inner", PLAIN_OUTER, UNSURE),
+        ("inner", [*PLAIN_OUTER, line("inner", level=10.0)], "inner"),
+        ("ball", [], "ball"),
+        ("ball", [line("cage"), line("cage", 2)], "ball"),
+        ("ball", [line("outer", level=10.0)], UNSURE),
+        ("ball", [line("ball"), line("ball", side="ftf")], "ball"),
+        ("ball", [line("ball"), line("ball", side="ftf"), line("ball", level=PLAIN + 5, side="shaft")], UNSURE),
+        ("ball", [line("ball"), line("ball", level=PLAIN - 1, side="shaft")], "ball"),
     ],
 )
-def test_a_verdict_falls_to_high_harmonics_of_another_class_alone(name, lines, expected):
-    assert _put_into_words(verdict(name, lines), None, "check", 10.0, compared=False).verdict == expected
-
-
-def recorded(seed, name="recording"):
-    return Recorded(np.random.default_rng(seed).standard_normal(round(FS)), FS, RATE, ORDERS, name)
-
-
-@pytest.fixture
-def references(monkeypatch):
-    """The lines tell another speed, at which the classifier says inner, and outer at the labelled one."""
-    given = []
-
-    def predicted(recording, _, reference):
-        given.append(reference)
-        return verdict("inner" if recording.shaft_rate == FASTER else "outer")
-
-    monkeypatch.setattr(MODULE, "_speed", lambda _: (FASTER, 0.1))
-    monkeypatch.setattr(MODULE, "_predict", predicted)
-    return given
+def test_a_fault_needs_lines_of_its_own_and_balls_none_of_another_part(name, lines, expected):
+    assert judge(probabilities(name), 0.5, lines)[0] == expected
 
 
 @pytest.mark.parametrize(
-    ("speed", "expected", "rate"), [("off", "outer", RATE), ("check", UNSURE, FASTER), ("correct", "inner", FASTER)]
+    ("likely", "lines", "expected"),
+    [
+        (SURE - 0.01, PLAIN_OUTER, UNSURE),
+        (SURE - 0.01, [line("inner")], "healthy"),
+        (SURE - 0.01, [line("inner"), line("inner", side="shaft")], "healthy"),
+        (SURE - 0.01, [line("inner", level=PLAIN - 1), line("inner", 2, PLAIN - 1)], "healthy"),
+        (SURE - 0.01, [line("inner", 2), line("inner", 3)], "healthy"),
+        (SURE - 0.01, [line("inner", 2), line("inner", 3), line("inner", 4)], UNSURE),
+        (SURE, PLAIN_OUTER, "healthy"),
+        (SURE, [line("outer", level=OBVIOUS), line("outer", 2)], UNSURE),
+    ],
 )
-def test_each_treatment_of_the_speed_believes_another(references, speed, expected, rate):
-    found = diagnose(recorded(0), MODEL, speed=speed)
-    assert (found.verdict, found.shaft_rate, found.labelled_rate) == (expected, rate, RATE)
-    assert references == [None] * (2 if speed == "check" else 1)
+def test_healthy_falls_to_plain_lines_and_if_it_is_sure_to_obvious_ones(likely, lines, expected):
+    assert judge(probabilities("healthy", likely), 0.5, lines)[0] == expected
 
 
-def test_the_reference_is_the_healthy_recording(references):
-    diagnose(recorded(0), MODEL, healthy=recorded(1, "healthy"), speed="off")
-    windows = windows_of(recorded(1).signal, FS)
-    expected = recording_table(windows, FS, RATE, ORDERS, 0, ("lines", "bands"))["features"].values
-    np.testing.assert_array_equal(references[0]["features"].values, expected)
+def test_below_the_threshold_the_reason_names_the_strongest_lines():
+    verdict, why = judge(probabilities("inner", 0.4), 0.5, [line("inner")])
+    assert verdict == UNSURE
+    assert "0.50" in why
+    assert "tells of inner" in why
+
+
+def judged(name, pair):
+    spectrum = [object()]
+    return Judged(pair, name, "" if name != UNSURE else "no reason", probabilities(name), 0.5, 4, [], spectrum)
+
+
+def pair(rate, bearing="6205"):
+    return Pair(bearing, ORDERS, rate, 0.2, "bpfo", 9.0)
+
+
+def concluded(*names, elsewhere=(), strange=None, given=GIVEN):
+    pairs = [pair(RATE + number) for number in range(len(names))]
+    each = [judged(name, one) for name, one in zip(names, pairs, strict=True)]
+    return _conclude(each, Found(tuple(pairs), elsewhere), given, strange, ())
+
+
+def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
+    given = GIVEN._replace(rates=(RATE, 2 * RATE))
+    assert concluded("outer", "outer", given=given).verdict == "outer"
+    found = concluded("outer", "inner", given=given)
+    assert found.verdict == UNSURE
+    assert "cannot tell apart 6205 at 1,500 rpm (outer) and 6205 at 1,560 rpm (inner)" in found.sentence
+
+
+@pytest.mark.parametrize("name", ["healthy", "outer"])
+def test_a_comb_that_is_not_explained_makes_every_verdict_unsure_and_names_what_would_explain_it(name):
+    found = concluded(name, elsewhere=(pair(30.0),))
+    assert found.verdict == UNSURE
+    assert (
+        "6205 at 1,500 rpm does not explain the strongest lines, but 6205 at 1,800 rpm (BPFO) would" in found.sentence
+    )
+    found = concluded(name, strange=4.21)
+    assert found.verdict == UNSURE
+    assert "4.21 orders" in found.sentence
 
 
 def test_a_long_recording_is_used_from_its_beginning():
-    x = np.arange(round((LONGEST + 5) * 100))
-    used, (sentence,) = _beginning(Recorded(x, 100.0, RATE, ORDERS))
-    np.testing.assert_array_equal(used, x[:6000])
-    assert sentence == "Only the first 60 s of 65 s are used."
+    rng = np.random.default_rng(0)
+    x = rng.standard_normal(round((LONGEST + 5) * 4000))
+    used, quality = _usable(Recorded({"": x}, 4000.0), GIVEN)
+    np.testing.assert_array_equal(used.signals[""], x[:240_000])
+    assert quality.warnings[0] == "Only the first 60 s of 65 s are used."
+
+
+def test_a_channel_that_tells_nothing_is_left_out_unless_it_is_the_only_one():
+    x = np.random.default_rng(0).standard_normal(round(2 * FS))
+    used, quality = _usable(Recorded({"x": x, "y": 0 * x}, FS), GIVEN)
+    assert list(used.signals) == ["x"]
+    assert quality.warnings[0].startswith("Channel y is left out, since the signal is constant")
+    assert "constant" in _usable(Recorded({"y": 0 * x}, FS), GIVEN)[1].useless
 
 
 def test_windows_follow_each_other_and_a_short_signal_is_one():

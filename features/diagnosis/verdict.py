@@ -1,0 +1,83 @@
+"""Verdict from the probabilities of the classifier and the lines of a recording, which must agree. Pure.
+
+A class is answered if the classifier is sure of it and the lines do not tell another:
+
+- A fault needs lines of its own family. Balls often show none: then no part but the cage, which goes round with them, may
+  show lines. Lines of balls have no sidebands at the shaft rate 15 dB above the floor that are higher than those at the rate
+  of the cage: such lines come from the inner race of another bearing.
+- "Healthy" falls to plain lines of a part: a fundamental and a harmonic, or three harmonics, one of them 15 dB above the
+  floor. From a probability of .85 on they must be 25 dB above it, since healthy bearings have faint lines of all parts. It
+  also falls to a strange colour, if there is a healthy recording to compare with.
+"""
+
+from collections.abc import Mapping, Sequence
+
+from features.baselines.predictions import UNSURE
+from features.diagnosis.evidence import Line
+from features.diagnosis.wording import by_family, family_in_words
+from features.faults import CLASSES, HEALTHY, SHAFT, SIDES
+
+PLAIN = 15.0  # dB, level of lines that contradict a class
+OBVIOUS = 25.0  # dB, the same for a class of which the classifier is sure
+SURE = 0.85  # probability
+FRIENDS = {"ball": {"cage"}}
+"""Families whose lines go with a class."""
+
+
+def judge(
+    probabilities: Mapping[str, float], threshold: float, lines: Sequence[Line], distance: float = 0.0
+) -> tuple[str, str]:
+    """Class or "unsure", and for the latter a clause with the reason.
+
+    ``distance`` is that of the colour from the healthy recordings, as in `features.baselines.colour`.
+    """
+    likely = max(probabilities, key=lambda name: probabilities[name])
+    families = by_family(lines)
+    if probabilities[likely] < threshold:
+        return UNSURE, _doubt(families, threshold)
+    if likely != HEALTHY and not CLASSES[likely].evidence:
+        return likely, ""
+    if likely == HEALTHY and distance > 1:
+        return UNSURE, (
+            f"the classifier says healthy, but the spectral colour differs {distance:.1f} times as much from the healthy recording as "
+            "those of healthy recordings of one machine usually do"
+        )
+    if likely in families:
+        foreign = _foreign_sidebands(families[likely])
+        return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
+    others = {fault: held for fault, held in families.items() if fault not in FRIENDS.get(likely, ())}
+    if likely == HEALTHY:
+        level = OBVIOUS if probabilities[likely] >= SURE else PLAIN
+        others = {fault: held for fault, held in others.items() if _plain(held, level)}
+        agree = not others
+    else:
+        agree = likely in FRIENDS and not others
+    if agree:
+        return likely, ""
+    if not others:
+        return UNSURE, f"the classifier says {likely}, but no {CLASSES[likely].lines[0].label} line stands out"
+    fault, held = next(iter(others.items()))
+    return UNSURE, f"the classifier says {likely}, but {family_in_words(held)}, which tells of {fault}"
+
+
+def _foreign_sidebands(lines: Sequence[Line]) -> str:
+    """Clause on sidebands at the shaft rate that tell of another part."""
+    own = CLASSES[lines[0].fault].side
+    highest = {side: max((line.level for line in lines if line.side == side), default=0.0) for side in SIDES}
+    if own == SHAFT.base or highest[SHAFT.base] < max(PLAIN, highest[own]):
+        return ""
+    return f"{family_in_words(lines)}, as the inner race of another bearing would show"
+
+
+def _plain(lines: Sequence[Line], level: float) -> bool:
+    harmonics = {line.harmonic for line in lines if not line.side}
+    return len(harmonics) >= (2 if 1 in harmonics else 3) and max(line.level for line in lines) >= level
+
+
+def _doubt(families: Mapping[str, Sequence[Line]], threshold: float) -> str:
+    """Why the classifier does not answer, and what the strongest lines tell."""
+    least = f"no class reaches the probability of {threshold:.2f} from which the classifier answers"
+    if not families:
+        return f"{least}, and no line stands out"
+    fault, lines = next(iter(families.items()))
+    return f"{least}; {family_in_words(lines)}, which tells of {fault}"

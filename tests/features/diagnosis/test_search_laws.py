@@ -1,0 +1,115 @@
+"""Laws of the search for bearing and speed: a comb beside its shaft is found over a wide range, and noise explains nothing."""
+
+import numpy as np
+import pytest
+
+from features.diagnosis import ANY_RATE, Given, Pair
+from features.diagnosis.evidence import Line
+from features.diagnosis.search import LevelSpectra, find_pairs, mean_spectra, strange_comb
+from features.indicators import Orders
+
+FS, RATE = 12_000.0, 29.5
+NINE, EIGHT = Orders(0.3983, 3.5848, 5.4152, 2.3567), Orders(0.3821, 3.0530, 4.9470, 1.9940)
+SEVEN = Orders(0.364, 2.545, 4.455, 1.696)
+ORDER = {"bpfo": 3.5848, "bpfi": 5.4152, "2bsf": 4.7134}
+
+
+def recording(order, seed, shaft=0.3, seconds=5.0, rate=RATE):
+    """Noise, shaft harmonics, and impulses at an order of the shaft that excite a resonance; 0 for none."""
+    rng = np.random.default_rng(seed)
+    t = np.arange(round(seconds * FS)) / FS
+    x = rng.standard_normal(t.size) + sum(shaft * np.cos(2 * np.pi * k * rate * t + k) / k for k in range(1, 7))
+    if not order:
+        return x
+    since = np.mod(t + rng.uniform(), 1 / (order * rate))
+    return x + 8 * np.exp(-900 * since) * np.sin(2 * np.pi * 2800 * since)
+
+
+def found(x, given):
+    spectra = mean_spectra([x], FS, given)
+    return find_pairs(spectra, given)
+
+
+@pytest.mark.parametrize("family", ORDER)
+@pytest.mark.parametrize("rates", [(18.0, 42.0), ANY_RATE])
+def test_a_comb_beside_its_shaft_is_found_in_a_range(family, rates):
+    pair = found(recording(ORDER[family], 1), Given({"nine": NINE}, rates)).pairs[0]
+    assert pair.rate == pytest.approx(RATE, rel=0.01)
+    assert abs(pair.rate - RATE) < 3 * pair.uncertainty
+    assert pair.lines == family
+
+
+def test_the_bearing_is_found_among_several_at_a_known_speed():
+    given = Given({"eight": EIGHT, "nine": NINE, "also nine": NINE, "seven": SEVEN}, (RATE, RATE))
+    (pair,) = found(recording(ORDER["bpfo"], 2), given).pairs
+    assert (pair.bearing, pair.alike, pair.lines) == ("nine", ("also nine",), "bpfo")
+
+
+@pytest.mark.parametrize("error", [-0.4, -0.25, 0.3, 0.4])
+def test_a_wrong_speed_is_kept_and_the_pair_that_explains_the_lines_is_elsewhere(error):
+    label = RATE * (1 + error)
+    answer = found(recording(ORDER["bpfo"], 3), Given({"nine": NINE}, (label, label)))
+    assert [pair.rate for pair in answer.pairs] == [label]
+    assert answer.elsewhere[0].rate == pytest.approx(RATE, rel=0.01)
+
+
+def test_a_speed_a_few_per_cent_off_is_corrected_and_explains_the_lines():
+    label = 1.05 * RATE
+    answer = found(recording(ORDER["bpfo"], 4), Given({"nine": NINE}, (label, label)))
+    assert answer.pairs[0].rate == pytest.approx(RATE, rel=0.01)
+    assert answer.elsewhere == ()
+
+
+@pytest.mark.parametrize("shaft", [0.0, 0.5])
+def test_noise_and_shafts_alone_leave_the_label_and_nothing_to_explain(shaft):
+    for seed in range(20):
+        given = Given({"nine": NINE}, (RATE, RATE))
+        x = recording(0, seed, shaft, seconds=3.0)
+        spectra = mean_spectra([x], FS, given)
+        answer = find_pairs(spectra, given)
+        assert answer.pairs[0].rate == RATE
+        assert answer.elsewhere == ()
+        assert strange_comb(spectra, answer.pairs[0], []) is None
+
+
+def test_one_axis_with_lines_tells_the_speed_of_all():
+    given = Given({"nine": NINE}, (18.0, 42.0))
+    axes = [recording(0, 5), recording(ORDER["bpfi"], 6), recording(ORDER["bpfi"], 7)]
+    answer = find_pairs(mean_spectra(axes, FS, given), given)
+    assert answer.pairs[0].rate == pytest.approx(RATE, rel=0.01)
+
+
+@pytest.mark.parametrize(("rate", "seconds"), [(0.5, 20.0), (1.5, 3.0), (40.0, 0.06), (150.0, 1.0)])
+def test_slow_and_fast_shafts_and_short_recordings_are_searched(rate, seconds):
+    answer = found(recording(ORDER["bpfo"], 8, seconds=seconds, rate=rate), Given({"nine": NINE}, (rate, rate)))
+    assert answer.pairs[0].rate == pytest.approx(rate, rel=0.08)
+
+
+def spectra_with(*orders, height=3.0):
+    """Levels of noise with lines at orders of the shaft."""
+    level = np.full(6000, -0.11)
+    level[np.rint(np.array(orders) * RATE / 0.25).astype(int)] = height
+    return LevelSpectra(level, np.full(6000, -0.11), 0.25, 20)
+
+
+BPFI = Line("inner", "BPFI", 1, 5.4152, 5.4152 * RATE, 24.0, (1000.0, 3000.0))
+
+
+@pytest.mark.parametrize(
+    ("orders", "lines", "strange"),
+    [
+        ((4.21, 8.42, 12.63), [], True),
+        ((4.21,), [], False),
+        ((2.5, 5.0, 7.5), [], False),  # the second lies at the shaft
+        ((4.4152, 8.8304, 13.2456), [], True),
+        ((4.4152, 8.8304, 13.2456), [BPFI], False),  # one shaft order below BPFI
+        ((3.5848, 7.1696, 10.7544), [], False),
+        (tuple(100 * n / RATE for n in (1, 2, 3)), [], False),
+        (tuple(60 * n / RATE for n in (1, 2, 3)), [], False),
+    ],
+)
+def test_a_comb_is_strange_unless_bearing_shaft_mains_or_evidence_explain_it(orders, lines, strange):
+    found_order = strange_comb(spectra_with(*orders), Pair("nine", NINE, RATE, 0.2, "shaft", 5.0), lines)
+    assert (found_order is not None) == strange
+    if strange:
+        assert found_order == pytest.approx(orders[0], rel=0.01)
