@@ -1,0 +1,152 @@
+"""Verdicts on recordings of three real machines, with the right speed and bearing, with wrong ones, and with ones to be searched.
+
+``python -m benchmarks.verdicts REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them; the
+model is the reference model. "Wrong" is the share of recordings with another fault than the true one, or any on a healthy machine, and
+"called healthy" that of faulty ones among all. The second table shows, at the right speed and bearing, how often the lines agree with the
+class that the classifier is sure of.
+"""
+
+import argparse
+import tempfile
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+
+from benchmarks.realism import UESTC_LABELLED
+from benchmarks.speed import Recording, recordings
+from features.baselines import Model
+from features.baselines.predictions import UNSURE
+from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose
+from features.faults import CLASSES, HEALTHY
+from features.indicators import Orders
+from gen.importers import import_cwru, import_generic, import_mfpt
+from gen.physics.bearing import orders
+from gen.physics.catalogue import CATALOGUE
+from raceway.studies.reference_model import load_reference_model
+
+RIGHT = "right speed and bearing"
+ERRORS = tuple(sign * percent / 100 for percent in range(4, 41, 4) for sign in (-1, 1))
+NEAR = 0.08  # error of a speed that is searched by default
+OTHERS = ("6203", "6205", "6303", "6210", "6006")
+"""Wrong bearings: the first four whose number of balls differs from the true one."""
+SEARCHED = (0.6, 1.4)  # range of speeds over the label
+WITHOUT_FAULT = ("noise", "tones", "shaft", "modulated", "gears")
+ANSWERS = ("right", UNSURE, "wrong", "called healthy")
+
+FS, SECONDS = 12_000.0, 3.0  # of the signals without a fault
+SEEDS = 20
+
+_NOMINAL = {name: Orders(*map(np.asarray, orders(bearing))) for name, bearing in CATALOGUE.items()}
+
+
+def conditions(recording: Recording) -> Iterator[tuple[str, Given]]:
+    """Bearings and speeds to diagnose a recording with, and the name of the condition."""
+    own = {"own": Orders(*map(np.asarray, recording.orders))}
+    label = recording.label
+    yield RIGHT, Given(own, (label, label))
+    for error in ERRORS:
+        wrong = label * (1 + error)
+        yield f"speed wrong by {'at most' if abs(error) <= NEAR else 'more than'} 8 %", Given(own, (wrong, wrong))
+    balls = round(recording.orders[1] + recording.orders[2])
+    others = [name for name in OTHERS if CATALOGUE[name].n_balls != balls]
+    for name in others[:4]:
+        yield "wrong bearing", Given({name: _NOMINAL[name]}, (label, label))
+    yield "speed within 40 %", Given(own, (SEARCHED[0] * label, SEARCHED[1] * label))
+    yield "speed not given", Given(own, ANY_RATE)
+    yield "bearing not given", Given({**own, **_NOMINAL}, (label, label))
+
+
+def without_fault(kind: str, seed: int) -> tuple[Recorded, Given]:
+    """Signal without a bearing fault: ``noise``, ``tones``, ``shaft`` harmonics, noise ``modulated`` by the shaft, or ``gears``."""
+    rng = np.random.default_rng(seed)
+    name, rate = str(rng.choice(OTHERS)), rng.uniform(12, 45)
+    t = np.arange(round(SECONDS * FS)) / FS
+
+    def waves(*frequencies: float) -> np.ndarray:
+        each = [rng.uniform(0.2, 2) * np.cos(2 * np.pi * one * t + rng.uniform(0, 6)) for one in frequencies]
+        return np.sum(each, axis=0)
+
+    x = rng.standard_normal(t.size)
+    if kind == "tones":
+        x += waves(*rng.uniform(40, 4800, rng.integers(1, 9)))
+    if kind == "modulated":
+        x *= 1 + rng.uniform(0, 0.5) * np.cos(2 * np.pi * rate * t) + 0.3 * np.cos(4 * np.pi * rate * t)
+    if kind != "noise":
+        x += waves(*(rate * np.arange(1, rng.integers(3, 15))))
+    if kind == "gears":
+        mesh, other = rng.integers(15, 50) * rate, rate * rng.uniform(0.3, 3)
+        x += waves(mesh, 2 * mesh, 3 * mesh) * (1 + 0.2 * waves(rate, other, 2 * other))
+    return Recorded({"": x}, FS), Given({name: _NOMINAL[name]}, (rate, rate))
+
+
+def answer(verdict: str, fault: str) -> str:
+    """One of ``ANSWERS``."""
+    if verdict in (fault, UNSURE):
+        return "right" if verdict == fault else UNSURE
+    return "called healthy" if verdict == HEALTHY else "wrong"
+
+
+def agreement(diagnosis: Diagnosis) -> tuple[str, str] | None:
+    """Class that the classifier is sure of, and the lines: of this class, of another, or none. None if it is not sure."""
+    likely = max(diagnosis.probabilities, key=lambda name: diagnosis.probabilities[name])
+    families = {line.fault for line in diagnosis.evidence}
+    if diagnosis.probabilities[likely] < diagnosis.threshold:
+        return None
+    return likely, "own" if likely in families else "another's" if families else "none"
+
+
+def rows(title: str, answers: Mapping[str, Counter[str]]) -> Iterator[str]:
+    """Rows of a set, or of all together."""
+    for condition, counts in answers.items():
+        total = counts.total()
+        cells = " | ".join(f"{100 * counts[name] / total:.1f}" for name in ANSWERS)
+        yield f"| {title} | {condition} | {total} | {cells} |"
+
+
+def diagnosed(corpus: Path, model: Model) -> Iterator[tuple[str, str, Diagnosis]]:
+    """Condition, true class and diagnosis of every recording under every condition."""
+    for recording in recordings(corpus):
+        for condition, given in conditions(recording):
+            yield condition, recording.fault, diagnose(Recorded({"": recording.x.ravel()}, recording.fs), given, model)
+
+
+def main() -> None:
+    """Print both tables."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("real", type=Path)
+    options = parser.parse_args()
+    model, _ = load_reference_model()
+    together: dict[str, Counter[str]] = {}
+    agreed: Counter[tuple[str, str]] = Counter()
+    print(f"| set | given | diagnoses | {' | '.join(f'{name}, %' for name in ANSWERS)} |")
+    print("|---|---|---:|---:|---:|---:|---:|")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        corpora = {
+            "UESTC": import_generic(UESTC_LABELLED, folder / "uestc", folder=options.real / "uestc").path,
+            "CWRU": import_cwru(options.real / "cwru", folder / "cwru").path,
+            "MFPT": import_mfpt(options.real / "mfpt", folder / "mfpt").path,
+        }
+        for title, corpus in corpora.items():
+            answers: dict[str, Counter[str]] = {}
+            for condition, fault, diagnosis in diagnosed(corpus, model):
+                for counts in (answers, together):
+                    counts.setdefault(condition, Counter())[answer(diagnosis.verdict, fault)] += 1
+                found = agreement(diagnosis) if condition == RIGHT else None
+                agreed.update([found] if found else [])
+            print(*rows(title, answers), sep="\n", flush=True)
+    print(*rows("all", together), sep="\n")
+    for kind in WITHOUT_FAULT:
+        verdicts = (diagnose(*without_fault(kind, seed), model).verdict for seed in range(SEEDS))
+        print(*rows("made up", {f"{kind} alone": Counter(answer(one, HEALTHY) for one in verdicts)}), sep="\n")
+    print("\n| sure of | lines of its own | of another class alone | none |\n|---|---:|---:|---:|")
+    for fault in CLASSES:
+        counts = [agreed[fault, lines] for lines in ("own", "another's", "none")]
+        if any(counts):
+            print(f"| {fault} | {' | '.join(map(str, counts))} |")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,43 @@
+"""The benchmark of verdicts: its conditions and tables, and signals without a fault, which no lines can make a fault."""
+
+from collections import Counter
+
+import numpy as np
+import pytest
+
+from benchmarks.speed import recordings
+from benchmarks.verdicts import ERRORS, RIGHT, SEEDS, WITHOUT_FAULT, answer, conditions, rows, without_fault
+from features.baselines.predictions import UNSURE
+from features.diagnosis.evidence import find_evidence
+from features.diagnosis.search import find_pairs, mean_spectra
+from features.diagnosis.spectrum import band_spectra
+from features.diagnosis.verdict import judge
+from tests.features.test_recording_speeds import write_machines
+
+
+def test_every_recording_is_diagnosed_at_right_wrong_and_unknown_speeds_and_bearings(tmp_path):
+    recording = next(recordings(write_machines(tmp_path / "machines")))
+    every = list(conditions(recording))
+    counts = Counter(name for name, _ in every)
+    assert len(ERRORS) == 20
+    assert counts[RIGHT] == counts["speed not given"] == counts["bearing not given"] == 1
+    assert counts["wrong bearing"] == 4
+    assert counts["speed wrong by at most 8 %"] + counts["speed wrong by more than 8 %"] == 20
+
+
+def test_a_row_has_the_shares_of_all_answers():
+    answers = Counter(answer(verdict, "inner") for verdict in ("inner", UNSURE, "outer", "healthy"))
+    assert list(rows("A", {RIGHT: answers})) == [f"| A | {RIGHT} | 4 | 25.0 | 25.0 | 25.0 | 25.0 |"]
+    assert answer("healthy", "healthy") == "right"
+
+
+@pytest.mark.parametrize("kind", WITHOUT_FAULT)
+def test_noise_tones_shafts_and_gears_are_no_race_fault_however_sure_the_classifier_is(kind):
+    for seed in range(SEEDS):
+        recorded, given = without_fault(kind, seed)
+        x = recorded.signals[""]
+        (pair,) = find_pairs(mean_spectra([x], recorded.fs, given), given).pairs
+        lines = find_evidence(band_spectra(x, recorded.fs, pair.rate), pair.rate, pair.orders)
+        for fault in ("inner", "outer"):
+            assert judge({fault: 0.99, "healthy": 0.01}, 0.5, lines)[0] == UNSURE
+        assert np.isfinite(x).all()
