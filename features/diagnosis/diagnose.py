@@ -8,7 +8,7 @@ the signal tells nothing. Evidence is measured in the signal alone, whatever the
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -19,7 +19,7 @@ from features.baselines.predictions import UNSURE, Predictions, predictions
 from features.baselines.references import with_energies
 from features.channels import joined_channels
 from features.diagnosis.evidence import Line, find_evidence
-from features.diagnosis.quality import Quality, quality_of
+from features.diagnosis.quality import ENOUGH, Quality, quality_of
 from features.diagnosis.search import Found, Given, Pair, find_pairs, mean_spectra, strange_comb
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.diagnosis.verdict import judge
@@ -157,7 +157,9 @@ def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Record
     found = find_pairs(spectra, given)
     judged = [_judge(used, pair, model, reference) for pair in found.pairs]
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
-    return _conclude(judged, found, given, strange, quality.warnings)
+    diagnosis = _conclude(judged, found, given, strange)
+    advice = diagnosis.advice + (_advice(used, healthy is not None) if diagnosis.verdict == UNSURE else ())
+    return replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings))
 
 
 def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
@@ -251,13 +253,18 @@ def _rows(recording: Recorded, channel: str, pair: Pair, model: Model) -> "DataF
     return DataFrame(values[:, columns], columns=Index(model.features))
 
 
-def _conclude(
-    judged: list[Judged], found: Found, given: Given, strange: float | None, warnings: tuple[str, ...]
-) -> Diagnosis:
+def _advice(recording: Recorded, compared: bool) -> tuple[str, ...]:
+    duration = max(map(len, recording.signals.values())) / recording.fs
+    longer = f"Record longer: {ENOUGH:g} s instead of {duration:.2g} s."
+    reference = "Give a recording of the machine with a healthy bearing (--healthy)."
+    return tuple(([longer] if duration < ENOUGH else []) + ([] if compared else [reference]))
+
+
+def _conclude(judged: list[Judged], found: Found, given: Given, strange: float | None) -> Diagnosis:
     """Diagnosis at the first pair, "unsure" if others give another class or if a strong comb is not explained."""
     first = judged[0]
     why = first.why
-    advice: tuple[str, ...] = ()
+    advice: tuple[str, ...] = ("Measure the speed during the recording, and check the bearing designation.",)
     if found.elsewhere or strange is not None:
         why = unexplained(first.pair, found.elsewhere, strange)
         advice = (
@@ -270,7 +277,6 @@ def _conclude(
     told = pair_in_words(first.pair, given, len(judged) - 1)
     if why:
         sentence = f"Unsure ({candidates(first.probabilities)}): {why}; {told}."
-        advice = (*advice, "Record 10 s or more, and the machine with a healthy bearing, too (--healthy).")
     else:
         sentence = answer_in_words(verdict, first.probabilities[verdict], first.lines) + f"; {told}."
         advice = (WATCH,) if verdict == HEALTHY and first.lines else ()
@@ -285,7 +291,7 @@ def _conclude(
         evidence=tuple(first.lines),
         sentence=sentence,
         advice=advice,
-        warnings=(*warnings, *speed_warning(first.pair, given)),
+        warnings=speed_warning(first.pair, given),
         explanations=found.pairs,
         elsewhere=found.elsewhere,
         windows=first.windows,

@@ -86,7 +86,7 @@ def pair(rate, bearing="6205"):
 def concluded(*names, elsewhere=(), strange=None, given=GIVEN):
     pairs = [pair(RATE + number) for number in range(len(names))]
     each = [judged(name, one) for name, one in zip(names, pairs, strict=True)]
-    return _conclude(each, Found(tuple(pairs), elsewhere), given, strange, ())
+    return _conclude(each, Found(tuple(pairs), elsewhere), given, strange)
 
 
 def test_pairs_that_cannot_be_told_apart_must_give_the_same_class():
