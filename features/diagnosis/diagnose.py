@@ -7,7 +7,7 @@ Bearing and speed are searched within what is given. The verdict is that of the 
 the signal tells nothing. Evidence is measured in the signal alone, whatever the verdict.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -35,7 +35,7 @@ from features.faults import HEALTHY
 from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray
-from gen.corpus import FAULTS, UNKNOWN_CODE
+from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
@@ -118,7 +118,7 @@ class Diagnosis:
     spectrum: BandSpectrum | None = field(default=None, repr=False, compare=False)
 
 
-def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Recorded | None = None) -> Diagnosis:
+def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Sequence[Recorded] = ()) -> Diagnosis:
     """Diagnose one recording.
 
     Parameters
@@ -131,7 +131,7 @@ def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Record
     model
         A trained model.
     healthy
-        A recording of the same machine with a healthy bearing, with the same channels.
+        Recordings of the same machine with a healthy bearing, with the same channels. Several tell how much it varies.
 
     Raises
     ------
@@ -145,20 +145,13 @@ def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Record
     used, quality = _usable(recording, given)
     if quality.useless:
         return _useless(given, model, quality)
-    reference = None
-    if healthy is not None:
-        reference, reason = _usable(healthy, given)
-        if reason.useless or not set(used.signals) <= set(reference.signals):
-            why = reason.useless or " ".join(reason.warnings)
-            raise CorpusError(
-                f"{healthy.name}: cannot be used as the healthy recording, since {why}; give another, or none."
-            )
+    references = [_reference(one, used, given) for one in healthy]
     spectra = mean_spectra(list(used.signals.values()), used.fs, given)
     found = find_pairs(spectra, given)
-    judged = [_judge(used, pair, model, reference) for pair in found.pairs]
+    judged = [_judge(used, pair, model, references) for pair in found.pairs]
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
     diagnosis = _conclude(judged, found, given, strange)
-    advice = diagnosis.advice + (_advice(used, healthy is not None) if diagnosis.verdict == UNSURE else ())
+    advice = diagnosis.advice + (_advice(used, bool(healthy)) if diagnosis.verdict == UNSURE else ())
     return replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings))
 
 
@@ -184,6 +177,17 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
     return recording._replace(signals=kept), Quality("", "", tuple(warnings))
 
 
+def _reference(healthy: Recorded, used: Recorded, given: Given) -> Recorded:
+    """What is used of a healthy recording, which must tell something in the channels that are used."""
+    reference, quality = _usable(healthy, given)
+    if quality.useless or not set(used.signals) <= set(reference.signals):
+        why = quality.useless or " ".join(quality.warnings)
+        raise CorpusError(
+            f"{healthy.name}: cannot be used as the healthy recording, since {why}; give another, or none."
+        )
+    return reference
+
+
 def _useless(given: Given, model: Model, quality: Quality) -> Diagnosis:
     name, orders = next(iter(given.bearings.items()))
     return Diagnosis(
@@ -200,7 +204,7 @@ def _useless(given: Given, model: Model, quality: Quality) -> Diagnosis:
     )
 
 
-def _judge(recording: Recorded, pair: Pair, model: Model, reference: Recorded | None) -> Judged:
+def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Judged:
     """Prediction and evidence at one pair of bearing and speed."""
     spectra = [
         spectrum
@@ -208,7 +212,7 @@ def _judge(recording: Recorded, pair: Pair, model: Model, reference: Recorded | 
         for spectrum in band_spectra(signal, recording.fs, pair.rate, name)
     ]
     lines = find_evidence(spectra, pair.rate, pair.orders)
-    predicted = _predict(recording, pair, model, reference)
+    predicted = _predict(recording, pair, model, references)
     whole = predicted.by_recording
     assert whole is not None  # noqa: S101 - only the predictions by recording have none
     probabilities = dict(zip(whole.classes, map(float, whole.probabilities[0]), strict=True))
@@ -216,11 +220,15 @@ def _judge(recording: Recorded, pair: Pair, model: Model, reference: Recorded | 
     return Judged(pair, verdict, why, probabilities, whole.threshold, len(predicted.probabilities), lines, spectra)
 
 
-def _predict(recording: Recorded, pair: Pair, model: Model, reference: Recorded | None) -> Predictions:
+def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Predictions:
     """Predictions of windows and recording; without a reference they need no xarray, whose first use imports dask."""
-    if reference is not None:
-        table = _table(recording, recording.signals, pair, model, UNKNOWN_CODE)
-        return predict(table, model, _table(reference, recording.signals, pair, model, FAULTS.index(HEALTHY)))
+    if references:
+        import xarray as xr
+
+        healthy = [_table(one, recording.signals, pair, model, HEALTHY) for one in references]
+        numbered = [one.assign(recording=one["recording"] + number) for number, one in enumerate(healthy)]
+        known = xr.concat(numbered, "record", combine_attrs="override")
+        return predict(_table(recording, recording.signals, pair, model, UNKNOWN), model, known)
     rows = [_rows(recording, name, pair, model) for name in recording.signals]
     each, whole = (
         np.stack([estimator_probabilities(model, some, recording.name) for some in values])
@@ -230,13 +238,17 @@ def _predict(recording: Recorded, pair: Pair, model: Model, reference: Recorded 
     return predictions(each, model.classes, alone, model.calibration, of_recordings=whole)
 
 
-def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Model, fault: int) -> "xr.Dataset":
-    groups, band = with_energies(model.groups), Band(*model.band)
+def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Model, fault: str) -> "xr.Dataset":
+    fs, code, groups, band = (
+        recording.fs,
+        UNKNOWN_CODE if fault == UNKNOWN else FAULTS.index(fault),
+        with_energies(model.groups),
+        Band(*model.band),
+    )
+    windows = {name: windows_of(recording.signals[name], fs) for name in channels}
     tables = {
-        name: recording_table(
-            windows_of(recording.signals[name], recording.fs), recording.fs, pair.rate, pair.orders, fault, groups, band
-        )
-        for name in channels
+        name: recording_table(of_channel, fs, pair.rate, pair.orders, code, groups, band)
+        for name, of_channel in windows.items()
     }
     return joined_channels(tables).assign_attrs(title=recording.name)
 

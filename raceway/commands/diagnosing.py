@@ -99,8 +99,9 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 @click.option(
     "--healthy",
     type=A_PATH,
+    multiple=True,
     metavar="FILE",
-    help="Recording of the same machine with a healthy bearing, read in the same way.",
+    help="Recording of the same machine with a healthy bearing, read in the same way; give the option again for further ones.",
 )
 @click.option("--model", type=A_PATH, metavar="MODEL", help="Model file; by default the reference model of this user.")
 @file_option("REPORT", "Page with pictures: .html.", (".html",), kind="page", required=False)
@@ -114,7 +115,7 @@ def diagnose(
     sensitivity: float | None,
     channels: tuple[str, ...],
     variable: str | None,
-    healthy: Path | None,
+    healthy: tuple[Path, ...],
     model: Path | None,
     output: Path | None,
     as_json: bool,
@@ -143,13 +144,13 @@ def diagnose(
     known = _bearings(bearings, speeds)
     given = _given(known, speeds)
     reading = Reading(channels, variable, unit, sensitivity, rate)
-    read = [_read(path, reading) for path in (recording, healthy) if path is not None]
+    read = [_read(path, reading) for path in (recording, *healthy)]
     recorded = [one for one, _ in read]
     loaded, source = _model(model)
     from features.diagnosis import diagnose as run
 
     with notice_compilation():
-        diagnosis = run(recorded[0], given, loaded, healthy=recorded[1] if healthy else None)
+        diagnosis = run(recorded[0], given, loaded, healthy=recorded[1:])
     notes = tuple(dict.fromkeys(note for _, found in read for note in found))
     for sentence in (*notes, *diagnosis.warnings):
         notice(f"warning: {sentence}")
@@ -280,7 +281,7 @@ def _assumptions(
     bearings: dict[str, "Bearing"],
     diagnosis: "Diagnosis",
     reading: Reading,
-    healthy: Path | None,
+    healthy: tuple[Path, ...],
     source: Path,
     notes: tuple[str, ...],
 ) -> list[tuple[str, str]]:
@@ -299,7 +300,7 @@ def _assumptions(
         "channels": ", ".join(recorded.signals),
         "sample rate": f"{recorded.fs:,.6g} Hz, {'as given' if reading.rate is not None else 'as the file states'}",
         "unit": f"{reading.unit}{sensitivity}",
-        "healthy recording": "none" if healthy is None else healthy.name,
+        "healthy recording": ", ".join(path.name for path in healthy) or "none",
         "model": source.name,
         "notes": " ".join(notes),
     }

@@ -190,10 +190,24 @@ def test_several_channels_are_axes_of_one_housing(model, recordings, tmp_path):
     page = tmp_path / "page.html"
     one, all_axes = told(path, "--channel", "0", *options), told(path, "--channel", "0,1,2", *options, "-o", page)
     assert all_axes["probabilities"]["outer"] > max(0.5, one["probabilities"]["outer"])
-    assert all_axes["windows"] == 3 * one["windows"]
+    assert all_axes["windows"] == one["windows"]
     assert all_axes["channels"] == ["0", "1", "2"]
     assert {line["channel"] for line in all_axes["evidence"]} <= {"1", "2"}
     assert "(1)</td>" in page.read_text(encoding="utf-8")
+
+
+def test_a_healthy_verdict_needs_the_colour_of_a_healthy_recording(model, recordings, tmp_path):
+    signal, rpm = recordings["healthy"]
+    dull = np.convolve(signal, [0.25, 0.5, 0.25], mode="same")  # another background and the same lines
+    signals = {"tested": signal, "same": np.roll(signal, signal.size // 3), "other": dull}
+    paths = {name: write_wav(tmp_path / f"{name}.wav", one) for name, one in signals.items()}
+    options = ("--bearing", "6205", "--rpm", rpm, "--model", model)
+    near = told(paths["tested"], *options, "--healthy", paths["same"])
+    far = told(paths["tested"], *options, "--healthy", paths["other"])
+    assert near["probabilities"]["healthy"] > far["probabilities"]["healthy"]
+    assert far["verdict"] == "unsure"
+    both = told(paths["tested"], *options, "--healthy", paths["same"], "--healthy", paths["other"])
+    assert both["probabilities"]["healthy"] > far["probabilities"]["healthy"]
 
 
 def test_channels_of_a_matlab_file_are_its_variables_or_the_columns_of_one(model, recordings, tmp_path):

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from features.baselines.calibration import combine
 from features.baselines.predictions import UNSURE
 from features.diagnosis import Given, Pair, Recorded
 from features.diagnosis.diagnose import LONGEST, Judged, _conclude, _usable
@@ -123,12 +122,6 @@ def test_a_channel_that_tells_nothing_is_left_out_unless_it_is_the_only_one():
     assert list(used.signals) == ["x"]
     assert quality.warnings[0].startswith("Channel y is left out, since the signal is constant")
     assert "constant" in _usable(Recorded({"y": 0 * x}, FS), GIVEN)[1].useless
-
-
-def test_a_fault_that_one_of_three_axes_does_not_show_is_answered():
-    unseen, seen, plain = ([0.93, 0.02, 0.03, 0.02], [0.05, 0.02, 0.91, 0.02], [0.005, 0.0025, 0.99, 0.0025])
-    whole = combine(np.repeat([unseen, seen, plain], 20, axis=0), np.zeros(60, dtype=np.intp), 1.0)[0]
-    assert whole[2] > 0.75
 
 
 def test_windows_follow_each_other_and_a_short_signal_is_one():
