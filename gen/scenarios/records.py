@@ -92,7 +92,7 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
     draws = Draws(streams(Purpose.RECORD), points[item], item, f"record {number}")
     conditions = draw_conditions(source.operating, draws, source.commons, source.known)
     entry = recipe.faults[specimen.entry]
-    snr, rms = _draw_level(draws, recipe, entry)
+    snr, rms = _draw_level(draws, recipe, entry, source.rig.number)
     changes = {} if entry.operation is None else entry.operation.given()
     profiles: list[Profile | None] = []
     for key, purpose in (("speed_profile", Purpose.SPEED_PROFILE), ("load_profile", Purpose.LOAD_PROFILE)):
@@ -120,13 +120,16 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
     return Scenario(settings_of(recipe), source.rig, specimen, operation)
 
 
-def _draw_level(draws: Draws, recipe: Recipe, entry: Fault) -> tuple[float | None, float | None]:
+def _draw_level(draws: Draws, recipe: Recipe, entry: Fault, rig: int) -> tuple[float | None, float | None]:
     """Signal-to-noise ratio [dB] and rms [m s-2] of a record; None if the level is that of the rig."""
     level = recipe.level
     if level.kind != "snr":
         return None, None
     changes = {} if entry.level is None else entry.level.given()
-    snr = _ratio(recipe, entry).draw(draws.u())
+    u = draws.u()
+    if fault_class(entry) == "healthy":  # all healthy bearings of a machine have one ratio
+        u = float(stream(recipe.seed, rig, 0, 0, Purpose.LEVEL).random())
+    snr = _ratio(recipe, entry).draw(u)
     u = draws.u()
     rms = draws.combination.value(level.rms_m_s2, u)
     if "rms_m_s2" in changes:
