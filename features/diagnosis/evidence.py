@@ -4,12 +4,13 @@
 
 The first line of a family must exceed a level that noise exceeds anywhere in the search of a recording with a
 probability of 1 %. Further lines are searched only at multiples of the frequency of the first one, and beside them, and
-again noise adds one with 1 %. Three rules leave out lines that are real but caused by no fault:
+again noise adds one with 1 %. Four rules leave out lines that are real but caused by no fault:
 
 - Multiples of the shaft rate are never counted, since imbalance and gears make them too. So a fault line that cannot be
   resolved from one is not found.
 - The first line must be ten times as high as the floor, because long recordings of healthy bearings show faint lines
   at many fault frequencies.
+- Lines of a race that are lower than the line at half its frequency are harmonics of another part.
 - The family with the largest sum of levels comes first, and its lines explain no other family. The others must come
   within 10 dB of it: beside its harmonics shaft and cage make lines everywhere.
 """
@@ -95,7 +96,9 @@ def find_evidence(spectra: Sequence[BandSpectrum], shaft_rate: float, orders: Or
     while families and trials:
         first_lines = [_first_line(row, spectra, free, shaft_rate, orders, FALSE_ALARM / trials) for row in families]
         held = [
-            _family(row, spectra[number], free[number], fundamental, shaft_rate, orders) if ratio else []
+            _family(row, spectra[number], free[number], fundamental, shaft_rate, orders)
+            if ratio and not _higher_at_half(row, spectra[number], free[number], fundamental, ratio)
+            else []
             for row, (ratio, number, fundamental) in zip(families, first_lines, strict=True)
         ]
         sums = [
@@ -177,6 +180,15 @@ def _first_line(
             if ratio.size and ratio.max() > max(threshold, best[0]):
                 best = float(ratio.max()), number, (first + int(ratio.argmax())) * spectrum.resolution / harmonic
     return best
+
+
+def _higher_at_half(
+    row: FaultClass, spectrum: BandSpectrum, free: np.ndarray, fundamental: float, ratio: float
+) -> bool:
+    """Whether a line at half the fundamental [Hz] of a race exceeds a ratio; a ball may strike one race alone, at BSF."""
+    first, last = spectrum.bins(0.5 * fundamental, 0.5 * spectrum.width + DRIFT * fundamental)
+    half = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
+    return bool(row.comb and row.lines[0].multiple == 1 and half.max(initial=0.0) > ratio)
 
 
 def _family(

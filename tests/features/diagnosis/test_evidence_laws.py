@@ -115,6 +115,13 @@ def test_a_second_harmonic_alone_is_told_as_such_and_a_sideband_needs_its_harmon
     assert {line.harmonic for line in lines} == {2}
 
 
+def test_a_line_with_a_higher_one_at_half_its_frequency_is_a_harmonic_of_another_part():
+    t = np.arange(round(5 * FS)) / FS
+    depth = sum(depth * np.cos(2 * np.pi * order * RATE * t) for order, depth in {5.4152: 0.4, 2.7076: 0.6}.items())
+    e = np.random.default_rng(10).standard_normal(t.size)
+    assert evidence(e * (1 + depth)) == []
+
+
 def test_a_family_10_db_below_the_strongest_is_not_told():
     t = np.arange(round(5 * FS)) / FS
     weak, strong = (0.12 * np.cos(2 * np.pi * 4.7134 * RATE * t), 0.7 * np.cos(2 * np.pi * 5.4152 * RATE * t))
