@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from gen.physics.bearing import Bearing
 
 UNITS = ("g", "m/s2", "V")
-SPEEDS = click.FloatRange(0.001, 1e7)  # rpm
+SLOWEST, FASTEST = 0.001, 1e7  # rpm
 
 
 class Reading(NamedTuple):
@@ -32,14 +32,19 @@ def _names(_context: click.Context, _option: click.Parameter, text: str | None) 
     return () if text is None else tuple(part.strip() for part in text.split(","))
 
 
-def _speeds(context: click.Context, option: click.Parameter, text: str | None) -> tuple[float, float] | None:
+def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
     """Lowest and highest speed [rpm]; equal for one number."""
-    if not text:
+    if text is None:
         return None
-    low, _, high = text[1:].partition("-")  # a minus sign is no range
-    first, last = (SPEEDS(part, option, context) for part in (text[0] + low, high or text[0] + low))
-    if not first <= last:  # nan, too
-        raise click.BadParameter(f"{text} is no number and no range such as 1400-1900")
+    low, dash, high = text.partition("-")
+    try:
+        first, last = float(low), float(high if dash else low)
+    except ValueError:
+        first, last = math.nan, math.nan
+    if not SLOWEST <= first <= last <= FASTEST:
+        raise click.BadParameter(
+            f"{text!r} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
+        )
     return first, last
 
 
@@ -176,9 +181,13 @@ def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dic
         if speeds is None:
             raise click.UsageError("give --bearing, --rpm or both: the lines alone fit many bearings")
         return dict(CATALOGUE)
-    return {
-        text if "=" in text else bearing.designation: bearing for text in texts for bearing in [bearing_from_text(text)]
-    }
+    return {_name(bearing): bearing for bearing in map(bearing_from_text, texts)}
+
+
+def _name(bearing: "Bearing") -> str:
+    if bearing.designation != "own":
+        return bearing.designation
+    return f"{bearing.n_balls} x {1e3 * bearing.ball_diameter:g} mm on {1e3 * bearing.pitch_diameter:g} mm"
 
 
 def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -> "Given":

@@ -299,6 +299,8 @@ def test_the_verdict_does_not_depend_on_the_unit(model, recordings, tmp_path):
         (("r.wav", "--rpm", "-3"), "--rpm"),
         (("r.wav", "--rpm", "nan"), "--rpm"),
         (("r.wav", "--rpm", "1900-1400"), "no range such as 1400-1900"),
+        (("r.wav", "--rpm", "1400-"), "no range such as 1400-1900"),
+        (("r.wav", "--rpm", ""), "no range such as 1400-1900"),
         (("r.wav", "--channel", "0,5"), "column"),
         (("r.wav", "--model", "no.skops"), "no.skops"),
         (("r.wav", "-o", "report.pdf"), ".html"),
