@@ -284,6 +284,14 @@ def test_a_file_without_a_feature_table_is_refused_by_name(tmp_path, corpus):
         read_table(corpus / "index.nc")
 
 
+def test_several_channels_have_the_features_of_each(corpus):
+    both = feature_table(corpus, ("time",), channel=["sensor", "housing"])
+    assert (both["features"].dims[0], list(both["channel"].values)) == ("channel", ["sensor", "housing"])
+    for name in ("sensor", "housing"):
+        alone = feature_table(corpus, ("time",), channel=name)["features"]
+        np.testing.assert_array_equal(both["features"].sel(channel=name), alone)
+
+
 @pytest.mark.parametrize("channel", [-1, 2])
 def test_a_channel_that_does_not_exist_is_refused(corpus, channel):
     with pytest.raises(CorpusError, match="give one of housing, sensor"):
