@@ -43,6 +43,8 @@ class FaultClass(NamedTuple):
     side
         Distance of the sidebands of its lines: a field of `features.signal.lines.Orders`, or ``shaft``. A spall on a ball
         passes the load zone with the cage.
+    companion
+        Class whose lines go with those of this one, so that they do not speak against it.
     """
 
     name: str
@@ -53,6 +55,7 @@ class FaultClass(NamedTuple):
     words: str = ""
     part: str = ""
     side: str = "shaft"
+    companion: str = ""
 
     @property
     def evidence(self) -> tuple[str, ...]:
@@ -75,7 +78,9 @@ CLASSES: Mapping[str, FaultClass] = {
         FaultClass(HEALTHY, "#009E73", words="Healthy"),
         FaultClass("inner", "#D55E00", BPFI, "whitened_bpfi_comb", words="Inner race fault", part="inner race"),
         FaultClass("outer", "#0072B2", BPFO, "whitened_bpfo_comb", words="Outer race fault", part="outer race"),
-        FaultClass("ball", "#CC79A7", BSF, "whitened_2bsf_comb", words="Ball fault", part="balls", side="ftf"),
+        FaultClass(
+            "ball", "#CC79A7", BSF, "whitened_2bsf_comb", words="Ball fault", part="balls", side="ftf", companion="cage"
+        ),
         FaultClass(
             "cage", "#E69F00", FTF, single_lines=("whitened_ftf", "whitened_2ftf"), words="Cage fault", part="cage"
         ),

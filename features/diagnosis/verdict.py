@@ -20,8 +20,6 @@ from features.faults import CLASSES, HEALTHY, SHAFT, SIDES
 PLAIN = 15.0  # dB, level of lines that contradict a class
 OBVIOUS = 25.0  # dB, the same for a class of which the classifier is sure
 SURE = 0.85  # probability
-FRIENDS = {"ball": {"cage"}}
-"""Families whose lines go with a class."""
 
 
 def judge(
@@ -45,13 +43,13 @@ def judge(
     if likely in families:
         foreign = _foreign_sidebands(families[likely])
         return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
-    others = {fault: held for fault, held in families.items() if fault not in FRIENDS.get(likely, ())}
+    others = {fault: held for fault, held in families.items() if fault != CLASSES[likely].companion}
     if likely == HEALTHY:
         level = OBVIOUS if probabilities[likely] >= SURE else PLAIN
         others = {fault: held for fault, held in others.items() if _plain(held, level)}
         agree = not others
     else:
-        agree = likely in FRIENDS and not others
+        agree = bool(CLASSES[likely].companion) and not others
     if agree:
         return likely, ""
     if not others:
