@@ -31,15 +31,15 @@ def judge(
     """
     likely = max(probabilities, key=lambda name: probabilities[name])
     families = by_family(lines)
+    if likely == HEALTHY and distance > 1:
+        return UNSURE, (
+            f"healthy is the likeliest, but the spectral colour differs {distance:.1f} times as much from that of the healthy recording "
+            "as healthy recordings of one machine usually differ"
+        )
     if probabilities[likely] < threshold:
         return UNSURE, _doubt(families, threshold)
     if likely != HEALTHY and not CLASSES[likely].evidence:
         return likely, ""
-    if likely == HEALTHY and distance > 1:
-        return UNSURE, (
-            f"the classifier says healthy, but the spectral colour differs {distance:.1f} times as much from the healthy recording as "
-            "those of healthy recordings of one machine usually do"
-        )
     if likely in families:
         foreign = _foreign_sidebands(families[likely])
         return (UNSURE, f"the classifier says {likely}, but {foreign}") if foreign else (likely, "")
