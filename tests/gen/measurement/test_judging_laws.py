@@ -63,9 +63,9 @@ def with_impulses(signal):
 )
 def test_another_recording_of_a_healthy_machine_gives_an_alarm_as_rarely_as_stated(machine, impulses):
     """What a fault adds may be the difference of two recordings of the machine, which differ in their noise alone."""
-    recordings = [(machine(noise(2 * k)), machine(noise(2 * k + 1))) for k in range(1000)]
+    recordings = [(machine(noise(2 * k)), machine(noise(2 * k + 1))) for k in range(500)]
     alarms = sum(judged(other - one, one, impulses=impulses) for other, one in recordings)
-    assert alarms <= 1000 * FALSE_ALARM + 3 * math.sqrt(1000 * FALSE_ALARM) + 1
+    assert alarms <= 500 * FALSE_ALARM + 3 * math.sqrt(500 * FALSE_ALARM) + 1
 
 
 def test_more_channels_do_not_give_more_false_alarms(monkeypatch):
