@@ -61,6 +61,15 @@ class Trial(NamedTuple):
     found: ShaftSpeed
 
 
+def real_corpora(real: Path, folder: Path) -> dict[str, Path]:
+    """Corpora of the three sets, by their name, with their labelled speeds."""
+    return {
+        "UESTC": import_generic(UESTC_LABELLED, folder / "uestc", folder=real / "uestc").path,
+        "CWRU": import_cwru(real / "cwru", folder / "cwru").path,
+        "MFPT": import_mfpt(real / "mfpt", folder / "mfpt").path,
+    }
+
+
 def recordings(corpus: Path) -> Iterator[Recording]:
     """Recordings of a corpus, one after the other."""
     with open_corpus(corpus) as opened:
@@ -144,12 +153,8 @@ def main() -> None:
     print("|---|---|---:|---:|---:|---:|---:|---:|---:|")
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        corpora = {
-            "UESTC": import_generic(UESTC_LABELLED, folder / "uestc", folder=options.real / "uestc").path,
-            "CWRU": import_cwru(options.real / "cwru", folder / "cwru").path,
-            "MFPT": import_mfpt(options.real / "mfpt", folder / "mfpt").path,
-            "simulated": generate("domain_randomised", folder / "made", records=options.records).path,
-        }
+        corpora = real_corpora(options.real, folder)
+        corpora["simulated"] = generate("domain_randomised", folder / "made", records=options.records).path
         for title, corpus in corpora.items():
             for line in report(corpus, title):
                 print(line, flush=True)

@@ -14,14 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.realism import UESTC_LABELLED
-from benchmarks.speed import Recording, recordings
+from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import UNSURE
 from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose
 from features.faults import CLASSES, HEALTHY
 from features.indicators import Orders
-from gen.importers import import_cwru, import_generic, import_mfpt
 from gen.physics.bearing import orders
 from gen.physics.catalogue import CATALOGUE
 from raceway.studies.reference_model import load_reference_model
@@ -123,13 +121,7 @@ def main() -> None:
     print(f"| set | given | diagnoses | {' | '.join(f'{name}, %' for name in ANSWERS)} |")
     print("|---|---|---:|---:|---:|---:|---:|")
     with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-        corpora = {
-            "UESTC": import_generic(UESTC_LABELLED, folder / "uestc", folder=options.real / "uestc").path,
-            "CWRU": import_cwru(options.real / "cwru", folder / "cwru").path,
-            "MFPT": import_mfpt(options.real / "mfpt", folder / "mfpt").path,
-        }
-        for title, corpus in corpora.items():
+        for title, corpus in real_corpora(options.real, Path(name)).items():
             answers: dict[str, Counter[str]] = {}
             for condition, fault, diagnosis in diagnosed(corpus, model):
                 for counts in (answers, together):

@@ -2,8 +2,9 @@
 
 ``changes of band energies from the reference -> distance in scatters of healthy recordings -> less probably healthy``
 
-Healthy recordings of one machine differ in colour by 0.4 to 2.5 dB, and most faults change it by 4 dB or more, also those that show no
-line. What changed it is not known, so a strange colour makes a record less probably healthy and says nothing about the class of its fault.
+Healthy recordings of one machine at about the same speed differ in colour by 1 to 3 dB, and faults change it by 3 to 15 dB, also those that
+show no line (``python -m benchmarks.colour REAL``). What changed it is not known, so a strange colour makes a record less probably healthy
+and says nothing about the class of its fault.
 Bands below 200 Hz do not count: the lines of the shaft lie there, and balance and speed change them in healthy machines too.
 """
 
