@@ -147,11 +147,13 @@ class Model:
         Raises
         ------
         CorpusError
-            If the table has only one class, or lacks a group of features.
+            If the table has only one class or several channels, or lacks a group of features.
         ValueError
             For an unknown baseline.
         """
         table = data if isinstance(data, xr.Dataset) else _feature_table(data, GROUPS)
+        if len(channels_of(table)) > 1:
+            raise CorpusError(f"{title_of(table)}: a model is trained on one channel; give the feature table of one.")
         compares = isinstance(self.classifier, str) and self.classifier not in UNTRAINED
         fits = (1 + FOLDS) * (1 + compares)
         done = counter(progress, fits)

@@ -12,6 +12,7 @@ from features.baselines.calibration import COVERAGE, UNCALIBRATED
 from features.baselines.cross_calibration import calibration_splits, fit_and_calibrate
 from features.baselines.predictions import predictions
 from features.baselines.records import features_of, labelled_records
+from gen.support.errors import CorpusError
 from tests.model_files import make_table
 
 
@@ -175,3 +176,8 @@ def test_a_fault_that_one_channel_does_not_show_is_known_from_the_others():
     )
     assert found.predicted == ("outer",)
     assert found.probabilities[0, 2] > 0.7
+
+
+def test_a_model_is_trained_on_one_channel():
+    with pytest.raises(CorpusError, match="a model is trained on one channel; give the feature table of one"):
+        Model("logistic_regression").fit(channels(windowed(), windowed()))
