@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import click
 
 from raceway.console import show
-from raceway.console.options import A_PATH, file_option, json_option
+from raceway.console.options import A_PATH, file_option, json_option, names
 from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
@@ -26,10 +26,6 @@ class Reading(NamedTuple):
     unit: Any
     sensitivity: float | None
     rate: float | None
-
-
-def _names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...]:
-    return () if text is None else tuple(part.strip() for part in text.split(","))
 
 
 def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
@@ -95,7 +91,7 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 @click.option(
     "--channel",
     "channels",
-    callback=_names,
+    callback=names,
     metavar="A,B,C",
     help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
     "of one housing.",
@@ -118,7 +114,7 @@ def diagnose(
     rate: float | None,
     unit: Any,
     sensitivity: float | None,
-    channels: tuple[str, ...],
+    channels: tuple[str, ...] | None,
     variable: str | None,
     healthy: tuple[Path, ...],
     model: Path | None,
@@ -148,7 +144,7 @@ def diagnose(
     """
     known = _bearings(bearings, speeds)
     given = _given(known, speeds)
-    reading = Reading(channels, variable, unit, sensitivity, rate)
+    reading = Reading(channels or (), variable, unit, sensitivity, rate)
     read = [_read(path, reading) for path in (recording, *healthy)]
     recorded = [one for one, _ in read]
     loaded, source = _model(model)

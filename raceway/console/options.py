@@ -99,15 +99,20 @@ channel_option: Decorator = click.option(
 )
 
 
-def _names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...] | None:
+def names(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[str, ...] | None:
     """Names separated by commas."""
-    return None if text is None else tuple(name.strip() for name in text.split(","))
+    if text is None:
+        return None
+    found = tuple(name.strip() for name in text.split(","))
+    if not all(found):
+        raise click.BadParameter(f"{text!r} has an empty name; separate names by one comma")
+    return found
 
 
 channels_option: Decorator = click.option(
     "--channel",
     metavar="NAME[,NAME]",
-    callback=_names,
+    callback=names,
     help="Channel by its name, or several that are axes of one housing, whose answers are combined; by default the first "
     "(raceway info DIR lists them).",
 )
@@ -134,7 +139,7 @@ _split: Decorator = click.option(
     "--split", metavar="NAME", help="Only records of this split: train, validation or test."
 )
 _channels: Decorator = click.option(
-    "--channels", metavar="NAME[,NAME]", callback=_names, help="Only these channels, in the order of the corpus."
+    "--channels", metavar="NAME[,NAME]", callback=names, help="Only these channels, in the order of the corpus."
 )
 
 

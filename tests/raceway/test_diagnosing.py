@@ -210,6 +210,12 @@ def test_a_healthy_verdict_needs_the_colour_of_a_healthy_recording(model, record
     assert both["probabilities"]["healthy"] > far["probabilities"]["healthy"]
 
 
+@pytest.mark.parametrize("command", [("diagnose", "r.wav", "--rpm", "1500"), ("evaluate", "corpus", "--model", "m")])
+def test_an_empty_channel_name_is_refused(command):
+    result = CliRunner().invoke(cli, [*command, "--channel", "x,"], prog_name="raceway")
+    assert (result.exit_code, "'x,' has an empty name" in result.output) == (2, True)
+
+
 def test_channels_of_a_matlab_file_are_its_variables_or_the_columns_of_one(model, recordings, tmp_path):
     signal, rpm = recordings["outer"]
     savemat(tmp_path / "r.mat", {"DE_time": signal, "FE_time": signal[:-5], "both": np.stack([signal, signal], axis=1)})
