@@ -67,7 +67,8 @@ def test_a_form_for_another_program_says_where_to_read_on(run, tones, tmp_path):
     [
         ("{one} --where fualt=='inner' -o {out}", "character 1: there is no variable fualt; the nearest is fault."),
         ("{one} --split tets -o {out}", "there is no split 'tets'"),
-        ("{one} --channels a, -o {out}", "there is no channel 'a'"),
+        ("{one} --channels a,b -o {out}", "there is no channel 'a'"),
+        ("{one} --channels a, -o {out}", "'a,' has an empty name"),
         ("{one} --split train -o {other}", "exists and is not an empty folder"),
         ("{one} {one} -o {out}", "has the same samples as record 0"),
         ("{one} -o {one}/parts/part-00000.nc", "choose a place outside it"),
