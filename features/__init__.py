@@ -20,6 +20,7 @@ table            corpus -> feature table (record, feature), part by part
 table_files      feature tables on disk
 auditing         splits of real recordings that can leak
 waveforms        signals of a corpus as an array that is read when it is indexed
+network_input    envelope levels at multiples of the fault orders, for networks [pure]
 baselines        classifiers on a feature table, scored by specimen or rig beside their controls
 realism          synthetic records against real ones: AUC of measures, class by class
 diagnosis        class of one recording, and the lines that speak for it

@@ -195,10 +195,38 @@ def _read(
     bands: list[ComplexArray], duration: float, shaft_rate: FloatArray, orders: Orders
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Lines and shape of the envelope of each band, shapes (record, band, value), and combs of their mean level."""
+    level, shape, bins_per_order = levels_and_shape(bands, duration, shaft_rate, highest_order(orders))
+    each = Orders(*(np.repeat(order, len(bands)) for order in orders))
+    lines = read_lines(level.reshape(-1, level.shape[-1]), np.repeat(bins_per_order, len(bands)), each)
+    fitted = fitted_combs(level.mean(axis=1), families(orders) * bins_per_order[:, None])
+    return lines.reshape(*level.shape[:2], -1), shape, fitted
+
+
+def levels_and_shape(
+    bands: list[ComplexArray], duration: float, shaft_rate: FloatArray, highest: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Envelope spectrum of each band over its floor, and the shape of its envelope.
+
+    Parameters
+    ----------
+    bands
+        Coefficients of each band, as from `bands_of`.
+    duration
+        Of the records [s].
+    shaft_rate
+        Shape (record,) [Hz].
+    highest
+        Order up to which levels are needed, shape (record,).
+
+    Returns
+    -------
+    Levels as of `log_level`, shape (record, band, bin), 0 beyond the end of a spectrum; values of `envelope_shape`, shape
+    (record, band, value); and bins per order, shape (record,).
+    """
     resolution = 1 / (ZERO_PADDING * duration)
-    bins = int(np.max(highest_order(orders) * shaft_rate) / resolution) + 2
+    bins = int(np.max(highest * shaft_rate) / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
-    level = np.zeros((len(shaft_rate), len(bands), bins), np.float32)  # 0 beyond the end of a spectrum
+    level = np.zeros((len(shaft_rate), len(bands), bins), np.float32)
     shape = np.empty((len(shaft_rate), len(bands), len(SHAPE_NAMES)))
     for number, band in enumerate(bands):
         z = analytic_band(band, 0, band.shape[-1])
@@ -208,11 +236,7 @@ def _read(
         spectrum = fine_amplitudes(weighted, min(bins + int(width.max()) + 4, end))
         level[:, number, :end] = log_level(spectrum, width, min(bins, end))
         shape[:, number] = envelope_shape(power, weighted, spectrum, z.shape[-1] / duration, shaft_rate)
-    each = Orders(*(np.repeat(order, len(bands)) for order in orders))
-    bins_per_order = shaft_rate / resolution
-    lines = read_lines(level.reshape(-1, bins), np.repeat(bins_per_order, len(bands)), each)
-    fitted = fitted_combs(level.mean(axis=1), families(orders) * bins_per_order[:, None])
-    return lines.reshape(*level.shape[:2], -1), shape, fitted
+    return level, shape, shaft_rate / resolution
 
 
 def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:

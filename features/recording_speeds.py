@@ -151,7 +151,9 @@ def _relative(estimate: ShaftSpeed) -> tuple[float, float]:
 
 
 def rates_to_use(table: xr.Dataset) -> FloatArray:
-    """Estimated rate where the lines tell it clearly, labelled rate elsewhere [Hz], shape (record,)."""
+    """Rates that features are computed at [Hz], shape (record,): estimated ones where they are clear, if speeds are corrected."""
+    if table.attrs.get("speed") != "correct":
+        return table["shaft_rate"].values
     return np.where(table[BY].values > 0, table[ESTIMATE].values, table["shaft_rate"].values)
 
 

@@ -113,7 +113,7 @@ def feature_table(
         with closing(work(partial(block_sums, channel=number), tasks, report)) as sums:
             estimates = recording_speeds(recording, table["shaft_rate"].values, sums)
         table = with_speeds(table, recording, estimates, treatment)
-    rates = rates_to_use(table) if treatment == "correct" else table["shaft_rate"].values
+    rates = rates_to_use(table)
     values, missing = np.empty((table.sizes["record"], len(names))), 0
     compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)
     tasks = list(zip(blocks, np.split(rates, starts[1:-1]), strict=True))

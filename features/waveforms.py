@@ -17,7 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from features.channels import channel_number
 from features.signal.orders import resample_to_orders
-from gen.corpus import DRAWS, SIGNAL, open_corpus
+from gen.corpus import DRAWS, SIGNAL, open_corpus, operating_variables
 from gen.support.errors import CorpusError
 
 BLOCK = 256  # records that are decoded at a time
@@ -33,7 +33,7 @@ class Waveforms:
     Attributes
     ----------
     labels
-        All per-record variables of the corpus, for the records of ``rows``.
+        All per-record variables of the corpus, for the records of ``rows``, with the shaft rates that are used.
     signal
         The stored signal, shape (record, time), unread.
     rows
@@ -65,6 +65,11 @@ class Waveforms:
     def __iter__(self) -> Iterator[NDArray[np.float32]]:
         for start in range(0, len(self), BLOCK):
             yield from self[start : start + BLOCK]
+
+    @property
+    def operating(self) -> dict[str, NDArray[Any]]:
+        """What an analyst on site knows of the records: sample rate, shaft rate, nominal orders and more, each of shape (record,)."""
+        return operating_variables(self.labels)
 
     def take(self, rows: Any) -> "Waveforms":
         """Choose some of these records by number; nothing is read."""
@@ -102,6 +107,7 @@ def open_waveforms(
     *,
     channel: int | str = 0,
     normalise: bool = False,
+    shaft_rate: NDArray[np.floating] | None = None,
     per_turn: int | None = None,
     turns: int | None = None,
 ) -> Waveforms:
@@ -115,8 +121,10 @@ def open_waveforms(
         Name of the channel, or its number from 0.
     normalise
         Subtract the mean of each record and divide the result by its rms, so that the gain of the sensor has no effect.
+    shaft_rate
+        Shaft rates that replace the labelled ones, shape (record,) [Hz].
     per_turn
-        Resample to so many samples per turn of the shaft, at the labelled shaft rate. See `features.signal.orders`.
+        Resample to so many samples per turn of the shaft. See `features.signal.orders`.
     turns
         Number of turns of a resampled record; a shorter record ends in zeros. By default as many whole turns as the
         slowest record has.
@@ -129,6 +137,8 @@ def open_waveforms(
     opened = open_corpus(corpus)
     number = channel_number(opened, channel, corpus)
     labels = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore").load()
+    if shaft_rate is not None:
+        labels = labels.assign(shaft_rate=labels["shaft_rate"].copy(data=shaft_rate))
     signal = opened[SIGNAL].isel(channel=number).drop_vars(["elapsed_time"])
     signal = signal.assign_coords({name: labels[name].variable for name in ("sample_rate", "shaft_rate")})
     samples = opened.sizes["elapsed_time"]

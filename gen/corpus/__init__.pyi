@@ -11,6 +11,7 @@ from .card.page import (
     data_card as data_card,
     write_card as write_card,
 )
+from .choice import operating_variables as operating_variables
 from .codecs import CODECS as CODECS, Codec as Codec
 from .croissant import write_croissant as write_croissant
 from .description import format_page as format_page

@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -70,6 +71,12 @@ def per_record(corpus: xr.Dataset) -> list[str]:
     """Names of the per-record variables that an opened corpus stores; names of classes have no role."""
     found = corpus.variables.items()
     return [str(name) for name, variable in found if variable.dims == ("record",) and "role" in variable.attrs]
+
+
+def operating_variables(corpus: xr.Dataset) -> dict[str, NDArray[Any]]:
+    """What an analyst on site knows of each record of an opened corpus: the variables of the role ``operating``, shape (record,)."""
+    known = [name for name in per_record(corpus) if corpus[name].attrs["role"] == "operating"]
+    return {name: corpus[name].values for name in known}
 
 
 def _is_chosen(corpus: xr.Dataset, where: str | None, split: str | None) -> NDArray[np.bool_]:

@@ -14,7 +14,7 @@ import numpy as np
 import xarray as xr
 from numpy.typing import NDArray
 
-from gen.corpus.choice import channel_names, chosen_channels, chosen_records, per_record
+from gen.corpus.choice import channel_names, chosen_channels, chosen_records, operating_variables, per_record
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import Check
 from gen.corpus.schema import SIGNAL, class_names
@@ -34,6 +34,8 @@ class LabelledRecords:
     """Numbers of the records in the corpus, shape (item,)."""
     labels: NDArray[Any]
     """Label of each record, shape (item,): codes of a class, other integers, numbers in single precision, or texts."""
+    operating: Mapping[str, NDArray[Any]]
+    """What an analyst on site knows of the records: sample rate, shaft rate, nominal orders and more, each of shape (item,)."""
     names: Mapping[int, str]
     """Names of the codes of a class; empty for other labels."""
     channels: tuple[str, ...]
@@ -144,7 +146,10 @@ def torch_dataset(
     numbers, names = _labels(opened, label, f"{corpus}")
     (records,) = chosen_records([opened], where, split)
     chosen = tuple(known[place] for place in places)
-    return LabelledRecords(records, numbers[records], names, chosen, transform, opened[SIGNAL].variable, places)
+    operating = {name: values[records] for name, values in operating_variables(opened).items()}
+    return LabelledRecords(
+        records, numbers[records], operating, names, chosen, transform, opened[SIGNAL].variable, places
+    )
 
 
 def _labels(opened: xr.Dataset, label: str, corpus: str) -> tuple[NDArray[Any], Mapping[int, str]]:
