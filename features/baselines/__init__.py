@@ -23,11 +23,11 @@ cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
 models            training, prediction, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known
-benchmark         scores of every baseline with controls, and on another corpus
+benchmark         scores of every baseline with controls, and on other corpora
 ================= ==================================================================================
 """
 
-from features.baselines.benchmark import Baseline, Results, TrackResults, benchmark
+from features.baselines.benchmark import Baseline, Results, TrackResults, benchmark, read_results
 from features.baselines.calibration import Calibration
 from features.baselines.curves import CurvePoint, learning_curve
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
@@ -65,6 +65,7 @@ __all__ = [
     "learning_curve",
     "load_maker",
     "predict",
+    "read_results",
     "severity_warning",
     "unlabelled_answers",
 ]

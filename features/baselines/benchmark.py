@@ -2,18 +2,19 @@
 
 The score on specimens (or rigs, or other groups of a track) outside the training is reported with three others: the
 score of a random split of records, which leaks; the grouped score with labels permuted among specimens, which must be
-at chance; and the score on another corpus.
+at chance; and the scores on other corpora. Results that are kept in a file can be given more rows later: see `benchmark`.
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
+from hashlib import blake2b
 from importlib.metadata import version
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 import xarray as xr
-from pandas import DataFrame
+from pydantic import TypeAdapter, ValidationError
 
 from features.baselines.curves import CurvePoint, curve_points, curve_sizes
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, UNTRAINED
@@ -42,9 +43,13 @@ BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 
 @dataclass(frozen=True)
 class Content:
-    """Title and counts of a benchmarked corpus; ``classes`` counts records, ``unknown`` those left out because their class is not known."""
+    """Title, digest of features and labels, and counts of a benchmarked corpus.
+
+    ``classes`` counts records, ``unknown`` those left out because their class is not known.
+    """
 
     title: str
+    digest: str
     records: int
     recordings: int
     specimens: int
@@ -55,12 +60,12 @@ class Content:
 
 @dataclass(frozen=True)
 class Baseline:
-    """Scores of one classifier: cross-validated on a track, of both controls, and on the other corpus if there is one."""
+    """Scores of one classifier: cross-validated on a track, of both controls, and on each of the other corpora."""
 
     grouped: Scores
     leaky: Scores
     null: Scores
-    test: Scores | None
+    tests: tuple[Scores, ...]
 
 
 @dataclass(frozen=True)
@@ -89,8 +94,8 @@ class Results:
 
     Attributes
     ----------
-    corpus, test
-        The corpus, and the other corpus if there is one.
+    corpus, tests
+        The corpus, and the other corpora.
     track, folds
         Of the grouped cross-validation: the first track, and the number of its splits.
     seed
@@ -105,7 +110,7 @@ class Results:
         Scores by name of the classifier.
     uncovered_widths
         Fault widths [m] by class that a fold of the grouped cross-validation tests and does not train. Those of the
-        other corpus are in its scores.
+        other corpora are in their scores.
     further
         Results on further tracks, by name of the track.
     left_out
@@ -115,7 +120,7 @@ class Results:
     """
 
     corpus: Content
-    test: Content | None
+    tests: tuple[Content, ...]
     track: str
     folds: int
     seed: int
@@ -132,11 +137,12 @@ class Results:
 
 def benchmark(
     table: xr.Dataset,
-    test: xr.Dataset | None = None,
+    tests: xr.Dataset | Sequence[xr.Dataset] = (),
     *,
     tracks: Sequence[Track] | Literal["all"] = ("specimen",),
     estimators: Mapping[str, str | Maker] | None = None,
-    waveforms: Waveforms | None = None,
+    waveforms: Sequence[Waveforms] = (),
+    known: Results | None = None,
     curve: bool = False,
     folds: int = 5,
     groups: Sequence[str] = DEFAULT_GROUPS,
@@ -144,22 +150,23 @@ def benchmark(
     workers: int = 1,
     progress: Progress | None = None,
 ) -> Results:
-    """Cross-validate classifiers with their controls, and test them on another corpus.
+    """Cross-validate classifiers with their controls, and test them on other corpora.
 
     Parameters
     ----------
     table
         Feature table of the corpus.
-    test
-        Feature table of another corpus, such as recordings of a real machine, without records of ``table``.
+    tests
+        Feature table of another corpus, or of several, such as recordings of real machines, without records of ``table``.
     tracks
         Respects in which the tested records are new; ``"all"`` omits those that the corpus cannot be split on.
     estimators
         Classifiers by the name to show, as for `cross_validate`; the first one leads. The untrained baselines are
         always scored too. By default all baselines, or those of `BRIEF` if there are several tracks.
     waveforms
-        Waveforms of the same corpus, for the classifiers of the user in place of the features. These are not tested on
-        another corpus.
+        Waveforms of the corpus and of each of the others, in this order, for the classifiers of the user in place of the features.
+    known
+        Results of an earlier call. If it had the same corpora and settings, its rows are kept, and its baselines are not scored again.
     curve
         Also compute the learning curve of the leading classifier.
     folds
@@ -176,40 +183,23 @@ def benchmark(
     Raises
     ------
     CorpusError
-        If the table cannot be cross-validated (see ``cross_validate``), or shares records with ``test``.
+        If the table cannot be cross-validated (see ``cross_validate``), or shares records with one of ``tests``.
     EstimatorError
         If a classifier of the user fails.
     """
+    tests = (tests,) if isinstance(tests, xr.Dataset) else tests
     names = features_of(table, groups)
     records = labelled_records(table, names)
     cases, left_out = _cases(records, tracks, folds, seed)
-    other = None if test is None else labelled_records(test, names)
-    if other is not None:
+    others = [labelled_records(test, names) for test in tests]
+    for other in others:
         _check_apart(records, other)
     chosen = _chosen(estimators, several=len(cases) > 1)
     leading = DEFAULT_ESTIMATOR if estimators is None else next(iter(estimators))
     first, splits = next(iter(cases)), next(iter(cases.values()))["grouped"][1]
-    own = records if waveforms is None else records_of(waveforms, groups)
-    led = records if isinstance(chosen[leading], str) else own
-    done = counter(progress, len(chosen) * len(cases) + (len(curve_sizes(records, splits)) if curve else 0))
-    scored: dict[str, dict[str, Baseline]] = {track: {} for track in cases}
-    for name, estimator in chosen.items():
-        given = records if isinstance(estimator, str) else own
-        for track, of_track in cases.items():
-            known = {"leaky": scored[first][name].leaky} if track != first else {}
-            scores = known | {
-                case: score_splits(given, labels, estimator, case_splits, seed, workers)
-                for case, (labels, case_splits) in of_track.items()
-                if case not in known
-            }
-            tested = None
-            if test is not None and track == first and isinstance(given.features, DataFrame):
-                tested = Model(estimator, groups=groups, seed=seed).fit(table, workers=workers).score(test, seed=seed)
-            scored[track][name] = Baseline(**scores, test=tested)
-            done(1)
-    return Results(
+    found = Results(
         corpus=_content(records, count_unknown(table)),
-        test=None if test is None or other is None else _content(other, count_unknown(test)),
+        tests=tuple(_content(other, count_unknown(test)) for other, test in zip(others, tests, strict=True)),
         track=first,
         folds=len(splits),
         seed=seed,
@@ -217,12 +207,59 @@ def benchmark(
         features=len(names),
         versions={library: version(library) for library in ("raceway", "scikit-learn", "numpy", "scipy")},
         leading=leading,
-        baselines=scored[first],
+        baselines={},
         uncovered_widths=uncovered_in_splits(records, splits),
-        further={track: _further(records, cases[track], scored[track]) for track in list(cases)[1:]},
+        further={track: _further(records, cases[track]) for track in list(cases)[1:]},
         left_out=left_out,
+    )
+    scored = _kept(known, found)
+    new = {name: one for name, one in chosen.items() if not (isinstance(one, str) and name in scored[first])}
+    own = records_of(waveforms[0], groups) if waveforms else records
+    done = counter(progress, len(new) * len(cases) + (len(curve_sizes(records, splits)) if curve else 0))
+    for name, estimator in new.items():
+        with_features = isinstance(estimator, str) or not waveforms
+        given = records if with_features else own
+        for track, of_track in cases.items():
+            same = {"leaky": scored[first][name].leaky} if track != first else {}
+            scores = same | {
+                case: score_splits(given, labels, estimator, case_splits, seed, workers)
+                for case, (labels, case_splits) in of_track.items()
+                if case not in same
+            }
+            tested: tuple[Scores, ...] = ()
+            if tests and track == first:
+                training, *unseen = (table, *tests) if with_features else waveforms
+                model = Model(estimator, groups=groups, seed=seed).fit(training, workers=workers)
+                tested = tuple(model.score(one, seed=seed) for one in unseen)
+            scored[track][name] = Baseline(**scores, tests=tested)
+            done(1)
+    led = records if isinstance(chosen[leading], str) else own
+    return replace(
+        found,
+        baselines=_untrained_first(scored[first]),
+        further={
+            track: replace(one, baselines=_untrained_first(scored[track])) for track, one in found.further.items()
+        },
         curve=curve_points(led, chosen[leading], splits, seed, done, workers) if curve else (),
     )
+
+
+def _kept(known: Results | None, found: Results) -> dict[str, dict[str, Baseline]]:
+    """Rows of earlier results by track, if these had the same corpora and settings."""
+    tracks = (found.track, *found.further)
+    if known is None or _setup(known) != _setup(found):
+        return {track: {} for track in tracks}
+    return {found.track: dict(known.baselines)} | {track: dict(one.baselines) for track, one in known.further.items()}
+
+
+def _setup(results: Results) -> Results:
+    """Results without scores."""
+    further = {track: replace(one, baselines={}) for track, one in results.further.items()}
+    return replace(results, leading="", baselines={}, further=further, curve=())
+
+
+def _untrained_first(baselines: dict[str, Baseline]) -> dict[str, Baseline]:
+    return {name: baselines[name] for name in sorted(baselines, key=lambda name: name not in UNTRAINED)}
 
 
 def _chosen(estimators: Mapping[str, str | Maker] | None, *, several: bool) -> dict[str, str | Maker]:
@@ -249,9 +286,9 @@ def _cases(
     return cases, left_out
 
 
-def _further(records: Records, cases: dict[str, Case], baselines: dict[str, Baseline]) -> TrackResults:
+def _further(records: Records, cases: dict[str, Case]) -> TrackResults:
     _, splits = cases["grouped"]
-    return TrackResults(len(splits), sum(len(test) for _, test in splits), len(records.fault), baselines)
+    return TrackResults(len(splits), sum(len(test) for _, test in splits), len(records.fault), {})
 
 
 def _check_apart(records: Records, test: Records) -> None:
@@ -266,8 +303,10 @@ def _check_apart(records: Records, test: Records) -> None:
 
 def _content(records: Records, unknown: int) -> Content:
     counts = np.bincount(records.fault, minlength=len(FAULTS))
+    digests = record_digests(records.features.to_numpy())
     return Content(
         title=records.title,
+        digest=blake2b(digests.tobytes() + records.fault.tobytes(), digest_size=16).hexdigest(),
         records=len(records.fault),
         recordings=len(np.unique(records.recording)),
         specimens=len(np.unique(records.specimen)),
@@ -280,3 +319,11 @@ def _content(records: Records, unknown: int) -> Content:
 def write_results(results: Results, path: Path) -> None:
     """Write results as JSON, whole or not at all."""
     write_numbers(asdict(results), path)
+
+
+def read_results(path: Path) -> Results | None:
+    """Results in a file of `write_results`; None if there is no such file, or none of this version."""
+    try:
+        return TypeAdapter(Results).validate_json(path.read_bytes())
+    except (OSError, ValidationError):
+        return None

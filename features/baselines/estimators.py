@@ -32,6 +32,8 @@ from gen.corpus import FAULTS
 if TYPE_CHECKING:
     from pandas import DataFrame
 
+    from features.waveforms import Waveforms
+
 Estimator = Any  # a scikit-learn classifier of indices into FAULTS; the stubs define no common type
 
 TREES = 120  # of each forest; 200 score the same on real recordings, and 120 keep the file of an ensemble below 5 MB
@@ -244,7 +246,7 @@ def make_estimator(name: str | Maker, seed: int) -> Estimator:
     return known[name](seed)
 
 
-def class_probabilities(estimator: Estimator, features: "DataFrame") -> FloatArray:
+def class_probabilities(estimator: Estimator, features: "DataFrame | Waveforms") -> FloatArray:
     """Probability of each of ``estimator.classes_``, shape (record, class); the largest is the prediction.
 
     A support vector machine gives no probabilities; the softmax of its decision values is returned instead.

@@ -38,6 +38,7 @@ from features.baselines.records import (
     group_means,
     labelled_records,
     record_digests,
+    records_of,
     seen_records,
     title_of,
 )
@@ -48,6 +49,7 @@ from features.baselines.severities import Covered, covered_widths, uncovered_wid
 from features.channels import channels_of
 from features.indicators import GROUPS
 from features.recording_speeds import recording_numbers
+from features.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
@@ -61,8 +63,8 @@ _TRAINING = ("corpus", "records", "seed", "widths", "digests", "versions")
 _STORED = ("estimator", "name", "classes", "features", "groups", "band", *_TRAINING, "calibration")
 """Fields in a model file."""
 
-Data = xr.Dataset | Path | str
-"""A feature table, or the folder or file of a corpus."""
+Data = xr.Dataset | Waveforms | Path | str
+"""A feature table, or the folder or file of a corpus; for classifiers of the user also its waveforms."""
 
 
 @dataclass(eq=False, repr=False)
@@ -138,7 +140,7 @@ class Model:
         Parameters
         ----------
         data
-            A feature table, or a corpus to compute features of.
+            A feature table, a corpus to compute features of, or waveforms for a classifier of the user.
         workers
             Number of fits at a time, in threads of this process; the model does not depend on it.
         progress
@@ -147,18 +149,22 @@ class Model:
         Raises
         ------
         CorpusError
-            If the table has only one class or several channels, or lacks a group of features.
+            If the table has only one class or several channels, or lacks a group of features, or a baseline is given waveforms.
         ValueError
             For an unknown baseline.
         """
-        table = data if isinstance(data, xr.Dataset) else _feature_table(data, GROUPS)
-        if len(channels_of(table)) > 1:
+        table = _feature_table(data, GROUPS) if isinstance(data, Path | str) else data
+        if isinstance(table, xr.Dataset) and len(channels_of(table)) > 1:
             raise CorpusError(f"{title_of(table)}: a model is trained on one channel; give the feature table of one.")
+        if isinstance(table, Waveforms) and isinstance(self.classifier, str):
+            raise CorpusError(
+                f"{title_of(table.labels)}: {self.name} learns from features; give a feature table or a corpus."
+            )
         compares = isinstance(self.classifier, str) and self.classifier not in UNTRAINED
         fits = (1 + FOLDS) * (1 + compares)
         done = counter(progress, fits)
         _fit(self, table, workers, done)
-        paired = paired_table(table, self.features, self.seed) if compares else None
+        paired = paired_table(table, self.features, self.seed) if compares and isinstance(table, xr.Dataset) else None
         self.relative = None
         if paired is not None:
             self.relative = Model(relative_name(self.name), groups=(RELATIVE,), seed=self.seed)
@@ -201,24 +207,28 @@ class Model:
         chosen = choose_reference(table, healthy, self.features)
         return replace(self._scores(chosen.table, chosen.reference, seed), reference=chosen.sentence)
 
-    def _scores(self, table: xr.Dataset, reference: xr.Dataset | None, seed: int) -> Scores:
-        records = labelled_records(table, self.features)
-        table = table.isel(record=table["fault"].values != UNKNOWN_CODE)
-        scores = score(records, predict(table, self, reference), seed)
-        seen = seen_records(records.features.to_numpy()[:, : len(self.features)], self.digests)
+    def _scores(self, data: xr.Dataset | Waveforms, reference: xr.Dataset | None, seed: int) -> Scores:
+        if isinstance(data, Waveforms):
+            records = records_of(data, ())
+            tested, seen = records.features, int(np.isin(record_digests(records.features), self.digests).sum())
+        else:
+            records = labelled_records(data, self.features)
+            tested = data.isel(record=data["fault"].values != UNKNOWN_CODE)
+            seen = seen_records(records.features.to_numpy()[:, : len(self.features)], self.digests)
+        scores = score(records, predict(tested, self, reference), seed)
         return replace(scores, seen=seen, uncovered_widths=uncovered_widths(self.widths, records))
 
-    def _tables(self, data: Data, reference: Data | None) -> tuple[xr.Dataset, xr.Dataset | None]:
-        """Feature tables of the data and of its reference, with ``bands`` if there is one."""
+    def _tables(self, data: Data, reference: Data | None) -> tuple[Any, xr.Dataset | None]:
+        """Feature tables of the data and of its reference, with ``bands`` if there is one; waveforms as they are."""
         self._check_fitted()
-        if reference is not None and not isinstance(data, xr.Dataset) and not isinstance(reference, xr.Dataset):
+        if isinstance(data, Path | str) and isinstance(reference, Path | str):
             check_durations(data, reference)
         groups = self.groups if reference is None else with_energies(tuple(self.groups))
         table, healthy = (
-            one if one is None or isinstance(one, xr.Dataset) else _feature_table(one, groups, Band(*self.band))
+            _feature_table(one, groups, Band(*self.band)) if isinstance(one, Path | str) else one
             for one in (data, reference)
         )
-        return cast("xr.Dataset", table), healthy
+        return table, cast("xr.Dataset | None", healthy)
 
     def _check_fitted(self) -> None:
         if self.estimator is None:
@@ -270,15 +280,16 @@ class Model:
         return cls(content["name"], **{**own, "calibration": Calibration(**content["calibration"])})
 
 
-def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None) -> Predictions:
-    """Predictions of a model for all records of a feature table, labelled or not.
+def predict(data: xr.Dataset | Waveforms, model: Model, reference: xr.Dataset | None = None) -> Predictions:
+    """Predictions of a model for all records of a feature table or waveforms, labelled or not.
 
-    Those of a recording are made from the mean features of its records, in which noise counts less.
+    Those of a recording are made from the mean features of its records, in which noise counts less; from waveforms they are the
+    geometric means of the probabilities of its records.
 
     Parameters
     ----------
-    table
-        A feature table.
+    data
+        A feature table, or waveforms for a classifier of waveforms.
     model
         A trained model.
     reference
@@ -291,6 +302,14 @@ def predict(table: xr.Dataset, model: Model, reference: xr.Dataset | None = None
         If the table lacks a feature of the model or is computed from another band, features or model contain numbers too large to
         compute with, or the model or the records cannot be used with the reference.
     """
+    if isinstance(data, Waveforms) == bool(model.features):
+        takes = "features" if model.features else "waveforms"
+        title = title_of(data.labels if isinstance(data, Waveforms) else data)
+        raise CorpusError(f"{title}: {model.name} was trained on {takes}; give {takes}.")
+    if isinstance(data, Waveforms):
+        each = estimator_probabilities(model, data, title_of(data.labels))
+        return predictions(each, model.classes, recording_numbers(data.labels), model.calibration)
+    table = data
     tables, used, colour = channels_of(table), model, None
     if reference is not None:
         if model.relative is None:
@@ -330,7 +349,7 @@ def _rows(table: xr.Dataset, model: Model) -> "DataFrame":
     return feature_rows(table, model.features)
 
 
-def estimator_probabilities(model: Model, features: "DataFrame", where: str) -> FloatArray:
+def estimator_probabilities(model: Model, features: "DataFrame | Waveforms", where: str) -> FloatArray:
     """Probability of each class as the estimator of a model gives it, shape (record, class).
 
     Raises
@@ -351,9 +370,12 @@ def estimator_probabilities(model: Model, features: "DataFrame", where: str) -> 
     return probabilities
 
 
-def _fit(model: Model, table: xr.Dataset, workers: int, done: Callable[[int], None]) -> None:
-    model.features = features_of(table, model.groups)
-    records, band = labelled_records(table, model.features), band_of(table.attrs)
+def _fit(model: Model, data: xr.Dataset | Waveforms, workers: int, done: Callable[[int], None]) -> None:
+    records = records_of(data, model.groups)
+    if isinstance(data, xr.Dataset):
+        model.features, band = features_of(data, model.groups), band_of(data.attrs)
+    else:
+        model.features, band = (), DEFAULT_BAND
     check_classes(records)
     model.groups, model.band, model.corpus, model.records = (
         tuple(model.groups),
@@ -366,7 +388,7 @@ def _fit(model: Model, table: xr.Dataset, workers: int, done: Callable[[int], No
     )
     model.classes = fault_names(model.estimator.classes_)
     model.widths = covered_widths(records)
-    model.digests = record_digests(records.features.to_numpy())
+    model.digests = record_digests(records.features.to_numpy() if model.features else records.features)
     model.versions = {library: version(library) for library in _LIBRARIES}
 
 

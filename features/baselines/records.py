@@ -187,8 +187,8 @@ def _shape(table: xr.Dataset) -> IntArray:
     return np.select(cases, [SHAPES.index(name) for name in ("several", "extended", "pit", "worn")], -1)
 
 
-def record_digests(features: FloatArray) -> NDArray[np.uint64]:
-    """Digest each row of features to 64 bits, shape (record, feature) to (record,)."""
+def record_digests(features: "FloatArray | Waveforms") -> NDArray[np.uint64]:
+    """Digest each row of features or waveforms to 64 bits, shape (record,)."""
     rows = (np.ascontiguousarray(row, dtype="<f8").tobytes() for row in features)
     digests = (int.from_bytes(hashlib.blake2b(row, digest_size=8).digest(), "little") for row in rows)
     return np.fromiter(digests, dtype=np.uint64, count=len(features))

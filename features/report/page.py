@@ -163,6 +163,7 @@ def _scores(results: Results) -> dict[str, Any]:
         "quality": quality,
         "reliability": picture(draw_reliability({title: rows[results.leading] for title, rows in quality}), "svg"),
         "findings": _findings(results, chance),
+        "test_titles": _test_titles(results),
         "untrained": UNTRAINED,
         "unfolded": results.leading,
         **_tracks(results, chance),
@@ -183,16 +184,19 @@ def _tracks(results: Results, chance: float) -> dict[str, Any]:
 
 
 def _quality(results: Results) -> list[tuple[str, dict[str, Scores]]]:
-    """Scores by baseline under a title each: of the cross-validation, and by record and recording of the other corpus."""
-    baselines = results.baselines.items()
-    tested = {name: one.test for name, one in baselines if one.test is not None}
-    whole = {name: one.by_recording for name, one in tested.items() if one.by_recording is not None}
-    tables = {
-        f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in baselines},
-        "Other corpus, by record": tested,
-        "Other corpus, by recording": whole,
-    }
-    return [(title, rows) for title, rows in tables.items() if rows]
+    """Scores by baseline under a title each: of the cross-validation, and of the other corpora by record and recording."""
+    tables = {f"Unseen {NOVELTY[results.track]}": {name: one.grouped for name, one in results.baselines.items()}}
+    for number in range(len(results.tests)):
+        title = f"Other corpus {number + 1}"
+        tested = {name: one.tests[number] for name, one in results.baselines.items()}
+        whole = {name: one.by_recording for name, one in tested.items() if one.by_recording is not None}
+        tables |= {f"{title}, by record": tested, f"{title}, by recording": whole}
+    return list(tables.items())
+
+
+def _test_titles(results: Results) -> list[str]:
+    """Names of the other corpora on the page."""
+    return [f"{number}: {_text(test.title)}" for number, test in enumerate(results.tests, start=1)]
 
 
 def _findings(results: Results, chance: float) -> list[str]:
@@ -214,15 +218,14 @@ def _findings(results: Results, chance: float) -> list[str]:
         sentences.append(f"{results.corpus.unknown} records whose class is not known are left out of all scores.")
     if results.uncovered_widths:
         sentences.append(f"Cross-validation: {severity_warning(results.uncovered_widths)}")
-    if baseline.test is not None and results.test is not None and rule.test is not None:
-        recordings = baseline.test.by_recording
-        whole = "" if recordings is None else f", {recordings.balanced_accuracy:.3f} by recording"
+    for title, test, of_rule in zip(_test_titles(results), baseline.tests, rule.tests, strict=True):
+        whole = "" if test.by_recording is None else f", {test.by_recording.balanced_accuracy:.3f} by recording"
         sentences.append(
-            f"On the other corpus, {_text(results.test.title)}, it reaches {_with_interval(baseline.test)} by record{whole}; "
-            f"the envelope rule reaches {rule.test.balanced_accuracy:.3f}."
+            f"On the other corpus {title}, it reaches {_with_interval(test)} by record{whole}; "
+            f"the envelope rule reaches {of_rule.balanced_accuracy:.3f}."
         )
-        if baseline.test.uncovered_widths:
-            sentences.append(f"Other corpus: {severity_warning(baseline.test.uncovered_widths)}")
+        if test.uncovered_widths:
+            sentences.append(f"Other corpus {title}: {severity_warning(test.uncovered_widths)}")
     return sentences
 
 

@@ -9,6 +9,7 @@ can distinguish. Pictures contain numbers and class names, and no text of a corp
 
 import io
 from collections.abc import Mapping, Sequence
+from itertools import cycle
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -31,6 +32,7 @@ PictureFormat = Literal["png", "svg", "pdf"]
 
 INK, FAINT = "#222222", "#8a8a8a"
 BLUE, VERMILION = "#0072B2", "#D55E00"
+TEST_MARKERS = ((VERMILION, "s"), ("#009E73", "^"), ("#CC79A7", "v"), ("#E69F00", "P"))
 STYLE: Any = {
     "figure.facecolor": "white",
     "figure.dpi": 150,
@@ -266,17 +268,17 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
 @rc_context(STYLE)
 def draw_scores(baselines: Mapping[str, Baseline], chance: float, unseen: str) -> Figure:
     """Balanced accuracy on unseen groups beside its controls, one row per baseline or track; bars are 95 % intervals."""
-    figure = Figure(figsize=(WIDTH, 1.2 + 0.45 * len(baselines)), layout="constrained")
+    scored = list(baselines.values())
+    figure = Figure(figsize=(WIDTH, 1.2 + (0.4 + 0.05 * len(scored[0].tests)) * len(scored)), layout="constrained")
     axes = figure.subplots()
     rows = np.arange(len(baselines))[::-1]
-    scored = list(baselines.values())
-    test = [baseline.test for baseline in scored if baseline.test is not None]
     axes.hlines(rows, 0, 1, color=FAINT, linewidth=0.4, alpha=0.5)
     axes.vlines(chance, -0.6, len(rows) - 0.45, color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
     axes.text(chance, len(rows) - 0.4, "chance", color=INK, fontsize=8, va="bottom", ha="center")
     _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {unseen}")
-    if test:
-        _draw_intervals(axes, test, rows - 0.18, VERMILION, "s", "other corpus")
+    tests = zip(*(baseline.tests for baseline in scored), strict=True)
+    for number, (test, (colour, marker)) in enumerate(zip(tests, cycle(TEST_MARKERS), strict=False), start=1):
+        _draw_intervals(axes, test, rows - 0.1 - 0.09 * number, colour, marker, f"other corpus {number}")
     null, leaky = ([getattr(b, kind).balanced_accuracy for b in scored] for kind in ("null", "leaky"))
     axes.plot(
         leaky, rows + 0.13, "D", color=FAINT, markerfacecolor="none", markersize=9, label="random records (leaks)"
@@ -303,8 +305,11 @@ def _draw_intervals(
 @rc_context(STYLE)
 def draw_reliability(scores: Mapping[str, Scores]) -> Figure:
     """Accuracy against largest probability in bins, one panel for each of some scores by title."""
-    figure = Figure(figsize=(WIDTH, 2.7), layout="constrained")
-    panels = figure.subplots(1, max(len(scores), 2), sharey=True, squeeze=False)[0]
+    columns = min(max(len(scores), 2), 3)
+    rows = -(-len(scores) // columns)
+    figure = Figure(figsize=(WIDTH, 2.7 * rows), layout="constrained")
+    grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    panels = grid.ravel()
     for axes, (title, score) in zip(panels, scores.items(), strict=False):
         probability, accuracy = (
             [getattr(bin_, name) for bin_ in score.reliability] for name in ("probability", "accuracy")
@@ -315,7 +320,8 @@ def draw_reliability(scores: Mapping[str, Scores]) -> Figure:
         axes.scatter(probability, accuracy, area + 4, color=BLUE, linewidth=0, zorder=3)
         axes.set(xlabel="largest probability", xlim=(0, 1.04), ylim=(-0.02, 1.06), aspect="equal")
         axes.set_title(f"{title}\ncalibration error {score.ece:.3f}")
-    panels[0].set_ylabel("accuracy")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("accuracy")
     for axes in panels[len(scores) :]:
         axes.remove()
     return figure

@@ -24,9 +24,12 @@ from raceway.console.options import (
 from raceway.console.progress import progress
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from features.baselines import Baseline, Results
     from features.baselines.own import Maker
     from features.recording_speeds import Speed
+    from features.waveforms import Waveforms
 
 # a copy of the names, since help must not import the registry; a test compares the two
 TRACKS = ("specimen", "rig", "bearing", "speed", "severity", "shape")
@@ -39,15 +42,21 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
     return names
 
 
+def _corpus_paths(context: click.Context, option: click.Parameter, paths: tuple[Path, ...]) -> tuple[Path | None, ...]:
+    return tuple(corpus_path(context, option, path) for path in paths)
+
+
 @click.command()
 @corpus_argument
 @pages_option("OUTDIR", "Folder for report.html and results.json.")
 @click.option(
     "--test",
+    "tests",
     type=A_PATH,
+    multiple=True,
     metavar="DIR2",
-    callback=corpus_path,
-    help="Another corpus to test on, such as real recordings.",
+    callback=_corpus_paths,
+    help="Another corpus to test on, such as real recordings. Repeatable.",
 )
 @click.option(
     "--track",
@@ -90,7 +99,7 @@ def _checked_names(_context: click.Context, _option: click.Parameter, names: tup
 def benchmark(
     corpus: Path,
     output: Path,
-    test: Path | None,
+    tests: tuple[Path, ...],
     tracks: tuple[Any, ...],
     estimators: tuple[str, ...],
     waveforms: bool,
@@ -112,52 +121,74 @@ def benchmark(
     which leaks, and labels permuted among specimens, which must score at chance. With --test, models trained on all of DIR are also
     scored on DIR2; --speed concerns DIR2 alone, --channel DIR alone (of DIR2 the first channel is taken).
 
+    Rows of earlier calls with the same corpora and settings stay in OUTDIR: a classifier that is scored later becomes a further row.
+
     MODULE:NAME is an estimator as of scikit-learn, or a class or function that makes one; its code is run. MODULE is a file of the
     current folder, without .py, or an installed module. With --estimator or several tracks, the other baselines are left out.
 
       raceway benchmark corpus -o report
-      raceway benchmark corpus --test cwru -o report --track rig
+      raceway benchmark corpus --test cwru --test mfpt -o report --track rig
       raceway benchmark corpus -o report --track all --learning-curve
       raceway benchmark corpus -o report --estimator mine:make --estimator ensemble
+      raceway benchmark corpus --test cwru -o report --waveforms --estimator cnn:EnvelopeNetwork
     """
-    if waveforms and (test is not None or not any(":" in name for name in estimators)):
-        raise click.UsageError("--waveforms is for --estimator MODULE:NAME, and without --test")
+    if waveforms and not any(":" in name for name in estimators):
+        raise click.UsageError("--waveforms is for --estimator MODULE:NAME")
     if per_turn is not None and not waveforms:
         raise click.UsageError("--per-turn is for --waveforms")
     chosen = _makers(estimators)
-    from features import open_waveforms
     from features.baselines import benchmark as run
+    from features.baselines import read_results
     from features.report.page import write_report
 
-    signals = open_waveforms(corpus, channel=channel or 0, normalise=True, per_turn=per_turn) if waveforms else None
     team = Team(workers, scheduler)
     table = table_of(corpus, "off", team, Analysis(channel, band))
-    other = None if test is None else table_of(test, speed, team, Analysis(None, band))
-    asked = "all" if "all" in tracks else tracks
-    options = {"tracks": asked, "estimators": chosen, "waveforms": signals, "curve": learning_curve}
+    others = [table_of(test, speed, team, Analysis(None, band)) for test in tests]
+    signals = _waveforms(corpus, channel, list(zip(tests, others, strict=True)), per_turn) if waveforms else []
+    options = {
+        "tracks": "all" if "all" in tracks else tracks,
+        "estimators": chosen,
+        "waveforms": signals,
+        "curve": learning_curve,
+    }
     trainers = team.options(table.sizes["record"])["workers"]
+    known = read_results(output / "results.json")
     with progress("scoring", "scores") as report:
-        results = run(table, other, **options, folds=folds, seed=seed, workers=trainers, progress=report)
-    notice_of_unknown(corpus, results.corpus.unknown)
-    if test is not None and results.test is not None:
-        notice_of_unknown(test, results.test.unknown)
-    warn_of_severities(results, next(iter(results.baselines.values())).test)
+        results = run(table, others, **options, known=known, folds=folds, seed=seed, workers=trainers, progress=report)
+    for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
+        notice_of_unknown(path, content.unknown)
+    warn_of_severities(results, *next(iter(results.baselines.values())).tests)
     page = write_report(corpus, results, output)
     if as_json:
         show.as_json({"report": page, "results": output / "results.json", **show.plain(results)})
         return
     show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
-    _show_baselines(results.baselines)
+    _show_baselines(results.baselines, [test.name for test in tests])
     for track, of_track in results.further.items():
         show.text(
             "", f"By {track}, {of_track.folds} folds, {of_track.tested:,} of {of_track.records:,} records tested:", ""
         )
-        _show_baselines(of_track.baselines)
+        _show_baselines(of_track.baselines, [])
     for track, reason in results.left_out.items():
         show.text("", f"No scores by {track}. {reason}")
     if results.curve:
         _show_curve(results)
     show.text("", f"{page}: the complete report.")
+
+
+def _waveforms(
+    corpus: Path, channel: str | None, tests: "list[tuple[Path, xr.Dataset]]", per_turn: int | None
+) -> "list[Waveforms]":
+    """Waveforms of the corpus and of the other corpora, resampled to the same number of turns, at the speeds of their tables."""
+    from features import open_waveforms
+    from features.recording_speeds import rates_to_use
+
+    signals = [open_waveforms(corpus, channel=channel or 0, normalise=True, per_turn=per_turn)]
+    turns = None if per_turn is None else signals[0].samples // per_turn
+    for path, table in tests:
+        rates = rates_to_use(table)
+        signals.append(open_waveforms(path, normalise=True, shaft_rate=rates, per_turn=per_turn, turns=turns))
+    return signals
 
 
 def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
@@ -179,14 +210,13 @@ def _show_curve(results: "Results") -> None:
     )
 
 
-def _show_baselines(baselines: "Mapping[str, Baseline]") -> None:
+def _show_baselines(baselines: "Mapping[str, Baseline]", tests: list[str]) -> None:
     from features.baselines import interval_text
 
     def figures(baseline: "Baseline") -> list[str]:
         shown = [f"{baseline.grouped.balanced_accuracy:.3f}", interval_text(baseline.grouped.interval, 2)]
         shown += [f"{control.balanced_accuracy:.3f}" for control in (baseline.leaky, baseline.null)]
-        return shown if baseline.test is None else [*shown, f"{baseline.test.balanced_accuracy:.3f}"]
+        return [*shown, *(f"{test.balanced_accuracy:.3f}" for test in baseline.tests)]
 
-    tested = any(baseline.test is not None for baseline in baselines.values())
-    header = ("baseline", "score", "95 %", "leaky split", "null labels", *(("other corpus",) if tested else ()))
+    header = ("baseline", "score", "95 %", "leaky split", "null labels", *tests)
     show.table(header, ((name, *figures(baseline)) for name, baseline in baselines.items()))

@@ -61,6 +61,15 @@ def test_an_own_classifier_of_waveforms_is_scored_beside_baselines_on_features(t
     assert {scores["grouped"]["records"] for scores in found["baselines"].values()} == {48}
 
 
+def test_rows_of_earlier_calls_stay_in_the_folder(told, tiny_corpus, tmp_path, mine):
+    line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2)
+    first = told(*line, "--estimator", mine)
+    more = told(*line, "--estimator", "logistic_regression")
+    assert list(more["baselines"]) == ["majority", "envelope_rule", mine, "logistic_regression"]
+    assert more["baselines"][mine] == first["baselines"][mine]
+    assert "logistic regression" in (tmp_path / "report" / "report.html").read_text()
+
+
 def test_a_page_of_one_track_has_neither_section(run, tiny_corpus, tmp_path, mine):
     run("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", mine)
     page = (tmp_path / "report" / "report.html").read_text()
@@ -74,7 +83,7 @@ def test_a_page_of_one_track_has_neither_section(run, tiny_corpus, tmp_path, min
         (("--estimator", "forest"), "'forest' is none of majority, envelope_rule"),
         (("--estimator", ":make"), "':make' is none of majority, envelope_rule"),
         (("--estimator", "own_none:make"), "own_none:make: no module own_none in this folder"),
-        (("--waveforms",), "--waveforms is for --estimator MODULE:NAME, and without --test"),
+        (("--waveforms",), "--waveforms is for --estimator MODULE:NAME"),
         (("--estimator", "own_module:make", "--per-turn", 9), "--per-turn is for --waveforms"),
         (("--track", "load"), "'load' is not one of 'specimen', 'rig'"),
     ],

@@ -144,8 +144,8 @@ def test_a_benchmark_contains_every_baseline_with_its_controls(results):
         assert found.grouped.balanced_accuracy >= low
         assert len(found.grouped.folds) == 3
         assert found.null.balanced_accuracy < 0.6
-        assert found.test.by_recording.records == 16
-        assert found.test.seen == 0
+        assert found.tests[0].by_recording.records == 16
+        assert found.tests[0].seen == 0
     assert results.corpus.classes == dict.fromkeys(FOUR, 18)
 
 
@@ -158,9 +158,9 @@ def test_a_benchmark_of_all_classes_is_tested_on_a_corpus_with_fewer(few_trees):
         low, high = (0.0, 1.01 / len(FAULTS)) if name == "majority" else (0.9, 1.0)
         assert low <= found.grouped.balanced_accuracy <= high
         assert found.grouped.classes == found.grouped.model_classes == FAULTS
-        assert found.test.classes == FOUR
-        assert found.test.model_classes == FAULTS
-        assert np.shape(found.test.confusion) == (4, len(FAULTS))
+        assert found.tests[0].classes == FOUR
+        assert found.tests[0].model_classes == FAULTS
+        assert np.shape(found.tests[0].confusion) == (4, len(FAULTS))
 
 
 @pytest.mark.parametrize("extra", ["cage", "compound"])
@@ -207,8 +207,8 @@ def test_a_benchmark_gives_the_same_numbers_again(results):
 def test_results_are_plain_json(results, tmp_path):
     write_results(results, tmp_path / "results.json")
     held = json.loads((tmp_path / "results.json").read_text())
-    expected = asdict(results.baselines["svm"].test)
-    assert held["baselines"]["svm"]["test"]["confusion"] == [list(row) for row in expected["confusion"]]
+    expected = asdict(results.baselines["svm"].tests[0])
+    assert held["baselines"]["svm"]["tests"][0]["confusion"] == [list(row) for row in expected["confusion"]]
     assert held["corpus"]["specimens"] == 24
 
 

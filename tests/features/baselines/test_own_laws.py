@@ -6,14 +6,20 @@ import numpy as np
 import pytest
 from sklearn.linear_model import LogisticRegression, RidgeClassifier
 from sklearn.naive_bayes import GaussianNB
+from sklearn.pipeline import make_pipeline
+from sklearn.preprocessing import FunctionTransformer
 from sklearn.svm import SVC
 
-from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker
+from features import feature_table, open_waveforms
+from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
+from features.baselines.benchmark import write_results
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import OwnClassifier
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table, records_of
+from tests.features.test_waveforms_laws import psd
+from tests.tone_corpora import write_corpus
 
 CODES = np.array([0, 1, 2, 4] * 3)
 
@@ -29,6 +35,9 @@ class Nearest:
     def predict(self, X):
         distance = np.square(np.asarray(X)[:, None] - self.means).sum(axis=2)
         return self.names[distance.argmin(axis=1)]
+
+
+ON_THE_PSD = make_pipeline(FunctionTransformer(psd), LogisticRegression(max_iter=5000))
 
 
 @pytest.mark.parametrize("made", [LogisticRegression(), RidgeClassifier(), GaussianNB(), Nearest(), SVC()])
@@ -92,9 +101,55 @@ def test_an_own_classifier_is_benchmarked_beside_the_untrained_baselines_and_on_
     results = benchmark(make_table(24, 3), make_table(8, 4, seed=1), estimators={"mine": Nearest}, folds=3, curve=True)
     assert (results.leading, list(results.baselines)) == ("mine", ["majority", "envelope_rule", "mine"])
     assert results.baselines["mine"].grouped.balanced_accuracy > 0.95
-    assert results.baselines["mine"].test.balanced_accuracy > 0.95
+    assert results.baselines["mine"].tests[0].balanced_accuracy > 0.95
     assert results.baselines["mine"].null.balanced_accuracy < 0.6
     assert results.curve[-1].scores.balanced_accuracy == results.baselines["mine"].grouped.balanced_accuracy
+
+
+def test_a_classifier_of_waveforms_is_scored_beside_the_others_and_on_the_same_corpora(tmp_path):
+    kept = {}
+    for seed in range(3):
+        write_corpus(tmp_path / f"{seed}", specimens=24 if seed == 0 else 8, records=2, seed=seed)
+        kept[seed] = open_waveforms(tmp_path / f"{seed}", normalise=True, per_turn=64, turns=4)
+    tables = [feature_table(tmp_path / f"{seed}") for seed in kept]
+    options = {"estimators": {"psd": ON_THE_PSD}, "waveforms": [*kept.values()], "folds": 3}
+    results = benchmark(tables[0], tables[1:], **options)
+    assert [test.records for test in results.tests] == [16, 16]
+    for name, found in results.baselines.items():
+        assert [test.records for test in found.tests] == [16, 16]
+        assert (found.tests[0].balanced_accuracy > 0.8) == (name == "psd")
+    model = Model(ON_THE_PSD).fit(kept[0])
+    assert model.score(kept[1]) == results.baselines["psd"].tests[0]
+    assert model.score(kept[0]).seen == 48
+    assert model.predict(kept[2]).shape == (16,)
+    with pytest.raises(CorpusError, match="was trained on waveforms; give waveforms"):
+        model.score(tables[1])
+    with pytest.raises(CorpusError, match="ensemble learns from features; give a feature table or a corpus"):
+        Model().fit(kept[0])
+
+
+def test_a_row_is_added_to_results_with_the_same_corpora_and_settings(tmp_path, monkeypatch):
+    tables = make_table(24, 3), make_table(8, 4, seed=1)
+    first = benchmark(*tables, estimators={"mine": Nearest, "logistic_regression": "logistic_regression"}, folds=3)
+    write_results(first, tmp_path / "results.json")
+    known = read_results(tmp_path / "results.json")
+    assert known == first
+    scored, module = [], sys.modules["features.baselines.benchmark"]
+    score = module.score_splits
+    monkeypatch.setattr(module, "score_splits", lambda *a: scored.append(a[2]) or score(*a))
+    asked = {"bayes": GaussianNB(), "logistic_regression": "logistic_regression"}
+    more = benchmark(*tables, estimators=asked, folds=3, known=known)
+    assert (more.leading, len(scored)) == ("bayes", 3)
+    assert list(more.baselines) == ["majority", "envelope_rule", "mine", "logistic_regression", "bayes"]
+    assert {name: more.baselines[name] for name in known.baselines} == known.baselines
+    for changed in ({"folds": 4}, {"seed": 1, "folds": 3}, {"tests": (), "folds": 3}):
+        other = benchmark(tables[0], **{"tests": tables[1], **changed}, estimators={"bayes": GaussianNB()}, known=known)
+        assert list(other.baselines) == ["majority", "envelope_rule", "bayes"]
+
+
+def test_a_file_that_holds_no_results_adds_no_rows(tmp_path):
+    (tmp_path / "other.json").write_text('{"corpus": {"title": "x"}}')
+    assert read_results(tmp_path / "other.json") is read_results(tmp_path / "none.json") is None
 
 
 def test_an_own_model_is_evaluated_and_not_saved(tmp_path):

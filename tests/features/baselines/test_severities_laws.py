@@ -115,6 +115,6 @@ def test_the_results_of_a_benchmark_contain_the_severities_of_both_tests(table, 
     alone = with_widths(table, [3e-3] + [1e-3] * 15)
     results = benchmark(alone, other, folds=4)
     assert results.uncovered_widths == {"inner": (3e-3,)}
-    assert results.baselines["majority"].test.uncovered_widths == {"inner": (2e-3,)}
+    assert results.baselines["majority"].tests[0].uncovered_widths == {"inner": (2e-3,)}
     write_results(results, tmp_path / "results.json")
     assert json.loads((tmp_path / "results.json").read_text())["uncovered_widths"] == {"inner": [3e-3]}

@@ -70,8 +70,7 @@ def test_training_and_cross_validation_leave_unknown_records_out(corpus, table, 
     assert Model("majority").fit(table).records == 12
     results = benchmark(table, table.isel(record=slice(12, None)).assign(fault=table.fault[:4]), folds=2)
     assert (results.corpus.records, results.corpus.unknown) == (12, 4)
-    assert results.test is not None
-    assert (results.corpus.classes, results.test.unknown) == ({"healthy": 6, "inner": 6}, 0)
+    assert (results.corpus.classes, results.tests[0].unknown) == ({"healthy": 6, "inner": 6}, 0)
     page = write_report(corpus, results, tmp_path).read_text()
     assert "4 records whose class is not known are left out of all scores." in page
     assert json.loads((tmp_path / "results.json").read_text())["corpus"]["unknown"] == 4

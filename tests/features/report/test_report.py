@@ -81,7 +81,7 @@ def results_of():
     def results(corpus, test=None, estimators=None):
         with pytest.MonkeyPatch.context() as patch:
             patch.setattr("features.baselines.estimators.TREES", 10)
-            other = None if test is None else feature_table(test)
+            other = () if test is None else feature_table(test)
             return benchmark(feature_table(corpus), other, folds=2, estimators=estimators)
 
     return results
@@ -236,7 +236,7 @@ def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results
 def test_an_unknown_interval_is_reported_as_such_and_not_drawn(results):
     found = results.baselines["ensemble"]
     alone = replace(
-        found, grouped=replace(found.grouped, interval=None), null=replace(found.null, interval=None), test=None
+        found, grouped=replace(found.grouped, interval=None), null=replace(found.null, interval=None), tests=()
     )
     sentences = _findings(replace(results, baselines=results.baselines | {"ensemble": alone}), 0.25)
     assert sentences[1].startswith(f"It predicts a fault for {found.grouped.false_alarms:.1%} of the healthy records.")
