@@ -18,7 +18,11 @@ bearing_text   a bearing on the command line
 signals        one recording of the user, in m/s^2
 conversion     from the unit of a file to m/s^2
 matlab         one variable of a MATLAB file
-files          text, NumPy and WAV files; errors of libraries as sentences
+text           tables in text
+sheets         tables in Excel files
+columns        choice of a column, and the sample rate that times tell
+header         names, units and sample rate in the header of a table
+files          NumPy and WAV files; errors of libraries as sentences
 recordings     recordings, their checks, their division into records
 assemble       recordings written as a corpus
 ============== ==================================================================

@@ -17,7 +17,8 @@ from typing import Literal, NamedTuple
 
 from gen.corpus import Variable
 from gen.importers.assemble import Collection, Import, import_recordings
-from gen.importers.files import FloatArray, UnusableError, one_column
+from gen.importers.columns import table_signal
+from gen.importers.files import FloatArray, UnusableError
 from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.importers.resampling import resample
@@ -187,7 +188,7 @@ def _read(path: Path, label: _Label) -> Recording:
     fault, diameter, clock, _ = SPECIMENS[label.specimen]
     held = _HELD_AS.get(label.number, label.number)
     warnings: list[str] = []
-    signal = one_column(read_matlab(path, f"X{held:03d}_DE_time")) * STANDARD_GRAVITY
+    signal = table_signal(read_matlab(path, f"X{held:03d}_DE_time"), None).values * STANDARD_GRAVITY
     if held != label.number:
         warnings.append(f"holds the variable X{held:03d}_DE_time, as published for recording {label.number}")
     if fault == "healthy":

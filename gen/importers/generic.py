@@ -46,15 +46,14 @@ class _Target(NamedTuple):
 class _Joined(NamedTuple):
     """Values of each channel in the unit of the files, shape (time,), and their sample rate [Hz].
 
-    ``stated`` is the sample rate that the files state themselves; ``absolute`` tells whether the values have a unit; ``facts`` are
-    those of the first file.
+    ``absolute`` tells whether the values have a unit; ``facts`` are those of the first file; ``notes`` are sentences without their end.
     """
 
     values: list[FloatArray]
     fs: float
-    stated: float | None
     absolute: bool
     facts: Facts
+    notes: list[str]
 
 
 def import_generic(
@@ -155,8 +154,7 @@ def _measured_numbers(file: File) -> dict[str, float]:
 
 
 def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, specimen: int) -> Recording:
-    values, rate, stated, absolute, facts = _join(files)
-    warnings: list[str] = []
+    values, rate, absolute, facts, warnings = _join(files)
     signals: list[FloatArray] = []
     for sensor, column in zip(files[0].section.sensors(), values, strict=True):
         signals.append(accelerations(column, sensor.scale))
@@ -167,8 +165,6 @@ def _read(files: tuple[File, ...], target: _Target, number: int, rig: int, speci
         message = f"has channels of {sizes} samples; give channels of one length"
         raise UnusableError(message)
     signal = np.stack(signals)
-    if stated not in (None, rate):
-        warnings.append(f"states a sample rate of {stated:g} Hz; the given {rate:g} Hz are used")
     if rate != target.fs:
         if not target.resample:
             message = f"is at {rate:g} Hz and the corpus at {target.fs:g} Hz; give resample_hz at the top, or make a corpus of each"
@@ -182,27 +178,29 @@ def _join(files: tuple[File, ...]) -> _Joined:
     parts: list[list[FloatArray]] = []
     rates: set[float] = set()
     speeds: list[float] = []
-    stated: float | None = None
+    notes: list[str] = []
     absolute = True
     every = [_facts(file) for file in files]
     for file, facts in zip(files, every, strict=True):
-        columns = [read_values(file.path, sensor.place) for sensor in file.section.sensors(file.groups)]
-        rate = facts.sample_rate_hz or columns[0].fs
+        sensors = [*file.section.sensors(file.groups)]
+        columns = [read_values(file.path, sensor.place) for sensor in sensors]
+        for column, sensor in zip(columns, sensors, strict=True):
+            column.stated_unit(sensor.scale.unit)
+        rate, doubt = columns[0].rate(facts.sample_rate_hz, "sample_rate_hz")
         if rate is None:
-            raise UnusableError("states no sample rate; give sample_rate_hz")
+            raise UnusableError("states no sample rate; give it", "sample_rate_hz")
+        notes += [sentence for sentence in doubt if sentence not in notes]
         rates.add(rate)
         speeds.append(facts.shaft_rpm or math.nan)
         parts.append([values.values for values in columns])
         absolute = absolute and columns[0].absolute
-        stated = stated or columns[0].fs
     if len(rates) > 1:
         raise UnusableError("is joined of files at different sample rates; give each recording a name of its own")
     if max(speeds) > (1 + _SAME_SPEED) * min(speeds):
         message = f"is joined of files at {min(speeds):g} to {max(speeds):g} rpm; give each recording a name of its own"
         raise UnusableError(message)
-    return _Joined(
-        [np.concatenate(column) for column in zip(*parts, strict=True)], rates.pop(), stated, absolute, every[0]
-    )
+    joined = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    return _Joined(joined, rates.pop(), absolute, every[0], notes)
 
 
 def _facts(file: File) -> Facts:

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.hdf5 import LIBRARY_LOCK, ForeignStorageError, own_dataset
-from gen.importers.files import UnusableError, guarded, one_column
+from gen.importers.columns import as_columns
+from gen.importers.files import UnusableError, guarded
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
@@ -50,7 +51,7 @@ def read_number(path: Path, variable: str | None) -> float:
     """Number in a file, which can be a text or the first of several; NaN if it is neither. Errors as in :func:`read_matlab`."""
     value = read_matlab(path, variable)
     try:
-        return float(value.item() if value.size == 1 else one_column(value)[0])
+        return float(value.item() if value.size == 1 else as_columns(value)[0, 0])
     except ValueError:
         return math.nan
 
@@ -147,10 +148,10 @@ def _only(held: Mapping[str, int], pattern: str | None) -> str:
         return names[0]
     wanted = f"variable with {_FEWEST} numbers or more" if pattern is None else f"variable {pattern}"
     if not names:
-        message = f"holds {listing([*held])}, and no {wanted}; name one with variable"
+        message = f"holds {listing([*held])}, and no {wanted}; name one"
     else:
-        message = f"holds {listing(names)}, more than one {wanted}; name one with variable"
-    raise UnusableError(message)
+        message = f"holds {listing(names)}, more than one {wanted}; name one"
+    raise UnusableError(message, "variable")
 
 
 def listing(names: list[str]) -> str:

@@ -13,7 +13,8 @@ from functools import partial
 from pathlib import Path
 
 from gen.importers.assemble import Collection, Import, import_recordings
-from gen.importers.files import UnusableError, one_column
+from gen.importers.columns import table_signal
+from gen.importers.files import UnusableError
 from gen.importers.matlab import read_matlab, read_number
 from gen.importers.recordings import Candidate, Recording, files_below, name_of
 from gen.importers.resampling import resample
@@ -79,7 +80,7 @@ def import_mfpt(source: Path, output: Path, *, window: float = 0.5, progress: Pr
 
 
 def _read(path: Path, fault: str, number: int) -> Recording:
-    signal = one_column(read_matlab(path, "bearing.gs")) * STANDARD_GRAVITY
+    signal = table_signal(read_matlab(path, "bearing.gs"), None).values * STANDARD_GRAVITY
     fs = _number(path, "bearing.sr")
     factor = round(fs / FS) if math.isfinite(fs) else 0
     if factor < 1 or factor * FS != fs:

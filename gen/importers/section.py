@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from gen.importers.conversion import VOLTAGES, Scale, unit_problem, volts_per_acceleration
 from gen.importers.mapping_keys import NUMBERS, SPALL_KEYS, WITHOUT_SPALL, Facts, FileKeys, Reading, Sensor
 from gen.importers.paths import PathPattern, Suits, fill_in, groups_in, parse_pattern
-from gen.importers.signals import Place
+from gen.importers.signals import STATING_RATES, Place
 
 _LONGEST_NUMBER = 20
 _NOTHING: Mapping[str, Any] = MappingProxyType({})
@@ -137,7 +137,7 @@ def _missing(section: Section) -> str | None:
     """End of a sentence on a key that every file needs."""
     keys = section.keys
     needed = ["bearing", "fault", "specimen", "shaft_rpm"]
-    if not section.pattern.text.lower().endswith(".wav"):
+    if not section.pattern.text.lower().endswith(STATING_RATES):
         needed.append("sample_rate_hz")
     if not (keys.channels and all(channel.unit for channel in keys.channels)):
         needed.append("unit")

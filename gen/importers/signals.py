@@ -1,22 +1,30 @@
-"""One recording of the user: a column of a MATLAB, text, NumPy or WAV file, in m/s^2."""
+"""One recording of the user: a column of a text, Excel, MATLAB, NumPy or WAV file, in m/s^2."""
 
+from collections.abc import Mapping
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
+from gen.importers.columns import Values, table_signal
 from gen.importers.conversion import Scale, Unit, accelerations, doubts, unit_problem, volts_per_acceleration
-from gen.importers.files import FloatArray, UnusableError, one_column, read_numpy, read_text, read_wav, reason_of
+from gen.importers.files import FloatArray, UnusableError, read_numpy, read_wav, reason_of
 from gen.importers.matlab import read_matlab
+from gen.importers.sheets import read_sheet
+from gen.importers.text import read_text
 from gen.support.errors import CorpusError
 
 TEXT = (".csv", ".txt", ".tsv", ".dat")
-SUFFIXES = (".mat", ".npy", ".wav", *TEXT)
+SHEETS = (".xlsx",)
+STATING_RATES = (".wav", *TEXT, *SHEETS)
+SUFFIXES = (".mat", ".npy", *STATING_RATES)
+_AS_HERE: Mapping[str, str] = MappingProxyType({})
 
 
 class Place(NamedTuple):
     """Place of a signal in a file.
 
-    ``variable`` is the name in a MATLAB file, by default that of the only signal in it; ``column`` the name in the header of a text, or a
-    number from 0; ``delimiter`` that of a text, detected by default.
+    ``variable`` is the name in a MATLAB file, by default that of the only signal in it, or the sheet of an Excel file, by default the
+    first; ``column`` the name in the header of a text or sheet, or a number from 0; ``delimiter`` that of a text, detected by default.
     """
 
     variable: str | None = None
@@ -24,20 +32,16 @@ class Place(NamedTuple):
     delimiter: str | None = None
 
 
-class Values(NamedTuple):
-    """Values of a file in its own unit, shape (time,), its sample rate [Hz] or None, and whether they have a unit or are shares."""
-
-    values: FloatArray
-    fs: float | None
-    absolute: bool = True
-
-
 class Signal(NamedTuple):
-    """A recording in m s-2, shape (time,), its sample rate [Hz] or None if it is not known, and a sentence for each assumption."""
+    """A recording in m s-2, shape (time,), its sample rate [Hz] or None if it is not known, and a sentence for each assumption.
+
+    ``unit`` is the unit in which the file was read.
+    """
 
     values: FloatArray
     fs: float | None
     warnings: tuple[str, ...]
+    unit: Unit
 
 
 def read_signal(
@@ -46,28 +50,32 @@ def read_signal(
     variable: str | None = None,
     column: int | str | None = None,
     delimiter: str | None = None,
-    unit: Unit = "m/s2",
+    unit: Unit | None = None,
     sensitivity: float | None = None,
     rate: float | None = None,
+    options: Mapping[str, str] = _AS_HERE,
 ) -> Signal:
     """Read a recording from a file of the user.
 
     Parameters
     ----------
     path : Path
-        A ``.mat``, ``.csv``, ``.txt``, ``.tsv``, ``.dat``, ``.npy`` or ``.wav`` file.
+        A ``.csv``, ``.txt``, ``.tsv``, ``.dat``, ``.xlsx``, ``.mat``, ``.npy`` or ``.wav`` file.
     variable : str, optional
-        Name of the variable in a MATLAB file; ``run.x`` is a field of a structure. By default the only signal in the file.
+        Name of the variable in a MATLAB file; ``run.x`` is a field of a structure. By default the only signal in the file. Of an Excel
+        file the sheet, by default the first.
     column : int or str, optional
-        Column of a table, from 0, or its name in the header of a text; also the channel of a WAV file.
+        Column of a table, from 0, or its name in the header; also the channel of a WAV file. Needed if there are several beside times.
     delimiter : str, optional
         Of a text; detected by default.
     unit : {"m/s2", "g", "V", "mV"}
-        Unit of the values.
+        Unit of the values; by default that in the header, or else m/s2.
     sensitivity : float, optional
         Of the sensor [mV/g], for a voltage.
     rate : float, optional
-        Sample rate [Hz], which is used even if a WAV file states another.
+        Sample rate [Hz]; by default that of the times or the header. It is used even if a WAV file states another.
+    options : mapping, optional
+        Names of the options that give ``variable``, ``column``, ``unit`` and ``rate``, for error messages.
 
     Returns
     -------
@@ -77,26 +85,30 @@ def read_signal(
     Raises
     ------
     CorpusError
-        If the file cannot be read or holds no such signal, or unit and sensitivity do not belong together.
+        If the file cannot be read or holds no such signal, unit and sensitivity do not belong together, or unit or rate contradict the
+        file.
     """
-    scale = Scale(unit, volts_per_acceleration(sensitivity, None))
-    problem = unit_problem(unit, sensitivity)
-    if problem is not None:
-        message = f"{path}: {problem}."
-        raise CorpusError(message)
     try:
         content = read_values(path, Place(variable, column, delimiter))
+        fs, notes = content.rate(rate, "rate")
+        used, of_unit = content.stated_unit(unit)
+        scale = _scale(used, sensitivity)
         signal = accelerations(content.values, scale)
-        notes = doubts(content.values, signal, scale, absolute=content.absolute)
+        notes += of_unit + doubts(content.values, signal, scale, absolute=content.absolute)
     except UnusableError as reason:
-        message = f"{path}: {reason}."
+        message = f"{path}: {reason.told(options)}."
         raise CorpusError(message) from None
     except (OSError, MemoryError) as error:
         message = f"{path}: {reason_of(error)}."
         raise CorpusError(message) from None
-    if rate is not None and content.fs not in (None, rate):
-        notes.append(f"states a sample rate of {content.fs:g} Hz; the given {rate:g} Hz are used")
-    return Signal(signal, content.fs if rate is None else rate, tuple(f"{path.name}: {note}." for note in notes))
+    return Signal(signal, fs, tuple(f"{path.name}: {note}." for note in notes), used)
+
+
+def _scale(unit: Unit, sensitivity: float | None) -> Scale:
+    problem = unit_problem(unit, sensitivity)
+    if problem is not None:
+        raise UnusableError(problem)
+    return Scale(unit, volts_per_acceleration(sensitivity, None))
 
 
 def read_values(path: Path, place: Place) -> Values:
@@ -111,17 +123,20 @@ def read_values(path: Path, place: Place) -> Values:
     """
     suffix = path.suffix.lower()
     if suffix in TEXT:
-        return Values(one_column(read_text(path, place.column, place.delimiter)), None)
+        return read_text(path, place.column, place.delimiter)
+    if suffix in SHEETS:
+        return read_sheet(path, place.variable, place.column)
     if suffix not in SUFFIXES:
         message = f"is of no known type; known are {', '.join(SUFFIXES)}"
         raise UnusableError(message)
     column = place.column
     if isinstance(column, str):
-        message = f"has columns without names, so none is called {column}; give column as a number from 0"
-        raise UnusableError(message)
+        message = f"has columns without names, so none is called {column}; give a number from 0"
+        raise UnusableError(message, "column")
     if suffix == ".npy":
-        return Values(one_column(read_numpy(path), column), None)
+        return table_signal(read_numpy(path), column)
     if suffix == ".mat":
-        return Values(one_column(read_matlab(path, place.variable), column), None)
+        return table_signal(read_matlab(path, place.variable), column)
     samples, full_scale, fs = read_wav(path)
-    return Values(one_column(samples, column) / full_scale, fs or None, absolute=full_scale == 1)
+    found = table_signal(samples, column)
+    return found._replace(values=found.values / full_scale, fs=fs or None, rate_source="", absolute=full_scale == 1)

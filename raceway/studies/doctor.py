@@ -36,6 +36,7 @@ READERS = {
 }
 OPTIONAL = {
     "pyarrow": "feature tables and exports as Parquet: pip install 'raceway[parquet]'",
+    "python-calamine": "recordings in Excel files: pip install 'raceway[excel]'",
     "zarr": "exports to Zarr: pip install 'raceway[zarr]'",
     "torch": "training networks on records: pip install torch",
     "datasets": "loading the Hugging Face layout: pip install datasets",

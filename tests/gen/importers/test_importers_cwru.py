@@ -284,7 +284,7 @@ DAMAGES = {
     ),
     "two_columns": (
         lambda path: scipy.io.savemat(path, {"X106_DE_time": noise().reshape(-1, 2)}),
-        "has 2 columns and none is chosen",
+        "has 2 columns (0, 1) and none is chosen",
     ),
 }
 

@@ -13,8 +13,9 @@ import scipy.io
 
 from gen.corpus import validate_corpus
 from gen.importers import import_cwru, import_generic
-from gen.importers.files import UnusableError, one_column, read_numpy, read_text
+from gen.importers.files import UnusableError, read_numpy
 from gen.importers.matlab import read_matlab
+from gen.importers.text import read_text
 from gen.support.errors import CorpusError
 from gen.support.limits import VARIABLE
 
@@ -97,7 +98,7 @@ def test_pipes_and_devices_are_refused_and_never_waited_for(tmp_path):
 
 def test_a_recording_on_one_line_is_read(tmp_path):
     (tmp_path / "line.csv").write_text(",".join(f"{value:.6f}" for value in SIGNAL[0]))
-    np.testing.assert_allclose(one_column(read_text(tmp_path / "line.csv")), SIGNAL[0], atol=1e-6)
+    np.testing.assert_allclose(read_text(tmp_path / "line.csv").values, SIGNAL[0], atol=1e-6)
 
 
 def test_numpy_headers_that_promise_more_than_the_file_holds_are_refused(tmp_path):

@@ -187,12 +187,15 @@ UNUSABLE = {
     "missing.npy": (None, "no file beside mapping.yaml matches"),
     "empty.csv": (lambda path: path.write_bytes(b""), "is empty"),
     "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no line of numbers among its first 2"),
-    "gap.csv": (lambda path: path.write_text("1\n2\nx\n"), "is truncated, damaged or not a delimited text file"),
+    "gap.csv": (
+        lambda path: path.write_text("1\nx\n2\n"),
+        "has text or a gap among its numbers, in line 2 ('x'); correct",
+    ),
     "nan.csv": (
         lambda path: path.write_text("1\nnan\n" * 2000),
-        "has 2000 samples of 4000 that are not finite",
+        "has values that are not finite numbers, 2000 of 4000, the first in line 2;",
     ),
-    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "has 2 columns and none is chosen"),
+    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "has 2 columns (0, 1) and none is chosen"),
     "objects.npy": (
         lambda path: np.save(path, np.array([{}]), allow_pickle=True),
         "is truncated, damaged or not a NumPy file",
@@ -237,10 +240,10 @@ def test_a_broken_matlab_7_3_file_and_a_missing_variable_are_named(tmp_path):
 
 
 OF_COLUMNS = {
-    "wav_column.wav": ("{column: 2}", "has columns 0 to 1, not 2; give another column"),
-    "stereo.wav": ("{}", "has 2 columns and none is chosen; choose one with column"),
-    "table.npy": ("{column: ax}", "has columns without names, so none is called ax; give column as a number from 0"),
-    "table.mat": ("{variable: x}", "has 2 columns and none is chosen; choose one with column"),
+    "wav_column.wav": ("{column: 2}", "has the columns 0, 1, and no numbers in 2; choose one with column"),
+    "stereo.wav": ("{}", "has 2 columns (0, 1) and none is chosen; choose one with column"),
+    "table.npy": ("{column: ax}", "has columns without names, so none is called ax; give a number from 0 with column"),
+    "table.mat": ("{variable: x}", "has 2 columns (0, 1) and none is chosen; choose one with column"),
     "rpm.csv": ("{shaft_rpm: {variable: rpm}}", "has no variables, and shaft_rpm is to be read from rpm; give shaft_rpm as a number"),
     "channels.mat": ("{channels: [{name: a, variable: x}, {name: b, variable: y}]}", "has channels of 1100 and 550 samples"),
 }  # fmt: skip

@@ -78,7 +78,7 @@ def test_24_bits_and_a_chosen_channel_of_stereo_are_read(tmp_path, extensible):
         np.testing.assert_array_equal(read_signal(tmp_path / "a.wav", column=column).values, counts[:, column] / 2**23)
     assert read_signal(tmp_path / "a.wav", column=0).fs == 8000
     with pytest.raises(
-        CorpusError, match=re.escape("a.wav: has 2 columns and none is chosen; choose one with column.")
+        CorpusError, match=re.escape("a.wav: has 2 columns (0, 1) and none is chosen; choose one with column.")
     ):
         read_signal(tmp_path / "a.wav")
 
@@ -158,15 +158,17 @@ REFUSED = {
     "compressed": ("a.wav", with_encoding(85), {}, "(Unknown wave file format: MPEGLAYER3. Supported formats: PCM, IEEE_FLOAT)."),
     "half_float": ("a.wav", with_encoding(3), {}, "(Unsupported bit depth: the WAV file has 16-bit floating-point data.)."),
     "named_column": (
-        "a.npy", FILES["values.npy"], {"column": "ax"}, "so none is called ax; give column as a number from 0.",
+        "a.npy", FILES["values.npy"], {"column": "ax"}, "so none is called ax; give a number from 0 with column.",
     ),
-    "no_such_column": ("a.csv", FILES["column.csv"], {"column": 3}, "has no line of numbers in column 3 among its first 100."),
-    "no_such_name": ("a.csv", FILES["column.csv"], {"column": "ax"}, "has no column ax in its first 100 lines."),
+    "no_such_column": ("a.csv", FILES["column.csv"], {"column": 3}, "has the columns 0, and no numbers in 3; choose one with column."),
+    "no_such_name": ("a.csv", FILES["column.csv"], {"column": "ax"}, "has the columns 0, and no numbers in ax; choose one with column."),
     "no_such_variable": (
         "a.mat", FILES["only_variable.mat"], {"variable": "y*"}, "holds rpm, x, and no variable y*; name one with variable.",
     ),
-    "decimal_commas": ("a.csv", lambda path: path.write_text("t;x\n0;0,5\n1;-0,25\n"), {"column": 1}, "has numbers with decimal commas;"),
-    "one_column": ("a.csv", lambda path: path.write_text("x\n0,512\n-1,037\n0,200\n"), {"column": 0}, "has numbers with decimal commas;"),
+    "decimal_commas": (
+        "a.csv", lambda path: path.write_text("t,x\n0,0,0,5\n0,1,-0,25\n"), {"column": 1}, "and commas separate its columns too; save",
+    ),
+    "one_column": ("a.csv", lambda path: path.write_text("x\n0,512\n-1,037\n0,200\n"), {"column": 0}, "has numbers with decimal"),
     "voltage": ("a.npy", FILES["values.npy"], {"unit": "V"}, "the unit is V and the sensitivity of the sensor is missing;"),
     "no_voltage": ("a.npy", FILES["values.npy"], {"sensitivity": 100.0}, "a sensitivity is given and the unit is m/s2, not V or mV;"),
 }  # fmt: skip
