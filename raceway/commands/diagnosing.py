@@ -1,21 +1,27 @@
-"""Command that diagnoses one recording of the user."""
+"""Command that diagnoses a recording of the user, or each of a folder."""
 
 import math
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
+from raceway.commands.diagnosis_table import recordings_in, show_table
 from raceway.console import show
-from raceway.console.options import A_PATH, file_option, json_option, names
+from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, names
 from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
     from features.diagnosis import Diagnosis, Given, Pair, Recorded
     from gen.physics.bearing import Bearing
 
-UNITS = ("g", "m/s2", "V")
+UNITS = ("g", "m/s2", "V", "mV")
 SLOWEST, FASTEST = 0.001, 1e7  # rpm
+ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
+OPTIONS = {"column": "--channel", "variable": "--channel", "rate": "--rate", "unit": "--unit"}
 
 
 class Reading(NamedTuple):
@@ -44,6 +50,13 @@ def _speeds(_context: click.Context, _option: click.Parameter, text: str | None)
     return first, last
 
 
+def _checked_output(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
+    """Page of a recording, or folder for the pages of a folder of them."""
+    if path is None or context.params["recording"].is_dir():
+        return path and checked_pages(context, option, path)
+    return checked_file(path, (".html",), "page")
+
+
 def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
     if value is not None and math.isnan(value):  # it passes every range
         raise click.BadParameter("nan is not a number")
@@ -51,7 +64,7 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 
 
 @click.command()
-@click.argument("recording", metavar="RECORDING", type=A_PATH)
+@click.argument("recording", metavar="RECORDING|FOLDER", type=A_PATH, is_eager=True)
 @click.option(
     "--bearing",
     "bearings",
@@ -72,21 +85,19 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     type=click.FloatRange(1, 1e8),
     callback=_a_number,
     metavar="HZ",
-    help="Sample rate; a WAV file states its own.",
+    help="Sample rate, unless the file states it: in its header or by a column of times.",
 )
 @click.option(
     "--unit",
     type=click.Choice(UNITS),
-    default="m/s2",
-    show_default=True,
-    help="Unit of the values; V needs --sensitivity.",
+    help="Unit of the values; by default that in the header, or else m/s2. V and mV need --sensitivity.",
 )
 @click.option(
     "--sensitivity",
     type=click.FloatRange(1e-6, 1e6),
     callback=_a_number,
     metavar="MV_PER_G",
-    help="Of the sensor [mV per g], with --unit V.",
+    help="Of the sensor [mV per g], if the values are voltages.",
 )
 @click.option(
     "--channel",
@@ -96,7 +107,11 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
     "of one housing.",
 )
-@click.option("--variable", metavar="NAME", help="Variable of a MATLAB file whose columns --channel counts.")
+@click.option(
+    "--variable",
+    metavar="NAME",
+    help="Variable of a MATLAB file whose columns --channel counts, or sheet of an Excel file, by default the first.",
+)
 @click.option(
     "--healthy",
     type=A_PATH,
@@ -105,7 +120,14 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     help="Recording of the same machine with a healthy bearing, read in the same way; give the option again for further ones.",
 )
 @click.option("--model", type=A_PATH, metavar="MODEL", help="Model file; by default the reference model of this user.")
-@file_option("REPORT", "Page with pictures: .html.", (".html",), kind="page", required=False)
+@click.option(
+    "-o",
+    "--output",
+    type=A_PATH,
+    metavar="REPORT",
+    callback=_checked_output,
+    help="Page with pictures: .html; of a FOLDER a folder of such pages.",
+)
 @json_option
 def diagnose(
     recording: Path,
@@ -123,8 +145,9 @@ def diagnose(
 ) -> None:
     """Diagnose the bearing in a vibration recording.
 
-    RECORDING is a .csv, .txt, .tsv, .dat, .npy, .mat or .wav file of at least 0.05 s, better 10 s, at 10 kHz or more. The answer is one
-    sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason and what would help.
+    RECORDING is a .csv, .txt, .tsv, .dat, .xlsx, .npy, .mat or .wav file of at least 0.05 s, better 10 s, at 10 kHz or more. The answer
+    is one sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason and what would
+    help. For a FOLDER it is a table with a row for each recording.
 
       raceway diagnose pump.csv --bearing 6205 --rpm 1772 --rate 12000 --unit g -o pump.html
       raceway diagnose fan.wav --bearing 6205 --rpm 1400-1600
@@ -132,6 +155,7 @@ def diagnose(
       raceway diagnose motor.mat --channel X106_DE_time --bearing 6205 --rpm 1750 --rate 12000 --unit g
       raceway diagnose volts.csv --channel x,y,z --unit V --sensitivity 100 --bearing 6308 --rpm 990 --rate 25600
       raceway diagnose pump.csv --healthy new.csv --bearing 6205 --rpm 1772 --rate 12000 --json
+      raceway diagnose spring_campaign --channel 1 --bearing 6205 --rpm 1480 -o pages
 
     Give a speed, a bearing or both. The answer names the pair of bearing and speed that explains the lines, and is "unsure" if pairs
     that cannot be told apart give different answers.
@@ -143,29 +167,91 @@ def diagnose(
     raceway train domain_randomised. docs/diagnose.md tells how to record and how to read the page.
     """
     known = _bearings(bearings, speeds)
-    given = _given(known, speeds)
     reading = Reading(channels or (), variable, unit, sensitivity, rate)
-    read = [_read(path, reading) for path in (recording, *healthy)]
-    recorded = [one for one, _ in read]
+    several = recording.is_dir()
+    unusable: dict[Path, str] = {}
+    paths = recordings_in(recording, healthy) if several else [recording]
+    readings = _readings(paths, reading, unusable if several else None)
+    first = next(readings, None)  # before the model, so that whatever is missing is told at once
+    if first is None:
+        raise click.UsageError(f"no recording can be used; the first of {len(paths)}: {next(iter(unusable.values()))}")
+    compared = [_read(path, reading) for path in healthy]
+    references = [one for one, *_ in compared]
+    doubts = _doubts(speeds) + tuple(note for *_, found in compared for note in found)
+    given = _given(known, speeds)
     loaded, source = _model(model)
     from features.diagnosis import diagnose as run
 
-    with notice_compilation():
-        diagnosis = run(recorded[0], given, loaded, healthy=recorded[1:])
-    notes = tuple(dict.fromkeys(note for _, found in read for note in found))
-    for sentence in (*notes, *diagnosis.warnings):
-        notice(f"warning: {sentence}")
-    if output is not None:
-        from features.report.diagnosis import write_diagnosis
-
-        facts = _assumptions(recorded[0], known, diagnosis, reading, healthy, source, notes)
-        write_diagnosis(diagnosis, recorded[0], output, name=recording.name, assumed=facts)
+    diagnoses, warnings, found = {}, {}, []
+    for path, recorded, of_values, of_file in chain((first,), readings):
+        with _set_aside(path, unusable if several else None), notice_compilation():
+            diagnoses[path] = diagnosis = run(recorded, given, loaded, healthy=references)
+        if path not in diagnoses:
+            continue
+        notes = tuple(dict.fromkeys(of_file + doubts))
+        warnings[path] = notes + diagnosis.warnings
+        for sentence in warnings[path]:
+            notice(f"warning: {f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
+        page = output and (output / f"{path.name}.html" if several else output)
+        if page is not None:
+            facts = _assumptions(recorded, known, diagnosis, reading._replace(unit=of_values), healthy, source, notes)
+            _write_page(diagnosis, recorded, page, path.name, facts)
+        found.append(_facts(diagnosis, recorded, path, source, page, notes))
     if as_json:
-        show.as_json(_facts(diagnosis, recorded[0], recording, source, output, notes))
+        errors = [{"recording": path, "error": sentence} for path, sentence in unusable.items()]
+        show.as_json([*found, *errors] if several else found[0])
         return
-    show.text(diagnosis.sentence, *(f"- {sentence}" for sentence in diagnosis.advice))
+    if several:
+        show_table(diagnoses, {path: len(told) for path, told in warnings.items()}, unusable)
+    else:
+        diagnosis = diagnoses[recording]
+        show.text(diagnosis.sentence, *(f"- {sentence}" for sentence in diagnosis.advice))
     if output is not None:
         show.text("", f"{output}: pictures, evidence and what was assumed.")
+
+
+@contextmanager
+def _set_aside(path: Path, unusable: dict[Path, str] | None) -> Iterator[None]:
+    """Keep the sentence on a file that cannot be used, and go on; a recording on its own ends the command."""
+    from gen.support.errors import CorpusError
+
+    try:
+        yield
+    except CorpusError as error:
+        if unusable is None:
+            raise
+        unusable[path] = str(error)
+
+
+def _readings(
+    paths: Sequence[Path], reading: Reading, unusable: dict[Path, str] | None
+) -> "Iterator[tuple[Path, Recorded, str, tuple[str, ...]]]":
+    """Recordings that can be read, one after the other."""
+    for path in paths:
+        found = None
+        with _set_aside(path, unusable):
+            found = _read(path, reading)
+        if found is not None:
+            yield path, *found
+
+
+def _write_page(
+    diagnosis: "Diagnosis", recorded: "Recorded", page: Path, name: str, facts: list[tuple[str, str]]
+) -> None:
+    from features.report.diagnosis import write_diagnosis
+    from gen.corpus import make_result_folder
+
+    if not page.parent.is_dir():  # of a folder of recordings
+        make_result_folder(page.parent)
+    write_diagnosis(diagnosis, recorded, page, name=name, assumed=facts)
+
+
+def _doubts(speeds: tuple[float, float] | None) -> tuple[str, ...]:
+    """Sentence on a speed that may be in Hz."""
+    if speeds is None or speeds[1] >= ONE_TURN:
+        return ()
+    given, meant = ("-".join(f"{factor * one:g}" for one in dict.fromkeys(speeds)) for factor in (1, 60))
+    return (f"--rpm {given} is less than one turn a second; if it is Hz, give --rpm {meant}.",)
 
 
 def _bearings(texts: tuple[str, ...], speeds: tuple[float, float] | None) -> dict[str, "Bearing"]:
@@ -198,10 +284,10 @@ def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -
     return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))
 
 
-def _read(path: Path, reading: Reading) -> tuple["Recorded", tuple[str, ...]]:
-    """Channels of a file, and sentences on what was assumed; the diagnosis itself warns of an implausible rms."""
-    from features.diagnosis import Recorded
+def _read(path: Path, reading: Reading) -> tuple["Recorded", str, tuple[str, ...]]:
+    """Channels of a file, their unit, and sentences on what was assumed; the diagnosis itself warns of an implausible rms."""
     from gen.importers.signals import read_signal
+    from gen.support.errors import CorpusError
 
     signals = {}
     notes: list[str] = []
@@ -209,20 +295,18 @@ def _read(path: Path, reading: Reading) -> tuple["Recorded", tuple[str, ...]]:
         number = int(channel) if channel is not None and channel.isdecimal() else channel
         named = path.suffix.lower() == ".mat" and isinstance(number, str)
         place = {"variable": number, "column": None} if named else {"variable": reading.variable, "column": number}
-        signal = read_signal(
-            path,
-            **place,
-            unit=reading.unit,
-            sensitivity=reading.sensitivity,
-            rate=reading.rate,  # type: ignore[arg-type]
-        )
+        how = place | {"unit": reading.unit, "sensitivity": reading.sensitivity, "rate": reading.rate}
+        signal = read_signal(path, **how, options=OPTIONS)  # type: ignore[arg-type]
         if signal.fs is None:
-            raise click.UsageError(f"{path} does not state its sample rate; give it with --rate HZ")
+            raise CorpusError(f"{path}: does not state its sample rate; give it with --rate HZ.")
         signals[channel or ""] = signal
         notes += [note for note in signal.warnings if "its rms" not in note]
+    from features.diagnosis import Recorded  # it takes seconds, and a file that cannot be used is told before
+
     shortest = min(signal.values.size for signal in signals.values())
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
-    return Recorded(cut, next(iter(signals.values())).fs, str(path)), tuple(notes)
+    units = dict.fromkeys(signal.unit for signal in signals.values())
+    return Recorded(cut, next(iter(signals.values())).fs, str(path)), " and ".join(units), tuple(notes)
 
 
 def _model(path: Path | None) -> tuple[Any, Path]:

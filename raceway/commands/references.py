@@ -15,6 +15,9 @@ if TYPE_CHECKING:
     from features.recording_speeds import Speed
 
 
+_OPTIONS = {key: f"--reference-{key}" for key in ("column", "variable", "rate")}
+
+
 def _number_or_name(_context: click.Context, _option: click.Parameter, text: str | None) -> int | str | None:
     return int(text) if text is not None and text.isdecimal() else text
 
@@ -80,7 +83,8 @@ def reference_table(
     from gen.support.units import rpm_to_hertz
 
     if path.is_file():
-        signal = read_signal(path, variable=reference_variable, column=reference_column, rate=reference_rate)
+        place = {"variable": reference_variable, "column": reference_column}
+        signal = read_signal(path, **place, rate=reference_rate, options=_OPTIONS)  # type: ignore[arg-type]
         fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
         if signal.fs is None:
             notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")

@@ -170,18 +170,35 @@ def target_option(what: str) -> Decorator:
     return click.option("-o", "--output", type=A_PATH, required=True, metavar="TARGET", help=what, callback=check)
 
 
+def checked_pages(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
+    """Folder for pages and pictures, which is no corpus and lies in none."""
+    from gen.corpus import check_result_folder
+
+    if path.exists() and not path.is_dir():
+        raise click.BadParameter(f"{path} is a file; give a folder")
+    check_result_folder(path)
+    return path
+
+
 def pages_option(metavar: str, what: str) -> Decorator:
     """Make the option that names the folder for pages and pictures, which is no corpus and lies in none."""
+    return click.option(
+        "-o", "--output", type=A_PATH, required=True, metavar=metavar, help=what, callback=checked_pages
+    )
 
-    def check(_context: click.Context, _option: click.Parameter, path: Path) -> Path:
-        from gen.corpus import check_result_folder
 
-        if path.exists() and not path.is_dir():
-            raise click.BadParameter(f"{path} is a file; give a folder")
-        check_result_folder(path)
-        return path
+def checked_file(path: Path, suffixes: tuple[str, ...] = (), kind: str | None = None) -> Path:
+    """File for a result; see :func:`file_option`."""
+    if suffixes and path.suffix not in suffixes:
+        raise click.BadParameter(f"{path} does not end in {' or '.join(suffixes)}")
+    if path.is_dir():
+        raise click.BadParameter(f"{path} is a folder; give a file")
+    if not path.parent.is_dir():
+        raise click.BadParameter(f"there is no folder {path.parent}; create it first")
+    from gen.corpus import check_result  # not at the top: help needs nothing of gen
 
-    return click.option("-o", "--output", type=A_PATH, required=True, metavar=metavar, help=what, callback=check)
+    check_result(path, kind)
+    return path
 
 
 def file_option(
@@ -193,17 +210,6 @@ def file_option(
     """
 
     def check(_context: click.Context, _option: click.Parameter, path: Path | None) -> Path | None:
-        if path is None:
-            return None
-        if suffixes and path.suffix not in suffixes:
-            raise click.BadParameter(f"{path} does not end in {' or '.join(suffixes)}")
-        if path.is_dir():
-            raise click.BadParameter(f"{path} is a folder; give a file")
-        if not path.parent.is_dir():
-            raise click.BadParameter(f"there is no folder {path.parent}; create it first")
-        from gen.corpus import check_result  # not at the top: help needs nothing of gen
-
-        check_result(path, kind)
-        return path
+        return None if path is None else checked_file(path, suffixes, kind)
 
     return click.option("-o", "--output", type=A_PATH, required=required, metavar=metavar, help=what, callback=check)

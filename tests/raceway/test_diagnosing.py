@@ -2,6 +2,8 @@
 
 import json
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -291,9 +293,17 @@ def test_the_verdict_does_not_depend_on_the_unit(model, recordings, tmp_path):
 @pytest.mark.parametrize(
     ("options", "sentence"),
     [
-        (("r.csv", "--channel", "1"), "--rate"),
-        (("r.csv", "--rate", FS), "column"),
-        (("stereo.wav",), "column"),
+        (("two.csv", "--channel", "1"), "does not state its sample rate; give it with --rate HZ."),
+        (("two.csv", "--rate", FS), "has 2 columns (0 a, 1 b) and none is chosen; choose one with --channel."),
+        (
+            ("r.csv", "--rate", 2 * FS),
+            "is at 12000 Hz by its times in column 0 time, and 24000 Hz are given; correct what is given with --rate.",
+        ),
+        (
+            ("two.csv", "--channel", "c", "--rate", FS),
+            "has the columns 0 a, 1 b, and no numbers in c; choose one with --channel.",
+        ),
+        (("stereo.wav",), "has 2 columns (0, 1) and none is chosen; choose one with --channel."),
         (("no.csv", "--rate", FS), "no.csv"),
         (("r.pdf", "--rate", FS), "no known type"),
         (("r.wav", "--unit", "V"), "sensitivity"),
@@ -317,6 +327,7 @@ def test_an_error_is_one_sentence_and_exit_code_2(options, sentence, model, reco
     signal = recordings["inner"][0]
     monkeypatch.chdir(tmp_path)
     write_csv(Path("r.csv"), signal[:600])
+    np.savetxt("two.csv", np.stack([signal[:600], signal[:600]], axis=1), delimiter=",", header="a,b", comments="")
     write_wav(Path("r.wav"), signal[:6000])
     write_wav(Path("stereo.wav"), signal[:600], signal[:600])
     Path("r.pdf").write_text("no recording", encoding="utf-8")
@@ -326,3 +337,66 @@ def test_an_error_is_one_sentence_and_exit_code_2(options, sentence, model, reco
     assert sentence in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
     assert result.stdout == ""
+
+
+def test_a_folder_of_recordings_becomes_a_table_and_pages(model, recordings, tmp_path):
+    folder, pages = tmp_path / "campaign", tmp_path / "pages"
+    folder.mkdir()
+    for fault in ("inner", "outer"):
+        write_csv(folder / f"{fault}.csv", recordings[fault][0])
+    write_wav(folder / "new.wav", recordings["healthy"][0])
+    (folder / "note.txt").write_text("nothing measured", encoding="utf-8")
+    (folder / "list.doc").write_text("no recording", encoding="utf-8")
+    options = (folder, "--bearing", "6205", "--rpm", "1700-1800", "--model", model)
+    result = call(*options, "--healthy", folder / "new.wav", "-o", pages)
+    assert result.exit_code == 0, result.output
+    header, *rows = result.stdout.partition("\n\n")[0].splitlines()
+    assert header.split() == ["recording", "verdict", "probability", "rpm", "strongest", "lines", "warnings"]
+    assert [row.split()[:2] for row in rows] == [["inner.csv", "inner"], ["outer.csv", "outer"], ["note.txt", "not"]]
+    assert "BPFI" in rows[0]
+    assert "note.txt: has no line of numbers among its first 1." in result.stdout
+    assert sorted(page.name for page in pages.iterdir()) == ["inner.csv.html", "outer.csv.html"]
+    listed = told(*options)
+    assert [Path(one["recording"]).name for one in listed] == ["inner.csv", "new.wav", "outer.csv", "note.txt"]
+    assert [one.get("verdict") for one in listed] == ["inner", "healthy", "outer", None]
+    alone = told(folder / "inner.csv", *options[1:])
+    assert {**listed[0]} == alone
+
+
+@pytest.mark.parametrize(
+    ("files", "options", "sentence"),
+    [
+        ((), (), "has no recording in it (.mat, .npy,"),
+        (("a.txt",), (), "no recording can be used; the first of 1: campaign/a.txt: has no line of numbers"),
+        (("a.txt",), ("-o", "mine"), "page.html: was not made by raceway"),
+        (("a.txt",), ("-o", "mine/page.html"), "is a file; give a folder"),
+    ],
+)
+def test_a_folder_that_cannot_be_used_is_one_sentence(files, options, sentence, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("campaign", "mine"):
+        Path(name).mkdir()
+    Path("mine/page.html").write_text("mine", encoding="utf-8")
+    for name in files:
+        Path("campaign", name).write_text("nothing", encoding="utf-8")
+    result = call("campaign", "--rpm", 1750, "--model", "none.skops", *options)
+    assert (result.exit_code, result.stdout) == (2, "")
+    assert sentence in result.stderr
+    assert len(result.stderr.strip().splitlines()) == 1
+
+
+@pytest.mark.parametrize(("rpm", "meant"), [("29.5", "1770"), ("28-30", "1680-1800")])
+def test_a_speed_below_one_turn_a_second_may_be_in_hertz(rpm, meant, model, recordings, tmp_path):
+    path = write_wav(tmp_path / "r.wav", recordings["inner"][0])
+    found = told(path, "--bearing", "6205", "--rpm", rpm, "--model", model)
+    assert f"--rpm {rpm} is less than one turn a second; if it is Hz, give --rpm {meant}." in found["warnings"]
+
+
+def test_a_missing_rate_is_told_before_anything_is_loaded(tmp_path):
+    np.savetxt(tmp_path / "r.csv", np.zeros(600))
+    done = subprocess.run(
+        [sys.executable, "-X", "importtime", "-m", "raceway", "diagnose", tmp_path / "r.csv", "--rpm", "1500"],
+        capture_output=True, text=True, timeout=60, check=False,
+    )  # fmt: skip
+    assert "does not state its sample rate; give it with --rate HZ." in done.stderr
+    assert not re.search(r"\| +(sklearn|numba|xarray|dask)$", done.stderr, re.MULTILINE)
