@@ -91,6 +91,10 @@ def signal_of(head: Head, column: int | str | None, times: FloatArray | None, va
                 f"has times in column {head.name(of_times)} that are not evenly spaced; export it at one sample rate"
             )
             raise UnusableError(message)
+        if even and (unit == "hz" or name.casefold().startswith("freq")):
+            raise UnusableError(
+                f"has frequencies in column {head.name(of_times)}; export the waveform, not its spectrum"
+            )
         if even and chosen == of_times:
             message = f"has times in column {head.name(of_times)}, not a signal; choose another"
             raise UnusableError(message, "column")
@@ -108,7 +112,7 @@ def signal_of(head: Head, column: int | str | None, times: FloatArray | None, va
 def table_signal(table: NDArray[Any], column: int | str | None) -> Values:
     """Signal in a table without names, whose longer axis is time."""
     columns = as_columns(table)
-    head = Head(0, tuple(range(len(columns))), ())
+    head = Head(0, (True,) * len(columns), ())
     times, chosen = columns_to_read(head, column)
     picked = [None if n is None else columns[n].astype(np.float64, copy=False) for n in (times, chosen)]
     assert picked[1] is not None  # noqa: S101
@@ -145,7 +149,7 @@ def is_even(values: FloatArray) -> bool:
 
 
 def _rate_of(times: FloatArray, unit: float | None) -> float | None:
-    """Sample rate [Hz] that times tell, as a whole number if their rounding allows it; None for a counter.
+    """Sample rate [Hz] that times tell, the roundest number that their rounding allows; None for a counter.
 
     >>> _rate_of(np.round(np.arange(1000) / 12800, 6), None), _rate_of(np.arange(1000) / 12.8, 1e-3), _rate_of(np.arange(9.0), None)
     (12800.0, 12800.0, None)
@@ -154,9 +158,9 @@ def _rate_of(times: FloatArray, unit: float | None) -> float | None:
     rate = (times.size - 1) / span / (unit or 1.0)
     if unit is None and rate <= LEAST_RATE:
         return None
-    whole = round(rate)
     resolution = max(float(np.ptp(steps)), _SIX_DIGITS * 0.1 * float(np.abs(times).max()))
-    return float(whole if abs(whole / rate - 1) <= resolution / span else rate)
+    round_ones = (step * round(rate / step) for step in (1000.0, 100.0, 10.0, 1.0))
+    return next((one for one in round_ones if abs(one / rate - 1) <= resolution / span), rate)
 
 
 def _number(head: Head, column: int | str) -> int | None:

@@ -39,29 +39,32 @@ _THOUSANDS = re.compile(r"[1-9]\d{0,2}(,\d{3})+(\.\d+)?")
 class Head(NamedTuple):
     """What is known of a table before its numbers are read.
 
-    ``first`` is the number of the first row of numbers, from 0; ``numbers`` are the columns that hold numbers; ``names`` are those of all
+    ``first`` is the number of the first row of numbers, from 0; ``mask`` tells which columns hold numbers; ``names`` are those of all
     columns, empty if there are none; ``fs`` [Hz] and ``unit`` are what the rows before state.
     """
 
     first: int
-    numbers: tuple[int, ...]
+    mask: tuple[bool, ...]
     names: tuple[str, ...]
     fs: float | None = None
     unit: str = ""
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """Columns that hold numbers."""
+        return tuple(number for number, is_one in enumerate(self.mask) if is_one)
 
     def name(self, column: int) -> str:
         """Number and name of a column."""
         return f"{column} {self.names[column]}".rstrip() if self.names else f"{column}"
 
 
-def head_of(rows: Sequence[Sequence[str]], mask: tuple[bool, ...]) -> Head:
-    """Head of a table by its first rows and the columns that hold numbers in most of them."""
+def head_of(lines: Sequence[str], rows: Sequence[Sequence[str]], mask: tuple[bool, ...]) -> Head:
+    """Head of a table by its first lines, their fields, and the columns that hold numbers in most of them."""
     first = next(number for number, fields in enumerate(rows) if numbers_in(fields) == mask)
-    stated = [_plain(" ".join(fields)) for fields in rows[:first]]
+    stated = [_plain(line) for line in lines[:first]]
     unit = next((found[1] for line in stated if (found := _UNIT.search(line))), "")
-    return Head(
-        first, tuple(n for n, is_one in enumerate(mask) if is_one), _names(rows[:first], len(mask)), _rate(stated), unit
-    )
+    return Head(first, mask, _names([fields for fields in rows[:first] if any(fields)], len(mask)), _rate(stated), unit)
 
 
 def pattern_of(rows: Iterable[Sequence[str]]) -> tuple[int, tuple[bool, ...]]:
@@ -94,15 +97,15 @@ def is_number(field: str) -> bool:
 
 
 def unit_in(name: str) -> str:
-    """Unit in brackets at the end of the name of a column, or the last word of it; empty if it is not known.
+    """Unit in brackets or after a stroke at the end of the name of a column, or its last word; empty if it is not known.
 
-    >>> unit_in("DE [g]"), unit_in("Beschl. m/s²"), unit_in("Time"), unit_in("sensor g")
-    ('g', 'm/s2', '', '')
+    >>> unit_in("DE [g]"), unit_in("Beschl. m/s²"), unit_in("acc/g"), unit_in("Time"), unit_in("sensor g")
+    ('g', 'm/s2', 'g', '', '')
     """
     bracketed = _IN_BRACKETS.search(name)
-    unit = key_of(bracketed[1] if bracketed else name.rpartition(" ")[2])
-    sure = bracketed or len(unit) > 1 or unit == key_of(name)
-    return unit if sure and (unit in UNITS or unit in OTHERS or unit in SECONDS) else ""
+    word = name.rpartition(" ")[2]
+    found = [bracketed[1]] if bracketed else [word if len(word) > 1 or word == name else "", word.partition("/")[2]]
+    return next((unit for unit in map(key_of, found) if unit in UNITS or unit in OTHERS or unit in SECONDS), "")
 
 
 def key_of(unit: str) -> str:
@@ -116,23 +119,15 @@ def _plain(text: str) -> str:
 
 def _names(rows: Sequence[Sequence[str]], count: int) -> tuple[str, ...]:
     """Names in the last row before the numbers; a row of units stands below that of the names."""
-    of_columns = [row for row in (_without_end(fields) for fields in rows[-2:]) if len(row) == count]
-    if not of_columns or of_columns[-1] != _without_end(rows[-1]) or all(map(is_number, of_columns[-1])):
+    suited = [len(fields) >= count and not any(map(is_number, fields)) for fields in rows[-2:]]
+    if not suited or not suited[-1]:
         return ()
-    *above, names = of_columns
+    names, above = rows[-1][:count], rows[-2][:count] if len(rows) > 1 and suited[0] else ()
     if above and all(not name or unit_in(f"({name.strip('[]()')})") for name in names):
         return tuple(
-            f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in zip(above[0], names, strict=True)
+            f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in zip(above, names, strict=True)
         )
     return tuple(names)
-
-
-def _without_end(fields: Sequence[str]) -> list[str]:
-    """Fields without the empty ones at the end."""
-    kept = list(fields)
-    while kept and not kept[-1]:
-        kept.pop()
-    return kept
 
 
 def _rate(lines: Sequence[str]) -> float | None:

@@ -36,7 +36,7 @@ def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Value
         if not weight:
             message = f"has no row of numbers among its first {len(top)}; name another sheet"
             raise UnusableError(message, "variable")
-        head = head_of(top, mask)
+        head = head_of([" ".join(row) for row in top], top, mask)
         places = [n for n in columns_to_read(head, column) if n is not None]
         kept = [[row[n] for n in places] for row in rows[head.first :]]
         while kept and not all(isinstance(cell, int | float) for cell in kept[-1]):  # empty rows and a note

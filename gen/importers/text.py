@@ -84,7 +84,7 @@ def _layout(lines: Sequence[str], encoding: str, delimiter: str | None) -> _Layo
         message = f"has no line of numbers among its first {len(lines)}"
         raise UnusableError(message)
     rows = [_fields(line, separator) for line in lines]
-    head = head_of(rows, best[1])
+    head = head_of(lines, rows, best[1])
     if separator == ",":
         _check_commas(lines[head.first :], rows[: head.first], len(best[1]))
     return _Layout(encoding, separator, head)
@@ -123,8 +123,8 @@ class _Rows:
 
     def rest_has_numbers(self) -> bool:
         """Whether a later line is a row of numbers again."""
-        mask = len(self.layout.head.numbers)
-        return any(sum(numbers_in(_fields(line, self.layout.separator))) >= mask for _, line in self.text)
+        head, separator = self.layout.head, self.layout.separator
+        return any(numbers_in(_fields(line, separator)) == head.mask for _, line in self.text)
 
 
 def _load(path: Path, layout: _Layout, places: Sequence[int], most: int | None = None) -> NDArray[np.float64]:
@@ -137,7 +137,7 @@ def _load(path: Path, layout: _Layout, places: Sequence[int], most: int | None =
             )
         except ValueError:
             where, line, before = rows.number, rows.line.strip(), rows.count - 1
-            if rows.rest_has_numbers() or not before or sum(map(is_number, _fields(line, layout.separator))) > 1:
+            if rows.rest_has_numbers() or not before:
                 message = f"has text or a gap among its numbers, in line {where} ({line[:60]!r}); correct the file, or cut it there"
                 raise UnusableError(message) from None
     return _load(path, layout, places, before)
