@@ -12,7 +12,7 @@ from gen.importers.header import LEAST_RATE, OTHERS, SECONDS, UNITS, Head, key_o
 
 _SAME_RATE = 0.01  # relative
 _MOST_NAMED = 12
-_SIX_DIGITS = 1e-5  # relative resolution of times
+_SIX_DIGITS = 1e-5  # resolution of times, relative to the last one
 
 
 class Values(NamedTuple):
@@ -59,7 +59,7 @@ def columns_to_read(head: Head, column: int | str | None) -> tuple[int | None, i
     UnusableError
         If there is no such column, or several and none is chosen.
     """
-    times = next((n for n in head.numbers if head.names and unit_in(head.names[n]) in SECONDS), head.numbers[0])
+    times = next((n for n in head.numbers if _unit_in(head, n) in SECONDS), head.numbers[0])
     if column is None:
         others = [n for n in head.numbers if n != times]
         if len(others) > 1:
@@ -81,32 +81,20 @@ def signal_of(head: Head, column: int | str | None, times: FloatArray | None, va
         If times and header contradict each other, the chosen column holds the times, or the unit is not of an acceleration.
     """
     of_times, chosen = columns_to_read(head, column)
-    fs, source = head.fs, "header"
-    if times is not None and of_times is not None:
-        name = head.names[of_times] if head.names else ""
-        even = is_even(times)
-        unit = unit_in(name)
-        if unit in SECONDS and not even:
-            message = (
-                f"has times in column {head.name(of_times)} that are not evenly spaced; export it at one sample rate"
-            )
-            raise UnusableError(message)
-        if even and (unit == "hz" or name.casefold().startswith("freq")):
-            raise UnusableError(
-                f"has frequencies in column {head.name(of_times)}; export the waveform, not its spectrum"
-            )
-        if even and chosen == of_times:
-            message = f"has times in column {head.name(of_times)}, not a signal; choose another"
-            raise UnusableError(message, "column")
-        if not even and column is None:
-            raise _none_chosen(head)
-        told = _rate_of(times, SECONDS.get(unit)) if even else None
-        if fs is not None and told is not None and not math.isclose(fs, told, rel_tol=_SAME_RATE):
-            message = f"states {fs:g} Hz in its header, and its times in column {head.name(of_times)} are at {told:g} Hz; correct the file"
-            raise UnusableError(message)
-        fs, source = (fs, source) if told is None else (told, f"times in column {head.name(of_times)}")
     unit, named = _unit_of(head, chosen)
-    return Values(values, fs, source if fs else "", unit, named)
+    if times is None or of_times is None or not _are_times(head, of_times, times):
+        if times is not None and column is None:
+            raise _none_chosen(head)
+        return Values(values, head.fs, "header" if head.fs else "", unit, named)
+    if chosen == of_times:
+        message = f"has times in column {head.name(of_times)}, not a signal; choose another"
+        raise UnusableError(message, "column")
+    told = _rate_of(times, SECONDS.get(_unit_in(head, of_times)))
+    source = f"times in column {head.name(of_times)}" if told else "header" if head.fs else ""
+    if head.fs is not None and told is not None and not math.isclose(head.fs, told, rel_tol=_SAME_RATE):
+        message = f"states {head.fs:g} Hz in its header, and its {source} are at {told:g} Hz; correct the file"
+        raise UnusableError(message)
+    return Values(values, told or head.fs, source, unit, named)
 
 
 def table_signal(table: NDArray[Any], column: int | str | None) -> Values:
@@ -134,6 +122,16 @@ def as_columns(values: NDArray[Any]) -> NDArray[Any]:
     return columns.T if columns.shape[0] > columns.shape[1] else columns
 
 
+def _are_times(head: Head, column: int, values: FloatArray) -> bool:
+    """Whether a column holds times or counts; UnusableError if it holds uneven times, or frequencies."""
+    name, unit, even = head.name(column), _unit_in(head, column), is_even(values)
+    if unit in SECONDS and not even:
+        raise UnusableError(f"has times in column {name} that are not evenly spaced; export it at one sample rate")
+    if even and (unit == "hz" or name.partition(" ")[2].casefold().startswith("freq")):
+        raise UnusableError(f"has frequencies in column {name}; export the waveform, not its spectrum")
+    return even
+
+
 def is_even(values: FloatArray) -> bool:
     """Whether values rise by a constant step within their rounding, as times and counters do.
 
@@ -144,7 +142,8 @@ def is_even(values: FloatArray) -> bool:
     if values.size < 3 or not np.all(steps >= 0) or values[-1] <= values[0]:  # NaN fails the comparison
         return False
     line = np.linspace(values[0], values[-1], values.size)
-    resolution = max(float(np.median(steps[steps > 0])), _SIX_DIGITS * float(np.abs(values).max()))
+    usual = np.quantile(steps[steps > 0], 0.99, method="lower")  # the rounding of most steps, without a gap
+    resolution = max(float(usual), _SIX_DIGITS * float(values[-1] - values[0]))
     return float(np.abs(values - line).max()) <= resolution
 
 
@@ -158,7 +157,7 @@ def _rate_of(times: FloatArray, unit: float | None) -> float | None:
     rate = (times.size - 1) / span / (unit or 1.0)
     if unit is None and rate <= LEAST_RATE:
         return None
-    resolution = max(float(np.ptp(steps)), _SIX_DIGITS * 0.1 * float(np.abs(times).max()))
+    resolution = max(float(np.ptp(steps)), _SIX_DIGITS * 0.1 * span)
     round_ones = (step * round(rate / step) for step in (1000.0, 100.0, 10.0, 1.0))
     return next((one for one in round_ones if abs(one / rate - 1) <= resolution / span), rate)
 
@@ -184,11 +183,14 @@ def _listed(head: Head) -> str:
     return ", ".join(shown) + (f" and {more} more" if more else "")
 
 
+def _unit_in(head: Head, column: int) -> str:
+    return unit_in(head.names[column]) if head.names else ""
+
+
 def _unit_of(head: Head, column: int) -> tuple[Unit | None, str]:
     """Unit of a column, and where the head states it."""
-    name = head.names[column] if head.names else ""
-    own, common = unit_in(name), key_of(head.unit)
-    unit, named = (own, name) if own else (common, f"unit {head.unit}")
+    own, common = _unit_in(head, column), key_of(head.unit)
+    unit, named = (own, head.names[column]) if own else (common, f"unit {head.unit}")
     if unit in OTHERS:
         message = f"states {named} in its header, {OTHERS[unit]}; export the acceleration in m/s2 or g, or choose another column"
         raise UnusableError(message, "column")

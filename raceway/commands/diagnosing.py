@@ -178,19 +178,20 @@ def diagnose(
     compared = [_read(path, reading) for path in healthy]
     references = [one for one, *_ in compared]
     doubts = _doubts(speeds) + tuple(note for *_, found in compared for note in found)
+    for sentence in doubts:
+        notice(f"warning: {sentence}")
     given = _given(known, speeds)
     loaded, source = _model(model)
     from features.diagnosis import diagnose as run
 
-    diagnoses, warnings, found = {}, {}, []
+    diagnoses, found = {}, []
     for path, recorded, of_values, of_file in chain((first,), readings):
         with _set_aside(path, unusable if several else None), notice_compilation():
             diagnoses[path] = diagnosis = run(recorded, given, loaded, healthy=references)
         if path not in diagnoses:
             continue
         notes = tuple(dict.fromkeys(of_file + doubts))
-        warnings[path] = notes + diagnosis.warnings
-        for sentence in warnings[path]:
+        for sentence in of_file + diagnosis.warnings:
             notice(f"warning: {f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
         page = output and (output / f"{path.name}.html" if several else output)
         if page is not None:
@@ -202,7 +203,7 @@ def diagnose(
         show.as_json([*found, *errors] if several else found[0])
         return
     if several:
-        show_table(diagnoses, {path: len(told) for path, told in warnings.items()}, unusable)
+        show_table(diagnoses, unusable)
     else:
         diagnosis = diagnoses[recording]
         show.text(diagnosis.sentence, *(f"- {sentence}" for sentence in diagnosis.advice))

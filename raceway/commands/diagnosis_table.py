@@ -32,20 +32,20 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
     return found
 
 
-def show_table(
-    diagnoses: Mapping[Path, "Diagnosis"], warnings: Mapping[Path, int], unusable: Mapping[Path, str]
-) -> None:
+def show_table(diagnoses: Mapping[Path, "Diagnosis"], unusable: Mapping[Path, str]) -> None:
     """Print a row for each recording, and a sentence for each file that cannot be used."""
     header = ("recording", "verdict", "probability", "rpm", "strongest lines", "warnings")
-    rows = [(path.name, *_row(diagnoses[path]), warnings[path] or "") for path in diagnoses]
+    rows = [(path.name, *_row(diagnosis)) for path, diagnosis in diagnoses.items()]
     show.table(header, [*rows, *((path.name, "not used", "", "", "", "") for path in unusable)])
     if unusable:
         show.text("", *unusable.values())
 
 
-def _row(diagnosis: "Diagnosis") -> tuple[str, str, str, str]:
+def _row(diagnosis: "Diagnosis") -> tuple[object, ...]:
     lines = ", ".join(f"{line.name} {line.level:.0f} dB" for line in diagnosis.evidence[:_SHOWN_LINES])
-    highest = max(diagnosis.probabilities, key=lambda fault: diagnosis.probabilities[fault])
-    sure = diagnosis.probabilities.get(diagnosis.verdict, diagnosis.probabilities[highest])
-    probability = f"{sure:.2f}" if diagnosis.verdict in diagnosis.probabilities else f"{highest} {sure:.2f}"
-    return diagnosis.verdict, probability, f"{60 * diagnosis.shaft_rate:,.0f}", lines
+    likeliest = max(diagnosis.probabilities, key=lambda fault: diagnosis.probabilities[fault])
+    probability = f"{diagnosis.probabilities[likeliest]:.2f}"
+    if likeliest != diagnosis.verdict:
+        probability = f"{likeliest} {probability}"
+    rpm = f"{60 * diagnosis.shaft_rate:,.0f}"
+    return diagnosis.verdict, probability, rpm, lines, len(diagnosis.warnings) or ""

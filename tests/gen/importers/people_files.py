@@ -37,7 +37,7 @@ def text(
 
 
 def sheet(rows: Sequence[Sequence[object]], path: Path, name: str = "Data") -> None:
-    """Write the least Excel file that spreadsheets open, with one sheet of texts and numbers after an empty one."""
+    """Write the least Excel file that spreadsheets open: a sheet of texts and numbers before an empty one."""
 
     def cell(value: object) -> str:
         return (
@@ -51,10 +51,14 @@ def sheet(rows: Sequence[Sequence[object]], path: Path, name: str = "Data") -> N
         "http://schemas.openxmlformats.org/officeDocument/2006",
     )
     package = "http://schemas.openxmlformats.org/package/2006"
+    kind = "application/vnd.openxmlformats-officedocument.spreadsheetml"
     sheets = "".join(f"<row>{''.join(map(cell, row))}</row>" for row in rows)
     parts = {
         "[Content_Types].xml": f'<Types xmlns="{package}/content-types"><Default Extension="xml" ContentType="application/xml"/>'
-        '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/></Types>',
+        '<Default Extension="rels" ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        f'<Override PartName="/xl/workbook.xml" ContentType="{kind}.sheet.main+xml"/>'
+        f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{kind}.worksheet+xml"/>'
+        f'<Override PartName="/xl/worksheets/sheet2.xml" ContentType="{kind}.worksheet+xml"/></Types>',
         "_rels/.rels": f'<Relationships xmlns="{package}/relationships"><Relationship Id="r1" Type="{office}/relationships/officeDocument" '
         'Target="xl/workbook.xml"/></Relationships>',
         "xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{office}/relationships"><sheets><sheet name="{name}" sheetId="1" r:id="r1"/>'
