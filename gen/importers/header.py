@@ -23,7 +23,8 @@ OTHERS = {
 
 _FACTORS = {"hz": 1.0, "khz": 1e3, "s/s": 1.0, "": 1.0, **SECONDS}
 _UNIT_OF_RATE = "|".join(unit for unit in sorted(_FACTORS, key=len, reverse=True) if unit)
-_VALUE = rf"(?![a-z])[\W_]*?(?:({_UNIT_OF_RATE})(?![a-z])[\W_]*?)?(\.?\d[\d.,]*(?:e[-+]?\d+)?)(?:[\W_]*({_UNIT_OF_RATE})(?![a-z]))?"
+_NUMBER = r"((?:\d+(?:,\d{3})*(?:[.,]\d+)?|\.\d+)(?:e[-+]?\d{1,2})?)(?!\d)"
+_VALUE = rf"(?![a-z])[\W_]*?(?:({_UNIT_OF_RATE})(?![a-z])[\W_]*?)?{_NUMBER}(?:[\W_]*({_UNIT_OF_RATE})(?![a-z]))?"
 _RATE = re.compile(
     r"(?<![a-z])(?:sampl\w*?[ _-]*(?:rate|freq\w*?)|scan[ _-]*rate|abtast(?:rate|frequenz)|fs|f_s)" + _VALUE
 )
@@ -138,8 +139,7 @@ def _rate(lines: Sequence[str]) -> float | None:
             if found is None:
                 continue
             before, number, after = found.groups()
-            text = number.strip(".,") if not number.startswith(".") else number
-            value = float(text.replace(",", "" if _THOUSANDS.fullmatch(text) else "."))
+            value = float(number.replace(",", "" if _THOUSANDS.fullmatch(number) else "."))
             value *= _FACTORS[before or after or ""]
             rate = value if pattern is _RATE else 1 / value if value else 0.0
             if rate >= LEAST_RATE:

@@ -57,3 +57,22 @@ def test_a_mapping_takes_the_rate_from_the_times_and_names_its_own_keys(tmp_path
         (tmp_path / "mapping.yaml").write_text(common % keys)
         with pytest.raises(CorpusError, match=sentence):
             import_generic(tmp_path / "mapping.yaml", tmp_path / "refused", window=0.02)
+
+
+@pytest.mark.parametrize(
+    ("line", "rate"),
+    [
+        ("Sampling Rate: 25,600 Hz", 25600),
+        ("Sample interval: 39.0625 us", 25600),
+        ("Sampling frequency [kHz];12,8", 12800),
+        ("sample_rate_hz,25600", 25600),
+        ("Abtastrate: 25600 1/s", 25600),
+        ("dt = .0001", 10000),
+        ("Sampling time: 10 s", None),
+        ("fs 1,2,3.4.5", None),
+        ("dt 0", None),
+    ],
+)
+def test_a_line_of_a_header_states_the_sample_rate(line, rate, tmp_path):
+    (tmp_path / "a.txt").write_text(line + "\n" + "".join(f"{x}\n" for x in X))
+    assert read_signal(tmp_path / "a.txt").fs == rate
