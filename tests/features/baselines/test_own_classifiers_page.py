@@ -10,7 +10,7 @@ from tests.features.report.test_report import write_corpus
 from tests.paths import ROOT
 
 PAGE = (ROOT / "docs" / "own-classifiers.md").read_text(encoding="utf-8")
-MINE, FROM_FEATURES, MODEL, FROM_WAVEFORMS, NETWORK, WITH_NETWORK = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+MINE, FROM_FEATURES, MODEL, FROM_WAVEFORMS, NETWORK, WITH_NETWORK, _ = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
 
 
 @pytest.fixture
@@ -49,6 +49,9 @@ def test_the_example_with_waveforms_runs(folder, capsys):  # noqa: ARG001
 @pytest.mark.skipif(
     importlib.util.find_spec("torch") is None, reason="PyTorch is not installed; raceway does not need it"
 )
-def test_the_example_with_a_network_runs(folder, capsys):  # noqa: ARG001
-    run(NETWORK, WITH_NETWORK)
-    assert float(capsys.readouterr().out) > 0.4
+def test_the_example_with_a_network_runs(folder, capsys):
+    write_corpus(folder / "other", specimens=8)
+    (folder / "cnn.py").write_text(NETWORK)
+    run(WITH_NETWORK)
+    assert 0 <= float(capsys.readouterr().out) <= 1
+    sys.modules.pop("cnn")
