@@ -107,7 +107,9 @@ def _write_netcdf(table: xr.Dataset, path: Path) -> None:
     for name, variable in table.variables.items():
         text = variable.dtype.kind in "OUT"
         # fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed
-        encoding[name] = {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None}
+        encoding[name] = (
+            {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None, "zlib": True}
+        )
     with LIBRARY_LOCK:
         table.assign_attrs({DIGEST: _digest(table)}).to_netcdf(
             path, engine="netcdf4", format="NETCDF4", encoding=encoding
