@@ -10,7 +10,7 @@ FLOORS := .venv-floors
 FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/support/test_yaml_files_laws.py \
 	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
-.PHONY: quickstart test tests lint generated bench thorough floors clean
+.PHONY: quickstart test tests lint generated reference bench thorough floors clean
 
 $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Raceway needs Python 3.11 or later; set PYTHON=..."; exit 2; }
@@ -42,6 +42,10 @@ tests: $(VENV)/installed
 
 generated: $(VENV)/installed
 	$(BIN)/python -m gen.pages .
+
+# the feature table that ships with Raceway, from which the reference model is trained
+reference: $(VENV)/installed
+	$(BIN)/python -m raceway.studies.reference_model
 
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks

@@ -163,8 +163,8 @@ def diagnose(
     --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band) and explanations
     (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
 
-    Without --model the reference model is used; the first call trains it, which takes some minutes, and so does
-    raceway train domain_randomised. docs/diagnose.md tells how to record and how to read the page.
+    Without --model the reference model is used; the first call trains it, in some ten seconds.
+    docs/diagnose.md tells how to record and how to read the page.
     """
     known = _bearings(bearings, speeds)
     reading = Reading(channels or (), variable, unit, sensitivity, rate)

@@ -79,7 +79,8 @@ def train(
       raceway train domain_randomised                 the reference model of raceway diagnose
       raceway train my_recipe.yaml -o model.skops
 
-    A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training. Without -o the model is kept in
+    A folder comes before a recipe of the same name. The corpus of a RECIPE is removed after the training; for domain_randomised the
+    features of its records ship with Raceway. Without -o the model is kept in
     the folder RACEWAY_CACHE, or else in raceway in the cache folder of the user (XDG_CACHE_HOME or ~/.cache), and is not trained twice.
 
     The model keeps the band, and raceway evaluate computes features from the same one.

@@ -5,12 +5,17 @@ import json
 import threading
 from importlib.metadata import version
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
 from features import feature_table
 from features.baselines import Model
-from gen.recipe import shipped_recipes
+from features.baselines.records import DEFAULT_GROUPS
+from features.baselines.references import with_energies
+from features.table_files import read_table
+from gen import generate
+from gen.recipe import read_recipe, recipe_hash, shipped_recipes
 from raceway.cli import cli
 from raceway.studies import reference_model
 
@@ -121,3 +126,25 @@ def test_a_cache_that_cannot_be_written_is_told_with_a_way_out(tmp_path, monkeyp
     assert result.exit_code == 2
     assert "RACEWAY_CACHE" in result.stderr
     assert "-o MODEL" in result.stderr
+
+
+def test_the_shipped_table_is_that_of_the_recipe_and_the_features_of_today(tmp_path):
+    """Other processors may round the signals otherwise by a count or two of the converter."""
+    table = read_table(reference_model.SHIPPED_TABLE)
+    fresh = feature_table(generate("domain_randomised", tmp_path / "corpus", records=4).path)
+    assert table.attrs["recipe_sha256"] == recipe_hash(read_recipe("domain_randomised"))
+    names = fresh["feature"].values[np.isin(fresh["group"].values, with_energies(DEFAULT_GROUPS))]
+    assert list(table["feature"].values) == list(names)
+    stored, again = (one.set_index(record="recording") for one in (table, fresh))
+    stored = stored.sel(record=again["record"])
+    assert (stored[["fault", "rig", "specimen", "split"]] == again[["fault", "rig", "specimen", "split"]]).all()
+    np.testing.assert_allclose(stored["features"], again["features"].sel(feature=names), rtol=1e-3, atol=1e-3)
+
+
+def test_another_recipe_is_not_trained_on_the_shipped_table(tmp_path, monkeypatch):
+    monkeypatch.setattr(reference_model, "make_table", lambda *_: "made")
+    text = shipped_recipes()["domain_randomised"].read_text(encoding="utf-8")
+    (tmp_path / "same.yaml").write_text(f"# another comment\n{text}", encoding="utf-8")
+    (tmp_path / "other.yaml").write_text(text.replace("seed: 20260", "seed: 20261"), encoding="utf-8")
+    assert reference_model.recipe_table(tmp_path / "same.yaml").sizes["record"] > 2900
+    assert reference_model.recipe_table(tmp_path / "other.yaml") == "made"
