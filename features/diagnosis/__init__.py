@@ -9,6 +9,7 @@ spectrum averaged envelope spectra in several bands, and the level that noise ex
 evidence lines of fault families that stand above the floor
 search   pairs of bearing and speed that explain the lines
 quality  signals that tell nothing, and signals to be read with care
+levels   rms, peak, crest factor, kurtosis and velocity
 wording  sentences
 verdict  agreement of classifier and lines
 diagnose verdict, probabilities and evidence of a recording
@@ -17,14 +18,17 @@ diagnose verdict, probabilities and evidence of a recording
 
 from features.diagnosis.diagnose import Diagnosis, Recorded, diagnose
 from features.diagnosis.evidence import FALSE_ALARM, LEAST_LEVEL, Line, line_facts
+from features.diagnosis.levels import ACCELERATION, Levels
 from features.diagnosis.search import ANY_RATE, Given, Pair
 
 __all__ = [
+    "ACCELERATION",
     "ANY_RATE",
     "FALSE_ALARM",
     "LEAST_LEVEL",
     "Diagnosis",
     "Given",
+    "Levels",
     "Line",
     "Pair",
     "Recorded",

@@ -19,6 +19,7 @@ from features.baselines.predictions import UNSURE, Predictions, predictions
 from features.baselines.references import with_energies
 from features.channels import joined_channels
 from features.diagnosis.evidence import Line, find_evidence
+from features.diagnosis.levels import ACCELERATION, Levels, levels_of
 from features.diagnosis.quality import ENOUGH, Quality, quality_of
 from features.diagnosis.search import Found, Given, Pair, find_pairs, mean_spectra, strange_comb
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
@@ -47,11 +48,18 @@ WATCH = "The bearing shows lines of its own: record it again in some weeks and c
 
 
 class Recorded(NamedTuple):
-    """A recording: signals [m s-2] of equal length by the name of their channel, shape (time,), sample rate [Hz], and name."""
+    """A recording: signals of equal length by the name of their channel, shape (time,), sample rate [Hz], name, and unit."""
 
     signals: Mapping[str, FloatArray]
     fs: float
     name: str = "the recording"
+    unit: str = ACCELERATION
+
+    @property
+    def used(self) -> "Recorded":
+        """At most the first 60 s."""
+        most = round(LONGEST * self.fs)
+        return self._replace(signals={name: signal[:most] for name, signal in self.signals.items()})
 
 
 class Judged(NamedTuple):
@@ -97,6 +105,8 @@ class Diagnosis:
         Reasons to read the diagnosis with care, one sentence each.
     windows
         Number of windows that the classifier used.
+    levels
+        Of each channel of the recording, then of the healthy ones.
     spectrum
         Envelope spectrum of the band with the highest evidence, or of the most impulsive band; None for a useless signal.
     """
@@ -115,6 +125,7 @@ class Diagnosis:
     explanations: tuple[Pair, ...] = ()
     elsewhere: tuple[Pair, ...] = ()
     windows: int = 0
+    levels: tuple[Levels, ...] = ()
     spectrum: BandSpectrum | None = field(default=None, repr=False, compare=False)
 
 
@@ -143,8 +154,13 @@ def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Sequen
     ):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
     used, quality = _usable(recording, given)
+    levels = tuple(
+        levels_of(signal, one.fs, one.name, channel, one.unit)
+        for one in (recording.used, *(each.used for each in healthy))
+        for channel, signal in one.signals.items()
+    )
     if quality.useless:
-        return _useless(given, model, quality)
+        return replace(_useless(given, model, quality), levels=levels)
     references = [_reference(one, used, given) for one in healthy]
     spectra = mean_spectra(list(used.signals.values()), used.fs, given)
     found = find_pairs(spectra, given)
@@ -152,7 +168,7 @@ def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Sequen
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
     diagnosis = _conclude(judged, found, given, strange)
     advice = diagnosis.advice + (_advice(used, bool(healthy)) if diagnosis.verdict == UNSURE else ())
-    return replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings))
+    return replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings), levels=levels)
 
 
 def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
@@ -161,8 +177,7 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
     if wrong:
         total = sum(signal.size for signal in recording.signals.values())
         raise CorpusError(f"{recording.name}: {wrong:,} of {total:,} samples are not finite numbers; export it again.")
-    most = round(LONGEST * recording.fs)
-    signals = {name: signal[:most] for name, signal in recording.signals.items()}
+    signals = recording.used.signals
     rate, orders = float(np.sqrt(np.prod(given.rates))), next(iter(given.bearings.values()))
     checked = {name: quality_of(signal, recording.fs, rate, orders) for name, signal in signals.items()}
     kept = {name: signals[name] for name, quality in checked.items() if not quality.useless}

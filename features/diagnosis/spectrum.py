@@ -11,6 +11,7 @@ overlap by half count as K / 1.056 independent ones [2]_. The expectation is tak
        (1978) 51-83.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -69,14 +70,19 @@ class BandSpectrum(NamedTuple):
         return first, max(first, min(int((frequency + tolerance) / self.resolution) + 1, len(self.ratio)))
 
 
-def band_spectra(x: FloatArray, fs: float, shaft_rate: float, channel: str = "") -> list[BandSpectrum]:
-    """Envelope spectra of a channel, shape (time,), in the bands of `bands_of`, up to 20 orders or the width of the band."""
+def band_spectra(
+    x: FloatArray, fs: float, shaft_rate: float, channel: str = "", bands: Sequence[tuple[float, float]] | None = None
+) -> list[BandSpectrum]:
+    """Envelope spectra of a channel, shape (time,), in some bands [Hz], by default those of `bands_of`.
+
+    They end at 20 orders or at the width of the band.
+    """
     segments, duration = _segments(x, fs, shaft_rate)
     coefficients = fourier_coefficients(segments, fs, fs / 2)
     whitened = whiten_by_psd(coefficients, round(WHITENING_WIDTH * duration))
     count = 1 + (len(segments) - 1) / OVERLAP_LOSS
     spectra = []
-    for band in bands_of(x, fs):
+    for band in bands_of(x, fs) if bands is None else bands:
         low, high = (round(edge * duration) for edge in band)
         z = analytic_band(whitened, low, min(high, whitened.shape[-1]))
         frequencies, amplitude = envelope_spectrum(z, z.shape[-1] / duration)

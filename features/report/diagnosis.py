@@ -10,14 +10,16 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from features.band import DEFAULT_BAND
-from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Recorded
-from features.diagnosis.spectrum import BandSpectrum
+from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
+from features.diagnosis.levels import VELOCITY_BAND
+from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.faults import CLASSES, HEALTHY, SHAFT
 from features.report.page import template
 from features.report.pictures import (
     FAINT,
     INK,
     STYLE,
+    UNDER,
     WIDTH,
     Shown,
     draw_density,
@@ -42,7 +44,13 @@ class Bar(NamedTuple):
 
 
 def write_diagnosis(
-    diagnosis: Diagnosis, recording: Recorded, output: Path | str, *, name: str, assumed: Sequence[tuple[str, str]]
+    diagnosis: Diagnosis,
+    recording: Recorded,
+    output: Path | str,
+    *,
+    healthy: Sequence[Recorded] = (),
+    name: str,
+    assumed: Sequence[tuple[str, str]],
 ) -> None:
     """Write the page of a diagnosis.
 
@@ -52,6 +60,8 @@ def write_diagnosis(
         The diagnosis, and the recording it is of.
     output
         The page, a file.
+    healthy
+        Healthy recordings of the machine; the first one is drawn.
     name
         Of the recording, for the title.
     assumed
@@ -68,11 +78,15 @@ def write_diagnosis(
         diagnosis=diagnosis,
         colour=CLASSES[diagnosis.verdict].colour if diagnosis.verdict in CLASSES else FAINT,
         bars=_bars(diagnosis.probabilities),
-        picture=picture(draw_diagnosis(diagnosis, recording), "svg") if drawn else b"",
+        picture=picture(draw_diagnosis(diagnosis, recording, next(iter(healthy), None)), "svg") if drawn else b"",
+        healthy=len(healthy),
+        levels=[_level_row(one, several=len(recording.signals) > 1) for one in diagnosis.levels],
+        unit=recording.unit,
+        band=VELOCITY_BAND,
         colours={fault: row.colour for fault, row in CLASSES.items()},
         least=LEAST_LEVEL,
         false_alarm=FALSE_ALARM,
-        duration=len(_shown_signal(diagnosis, recording)) / recording.fs,
+        duration=len(next(iter(recording.used.signals.values()))) / recording.fs,
         fs=recording.fs,
         pairs=[(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere],
         assumed=assumed,
@@ -86,29 +100,67 @@ def _bars(probabilities: Mapping[str, float]) -> list[Bar]:
     return [Bar(fault, probability, CLASSES[fault].colour) for fault, probability in ranked]
 
 
+def _level_row(levels: Levels, *, several: bool) -> tuple[str, list[str]]:
+    """Recording, and channel if there are several, and the figures that are known."""
+    figures = (levels.rms, levels.peak, levels.crest_factor, levels.kurtosis, levels.velocity_rms_mm_s)
+    name = Path(levels.recording).name
+    return f"{name}, {levels.channel}" if several else name, [
+        _three_digits(figure) if np.isfinite(figure) else "–" for figure in figures
+    ]
+
+
+def _three_digits(value: float) -> str:
+    """Number without an exponent.
+
+    >>> _three_digits(1234.5), _three_digits(0.001234)
+    ('1230', '0.00123')
+    """
+    return np.format_float_positional(value, precision=3, unique=False, fractional=False, trim="-")
+
+
 @rc_context(STYLE)
-def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded) -> Figure:
-    """Waveform, power spectral density, and envelope spectrum over its floor, one above the other."""
-    signal = _shown_signal(diagnosis, recording)
-    shown = Shown("", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY)
+def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded, healthy: Recorded | None = None) -> Figure:
+    """Waveform, power spectral density, and envelope spectrum over its floor, one above the other, over those of a healthy recording."""
+    shown = _shown(diagnosis, recording)
+    under = None if healthy is None else _shown(diagnosis, healthy)
     figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
     band = DEFAULT_BAND if diagnosis.spectrum is None else diagnosis.spectrum.band
-    draw_waveform(waveform, shown)
-    draw_density(density, shown, band)
+    draw_waveform(waveform, shown, under)
+    draw_density(density, shown, band, under)
     if diagnosis.spectrum is not None:
-        _draw_levels(envelope, diagnosis.spectrum, diagnosis)
+        spectrum = diagnosis.spectrum
+        if under is not None:
+            (of_healthy,) = band_spectra(under.signal, under.fs, under.shaft_rate, spectrum.channel, [spectrum.band])
+            envelope.plot(*_levels(of_healthy, diagnosis.shaft_rate), linewidth=0.7, **UNDER)
+        _draw_levels(envelope, spectrum, diagnosis)
+    if under is not None:
+        figure.legend(*waveform.get_legend_handles_labels(), loc="outside upper right", ncols=2)
     figure.align_ylabels()
     return figure
 
 
+def _shown(diagnosis: Diagnosis, recording: Recorded) -> Shown:
+    """Channel whose spectrum is shown, or the first one, at the speed of the diagnosis."""
+    channel = next(iter(recording.signals)) if diagnosis.spectrum is None else diagnosis.spectrum.channel
+    signal = recording.used.signals[channel]
+    return Shown(
+        "", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY, DEFAULT_BAND, recording.unit
+    )
+
+
+def _levels(spectrum: BandSpectrum, shaft_rate: float) -> tuple[FloatArray, FloatArray]:
+    """Orders, without 0, and levels over the floor [dB] of an envelope spectrum."""
+    order = np.arange(1, len(spectrum.ratio)) * spectrum.resolution / shaft_rate
+    return order, 10 * np.log10(np.maximum(spectrum.ratio[1:], 1e-3))
+
+
 def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> None:
     """Level of the envelope spectrum over its floor, with the lines of each family, and the evidence marked."""
-    order = np.arange(len(spectrum.ratio)) * spectrum.resolution / diagnosis.shaft_rate
-    level = 10 * np.log10(np.maximum(spectrum.ratio, 1e-3))
+    order, level = _levels(spectrum, diagnosis.shaft_rate)
     families = _families(diagnosis.orders)
     top = min(order[-1], (DRAWN_HARMONICS + 0.15) * max(lines[0] for lines in families.values()))
-    visible = (order > 0) & (order <= top)
+    visible = order <= top
     names: dict[str, float] = {SHAFT.label: 1.0}
     for fault, lines in families.items():
         row = CLASSES[fault]
@@ -133,18 +185,8 @@ def _draw_levels(axes: Axes, spectrum: BandSpectrum, diagnosis: Diagnosis) -> No
         ylim=(LOWEST_DB, highest + MARGIN_DB),
     )
     name_lines(axes, {}, names, INK, top)
-    channel = f" of channel {spectrum.channel}" if spectrum.channel else ""
-    axes.set_title(f"Envelope spectrum of {_kilohertz(spectrum.band)}{channel}; dots mark the evidence", pad=30)
-
-
-def _shown_signal(diagnosis: Diagnosis, recording: Recorded) -> FloatArray:
-    """Signal of the channel whose spectrum is shown, or of the first one."""
-    first = next(iter(recording.signals.values()))
-    return first if diagnosis.spectrum is None else recording.signals[diagnosis.spectrum.channel]
-
-
-def _kilohertz(band: tuple[float, float]) -> str:
-    return f"{band[0] / 1e3:.3g}-{band[1] / 1e3:.3g} kHz"
+    low, high = (f"{edge / 1e3:.3g}" for edge in spectrum.band)
+    axes.set_title(f"Envelope spectrum of {low}-{high} kHz over its floor; dots mark the evidence", pad=30)
 
 
 def _families(orders: Orders) -> dict[str, list[float]]:

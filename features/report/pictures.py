@@ -21,7 +21,7 @@ from matplotlib.ticker import LogLocator, NullLocator
 from features.band import DEFAULT_BAND, Band
 from features.baselines import Baseline, Scores
 from features.baselines.records import IntArray
-from features.faults import FUNDAMENTALS, LOOKS, SHAFT
+from features.faults import FUNDAMENTALS, HEALTHY, LOOKS, SHAFT
 from features.indicators import WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray
@@ -51,17 +51,20 @@ STYLE: Any = {
     "legend.frameon": False,
     "svg.hashsalt": "raceway",
 }
+OVER: Any = {"color": INK, "label": "this recording"}
+UNDER: Any = {"color": LOOKS[HEALTHY].colour, "label": "healthy recording"}
 WIDTH = 6.2  # inches: text stays readable on a phone
 
 TURNS = 8  # shaft revolutions in the waveform
 COLUMNS = 1500  # columns that a long waveform is reduced to
+TOLD_MEAN = 0.01  # of the standard deviation, from which the title tells the mean that is removed
 SEGMENT = 0.05  # s, window of the power spectral density
 FAINTEST_DB = 120.0  # lowest density drawn, below the highest
 TOLERANCE = 0.02  # of an order, half the width of the shaded band around a line of the fault
 
 
 class Shown(NamedTuple):
-    """A record to draw: title, signal [m s-2], shape (time,), sample and shaft rate [Hz], fault orders, class, band of the envelope."""
+    """A record to draw: title, signal, shape (time,), sample and shaft rate [Hz], fault orders, class, band of the envelope, and unit."""
 
     title: str
     signal: FloatArray
@@ -70,6 +73,7 @@ class Shown(NamedTuple):
     orders: Orders
     fault: str
     band: Band = DEFAULT_BAND
+    unit: str = "m/s²"
 
 
 class Quantity(NamedTuple):
@@ -105,15 +109,19 @@ def draw_record(shown: Shown) -> Figure:
     return figure
 
 
-def draw_waveform(axes: Axes, shown: Shown) -> None:
-    """Draw the first revolutions of the shaft."""
+def draw_waveform(axes: Axes, shown: Shown, under: Shown | None = None) -> None:
+    """Draw the first revolutions of the shaft without the mean of the signal, and those of another record; the weaker one hides none."""
     duration = shown.signal.size / shown.fs
     visible = min(duration, TURNS / shown.shaft_rate)
-    x = shown.signal[: max(2, round(visible * shown.fs))]
-    time, values = thin(np.arange(x.size) / shown.fs, x)
-    axes.plot(time, values, color=INK, linewidth=0.6)
-    axes.set(xlabel="time [s]", ylabel="acceleration [m/s²]", xlim=(0, visible))
-    axes.set_title(f"First {visible:.2g} s of {duration:.3g} s, {visible * shown.shaft_rate:.2g} shaft revolutions")
+    for one, look in ((under, UNDER), (shown, OVER)):
+        if one is not None:
+            x = one.signal[: max(2, round(visible * one.fs))] - np.mean(one.signal)
+            axes.plot(*thin(np.arange(x.size) / one.fs, x), linewidth=0.6, zorder=2 + 1 / (1 + np.std(x)), **look)
+    axes.set(xlabel="time [s]", ylabel=f"acceleration [{shown.unit}]", xlim=(0, visible))
+    mean = float(np.mean(shown.signal))
+    removed = f"; mean of {mean:.3g} {shown.unit} removed" if abs(mean) > TOLD_MEAN * np.std(shown.signal) else ""
+    turns = f"{visible * shown.shaft_rate:.2g} shaft revolutions"
+    axes.set_title(f"Waveform: first {visible:.2g} s of {duration:.3g} s, {turns}{removed}")
 
 
 def thin(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
@@ -126,15 +134,17 @@ def thin(time: FloatArray, values: FloatArray) -> tuple[FloatArray, FloatArray]:
     return np.repeat(time[::step], 2), extremes
 
 
-def draw_density(axes: Axes, shown: Shown, band: tuple[float, float]) -> None:
-    """Power spectral density, with a band [Hz] shaded."""
-    frequencies, density = psd(shown.signal[None], shown.fs, SEGMENT)
-    faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
-    axes.plot(frequencies / 1e3, 10 * np.log10(np.maximum(density[0], faintest)), color=INK, linewidth=0.8)
+def draw_density(axes: Axes, shown: Shown, band: tuple[float, float], under: Shown | None = None) -> None:
+    """Power spectral density over that of another record, with a band [Hz] shaded."""
+    for one, look in ((under, UNDER), (shown, OVER)):
+        if one is not None:
+            frequencies, density = psd(one.signal[None], one.fs, SEGMENT)
+            faintest = max(density.max() * 10 ** (-FAINTEST_DB / 10), np.finfo(float).tiny)
+            axes.plot(frequencies / 1e3, 10 * np.log10(np.maximum(density[0], faintest)), linewidth=0.8, **look)
     low, high = band[0] / 1e3, min(band[1], shown.fs / 2) / 1e3
     axes.axvspan(low, high, color=FAINT, alpha=0.12, linewidth=0)
     axes.set(xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, shown.fs / 2e3))
-    axes.set_title(f"Power spectral density, dB re 1 (m/s²)²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
+    axes.set_title(f"Power spectral density, dB re 1 ({shown.unit})²/Hz; envelope of {low:.3g}-{high:.3g} kHz shaded")
 
 
 def draw_envelope_spectrum(axes: Axes, shown: Shown) -> None:

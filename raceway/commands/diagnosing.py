@@ -90,7 +90,7 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 @click.option(
     "--unit",
     type=click.Choice(UNITS),
-    help="Unit of the values; by default that in the header, or else m/s2. V and mV need --sensitivity.",
+    help="Unit of the values; by default that in the header, or else m/s2. V and mV need --sensitivity. A WAV file has none unless it is given.",
 )
 @click.option(
     "--sensitivity",
@@ -160,7 +160,7 @@ def diagnose(
     Give a speed, a bearing or both. The answer names the pair of bearing and speed that explains the lines, and is "unsure" if pairs
     that cannot be told apart give different answers.
 
-    --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band) and explanations
+    --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band), levels and explanations
     (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
 
     Without --model the reference model is used; the first call trains it, in some ten seconds.
@@ -196,7 +196,7 @@ def diagnose(
         page = output and (output / f"{path.name}.html" if several else output)
         if page is not None:
             facts = _assumptions(recorded, known, diagnosis, reading._replace(unit=of_values), healthy, source, notes)
-            _write_page(diagnosis, recorded, page, path.name, facts)
+            _write_page(diagnosis, recorded, references, page, path.name, facts)
         found.append(_facts(diagnosis, recorded, path, source, page, notes))
     if as_json:
         errors = [{"recording": path, "error": sentence} for path, sentence in unusable.items()]
@@ -237,14 +237,14 @@ def _readings(
 
 
 def _write_page(
-    diagnosis: "Diagnosis", recorded: "Recorded", page: Path, name: str, facts: list[tuple[str, str]]
+    diagnosis: "Diagnosis", recorded: "Recorded", healthy: "list[Recorded]", page: Path, name: str, facts: list[tuple[str, str]]
 ) -> None:
     from features.report.diagnosis import write_diagnosis
     from gen.corpus import make_result_folder
 
     if not page.parent.is_dir():  # of a folder of recordings
         make_result_folder(page.parent)
-    write_diagnosis(diagnosis, recorded, page, name=name, assumed=facts)
+    write_diagnosis(diagnosis, recorded, page, healthy=healthy, name=name, assumed=facts)
 
 
 def _doubts(speeds: tuple[float, float] | None) -> tuple[str, ...]:
@@ -302,12 +302,13 @@ def _read(path: Path, reading: Reading) -> tuple["Recorded", str, tuple[str, ...
             raise CorpusError(f"{path}: does not state its sample rate; give it with --rate HZ.")
         signals[channel or ""] = signal
         notes += [note for note in signal.warnings if "its rms" not in note]
-    from features.diagnosis import Recorded  # it takes seconds, and a file that cannot be used is told before
+    from features.diagnosis import ACCELERATION, Recorded  # it takes seconds, and a file that cannot be used is told before
 
     shortest = min(signal.values.size for signal in signals.values())
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
-    units = dict.fromkeys(signal.unit for signal in signals.values())
-    return Recorded(cut, next(iter(signals.values())).fs, str(path)), " and ".join(units), tuple(notes)
+    unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
+    units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
+    return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), units, tuple(notes)
 
 
 def _model(path: Path | None) -> tuple[Any, Path]:
@@ -333,6 +334,7 @@ def _facts(
         "bearing": diagnosis.bearing,
         "shaft_rpm": 60 * diagnosis.shaft_rate,
         "evidence": [line_facts(line) for line in diagnosis.evidence],
+        "levels": [one._asdict() for one in diagnosis.levels],
         "explanations": [_pair_facts(pair, as_given=as_given) for pair, as_given in pairs],
         "sentence": diagnosis.sentence,
         "advice": diagnosis.advice,
@@ -389,7 +391,7 @@ def _assumptions(
         "given speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",
         "channels": ", ".join(recorded.signals),
         "sample rate": f"{recorded.fs:,.6g} Hz, {'as given' if reading.rate is not None else 'as the file states'}",
-        "unit": f"{reading.unit}{sensitivity}",
+        "unit": f"{reading.unit or recorded.unit}{sensitivity}",
         "healthy recording": ", ".join(path.name for path in healthy) or "none",
         "model": source.name,
         "notes": " ".join(notes),

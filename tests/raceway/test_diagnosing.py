@@ -10,9 +10,11 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from scipy.io import savemat, wavfile
+from scipy.stats import kurtosis
 
 from features import feature_table
 from features.baselines import Model
+from features.diagnosis.levels import velocity_rms
 from gen import generate, open_corpus
 from gen.corpus import FAULTS
 from raceway.cli import cli
@@ -210,6 +212,22 @@ def test_a_healthy_verdict_needs_the_colour_of_a_healthy_recording(model, record
     assert far["verdict"] == "unsure"
     both = told(paths["tested"], *options, "--healthy", paths["same"], "--healthy", paths["other"])
     assert both["probabilities"]["healthy"] > far["probabilities"]["healthy"]
+    assert [Path(levels["recording"]).stem for levels in both["levels"]] == ["tested", "same", "other"]
+
+
+def test_levels_are_told_and_those_of_a_wav_file_without_a_unit_tell_no_velocity(model, recordings, tmp_path):
+    signal, rpm = recordings["inner"]
+    options = (write_wav(tmp_path / "r.wav", signal + 8.7), "--bearing", "6205", "--rpm", rpm, "--model", model)
+    (without,), page = told(*options)["levels"], tmp_path / "page.html"
+    (levels,) = told(*options, "--unit", "m/s2", "--healthy", write_wav(tmp_path / "h.wav", signal / 3), "-o", page)[
+        "levels"
+    ][:1]
+    assert levels["mean"] == pytest.approx(8.7 + signal.mean(), abs=1e-3)
+    assert levels["rms"] == pytest.approx(signal.std(), rel=1e-4)
+    assert levels["kurtosis"] == pytest.approx(kurtosis(signal, fisher=False), rel=1e-4)
+    assert levels["velocity_rms_mm_s"] == pytest.approx(1e3 * velocity_rms(signal, FS), rel=1e-4)
+    assert (without["velocity_rms_mm_s"], without["unit"]) == (None, "unit of the file")
+    assert re.search(r"<th scope=.row.>h.wav</th><td>\d", page.read_text(encoding="utf-8"))
 
 
 @pytest.mark.parametrize("command", [("diagnose", "r.wav", "--rpm", "1500"), ("evaluate", "corpus", "--model", "m")])
