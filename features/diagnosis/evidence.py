@@ -4,10 +4,11 @@
 
 The first line of a family must exceed a level that noise exceeds anywhere in the search of a recording with a
 probability of 1 %. Further lines are searched only at multiples of the frequency of the first one, and beside them, and
-again noise adds one with 1 %. Four rules leave out lines that are real but caused by no fault:
+again noise adds one with 1 %. A line is told at its peak, also if the peak is among the bins left out. Four rules leave out
+lines that are real but caused by no fault:
 
-- Multiples of the shaft rate are never counted, since imbalance and gears make them too. So a fault line that cannot be
-  resolved from one is not found.
+- Multiples of the shaft rate are never counted, since imbalance and gears make them too. So a fault line is found only
+  if its flank stands out where that of a multiple has ended.
 - The first line must be ten times as high as the floor, because long recordings of healthy bearings show faint lines
   at many fault frequencies.
 - Lines of a race that are lower than the line at half its frequency are harmonics of another part.
@@ -163,6 +164,15 @@ def _near_shaft(spectrum: BandSpectrum, shaft_rate: float) -> np.ndarray:
     return np.abs(frequency - multiple * shaft_rate) < spectrum.width + SHAFT_DRIFT * multiple * shaft_rate
 
 
+def _peak(spectrum: BandSpectrum, place: int) -> int:
+    """Bin of the peak on whose flank a bin lies."""
+    ratio, before = spectrum.ratio, -1
+    while place != before:
+        before, first = place, max(place - 1, 0)
+        place = first + int(ratio[first : place + 2].argmax())
+    return place
+
+
 def _first_line(
     row: FaultClass,
     spectra: Sequence[BandSpectrum],
@@ -211,11 +221,12 @@ def _family(
         ratio = np.where(free[first:last], spectrum.ratio[first:last], 0.0)
         if not ratio.size or ratio.max() <= threshold or (sign and (harmonic, "", 0) not in lines):
             continue
-        frequency = (first + int(ratio.argmax())) * spectrum.resolution
+        peak = _peak(spectrum, first + int(ratio.argmax()))
+        frequency = peak * spectrum.resolution
         name = row.lines[0].label if harmonic == 1 else f"{base * harmonic} {row.lines[0].base.upper()}"
         if sign:
             name += f" {'-+'[sign > 0]} {side if side == SHAFT.base else side.upper()}"
-        level = 10 * float(np.log10(ratio.max()))
+        level = 10 * float(np.log10(spectrum.ratio[peak]))
         lines[harmonic, side, sign] = Line(
             row.name, name, harmonic, frequency / shaft_rate, frequency, level, spectrum.band, side, spectrum.channel
         )

@@ -72,6 +72,16 @@ def test_a_multiple_of_the_shaft_rate_is_no_evidence():
     assert lines == []
 
 
+@pytest.mark.parametrize("order", [3.035, 3.046, 3.06, 3.09])
+def test_a_line_beside_a_multiple_of_the_shaft_rate_is_told_at_its_peak(order):
+    spectra = band_spectra(modulated(order, 0.6, 5.0, np.random.default_rng(11)), FS, RATE)
+    (line,) = find_evidence(spectra, RATE, Orders(0.3815, 3.05, 4.95, 1.99))
+    (spectrum,) = (one for one in spectra if one.band == line.band)
+    near = spectrum.ratio[slice(*spectrum.bins(line.frequency, spectrum.width))]
+    assert line.order == pytest.approx(order, abs=0.005)
+    assert line.level == pytest.approx(10 * np.log10(near.max()))
+
+
 def test_a_notch_at_the_line_removes_the_evidence():
     """The modulation is undone: the same noise, divided by it, has no line any more."""
     x = modulated(5.4152, 0.6, 5.0, np.random.default_rng(4))
