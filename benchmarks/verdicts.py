@@ -17,7 +17,7 @@ import numpy as np
 from benchmarks.speed import Recording, real_corpora, recordings
 from features.baselines import Model
 from features.baselines.predictions import UNSURE
-from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose
+from features.diagnosis import ANY_RATE, Diagnosis, Given, Recorded, diagnose_recording
 from features.faults import CLASSES, HEALTHY
 from features.indicators import Orders
 from gen.physics.bearing import orders
@@ -107,7 +107,11 @@ def diagnosed(corpus: Path, model: Model) -> Iterator[tuple[str, str, Diagnosis]
     """Condition, true class and diagnosis of every recording under every condition."""
     for recording in recordings(corpus):
         for condition, given in conditions(recording):
-            yield condition, recording.fault, diagnose(Recorded({"": recording.x.ravel()}, recording.fs), given, model)
+            yield (
+                condition,
+                recording.fault,
+                diagnose_recording(Recorded({"": recording.x.ravel()}, recording.fs), given, model),
+            )
 
 
 def main() -> None:
@@ -131,7 +135,7 @@ def main() -> None:
             print(*rows(title, answers), sep="\n", flush=True)
     print(*rows("all", together), sep="\n")
     for kind in WITHOUT_FAULT:
-        verdicts = (diagnose(*without_fault(kind, seed), model).verdict for seed in range(SEEDS))
+        verdicts = (diagnose_recording(*without_fault(kind, seed), model).verdict for seed in range(SEEDS))
         print(*rows("made up", {f"{kind} alone": Counter(answer(one, HEALTHY) for one in verdicts)}), sep="\n")
     print("\n| sure of | lines of its own | of another class alone | none |\n|---|---:|---:|---:|")
     for fault in CLASSES:

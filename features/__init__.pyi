@@ -1,5 +1,6 @@
 from .auditing import audit_splits as audit_splits
 from .baselines import Model as Model
+from .diagnosis import diagnose as diagnose
 from .network_input import envelope_orders as envelope_orders
 from .speed import shaft_speed as shaft_speed
 from .table import feature_table as feature_table

@@ -1,4 +1,4 @@
-"""The command line of Raceway; ``raceway --help`` lists the commands.
+"""The command line of Raceway; ``raceway --help`` lists the commands. From Python, ``raceway.reference_model()`` is its model.
 
 ======== =====================================================================
 module   responsibility
@@ -9,3 +9,7 @@ commands one function per command
 cli      the group of all commands, and the entry point
 ======== =====================================================================
 """
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -13,10 +13,12 @@ levels   rms, peak, crest factor, kurtosis and velocity
 wording  sentences
 verdict  agreement of classifier and lines
 diagnose verdict, probabilities and evidence of a recording
+arrays   one call for a recording that is at hand as an array
 ======== ==================================================================================
 """
 
-from features.diagnosis.diagnose import Diagnosis, Recorded, diagnose
+from features.diagnosis.arrays import diagnose
+from features.diagnosis.diagnose import Diagnosis, Recorded, diagnose_recording
 from features.diagnosis.evidence import FALSE_ALARM, LEAST_LEVEL, Line, line_facts
 from features.diagnosis.levels import ACCELERATION, Levels
 from features.diagnosis.search import ANY_RATE, Given, Pair
@@ -33,5 +35,6 @@ __all__ = [
     "Pair",
     "Recorded",
     "diagnose",
+    "diagnose_recording",
     "line_facts",
 ]

@@ -129,7 +129,9 @@ class Diagnosis:
     spectrum: BandSpectrum | None = field(default=None, repr=False, compare=False)
 
 
-def diagnose(recording: Recorded, given: Given, model: Model, *, healthy: Sequence[Recorded] = ()) -> Diagnosis:
+def diagnose_recording(
+    recording: Recorded, given: Given, model: Model, *, healthy: Sequence[Recorded] = ()
+) -> Diagnosis:
     """Diagnose one recording.
 
     Parameters

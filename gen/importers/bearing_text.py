@@ -6,10 +6,19 @@ from typing import Any
 from pydantic import ValidationError
 
 from gen.importers.mapping_values import Geometry, bearing_of
-from gen.physics.bearing import Bearing
+from gen.physics.bearing import Bearing, Orders, orders
 from gen.physics.catalogue import CATALOGUE, known_designation
 from gen.support.errors import CorpusError
 from gen.support.sentences import sentences
+
+
+def bearing_orders(text: str) -> Orders:
+    """Nominal fault orders of a bearing, given as for `bearing_from_text`.
+
+    >>> [round(order, 4) for order in bearing_orders("6205")]
+    [0.3983, 3.5848, 5.4152, 2.3567]
+    """
+    return orders(bearing_from_text(text))
 
 
 def bearing_from_text(text: str) -> Bearing:

@@ -182,12 +182,12 @@ def diagnose(
         notice(f"warning: {sentence}")
     given = _given(known, speeds)
     loaded, source = _model(model)
-    from features.diagnosis import diagnose as run
+    from features.diagnosis import diagnose_recording
 
     diagnoses, found = {}, []
     for path, recorded, of_values, of_file in chain((first,), readings):
         with _set_aside(path, unusable if several else None), notice_compilation():
-            diagnoses[path] = diagnosis = run(recorded, given, loaded, healthy=references)
+            diagnoses[path] = diagnosis = diagnose_recording(recorded, given, loaded, healthy=references)
         if path not in diagnoses:
             continue
         notes = tuple(dict.fromkeys(of_file + doubts))

@@ -126,6 +126,11 @@ def load_reference_model() -> tuple["Model", Path]:
     return model, path
 
 
+def reference_model() -> "Model":
+    """Reference model of ``raceway diagnose``; the first call trains it, as `load_reference_model`."""
+    return load_reference_model()[0]
+
+
 def kept_model(
     recipe: Path | str, estimator: str = ESTIMATOR, *, team: Team = USUAL
 ) -> tuple["Model", Path, "Scores | None"]:

@@ -41,6 +41,8 @@ def results(tmp_path_factory):
     folder, names = tmp_path_factory.mktemp("page"), {}
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
+        patch.setenv("RACEWAY_CACHE", str(folder / "cache"))
+        patch.setattr("features.baselines.estimators.TREES", 2)
         for block in blocks("python"):
             exec(smaller(block), names)  # noqa: S102 - our own page
         (recipe,) = blocks("yaml")
@@ -80,6 +82,12 @@ def test_the_corpora_of_the_page_are_valid_and_replay(results):
         assert gen.validate_corpus(folder / corpus) == []
         assert gen.replay(folder / corpus, 0).identical
     assert names["again"].identical
+
+
+def test_the_diagnosis_of_the_page_has_an_answer_and_levels(results):
+    diagnosis = results[1]["diagnosis"]
+    assert diagnosis.sentence
+    assert diagnosis.levels[0].rms > 0
 
 
 def test_the_page_lists_every_public_name_and_no_other():

@@ -12,11 +12,13 @@ from click.testing import CliRunner
 from scipy.io import savemat, wavfile
 from scipy.stats import kurtosis
 
+import features
 from features import feature_table
 from features.baselines import Model
 from features.diagnosis.levels import velocity_rms
 from gen import generate, open_corpus
 from gen.corpus import FAULTS
+from gen.importers.bearing_text import bearing_orders
 from raceway.cli import cli
 
 FS = 12_000
@@ -228,6 +230,26 @@ def test_levels_are_told_and_those_of_a_wav_file_without_a_unit_tell_no_velocity
     assert levels["velocity_rms_mm_s"] == pytest.approx(1e3 * velocity_rms(signal, FS), rel=1e-4)
     assert (without["velocity_rms_mm_s"], without["unit"]) == (None, "unit of the file")
     assert re.search(r"<th scope=.row.>h.wav</th><td>\d", page.read_text(encoding="utf-8"))
+
+
+def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
+    signal, rpm = recordings["outer"]
+    signal = signal.astype(np.float32)
+    known = {"orders": bearing_orders("6205"), "model": model}
+    found = told(write_wav(tmp_path / "r.wav", signal), "--bearing", "6205", "--rpm", rpm, "--model", model)
+    diagnosis = features.diagnose(signal, FS, rpm=rpm, **known)
+    assert diagnosis.sentence == found["sentence"]
+    assert diagnosis.probabilities == found["probabilities"]
+    axes = features.diagnose([signal, signal], FS, rpm=(0.9 * rpm, 1.1 * rpm), healthy=[[signal, signal]], **known)
+    assert [levels.channel for levels in axes.levels] == ["0", "1", "0", "1"]
+    several = features.diagnose(
+        signal, FS, rpm=rpm, model=model, orders={"6205": known["orders"], "other": (0.4, 4, 6, 3)}
+    )
+    assert several.bearing == "6205"
+    with pytest.raises(ValueError, match=r"shape \(1, 1, 2\)"):
+        features.diagnose([[[1.0, 2.0]]], FS, rpm=rpm, **known)
+    with pytest.raises(ValueError, match="not positive numbers"):
+        features.diagnose(signal, FS, rpm=-rpm, **known)
 
 
 @pytest.mark.parametrize("command", [("diagnose", "r.wav", "--rpm", "1500"), ("evaluate", "corpus", "--model", "m")])
