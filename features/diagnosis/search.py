@@ -60,6 +60,13 @@ class Given(NamedTuple):
         """Whether there is one bearing and one speed."""
         return len(self.bearings) == 1 and self.rates[0] == self.rates[1]
 
+    @property
+    def searched(self) -> tuple[float, float]:
+        """Lowest and highest shaft rate [Hz] of the search: 8 % around one rate, 2.5 % beyond a range."""
+        low, high = self.rates
+        reach = LABEL_TOLERANCE if low == high else RIVALS_BEYOND
+        return (1 - reach) * low, (1 + reach) * high
+
 
 class Pair(NamedTuple):
     """A bearing and a shaft speed.
@@ -167,8 +174,7 @@ def find_pairs(spectra: LevelSpectra, given: Given) -> Found:
     """
     grid = _grid(spectra, given)
     (low, high), rates, evidence = given.rates, grid.rates, grid.evidence
-    reach = LABEL_TOLERANCE if low == high else RIVALS_BEYOND
-    within = (rates >= (1 - reach) * low) & (rates <= (1 + reach) * high)
+    within = (rates >= given.searched[0]) & (rates <= given.searched[1])
     error = np.log(rates / low) if low == high else np.zeros(len(rates))
     pairs = grid.best(np.where(within, evidence - PENALTY * (error / LABEL_TOLERANCE) ** 2, -np.inf))
     if given.known:

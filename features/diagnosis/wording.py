@@ -3,10 +3,11 @@
 from collections.abc import Mapping, Sequence
 
 from features.diagnosis.evidence import LEAST_LEVEL, Line
-from features.diagnosis.search import Given, Pair
+from features.diagnosis.search import STRONG_COMB, Given, Pair
 from features.faults import CLASSES, HEALTHY, SIDES
 from features.signal.speed import DISAGREEMENT
 
+AT_END = 0.002  # distance of a speed from the end of the search, relative
 PARTS = tuple(row.part for row in CLASSES.values() if row.part)
 
 
@@ -87,15 +88,21 @@ def _pair(pair: Pair, given: Given) -> str:
 
 
 def speed_warning(pair: Pair, given: Given) -> tuple[str, ...]:
-    """Sentence on a label that does not fit the lines."""
-    (low, high), uncertainty = given.rates, 60 * pair.uncertainty
+    """Sentences on a speed at the end of the search, and on a label that does not fit the lines."""
+    (low, high), uncertainty, ends = given.rates, 60 * pair.uncertainty, given.searched
+    sentences = ()
+    if pair.strength > STRONG_COMB and not ends[0] * (1 + AT_END) < pair.rate < ends[1] * (1 - AT_END):
+        first, last = (f"{60 * end:,.0f}" for end in ends)
+        sentences = (
+            f"The speed found is at the end of the search of {first} to {last} rpm, as with a wrong speed or sample rate; check both.",
+        )
     if low != high or abs(pair.rate - low) <= DISAGREEMENT * pair.uncertainty:
-        return ()
+        return sentences
     sentence = (
         f"The labelled speed of {60 * low:,.0f} rpm does not fit the lines of this recording; they fit {60 * pair.rate:,.0f} rpm "
         f"(± {uncertainty:.0f}), {100 * (pair.rate / low - 1):+.1f} %."
     )
-    return (sentence,)
+    return (sentence, *sentences)
 
 
 def different_classes(judged: Sequence[tuple[Pair, str]]) -> str:

@@ -6,6 +6,7 @@ import pytest
 from features.diagnosis import ANY_RATE, Given, Pair
 from features.diagnosis.evidence import Line
 from features.diagnosis.search import LevelSpectra, find_pairs, mean_spectra, strange_comb
+from features.diagnosis.wording import speed_warning
 from features.indicators import Orders
 
 FS, RATE = 12_000.0, 29.5
@@ -113,3 +114,12 @@ def test_a_comb_is_strange_unless_bearing_shaft_mains_or_evidence_explain_it(ord
     assert (found_order is not None) == strange
     if strange:
         assert found_order == pytest.approx(orders[0], rel=0.01)
+
+
+def test_a_speed_at_the_end_of_the_search_is_told():
+    given = Given({"nine": NINE}, (20.0, RATE / 1.025))
+    (sentence,) = speed_warning(found(recording(ORDER["bpfo"], 1), given).pairs[0], given)
+    assert "end of the search of 1,170 to 1,770 rpm" in sentence
+    for rates in ((20.0, 35.0), (RATE, RATE)):
+        given = Given({"nine": NINE}, rates)
+        assert speed_warning(found(recording(ORDER["bpfo"], 1), given).pairs[0], given) == ()
