@@ -4,13 +4,16 @@ The recording is cut into windows, which become the records of the table.
 """
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from features.band import DEFAULT_BAND, Band, band_attributes
 from features.indicators import GROUPS, Orders, feature_groups, indicators
 from features.signal.rows import FloatArray
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 WINDOW = 0.5  # s, as the records of corpora
 
@@ -30,7 +33,7 @@ def recording_table(
     fault: int,
     groups: Sequence[str] = GROUPS,
     band: Band = DEFAULT_BAND,
-) -> xr.Dataset:
+) -> "xr.Dataset":
     """Features of the windows of one recording.
 
     Parameters
@@ -57,6 +60,8 @@ def recording_table(
     ValueError
         For a group that does not exist.
     """
+    import xarray as xr  # not at the top: windows need none
+
     count = len(windows)
     every = np.ones(count)
     nominal = Orders(*(float(order) * every for order in orders))

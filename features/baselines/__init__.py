@@ -21,10 +21,9 @@ splits            cross-validation on a track, with its two controls
 curves            score against the number of training specimens
 cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops
+plain             an ensemble as arrays, which predict without scikit-learn
 models            training, prediction, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known
-benchmark         scores of every baseline with controls, and on other corpora
-================= ==================================================================================
 """
 
 from features.baselines.benchmark import Baseline, Results, TrackResults, benchmark, read_results
@@ -69,3 +68,11 @@ __all__ = [
     "severity_warning",
     "unlabelled_answers",
 ]
+=======
+results           scores of every baseline with controls, and on other corpora
+================= ==================================================================================
+"""
+
+import lazy_loader
+
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -14,10 +14,9 @@ from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field
-from scipy.optimize import minimize_scalar
 from scipy.special import log_softmax, softmax
 
-from features.baselines.records import FloatArray, IntArray
+from features.signal.rows import FloatArray, IntArray
 
 COVERAGE = 0.9  # share of records outside the training that a model answers
 SMALLEST = 1e-6  # probabilities below it count as this: a forest can give 0
@@ -110,6 +109,8 @@ def _loss(logarithms: FloatArray, truth: IntArray) -> float:
 
 def _lowest(function: Callable[[float], float], low: float, high: float) -> float:
     """Place of the lowest value of a function between two bounds."""
+    from scipy.optimize import minimize_scalar  # a tenth of a second, which a prediction need not wait for
+
     return float(minimize_scalar(function, bounds=(low, high), method="bounded").x)
 
 

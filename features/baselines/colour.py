@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.baselines.records import FloatArray, IntArray, group_means
 from features.indicators import NAMES
+from features.signal.rows import FloatArray, IntArray, group_means
 
 ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))
 COUNTED = tuple(name for name in ENERGIES if int(name.split("_")[1].split("-")[0]) >= 200)

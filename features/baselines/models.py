@@ -35,7 +35,6 @@ from features.baselines.records import (
     check_classes,
     feature_rows,
     features_of,
-    group_means,
     labelled_records,
     record_digests,
     records_of,
@@ -49,6 +48,7 @@ from features.baselines.severities import Covered, covered_widths, uncovered_wid
 from features.channels import channels_of
 from features.indicators import GROUPS
 from features.recording_speeds import recording_numbers
+from features.signal.rows import group_means
 from features.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result
 from gen.support.errors import CorpusError

@@ -12,8 +12,8 @@ import numpy as np
 
 from features.baselines.calibration import Calibration, calibrate, combine
 from features.baselines.colour import Colour, in_colour
-from features.baselines.records import FloatArray, IntArray
 from features.faults import HEALTHY
+from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULTS
 
 UNSURE = "unsure"

@@ -14,6 +14,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 from features.recording_speeds import recording_numbers
+from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
     from features.waveforms import Waveforms
-
-IntArray = NDArray[np.integer[Any]]
-FloatArray = NDArray[np.floating[Any]]
 
 DEFAULT_GROUPS = ("lines", "shape")  # independent of gain and spectral colour
 
@@ -148,20 +146,6 @@ def feature_rows(table: xr.Dataset, features: Sequence[str]) -> "DataFrame":
     if held.ndim > 2:
         held = held.stack(column=("channel", "feature"), create_index=False)
     return cast("DataFrame", held.to_pandas())
-
-
-def group_means(values: FloatArray, group: IntArray) -> FloatArray:
-    """`mean_row` of the rows of each group, in the order of their numbers, shape (record, feature) to (group, feature)."""
-    order = np.argsort(group, kind="stable")
-    _, first = np.unique(group[order], return_index=True)
-    return np.stack([mean_row(rows) for rows in np.split(values[order], first[1:])])
-
-
-def mean_row(values: FloatArray) -> FloatArray:
-    """Mean of each feature over the records that have it, NaN without any; the order of the records has no effect."""
-    values = np.sort(values, axis=0)  # NaN comes last
-    count = np.isfinite(values).sum(axis=0)
-    return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)
 
 
 def _column(table: xr.Dataset, name: str) -> FloatArray:

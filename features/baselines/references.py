@@ -19,14 +19,13 @@ from features.baselines.records import (
     FloatArray,
     IntArray,
     feature_rows,
-    group_means,
-    mean_row,
     record_digests,
     title_of,
 )
 from features.channels import channels_of
 from features.faults import HEALTHY
 from features.recording_speeds import recording_numbers
+from features.signal.rows import group_means, mean_row
 from gen.corpus import FAULTS, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 

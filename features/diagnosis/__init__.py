@@ -12,29 +12,11 @@ quality  signals that tell nothing, and signals to be read with care
 levels   rms, peak, crest factor, kurtosis and velocity
 wording  sentences
 verdict  agreement of classifier and lines
-diagnose verdict, probabilities and evidence of a recording
+answer   verdict, probabilities and evidence of a recording
 arrays   one call for a recording that is at hand as an array
 ======== ==================================================================================
 """
 
-from features.diagnosis.arrays import diagnose
-from features.diagnosis.diagnose import Diagnosis, Recorded, diagnose_recording
-from features.diagnosis.evidence import FALSE_ALARM, LEAST_LEVEL, Line, line_facts
-from features.diagnosis.levels import ACCELERATION, Levels
-from features.diagnosis.search import ANY_RATE, Given, Pair
+import lazy_loader
 
-__all__ = [
-    "ACCELERATION",
-    "ANY_RATE",
-    "FALSE_ALARM",
-    "LEAST_LEVEL",
-    "Diagnosis",
-    "Given",
-    "Levels",
-    "Line",
-    "Pair",
-    "Recorded",
-    "diagnose",
-    "diagnose_recording",
-    "line_facts",
-]
+__getattr__, __dir__, __all__ = lazy_loader.attach_stub(__name__, __file__)

@@ -14,10 +14,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from features.band import Band
-from features.baselines.models import Model, estimator_probabilities, predict
+from features.baselines.plain import PlainModel
 from features.baselines.predictions import UNSURE, Predictions, predictions
-from features.baselines.references import with_energies
-from features.channels import joined_channels
 from features.diagnosis.evidence import Line, find_evidence
 from features.diagnosis.levels import ACCELERATION, Levels, levels_of
 from features.diagnosis.quality import ENOUGH, Quality, quality_of
@@ -35,13 +33,14 @@ from features.diagnosis.wording import (
 from features.faults import HEALTHY
 from features.indicators import GROUPS, Orders, feature_names, indicators
 from features.recording_table import recording_table, windows_of
-from features.signal.rows import FloatArray
+from features.signal.rows import FloatArray, mean_row
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     import xarray as xr
-    from pandas import DataFrame
+
+    from features.baselines.models import Model
 
 LONGEST = 60.0  # s; of a longer recording the beginning is used
 WATCH = "The bearing shows lines of its own: record it again in some weeks and compare, or compare it with a healthy one (--healthy)."
@@ -130,7 +129,7 @@ class Diagnosis:
 
 
 def diagnose_recording(
-    recording: Recorded, given: Given, model: Model, *, healthy: Sequence[Recorded] = ()
+    recording: Recorded, given: Given, model: "Model | PlainModel", *, healthy: Sequence[Recorded] = ()
 ) -> Diagnosis:
     """Diagnose one recording.
 
@@ -142,7 +141,7 @@ def diagnose_recording(
         The bearings it may be of, and the lowest and highest shaft rate. One bearing and one speed are believed unless
         the lines clearly tell another speed within 8 %.
     model
-        A trained model.
+        A trained model; a plain one cannot compare with ``healthy``.
     healthy
         Recordings of the same machine with a healthy bearing, with the same channels. Several tell how much it varies.
 
@@ -205,7 +204,7 @@ def _reference(healthy: Recorded, used: Recorded, given: Given) -> Recorded:
     return reference
 
 
-def _useless(given: Given, model: Model, quality: Quality) -> Diagnosis:
+def _useless(given: Given, model: "Model | PlainModel", quality: Quality) -> Diagnosis:
     name, orders = next(iter(given.bearings.items()))
     return Diagnosis(
         verdict=UNSURE,
@@ -221,7 +220,7 @@ def _useless(given: Given, model: Model, quality: Quality) -> Diagnosis:
     )
 
 
-def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Judged:
+def _judge(recording: Recorded, pair: Pair, model: "Model | PlainModel", references: Sequence[Recorded]) -> Judged:
     """Prediction and evidence at one pair of bearing and speed."""
     spectra = [
         spectrum
@@ -237,25 +236,46 @@ def _judge(recording: Recorded, pair: Pair, model: Model, references: Sequence[R
     return Judged(pair, verdict, why, probabilities, whole.threshold, len(predicted.probabilities), lines, spectra)
 
 
-def _predict(recording: Recorded, pair: Pair, model: Model, references: Sequence[Recorded]) -> Predictions:
-    """Predictions of windows and recording; without a reference they need no xarray, whose first use imports dask."""
+def _predict(
+    recording: Recorded, pair: Pair, model: "Model | PlainModel", references: Sequence[Recorded]
+) -> Predictions:
+    """Predictions of windows and recording; without a reference they need no xarray, and with a plain model no scikit-learn."""
     if references:
         import xarray as xr
 
+        from features.baselines.models import predict
+
+        if isinstance(model, PlainModel):
+            raise TypeError(f"{model.name}: a plain model compares with no healthy recording; give the whole model.")
         healthy = [_table(one, recording.signals, pair, model, HEALTHY) for one in references]
         numbered = [one.assign(recording=one["recording"] + number) for number, one in enumerate(healthy)]
         known = xr.concat(numbered, "record", combine_attrs="override")
         return predict(_table(recording, recording.signals, pair, model, UNKNOWN), model, known)
     rows = [_rows(recording, name, pair, model) for name in recording.signals]
     each, whole = (
-        np.stack([estimator_probabilities(model, some, recording.name) for some in values])
-        for values in (rows, [some.mean().to_frame().transpose() for some in rows])
+        np.stack([_probabilities(model, some, recording.name) for some in values])
+        for values in (rows, [mean_row(some)[None] for some in rows])
     )
     alone = np.zeros(each.shape[1], dtype=np.intp)
     return predictions(each, model.classes, alone, model.calibration, of_recordings=whole)
 
 
-def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Model, fault: str) -> "xr.Dataset":
+def _probabilities(model: "Model | PlainModel", rows: FloatArray, where: str) -> FloatArray:
+    if isinstance(model, PlainModel):
+        return model.probabilities(rows)
+    from pandas import DataFrame, Index
+
+    from features.baselines.models import estimator_probabilities
+
+    return estimator_probabilities(model, DataFrame(rows, columns=Index(model.features)), where)
+
+
+def _table(
+    recording: Recorded, channels: Iterable[str], pair: Pair, model: "Model | PlainModel", fault: str
+) -> "xr.Dataset":
+    from features.baselines.references import with_energies
+    from features.channels import joined_channels
+
     fs, code, groups, band = (
         recording.fs,
         UNKNOWN_CODE if fault == UNKNOWN else FAULTS.index(fault),
@@ -270,16 +290,13 @@ def _table(recording: Recorded, channels: Iterable[str], pair: Pair, model: Mode
     return joined_channels(tables).assign_attrs(title=recording.name)
 
 
-def _rows(recording: Recorded, channel: str, pair: Pair, model: Model) -> "DataFrame":
-    """Features of the windows of a channel that the model takes."""
-    from pandas import DataFrame, Index
-
+def _rows(recording: Recorded, channel: str, pair: Pair, model: "Model | PlainModel") -> FloatArray:
+    """Features of the windows of a channel that the model takes, shape (window, feature)."""
     windows = windows_of(recording.signals[channel], recording.fs)
     each = Orders(*(np.full(len(windows), float(order)) for order in pair.orders))
     rates = np.full(len(windows), pair.rate)
     values, names = indicators(windows, recording.fs, rates, each, model.groups, Band(*model.band))
-    columns = [names.index(name) for name in model.features]
-    return DataFrame(values[:, columns], columns=Index(model.features))
+    return values[:, [names.index(name) for name in model.features]]
 
 
 def _advice(recording: Recorded, compared: bool) -> tuple[str, ...]:

@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 
 from features.baselines import Results, Scores, interval_text, severity_warning
-from features.baselines.benchmark import write_results
 from features.baselines.estimators import UNTRAINED
+from features.baselines.results import write_results
 from features.baselines.tracks import NOVELTY
 from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve

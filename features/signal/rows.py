@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numba import njit
 from numpy.typing import DTypeLike, NDArray
-from scipy.signal.windows import hann
 
 FloatArray = NDArray[np.floating[Any]]
+IntArray = NDArray[np.integer[Any]]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
 
 row_kernel = njit(cache=True, nogil=True, error_model="numpy", fastmath={"nnan", "nsz"})
@@ -69,4 +69,18 @@ def squared_modulus(z: ComplexArray) -> FloatArray:
 @lru_cache(32)
 def hann_window(n: int, dtype: DTypeLike) -> FloatArray:
     """Periodic Hann window, shape (time,)."""
-    return hann(n, sym=False).astype(dtype)
+    return (0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, n + 1)))[:-1].astype(dtype)
+
+
+def group_means(values: FloatArray, group: IntArray) -> FloatArray:
+    """`mean_row` of the rows of each group, in the order of their numbers, shape (record, feature) to (group, feature)."""
+    order = np.argsort(group, kind="stable")
+    _, first = np.unique(group[order], return_index=True)
+    return np.stack([mean_row(rows) for rows in np.split(values[order], first[1:])])
+
+
+def mean_row(values: FloatArray) -> FloatArray:
+    """Mean of each feature over the records that have it, NaN without any; the order of the records has no effect."""
+    values = np.sort(values, axis=0)  # NaN comes last
+    count = np.isfinite(values).sum(axis=0)
+    return np.where(count > 0, np.nansum(values, axis=0) / np.maximum(count, 1), np.nan)

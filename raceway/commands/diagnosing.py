@@ -181,7 +181,7 @@ def diagnose(
     for sentence in doubts:
         notice(f"warning: {sentence}")
     given = _given(known, speeds)
-    loaded, source = _model(model)
+    loaded, source = _model(model, compares=bool(healthy))
     from features.diagnosis import diagnose_recording
 
     diagnoses, found = {}, []
@@ -311,12 +311,12 @@ def _read(path: Path, reading: Reading) -> tuple["Recorded", str, tuple[str, ...
     return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), units, tuple(notes)
 
 
-def _model(path: Path | None) -> tuple[Any, Path]:
+def _model(path: Path | None, *, compares: bool) -> tuple[Any, Path]:
     """Model and its file, or the reference model."""
     if path is None:
-        from raceway.studies.reference_model import load_reference_model
+        from raceway.studies.reference_model import load_plain_reference_model, load_reference_model
 
-        return load_reference_model()
+        return load_reference_model() if compares else load_plain_reference_model()
     from features.baselines.models import Model
 
     return Model.load(path), path

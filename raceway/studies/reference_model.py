@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from features.baselines import Model, Scores
+    from features.baselines.plain import PlainModel
 
 REFERENCE = "domain_randomised"
 ESTIMATOR = "ensemble"
@@ -124,6 +125,19 @@ def load_reference_model() -> tuple["Model", Path]:
     # of this installation, whatever lies in the working folder
     model, path, _ = kept_model(shipped_recipes()[REFERENCE])
     return model, path
+
+
+def load_plain_reference_model() -> tuple["PlainModel", Path]:
+    """Reference model without what compares with healthy recordings, and the file of the whole one, beside which it is kept."""
+    from features.baselines.plain import PlainModel
+    from gen.recipe import shipped_recipes
+
+    path = kept_path(shipped_recipes()[REFERENCE])
+    kept = PlainModel.read(path.with_suffix(".npz"))
+    if kept is None:
+        kept = PlainModel.of(load_reference_model()[0])
+        kept.save(path.with_suffix(".npz"))
+    return kept, path
 
 
 def reference_model() -> "Model":

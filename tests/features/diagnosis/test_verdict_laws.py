@@ -5,7 +5,7 @@ import pytest
 
 from features.baselines.predictions import UNSURE
 from features.diagnosis import Given, Pair, Recorded
-from features.diagnosis.diagnose import LONGEST, Judged, _conclude, _usable
+from features.diagnosis.answer import LONGEST, Judged, _conclude, _usable
 from features.diagnosis.evidence import Line
 from features.diagnosis.search import Found
 from features.diagnosis.verdict import OBVIOUS, PLAIN, SURE, judge

@@ -1,0 +1,19 @@
+from .results import (
+    Baseline as Baseline,
+    Results as Results,
+    TrackResults as TrackResults,
+    benchmark as benchmark,
+    read_results as read_results,
+)
+from .calibration import Calibration as Calibration
+from .curves import CurvePoint as CurvePoint, learning_curve as learning_curve
+from .estimators import DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, ESTIMATORS as ESTIMATORS
+from .models import Model as Model, predict as predict
+from .own import EstimatorError as EstimatorError, load_maker as load_maker
+from .predictions import UNSURE as UNSURE, Predictions as Predictions
+from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_unknown
+from .scores import Scores as Scores, interval_text as interval_text
+from .severities import severity_warning as severity_warning
+from .splits import controls as controls, cross_validate as cross_validate
+from .tracks import TRACKS as TRACKS
+from .unlabelled import Answer as Answer, unlabelled_answers as unlabelled_answers
