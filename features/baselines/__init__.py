@@ -24,51 +24,6 @@ model_file        the only module that reads and writes archives of skops
 plain             an ensemble as arrays, which predict without scikit-learn
 models            training, prediction, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known
-"""
-
-from features.baselines.benchmark import Baseline, Results, TrackResults, benchmark, read_results
-from features.baselines.calibration import Calibration
-from features.baselines.curves import CurvePoint, learning_curve
-from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS
-from features.baselines.models import Model, predict
-from features.baselines.own import EstimatorError, load_maker
-from features.baselines.predictions import UNSURE, Predictions
-from features.baselines.records import DEFAULT_GROUPS, count_unknown
-from features.baselines.scores import Scores, interval_text
-from features.baselines.severities import severity_warning
-from features.baselines.splits import controls, cross_validate
-from features.baselines.tracks import TRACKS
-from features.baselines.unlabelled import Answer, unlabelled_answers
-
-__all__ = [
-    "DEFAULT_ESTIMATOR",
-    "DEFAULT_GROUPS",
-    "ESTIMATORS",
-    "TRACKS",
-    "UNSURE",
-    "Answer",
-    "Baseline",
-    "Calibration",
-    "CurvePoint",
-    "EstimatorError",
-    "Model",
-    "Predictions",
-    "Results",
-    "Scores",
-    "TrackResults",
-    "benchmark",
-    "controls",
-    "count_unknown",
-    "cross_validate",
-    "interval_text",
-    "learning_curve",
-    "load_maker",
-    "predict",
-    "read_results",
-    "severity_warning",
-    "unlabelled_answers",
-]
-=======
 results           scores of every baseline with controls, and on other corpora
 ================= ==================================================================================
 """

@@ -8,6 +8,7 @@ envelopes  drawings of several envelope spectra: a grid, and a waterfall
 curves     drawing of a learning curve
 sides      drawings of several sets side by side: examples, and distributions
 examples   records of a corpus as pictures
+templates  templates of pages
 page       a corpus and its benchmark on one page
 comparison a synthetic corpus and real ones on one page
 diagnosis  a diagnosis on one page

@@ -14,9 +14,9 @@ from features.indicators import Orders
 from features.realism.comparison import SHARES, Comparison
 from features.realism.measures import MEASURES, NAMES, Measure
 from features.realism.windows import Windows, typical_window
-from features.report.page import template
 from features.report.pictures import Shown, picture
 from features.report.sides import draw_distributions, draw_sides
+from features.report.templates import template
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_durably
 

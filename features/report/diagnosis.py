@@ -14,7 +14,6 @@ from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Reco
 from features.diagnosis.levels import VELOCITY_BAND
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.faults import CLASSES, HEALTHY, SHAFT
-from features.report.page import template
 from features.report.pictures import (
     FAINT,
     INK,
@@ -27,6 +26,7 @@ from features.report.pictures import (
     name_lines,
     picture,
 )
+from features.report.templates import template
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray
 from gen.corpus import check_result, write_text_durably

@@ -4,13 +4,10 @@
 includes every picture. Corpora come from unknown sources: their text is escaped and shortened, and never drawn.
 """
 
-import base64
 from collections.abc import Mapping
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jinja2
 import numpy as np
 import xarray as xr
 
@@ -22,6 +19,7 @@ from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve
 from features.report.examples import draw_examples
 from features.report.pictures import Quantity, draw_content, draw_reliability, draw_scores, picture
+from features.report.templates import template
 from gen.corpus import (
     FAULT_NAMES,
     FAULTS,
@@ -89,21 +87,6 @@ def write_report(corpus: Path | str, results: Results, output: Path | str) -> Pa
     write_results(results, output / "results.json")
     write_text_durably(page, output / "report.html")
     return output / "report.html"
-
-
-def template(name: str) -> jinja2.Template:
-    """Template of this package; filter ``image`` makes an address of a picture in SVG, ``figure`` three decimals or a dash."""
-    folder = files("features.report")
-    environment = jinja2.Environment(
-        loader=jinja2.FunctionLoader(lambda wanted: folder.joinpath(wanted).read_text(encoding="utf-8")),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["figure"] = lambda value: "–" if value is None else f"{value:.3f}"
-    environment.filters["image"] = lambda svg: f"data:image/svg+xml;base64,{base64.b64encode(svg).decode()}"
-    return environment.get_template(name)
 
 
 def _content(corpus: xr.Dataset) -> dict[str, Any]:

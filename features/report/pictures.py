@@ -10,7 +10,7 @@ can distinguish. Pictures contain numbers and class names, and no text of a corp
 import io
 from collections.abc import Mapping, Sequence
 from itertools import cycle
-from typing import Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib import rc_context
@@ -19,14 +19,15 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, NullLocator
 
 from features.band import DEFAULT_BAND, Band
-from features.baselines import Baseline, Scores
-from features.baselines.records import IntArray
 from features.faults import FUNDAMENTALS, HEALTHY, LOOKS, SHAFT
 from features.indicators import WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
-from features.signal.rows import FloatArray
+from features.signal.rows import FloatArray, IntArray
 from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
 from gen.corpus import FAULT_NAMES, GENERATOR
+
+if TYPE_CHECKING:
+    from features.baselines import Baseline, Scores
 
 PictureFormat = Literal["png", "svg", "pdf"]
 
@@ -276,7 +277,7 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
 
 
 @rc_context(STYLE)
-def draw_scores(baselines: Mapping[str, Baseline], chance: float, unseen: str) -> Figure:
+def draw_scores(baselines: Mapping[str, "Baseline"], chance: float, unseen: str) -> Figure:
     """Balanced accuracy on unseen groups beside its controls, one row per baseline or track; bars are 95 % intervals."""
     scored = list(baselines.values())
     figure = Figure(figsize=(WIDTH, 1.2 + (0.4 + 0.05 * len(scored[0].tests)) * len(scored)), layout="constrained")
@@ -303,7 +304,7 @@ def draw_scores(baselines: Mapping[str, Baseline], chance: float, unseen: str) -
 
 
 def _draw_intervals(
-    axes: Axes, scores: Sequence[Scores], rows: FloatArray, colour: str, marker: str, label: str
+    axes: Axes, scores: "Sequence[Scores]", rows: FloatArray, colour: str, marker: str, label: str
 ) -> None:
     """Draw balanced accuracies, and the intervals that are known."""
     for score, row in zip(scores, rows, strict=True):
@@ -313,7 +314,7 @@ def _draw_intervals(
 
 
 @rc_context(STYLE)
-def draw_reliability(scores: Mapping[str, Scores]) -> Figure:
+def draw_reliability(scores: Mapping[str, "Scores"]) -> Figure:
     """Accuracy against largest probability in bins, one panel for each of some scores by title."""
     columns = min(max(len(scores), 2), 3)
     rows = -(-len(scores) // columns)

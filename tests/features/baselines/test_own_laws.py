@@ -12,7 +12,7 @@ from sklearn.svm import SVC
 
 from features import feature_table, open_waveforms
 from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
-from features.baselines.benchmark import write_results
+from features.baselines.results import write_results
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import OwnClassifier
 from gen.corpus import FAULTS
@@ -134,7 +134,7 @@ def test_a_row_is_added_to_results_with_the_same_corpora_and_settings(tmp_path, 
     write_results(first, tmp_path / "results.json")
     known = read_results(tmp_path / "results.json")
     assert known == first
-    scored, module = [], sys.modules["features.baselines.benchmark"]
+    scored, module = [], sys.modules["features.baselines.results"]
     score = module.score_splits
     monkeypatch.setattr(module, "score_splits", lambda *a: scored.append(a[2]) or score(*a))
     asked = {"bayes": GaussianNB(), "logistic_regression": "logistic_regression"}
