@@ -1,22 +1,23 @@
 """The commands: each reads its options, calls ``gen``, ``features`` or a study, and shows the result.
 
-=============== ================================================================
-module          responsibility
-=============== ================================================================
-corpora         commands that make corpora and look at them
-importing       commands that convert real recordings into the format
-copying         corpora copied, cut, joined, and in the forms of other programs
-feature_tables  a picture of one record, and features of all
-models          a model trained, and scored on another corpus
-references      healthy records that the tested ones are compared with
-diagnosing      a diagnosis of a recording, or of each in a folder
-diagnosis_table table of the diagnoses of a folder
-benchmarking    scores of all baselines
-comparing       synthetic records against real ones
-publishing      the data card with terms of use, pictures and scores
-reproduce       the seed paper run again, and a page of pictures of simulated signals
-doctor          what this machine and installation can do, and its speed
-=============== ================================================================
+================ ================================================================
+module           responsibility
+================ ================================================================
+corpora          commands that make corpora and look at them
+importing        commands that convert real recordings into the format
+copying          corpora copied, cut, joined, and in the forms of other programs
+feature_tables   a picture of one record, and features of all
+models           a model trained, and scored on another corpus
+references       healthy records that the tested ones are compared with
+diagnosing       a diagnosis of a recording, or of each in a folder
+diagnosis_output facts and table of diagnoses
+recordings       files of recordings of the user
+benchmarking     scores of all baselines
+comparing        synthetic records against real ones
+publishing       the data card with terms of use, pictures and scores
+reproduce        the seed paper run again, and a page of pictures of simulated signals
+doctor           what this machine and installation can do, and its speed
+================ ================================================================
 
 Heavy libraries are imported inside the commands, so that help and version are printed at once. A command that takes a recipe looks for
 its file before it imports the simulator, so that a misspelt name is reported at once.

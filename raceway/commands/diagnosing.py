@@ -1,37 +1,25 @@
 """Command that diagnoses a recording of the user, or each of a folder."""
 
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from itertools import chain
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.diagnosis_table import recordings_in, show_table
+from raceway.commands.diagnosis_output import assumptions, diagnosis_facts, show_table
+from raceway.commands.recordings import Reading, read_recording, readings_of, recordings_in, set_aside
 from raceway.console import show
 from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, names
 from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
-    from features.diagnosis import Diagnosis, Given, Pair, Recorded
+    from features.diagnosis import Diagnosis, Given, Recorded
     from gen.physics.bearing import Bearing
 
 UNITS = ("g", "m/s2", "V", "mV")
 SLOWEST, FASTEST = 0.001, 1e7  # rpm
 ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
-OPTIONS = {"column": "--channel", "variable": "--channel", "rate": "--rate", "unit": "--unit"}
-
-
-class Reading(NamedTuple):
-    """How the files are read: options of the same names."""
-
-    channels: tuple[str, ...]
-    variable: str | None
-    unit: Any
-    sensitivity: float | None
-    rate: float | None
 
 
 def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
@@ -90,7 +78,7 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
 @click.option(
     "--unit",
     type=click.Choice(UNITS),
-    help="Unit of the values; by default that in the header, or else m/s2. V and mV need --sensitivity. A WAV file has none unless it is given.",
+    help="Unit of the values; by default that in the header, or else m/s2; a WAV file has none. V and mV need --sensitivity.",
 )
 @click.option(
     "--sensitivity",
@@ -171,11 +159,11 @@ def diagnose(
     several = recording.is_dir()
     unusable: dict[Path, str] = {}
     paths = recordings_in(recording, healthy) if several else [recording]
-    readings = _readings(paths, reading, unusable if several else None)
+    readings = readings_of(paths, reading, unusable if several else None)
     first = next(readings, None)  # before the model, so that whatever is missing is told at once
     if first is None:
         raise click.UsageError(f"no recording can be used; the first of {len(paths)}: {next(iter(unusable.values()))}")
-    compared = [_read(path, reading) for path in healthy]
+    compared = [read_recording(path, reading) for path in healthy]
     references = [one for one, *_ in compared]
     doubts = _doubts(speeds) + tuple(note for *_, found in compared for note in found)
     for sentence in doubts:
@@ -186,7 +174,7 @@ def diagnose(
 
     diagnoses, found = {}, []
     for path, recorded, of_values, of_file in chain((first,), readings):
-        with _set_aside(path, unusable if several else None), notice_compilation():
+        with set_aside(path, unusable if several else None), notice_compilation():
             diagnoses[path] = diagnosis = diagnose_recording(recorded, given, loaded, healthy=references)
         if path not in diagnoses:
             continue
@@ -195,9 +183,9 @@ def diagnose(
             notice(f"warning: {f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
         page = output and (output / f"{path.name}.html" if several else output)
         if page is not None:
-            facts = _assumptions(recorded, known, diagnosis, reading._replace(unit=of_values), healthy, source, notes)
+            facts = assumptions(recorded, known, diagnosis, reading._replace(unit=of_values), healthy, source, notes)
             _write_page(diagnosis, recorded, references, page, path.name, facts)
-        found.append(_facts(diagnosis, recorded, path, source, page, notes))
+        found.append(diagnosis_facts(diagnosis, recorded, path, source, page, notes))
     if as_json:
         errors = [{"recording": path, "error": sentence} for path, sentence in unusable.items()]
         show.as_json([*found, *errors] if several else found[0])
@@ -211,33 +199,13 @@ def diagnose(
         show.text("", f"{output}: pictures, evidence and what was assumed.")
 
 
-@contextmanager
-def _set_aside(path: Path, unusable: dict[Path, str] | None) -> Iterator[None]:
-    """Keep the sentence on a file that cannot be used, and go on; a recording on its own ends the command."""
-    from gen.support.errors import CorpusError
-
-    try:
-        yield
-    except CorpusError as error:
-        if unusable is None:
-            raise
-        unusable[path] = str(error)
-
-
-def _readings(
-    paths: Sequence[Path], reading: Reading, unusable: dict[Path, str] | None
-) -> "Iterator[tuple[Path, Recorded, str, tuple[str, ...]]]":
-    """Recordings that can be read, one after the other."""
-    for path in paths:
-        found = None
-        with _set_aside(path, unusable):
-            found = _read(path, reading)
-        if found is not None:
-            yield path, *found
-
-
 def _write_page(
-    diagnosis: "Diagnosis", recorded: "Recorded", healthy: "list[Recorded]", page: Path, name: str, facts: list[tuple[str, str]]
+    diagnosis: "Diagnosis",
+    recorded: "Recorded",
+    healthy: "list[Recorded]",
+    page: Path,
+    name: str,
+    facts: list[tuple[str, str]],
 ) -> None:
     from features.report.diagnosis import write_diagnosis
     from gen.corpus import make_result_folder
@@ -285,32 +253,6 @@ def _given(bearings: dict[str, "Bearing"], speeds: tuple[float, float] | None) -
     return Given(nominal, ANY_RATE if speeds is None else (rpm_to_hertz(speeds[0]), rpm_to_hertz(speeds[1])))
 
 
-def _read(path: Path, reading: Reading) -> tuple["Recorded", str, tuple[str, ...]]:
-    """Channels of a file, their unit, and sentences on what was assumed; the diagnosis itself warns of an implausible rms."""
-    from gen.importers.signals import read_signal
-    from gen.support.errors import CorpusError
-
-    signals = {}
-    notes: list[str] = []
-    for channel in reading.channels or (None,):
-        number = int(channel) if channel is not None and channel.isdecimal() else channel
-        named = path.suffix.lower() == ".mat" and isinstance(number, str)
-        place = {"variable": number, "column": None} if named else {"variable": reading.variable, "column": number}
-        how = place | {"unit": reading.unit, "sensitivity": reading.sensitivity, "rate": reading.rate}
-        signal = read_signal(path, **how, options=OPTIONS)  # type: ignore[arg-type]
-        if signal.fs is None:
-            raise CorpusError(f"{path}: does not state its sample rate; give it with --rate HZ.")
-        signals[channel or ""] = signal
-        notes += [note for note in signal.warnings if "its rms" not in note]
-    from features.diagnosis import ACCELERATION, Recorded  # it takes seconds, and a file that cannot be used is told before
-
-    shortest = min(signal.values.size for signal in signals.values())
-    cut = {name: signal.values[:shortest] for name, signal in signals.items()}
-    unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
-    units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
-    return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), units, tuple(notes)
-
-
 def _model(path: Path | None, *, compares: bool) -> tuple[Any, Path]:
     """Model and its file, or the reference model."""
     if path is None:
@@ -320,80 +262,3 @@ def _model(path: Path | None, *, compares: bool) -> tuple[Any, Path]:
     from features.baselines.models import Model
 
     return Model.load(path), path
-
-
-def _facts(
-    diagnosis: "Diagnosis", recorded: "Recorded", path: Path, source: Path, output: Path | None, notes: tuple[str, ...]
-) -> dict[str, Any]:
-    from features.diagnosis import FALSE_ALARM, line_facts
-
-    pairs = [(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere]
-    return {
-        "verdict": diagnosis.verdict,
-        "probabilities": diagnosis.probabilities,
-        "bearing": diagnosis.bearing,
-        "shaft_rpm": 60 * diagnosis.shaft_rate,
-        "evidence": [line_facts(line) for line in diagnosis.evidence],
-        "levels": [one._asdict() for one in diagnosis.levels],
-        "explanations": [_pair_facts(pair, as_given=as_given) for pair, as_given in pairs],
-        "sentence": diagnosis.sentence,
-        "advice": diagnosis.advice,
-        "warnings": (*notes, *diagnosis.warnings),
-        "given_rpm": [60 * rate for rate in diagnosis.given.rates],
-        "threshold": diagnosis.threshold,
-        "false_alarm": FALSE_ALARM,
-        "band": None if diagnosis.spectrum is None else [round(edge, 1) for edge in diagnosis.spectrum.band],
-        "channels": list(recorded.signals),
-        "duration_s": _length(recorded) / recorded.fs,
-        "sample_rate_hz": recorded.fs,
-        "windows": diagnosis.windows,
-        "recording": path,
-        "model": source,
-        "report": output,
-    }
-
-
-def _pair_facts(pair: "Pair", *, as_given: bool) -> dict[str, Any]:
-    return {
-        "bearing": pair.bearing,
-        "alike": list(pair.alike),
-        "shaft_rpm": round(60 * pair.rate, 2),
-        "uncertainty_rpm": round(60 * pair.uncertainty, 2),
-        "lines": pair.lines,
-        "as_given": as_given,
-    }
-
-
-def _length(recorded: "Recorded") -> int:
-    return len(next(iter(recorded.signals.values())))
-
-
-def _assumptions(
-    recorded: "Recorded",
-    bearings: dict[str, "Bearing"],
-    diagnosis: "Diagnosis",
-    reading: Reading,
-    healthy: tuple[Path, ...],
-    source: Path,
-    notes: tuple[str, ...],
-) -> list[tuple[str, str]]:
-    """Facts for the page, by name."""
-    bearing = bearings[diagnosis.bearing]
-    orders = ", ".join(f"{name.upper()} {float(order):.3f}" for name, order in diagnosis.orders._asdict().items())
-    angle = f", contact angle {math.degrees(bearing.contact_angle):.3g}°"
-    low, high = (f"{60 * rate:,.6g}" for rate in diagnosis.given.rates)
-    sensitivity = "" if reading.sensitivity is None else f", {reading.sensitivity:g} mV per g"
-    facts = {
-        "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of {1e3 * bearing.ball_diameter:.4g} mm on "
-        f"{1e3 * bearing.pitch_diameter:.4g} mm{angle}, outer ring fixed",
-        "orders": orders,
-        "given bearings": ", ".join(bearings) if len(bearings) > 1 else "",
-        "given speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",
-        "channels": ", ".join(recorded.signals),
-        "sample rate": f"{recorded.fs:,.6g} Hz, {'as given' if reading.rate is not None else 'as the file states'}",
-        "unit": f"{reading.unit or recorded.unit}{sensitivity}",
-        "healthy recording": ", ".join(path.name for path in healthy) or "none",
-        "model": source.name,
-        "notes": " ".join(notes),
-    }
-    return [(name, text) for name, text in facts.items() if text]

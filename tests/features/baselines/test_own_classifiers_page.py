@@ -10,7 +10,9 @@ from tests.features.report.test_report import write_corpus
 from tests.paths import ROOT
 
 PAGE = (ROOT / "docs" / "own-classifiers.md").read_text(encoding="utf-8")
-MINE, FROM_FEATURES, MODEL, FROM_WAVEFORMS, NETWORK, WITH_NETWORK, _ = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)
+MINE, FROM_FEATURES, MODEL, FROM_WAVEFORMS, NETWORK, WITH_NETWORK, _ = re.findall(
+    r"```python\n(.*?)```", PAGE, re.DOTALL
+)
 
 
 @pytest.fixture

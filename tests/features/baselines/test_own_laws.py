@@ -12,9 +12,9 @@ from sklearn.svm import SVC
 
 from features import feature_table, open_waveforms
 from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
-from features.baselines.results import write_results
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import OwnClassifier
+from features.baselines.results import write_results
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table, records_of

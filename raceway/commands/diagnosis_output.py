@@ -1,0 +1,112 @@
+"""Output of diagnoses: facts for programs and for the page, and the table of a folder of recordings."""
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from raceway.commands.recordings import Reading
+from raceway.console import show
+
+if TYPE_CHECKING:
+    from features.diagnosis import Diagnosis, Pair, Recorded
+    from gen.physics.bearing import Bearing
+
+SHOWN_LINES = 2
+
+
+def show_table(diagnoses: Mapping[Path, "Diagnosis"], unusable: Mapping[Path, str]) -> None:
+    """Print a row for each recording, and a sentence for each file that cannot be used."""
+    header = ("recording", "verdict", "probability", "rpm", "strongest lines", "warnings")
+    rows = [(path.name, *_row(diagnosis)) for path, diagnosis in diagnoses.items()]
+    show.table(header, [*rows, *((path.name, "not used", "", "", "", "") for path in unusable)])
+    if unusable:
+        show.text("", *unusable.values())
+
+
+def _row(diagnosis: "Diagnosis") -> tuple[object, ...]:
+    lines = ", ".join(f"{line.name} {line.level:.0f} dB" for line in diagnosis.evidence[:SHOWN_LINES])
+    likeliest = max(diagnosis.probabilities, key=lambda fault: diagnosis.probabilities[fault])
+    probability = f"{diagnosis.probabilities[likeliest]:.2f}"
+    if likeliest != diagnosis.verdict:
+        probability = f"{likeliest} {probability}"
+    rpm = f"{60 * diagnosis.shaft_rate:,.0f}"
+    return diagnosis.verdict, probability, rpm, lines, len(diagnosis.warnings) or ""
+
+
+def diagnosis_facts(
+    diagnosis: "Diagnosis", recorded: "Recorded", path: Path, source: Path, output: Path | None, notes: tuple[str, ...]
+) -> dict[str, Any]:
+    """Facts of one diagnosis, for JSON."""
+    from features.diagnosis import FALSE_ALARM, line_facts
+
+    pairs = [(pair, True) for pair in diagnosis.explanations] + [(pair, False) for pair in diagnosis.elsewhere]
+    return {
+        "verdict": diagnosis.verdict,
+        "probabilities": diagnosis.probabilities,
+        "bearing": diagnosis.bearing,
+        "shaft_rpm": 60 * diagnosis.shaft_rate,
+        "evidence": [line_facts(line) for line in diagnosis.evidence],
+        "levels": [one._asdict() for one in diagnosis.levels],
+        "explanations": [_pair_facts(pair, as_given=as_given) for pair, as_given in pairs],
+        "sentence": diagnosis.sentence,
+        "advice": diagnosis.advice,
+        "warnings": (*notes, *diagnosis.warnings),
+        "given_rpm": [60 * rate for rate in diagnosis.given.rates],
+        "threshold": diagnosis.threshold,
+        "false_alarm": FALSE_ALARM,
+        "band": None if diagnosis.spectrum is None else [round(edge, 1) for edge in diagnosis.spectrum.band],
+        "channels": list(recorded.signals),
+        "duration_s": _length(recorded) / recorded.fs,
+        "sample_rate_hz": recorded.fs,
+        "windows": diagnosis.windows,
+        "recording": path,
+        "model": source,
+        "report": output,
+    }
+
+
+def _pair_facts(pair: "Pair", *, as_given: bool) -> dict[str, Any]:
+    return {
+        "bearing": pair.bearing,
+        "alike": list(pair.alike),
+        "shaft_rpm": round(60 * pair.rate, 2),
+        "uncertainty_rpm": round(60 * pair.uncertainty, 2),
+        "lines": pair.lines,
+        "as_given": as_given,
+    }
+
+
+def _length(recorded: "Recorded") -> int:
+    return len(next(iter(recorded.signals.values())))
+
+
+def assumptions(
+    recorded: "Recorded",
+    bearings: dict[str, "Bearing"],
+    diagnosis: "Diagnosis",
+    reading: Reading,
+    healthy: tuple[Path, ...],
+    source: Path,
+    notes: tuple[str, ...],
+) -> list[tuple[str, str]]:
+    """Facts for the page, by name."""
+    bearing = bearings[diagnosis.bearing]
+    orders = ", ".join(f"{name.upper()} {float(order):.3f}" for name, order in diagnosis.orders._asdict().items())
+    angle = f", contact angle {math.degrees(bearing.contact_angle):.3g}°"
+    low, high = (f"{60 * rate:,.6g}" for rate in diagnosis.given.rates)
+    sensitivity = "" if reading.sensitivity is None else f", {reading.sensitivity:g} mV per g"
+    facts = {
+        "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of {1e3 * bearing.ball_diameter:.4g} mm on "
+        f"{1e3 * bearing.pitch_diameter:.4g} mm{angle}, outer ring fixed",
+        "orders": orders,
+        "given bearings": ", ".join(bearings) if len(bearings) > 1 else "",
+        "given speed": f"{low} rpm" if low == high else f"{low} to {high} rpm",
+        "channels": ", ".join(recorded.signals),
+        "sample rate": f"{recorded.fs:,.6g} Hz, {'as given' if reading.rate is not None else 'as the file states'}",
+        "unit": f"{reading.unit or recorded.unit}{sensitivity}",
+        "healthy recording": ", ".join(path.name for path in healthy) or "none",
+        "model": source.name,
+        "notes": " ".join(notes),
+    }
+    return [(name, text) for name, text in facts.items() if text]
