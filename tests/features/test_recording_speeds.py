@@ -218,4 +218,5 @@ def test_only_a_clear_speed_contradicts_the_label():
     found = {"shaft_rate": [25.0, 25.0, 25.0], ESTIMATE: [26.0, 26.0, 25.1], UNCERTAINTY: [0.2] * 3, BY: [0, 2, 2]}
     table = xr.Dataset({name: ("record", np.array(values)) for name, values in found.items()})
     assert other_speed(table).tolist() == [False, True, False]
-    assert rates_to_use(table).tolist() == [25.0, 26.0, 25.1]
+    assert rates_to_use(table.assign_attrs(speed="check")).tolist() == [25.0, 25.0, 25.0]
+    assert rates_to_use(table.assign_attrs(speed="correct")).tolist() == [25.0, 26.0, 25.1]
