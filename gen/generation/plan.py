@@ -152,7 +152,7 @@ def _lane_steps(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> i
     needed: Counter[Group] = Counter()
     for scenarios, groups in parts:
         for group, places in groups.items():
-            needed[group] += integrations(scenarios[place] for place in places)
+            needed[group] += integrations([scenarios[place] for place in places])
         of_place = {place: group for group, places in groups.items() for place in places}
         in_order = {place: of_place[place] for place in sorted(of_place)}
         for place in checked_places(scenarios, recipe, in_order):

@@ -6,7 +6,7 @@ operating conditions of a class do not depend on what can be seen in them. All r
 another part, so that every part finds the same fault.
 """
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
@@ -18,7 +18,7 @@ from gen.recipe import Recipe
 from gen.scenarios import Scenario, common_settings, draw_scenarios, simulation_errors, with_level
 from gen.simulation.batches import Integration, integrate_all
 from gen.simulation.hits import felt_places
-from gen.simulation.simulate import Response, Run, response_of, runs_of
+from gen.simulation.simulate import Response, Run, open_integrations, response_of, runs_of
 from gen.simulation.timeline import timeline
 
 LEVEL_TRIES = 8  # draws of the level of a record whose fault cannot be seen
@@ -43,8 +43,7 @@ class Family:
     @property
     def integrations(self) -> list[Integration]:
         """Those that have not been done yet."""
-        every = (one for run in self.runs for one in (run.own, run.twin) if one is not None)
-        return [one for one in every if one.response is None]
+        return open_integrations(self.runs)
 
 
 class Families:
@@ -75,10 +74,11 @@ class Families:
         unseen = _unseen_places(made)
         specimens = dict.fromkeys(made.measured.scenarios[place].specimen.number for place in unseen)
         again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
-        twins = {
-            run.scenario.record.number: run.twin
-            for place, run in enumerate(run for family in families for run in family.runs)
-            if run.twin is not None and place not in made.response.failures  # another fault does not change them
+        every = [run for family in families for run in family.runs]
+        healthy = {  # another fault does not change them
+            run.scenario.record.number: run.healthy
+            for place, run in enumerate(every)
+            if run.healthy is not None and place not in made.response.failures
         }
         advice = "raise level.faulty_db" if self.recipe.level.kind == "snr" else "lower level.background_m_s2"
         for place in unseen:
@@ -88,17 +88,17 @@ class Families:
                     f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen "
                     f"in it; {advice}, or choose truth.undetected: keep."
                 )
-        return made, self._cut(self._with_hits(self._redrawn(again)), twins)
+        return made, self._cut(self._with_hits(self._redrawn(again)), healthy)
 
     def _other_levels(self, scenario: Scenario) -> Iterator[Scenario]:
         """The same record with its further levels, one after the other."""
         tries = LEVEL_TRIES if self._redraws and self.recipe.level.kind == "snr" else 1
         return (with_level(scenario, self.recipe, level_try) for level_try in range(1, tries))
 
-    def _cut(self, scenarios: list[Scenario], twins: dict[int, Integration]) -> list[Family]:
-        """Families of scenarios, of which some twins are known."""
+    def _cut(self, scenarios: list[Scenario], healthy: Mapping[int, Integration]) -> list[Family]:
+        """Families of scenarios; ``healthy`` as the known ones of `runs_of`."""
         families: dict[tuple[int, int], Family] = {}
-        for scenario, run in zip(scenarios, runs_of(scenarios, twins) if scenarios else [], strict=True):
+        for scenario, run in zip(scenarios, runs_of(scenarios, healthy) if scenarios else [], strict=True):
             group = 0 if self._redraws else scenario.record.number // self.size
             family = families.setdefault((scenario.specimen.number, group), Family([], []))
             family.scenarios.append(scenario)
@@ -135,8 +135,7 @@ def made_from(scenarios: list[Scenario]) -> Records:
     """Records of scenarios as they are; nothing is drawn again."""
     with simulation_errors():
         runs = runs_of(scenarios)
-        wanted = (one for run in runs for one in (run.own, run.twin) if one is not None)
-        integrate_all(wanted, timeline(common_settings(scenarios)))
+        integrate_all(open_integrations(runs), timeline(common_settings(scenarios)))
         return made_of(runs)
 
 

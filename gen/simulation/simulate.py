@@ -62,6 +62,11 @@ class Run(NamedTuple):
     twin: Integration | None
     """Without the fault; None for a record without a fault, and with ``truth.twins: false``."""
 
+    @property
+    def healthy(self) -> Integration | None:
+        """The record without a fault, if it is integrated."""
+        return self.twin or (self.own if self.scenario.specimen.fault == "healthy" else None)
+
 
 def simulate(scenarios: list[Scenario]) -> Response:
     """Integrate scenarios.
@@ -82,21 +87,22 @@ def simulate(scenarios: list[Scenario]) -> Response:
         Before anything runs, if a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
     runs = runs_of(scenarios)
-    wanted = [one for run in runs for one in (run.own, run.twin) if one is not None]
-    axis = timeline(common_settings(scenarios))
-    integrate_all(wanted, axis)
+    integrate_all(open_integrations(runs), timeline(common_settings(scenarios)))
     return response_of(runs)
 
 
-def runs_of(scenarios: list[Scenario], known_twins: Mapping[int, Integration] | None = None) -> list[Run]:
-    """Integrations that scenarios need; ``known_twins`` are records without their faults that were integrated before, by number.
+def runs_of(scenarios: list[Scenario], known: Mapping[int, Integration] | None = None) -> list[Run]:
+    """Integrations that scenarios need; ``known`` are records without their faults that were integrated before, by number.
+
+    Records of a group differ in their severity alone, so they share one twin: the record before the damage, if it is among them.
 
     Raises
     ------
     SimulationError
         If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
-    known_twins, runs, settings = known_twins or {}, [], common_settings(scenarios)
+    known, runs, settings = known or {}, [], common_settings(scenarios)
+    of_group: dict[int, Integration | None] = {-1: None}
     inputs, failures = kernel_inputs(scenarios, timeline(settings))
     for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True)):
         number = scenario.record.number
@@ -104,13 +110,24 @@ def runs_of(scenarios: list[Scenario], known_twins: Mapping[int, Integration] | 
             runs.append(Run(scenario, None, failures[place], None, None))
             continue
         steps = steps_per_sample(given, number, settings)
-        twin = known_twins.get(number)
-        if twin is None:
-            healthy = _healthy_input(scenario, given)
-            # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
-            twin = None if healthy is None else Integration(number, healthy, group_of(healthy, steps))
-        runs.append(Run(scenario, given, "", Integration(number, given, group_of(given, steps)), twin))
+        own, twin = Integration(number, given, group_of(given, steps)), None
+        if _has_twin(scenario):
+            twin = known.get(number) or of_group.get(scenario.record.pair)
+            if twin is None:
+                healthy = _healthy_input(scenario, given)
+                # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
+                twin = Integration(number, healthy, group_of(healthy, steps))
+        elif number in known:
+            own = known[number]
+        runs.append(Run(scenario, given, "", own, twin))
+        of_group.setdefault(scenario.record.pair, runs[-1].healthy)
     return runs
+
+
+def open_integrations(runs: Iterable[Run]) -> list[Integration]:
+    """Integrations that have not been done yet, each once."""
+    every = (one for run in runs for one in (run.own, run.twin) if one is not None and one.response is None)
+    return list(dict.fromkeys(every))
 
 
 def response_of(runs: Sequence[Run]) -> Response:
@@ -149,20 +166,23 @@ def motion_of(of: Integration | None) -> NDArray[np.float32]:
     return of.response
 
 
-def integrations(scenarios: Iterable[Scenario]) -> int:
-    """Number of integrations that records need: one, or two for a record that is also simulated without its fault."""
-    return sum(2 if _has_twin(scenario) else 1 for scenario in scenarios)
+def integrations(scenarios: Sequence[Scenario]) -> int:
+    """Number of integrations that records need: one each, and one without the fault of a record or of all in its group."""
+    groups = [
+        scenario.record.pair if scenario.record.pair >= 0 else -1 - scenario.record.number for scenario in scenarios
+    ]
+    damaged = {group for group, scenario in zip(groups, scenarios, strict=True) if _has_twin(scenario)}
+    before = {group for group, scenario in zip(groups, scenarios, strict=True) if scenario.specimen.fault == "healthy"}
+    return len(scenarios) + len(damaged - before)
 
 
 def _has_twin(scenario: Scenario) -> bool:
     return scenario.settings.twins and scenario.specimen.fault != "healthy"
 
 
-def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput | None:
-    """Kernel input of a record as it was without its fault; None if it has none, and with ``truth.twins: false``."""
+def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput:
+    """Kernel input of a record as it was without its fault."""
     specimen, healthy = scenario.specimen, scenario.specimen.at_severity(0)
-    if not _has_twin(scenario):
-        return None
     changed = {
         field.name for field in fields(specimen) if getattr(specimen, field.name) != getattr(healthy, field.name)
     }
@@ -174,7 +194,7 @@ def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput | None
 def laid_out(scenarios: list[Scenario]) -> list[tuple[Group, Batch]]:
     """Scenarios in lanes, batch by batch, as :func:`simulate` integrates them; all must be possible."""
     runs, fs = runs_of(scenarios), common_settings(scenarios).sample_rate
-    every = [one for run in runs for one in (run.own, run.twin) if one is not None]
+    every = open_integrations(runs)
     return [
         (group, lay_out([every[place].given for place in places], group.shape, 1 / fs))
         for group, places in batches({place: one.group for place, one in enumerate(every)})

@@ -8,7 +8,7 @@ import pytest
 from gen.physics.rotor import highest_angular_frequency, likely_stiffness
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
-from gen.simulation.simulate import simulate
+from gen.simulation.simulate import integrations, open_integrations, runs_of, simulate
 from gen.simulation.steps import FINE_STEP, steps_per_sample
 from gen.simulation.timeline import timeline
 from gen.support.errors import SimulationError
@@ -204,3 +204,18 @@ def test_outer_spalls_count_their_angle_from_the_load(recipe_with):
     recipe = recipe_with({"faults": outer, "machine.load_angle_deg": -60})
     spall = kernel_input(draw_scenarios(recipe, 0, 1)[0], timeline(settings_of(recipe))).spalls[0]
     assert spall.angle == pytest.approx(math.radians(-50))
+
+
+def test_records_of_a_group_share_the_integration_without_their_fault(recipe_with):
+    faults = [{"kind": "healthy", "weight": 1}, {"kind": "outer", "width_mm": 1}, {"kind": "ball", "width_mm": 1}]
+    recipe = recipe_with({"corpus.rungs": [0, 0.5, 1], "corpus.specimens_per_rig": 3, "faults": faults})
+    scenarios = [one for one in draw_scenarios(recipe) if one.record.pair >= 0][:9]
+    runs = runs_of(scenarios)
+    assert len({one.record.pair for one in scenarios}) == 3
+    assert len(open_integrations(runs)) == integrations(scenarios) == 9
+    assert all(run.healthy is runs[place // 3 * 3].own for place, run in enumerate(runs))
+    together = simulate(scenarios)
+    for place, scenario in enumerate(scenarios):
+        alone = simulate([scenario])
+        np.testing.assert_array_equal(together.acceleration[place], alone.acceleration[0])
+        np.testing.assert_array_equal(together.twins.acceleration[place], alone.twins.acceleration[0])
