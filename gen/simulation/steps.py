@@ -13,15 +13,16 @@ from gen.support.errors import SimulationError
 
 FloatArray = NDArray[np.float64]
 
-# omega * dt of the stiffest mode: at 0.30 the error of the acceleration is about 1e-3, at 1.0 the mode still rings at its frequency, and
-# above 2.8 the method is unstable
-FINE_STEP, COARSEST_STEP = 0.30, 1.0
+ENOUGH = 6  # steps per sample for all modes up to half the sample rate
+# omega * dt of the stiffest mode that is recorded, and of a faster one, which the anti-alias filter removes and the integration has only to
+# follow; at 1.0 a mode still rings at its frequency, and above 2.8 the method is unstable
+FINE_STEP, FOLLOWED_STEP, COARSEST_STEP = math.pi / ENOUGH, 0.75, 1.0
 _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
 
 
 def steps_per_sample(given: KernelInput, number: int, settings: Settings) -> int:
-    """Steps per sample that the stiffest mode of record ``number`` needs.
+    """Steps per sample that the modes of record ``number`` need.
 
     Raises
     ------
@@ -31,16 +32,16 @@ def steps_per_sample(given: KernelInput, number: int, settings: Settings) -> int
     fs, asked = settings.sample_rate, settings.oversampling
     _check_turn(given, number, fs)
     rate = fastest_rate(given)
+    need = max(min(rate / (FINE_STEP * fs), ENOUGH), rate / (FOLLOWED_STEP * fs))
     if asked is not None:
         if rate / (asked * fs) > COARSEST_STEP:
-            need = math.ceil(rate / (fs * FINE_STEP))
             raise SimulationError(
                 f"record {number}: its stiffest mode of {rate / 2 / math.pi:.0f} Hz is too fast for a step of "
-                f"{1e6 / (asked * fs):.3g} us; raise recording.oversampling to {need} or leave it out."
+                f"{1e6 / (asked * fs):.3g} us; raise recording.oversampling to {math.ceil(need)} or leave it out."
             )
         return asked
     for factor in _FACTORS:
-        if rate / (factor * fs) <= FINE_STEP:
+        if factor >= need:
             return factor
     raise SimulationError(
         f"record {number}: its stiffest mode of {rate / 2 / math.pi:.0f} Hz needs more than {_FACTORS[-1]} steps per "

@@ -54,11 +54,12 @@ def test_the_first_record_of_every_class_is_tried_at_half_the_step(checked):
     assert np.isfinite(errors[[faults.index(fault) for fault in FAULTS if fault in faults]]).all()
 
 
-def test_at_half_the_step_ordinary_records_change_by_less_than_a_thousandth(checked):
+def test_at_half_the_step_ordinary_records_change_by_less_than_a_hundredth(checked):
+    """40 dB below the bearing, where the noise of the machines of the shipped recipes is at least 15 dB higher."""
     errors = checked[3]
     tried = errors[np.isfinite(errors)]
     assert (tried > 0).all()
-    assert tried.max() < 1e-3
+    assert tried.max() < 1e-2
 
 
 def checked_records(recipe):

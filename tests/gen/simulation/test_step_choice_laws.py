@@ -7,7 +7,7 @@ import pytest
 from gen.physics.rotor import likely_stiffness
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
-from gen.simulation.steps import FINE_STEP, largest_pull, steps_per_sample
+from gen.simulation.steps import ENOUGH, FINE_STEP, FOLLOWED_STEP, fastest_rate, largest_pull, steps_per_sample
 from gen.simulation.timeline import timeline
 
 
@@ -48,3 +48,13 @@ def test_the_step_resolves_the_mode_of_that_stiffness_and_is_no_finer(drawn, sha
     rate = share * math.sqrt(square) / (4 * FINE_STEP)
     sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
     assert steps_per_sample(record, scenario.record.number, settings_of(sampled)) == steps
+
+
+@pytest.mark.parametrize(("mode", "steps"), [(0.49, ENOUGH), (0.71, ENOUGH), (0.73, 8), (0.95, 8)])
+def test_a_mode_above_half_the_sample_rate_is_followed_and_not_resolved(drawn, mode, steps):
+    """The anti-alias filter removes it; ``mode`` is its frequency over the sample rate, and 0.75 / 2 pi of it a step."""
+    recipe, scenario, record = drawn
+    rate = fastest_rate(record) / (2 * math.pi * mode)
+    sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
+    assert steps_per_sample(record, scenario.record.number, settings_of(sampled)) == steps
+    assert 2 * math.pi * mode / steps < FOLLOWED_STEP
