@@ -107,11 +107,9 @@ class Judge:
             if place == len(self._bands):
                 self._bands.append(self._band(frequencies, windows))
             band = self._bands[place]
-            seen |= {
-                window.part
-                for window, lines in band.lines
-                if _stands_out(window, lines, gains, self._margin, band.impulses)
-            }
+            for window, lines in band.lines:
+                if window.part not in seen and _stands_out(window, lines, gains, self._margin, band.impulses):
+                    seen.add(window.part)
             if len(seen) == len(self._record.orders):
                 return True
         return False
