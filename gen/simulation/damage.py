@@ -2,6 +2,7 @@
 
 import functools
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,7 +13,9 @@ from gen.physics.extent import BALL_ORDERS, HIGHEST_ORDER, LOWEST_ORDER
 from gen.physics.hertz import footprints
 from gen.physics.impact import edge_strikes, path_strikes
 from gen.physics.inputs import ROUND, SpallInput, Strike, Waviness
-from gen.physics.kernel.drop import PROFILES, drop, largest_drop
+from gen.physics.kernel.compiling import compiled_to_disk
+from gen.physics.kernel.drop import GEOMETRIC, PROFILES, drop
+from gen.physics.kernel.integrate import kernel_sources
 from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
 from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
 
@@ -109,7 +112,24 @@ def largest_drop_over(scenario: Scenario, number: int) -> float:
     if spall.profile != "geometric" or spall.roughness > 0:
         return max(float(path.max()) for path in spall_paths(scenario, number))
     race = -bearing.outer_radius if spall.site == "outer" else bearing.inner_radius
-    return largest_drop(spall.width, bearing.radius(spall.site), bearing.radius("ball"), race, spall.depth)
+    arc = bearing.radius(spall.site)
+    return cached_drop(GEOMETRIC, 0.0, 0.5 * spall.width / arc, arc, bearing.radius("ball"), race, spall.depth)
+
+
+def _cached(sources: str) -> Callable[..., float]:
+    """:func:`drop` for calls from Python, in numba's cache on disk as long as ``sources`` is the same; compiling it takes 0.5 s."""
+
+    @compiled_to_disk
+    def drop_on_disk(
+        profile: int, offset: float, half: float, arc: float, ball: float, race: float, depth: float
+    ) -> float:
+        _ = sources
+        return drop(profile, offset, half, arc, ball, race, depth)
+
+    return drop_on_disk
+
+
+cached_drop = _cached(kernel_sources())
 
 
 @functools.lru_cache(maxsize=256)
@@ -120,7 +140,7 @@ def _paths(
     if spall.profile not in ("geometric", "trace"):
         arc = ball if spall.site == "ball" else abs(races[0])
         profile, half = PROFILES.index(spall.profile), 0.5 * spall.width / arc
-        one = np.array([drop(profile, x / arc, half, arc, ball, races[0], spall.depth) for x in at])
+        one = np.array([cached_drop(profile, x / arc, half, arc, ball, races[0], spall.depth) for x in at])
         return (one,) * len(races)
     depths = np.full(len(at), spall.depth)
     if spall.profile == "trace":

@@ -11,6 +11,7 @@ from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import TABLE_POINTS
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, RECTANGULAR, TABLE, drop, largest_drop
 from gen.physics.kernel.spalls import tabulated
+from gen.simulation.damage import cached_drop
 from tests.reference import rigid_path
 from tests.strategies import depths
 
@@ -102,6 +103,23 @@ def test_the_largest_drop_is_the_largest_of_all_drops(width, race, depth):
     half = width / 2 / abs(race)
     path = [fall(GEOMETRIC, offset, half, race, depth) for offset in np.linspace(-half, half, 101)]
     assert largest_drop(width, abs(race), BALL, race, depth) == pytest.approx(max(path), rel=1e-12)
+
+
+@every_profile
+@law
+@given(st.floats(-1, 1), halves, races, depths)
+def test_the_drop_in_the_cache_has_the_bits_of_that_in_the_kernel(profile, share, half, race, depth):
+    given = profile, share * half, half, abs(race), BALL, race, depth
+    assert cached_drop(*given) == drop(*given)
+
+
+@law
+@given(st.floats(1e-4, 0.1), races, depths)
+def test_the_drop_in_the_middle_is_the_largest_drop_bit_for_bit(width, race, depth):
+    arc = abs(race)
+    assert cached_drop(GEOMETRIC, 0.0, 0.5 * width / arc, arc, BALL, race, depth) == largest_drop(
+        width, arc, BALL, race, depth
+    )
 
 
 @law
