@@ -1,25 +1,31 @@
 """Pace of this machine: how long some records of a recipe take, from the drawn scenario to the written part.
 
 The records are made as :func:`gen.generate` makes them, in this process and into a temporary folder. Kernels that are not compiled yet are
-not compiled for this: that takes longer than many a corpus.
+not compiled for this: that takes longer than many a corpus. The pace of a kind of records is measured once per machine, and kept beside the
+compiled kernels.
 """
 
+import json
+import os
+import platform
 import tempfile
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from numba.core import event
 
-from gen.corpus import Codec, write_part
-from gen.generation.labels import part_dataset
-from gen.measurement.measure import measure
+from gen.corpus import Codec
+from gen.generation.sources import sources_sha256
 from gen.physics.kernel.compiling import LANES
-from gen.scenarios import Scenario
-from gen.simulation.batches import filled_lanes
+from gen.scenarios import Scenario, Settings, common_settings
+from gen.simulation.batches import Group, filled_lanes
+from gen.simulation.kernels import cache_folder
 from gen.simulation.simulate import integrations, simulate
+from gen.simulation.timeline import timeline
 
 LARGEST_SAMPLE = 30e6  # steps of all lanes, about 2 s
 REPEATS = 2  # the first run also loads the kernels from the cache
@@ -55,24 +61,42 @@ def _refuse_compilation() -> Iterator[None]:
         yield
 
 
-def measured_pace(scenarios: list[Scenario], codec: Codec, steps: int) -> Pace | None:
-    """Time the records of one batch, each of ``steps`` integration steps.
+def measured_pace(scenarios: list[Scenario], group: Group, codec: Codec) -> Pace | None:
+    """Seconds that the records of one batch take, all of ``group``; such records are timed once on a machine.
 
     None if a kernel is not compiled yet, or if the batch has more than ``LARGEST_SAMPLE`` steps.
     """
+    steps = timeline(common_settings(scenarios)).integrated * group.steps
     if LANES * steps > LARGEST_SAMPLE:
         return None
+    kept = _kept_file(common_settings(scenarios), group, codec)
+    with suppress(OSError, ValueError, TypeError):  # there is none, or it is damaged
+        return Pace(**json.loads(kept.read_text()))
     try:
         with _refuse_compilation():
             runs = [_time(scenarios, codec) for _ in range(REPEATS)]
     except _NotCompiledError:
         return None
     integration, rest = (min(times) for times in zip(*runs, strict=True))
-    return Pace(integration / (filled_lanes(integrations(scenarios)) * steps), rest / len(scenarios))
+    pace = Pace(integration / (filled_lanes(integrations(scenarios)) * steps), rest / len(scenarios))
+    with suppress(OSError):
+        kept.write_text(json.dumps(pace._asdict()))
+    return pace
+
+
+def _kept_file(settings: Settings, group: Group, codec: Codec) -> Path:
+    """File of the pace of a kind of records on this machine; where kernels have no folder, one that can be neither read nor written."""
+    kind = settings.samples, settings.settle, settings.channels, settings.twins, group, codec
+    key = repr((platform.node(), sources_sha256(), kind))
+    return (cache_folder() or Path(os.devnull)) / f"pace-{sha256(key.encode()).hexdigest()[:16]}.json"
 
 
 def _time(scenarios: list[Scenario], codec: Codec) -> tuple[float, float]:
     """Seconds of the simulation, and of measurement, labels and writing."""
+    from gen.corpus import write_part  # these three load xarray and SciPy for 0.7 s
+    from gen.generation.labels import part_dataset
+    from gen.measurement.measure import measure
+
     start = time.perf_counter()
     response = simulate(scenarios)
     simulated = time.perf_counter()

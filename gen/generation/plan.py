@@ -1,7 +1,7 @@
 """Plan of a corpus: counts, bytes, steps and time, without generating it.
 
 Records are drawn and checked as :func:`gen.generate` draws and checks them, so that both refuse the same recipes. The time is measured
-on a sample of the records (:mod:`gen.generation.pace`).
+on a sample of the records, once per machine (:mod:`gen.generation.pace`).
 """
 
 import time
@@ -133,17 +133,16 @@ def _counts(parts: list[list[Scenario]], groups: list[Groups], scale: float) -> 
 
 def _seconds_per_record(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> float | None:
     """Time to simulate, measure and write a record, by a sample of the group with the most steps [s]; None if not measured."""
-    samples = timeline(settings_of(recipe)).integrated
     candidates = (
-        (group.steps * len(places), group.steps, scenarios, places)
+        (group.steps * len(places), group, scenarios, places)
         for scenarios, groups in parts
         for group, places in groups.items()
     )
-    _, steps, scenarios, places = max(candidates, key=lambda candidate: candidate[0])
-    pace = measured_pace([scenarios[place] for place in places[:LANES]], recipe.storage.codec, samples * steps)
+    _, group, scenarios, places = max(candidates, key=lambda candidate: candidate[0])
+    pace = measured_pace([scenarios[place] for place in places[:LANES]], group, recipe.storage.codec)
     if pace is None:
         return None
-    lane_steps = samples * _lane_steps(parts, recipe)
+    lane_steps = timeline(settings_of(recipe)).integrated * _lane_steps(parts, recipe)
     return lane_steps * pace.lane_step / sum(len(scenarios) for scenarios, _ in parts) + pace.record
 
 

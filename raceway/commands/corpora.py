@@ -100,7 +100,7 @@ def plan(recipe: str, seed: int | None, records: int | None, as_json: bool) -> N
     """Show counts, size and time of a corpus; write nothing.
 
     Records are drawn and checked in the same way as by generate, so that both refuse the same recipes. The time is measured on a sample
-    of the records, if the kernels of RECIPE are compiled on this machine.
+    of the records, once per machine, if the kernels of RECIPE are compiled.
 
       raceway plan quickstart
       raceway plan my_recipe.yaml --records 100 --json
@@ -140,7 +140,7 @@ def _show_plan(planned: "Plan", recipe: str) -> None:
             "kernels": f"{planned.kernels}; each is compiled once per machine",
             "time": f"not known yet; raceway doctor --speed {shlex.quote(recipe)} compiles the kernels and measures the speed"
             if seconds is None
-            else f"about {show.duration(seconds)} with one worker, from a sample measured now",
+            else f"about {show.duration(seconds)} with one worker, from a sample measured on this machine",
         }
     )
     if planned.first_left_out is not None:

@@ -11,7 +11,10 @@ from gen.generation import pace
 from gen.generation.corpus import generate
 from gen.generation.plan import plan
 from gen.recipe import read_recipe
-from gen.scenarios import draw_scenarios
+from gen.scenarios import draw_scenarios, settings_of
+from gen.simulation.batches import group_of
+from gen.simulation.outline import outlined_input
+from gen.simulation.timeline import timeline
 
 
 @pytest.fixture(scope="module")
@@ -21,6 +24,13 @@ def compiled(write_recipe, tmp_path_factory):
     path = write_recipe(folder / "r.yaml", {"recording.duration_s": 1.0, "corpus.rigs": 8})
     generate(path, folder / "corpus", records=1)
     return path
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path, monkeypatch):
+    """Folder in which the pace is kept."""
+    monkeypatch.setattr(pace, "cache_folder", lambda: tmp_path)
+    return tmp_path
 
 
 def test_the_time_of_a_plan_is_close_to_that_of_generation(compiled, tmp_path):
@@ -38,11 +48,35 @@ def test_a_plan_does_not_know_its_time_where_no_kernel_is_compiled(compiled, tmp
     assert not list(tmp_path.rglob("*integrate*.nbc"))
 
 
-def test_a_batch_of_too_many_steps_is_not_timed(compiled, monkeypatch):
+@pytest.fixture
+def batch(compiled):
+    """Records of one group, the group and the codec."""
     recipe = read_recipe(compiled)
-    scenarios = draw_scenarios(recipe, 0, 2)
-    found = pace.measured_pace(scenarios, recipe.storage.codec, 1000)
+    axis, scenarios = timeline(settings_of(recipe)), draw_scenarios(recipe, 0, 2)
+    return scenarios, group_of(outlined_input(scenarios[0], axis), 1), recipe.storage.codec
+
+
+def test_a_batch_of_too_many_steps_is_not_timed(batch, monkeypatch):
+    found = pace.measured_pace(*batch)
     assert found is not None
     assert np.all(np.array(found) > 0)
     monkeypatch.setattr(pace, "LARGEST_SAMPLE", pace.LANES * 1000 - 1)
-    assert pace.measured_pace(scenarios, recipe.storage.codec, 1000) is None
+    assert pace.measured_pace(*batch) is None
+
+
+def test_a_kind_of_records_is_timed_once(batch, folder, monkeypatch):
+    found = pace.measured_pace(*batch)
+    with monkeypatch.context() as patch:
+        patch.setattr(pace, "_time", lambda *_: pytest.fail("it was timed again"))
+        assert pace.measured_pace(*batch) == found
+    (kept,) = folder.glob("pace-*.json")
+    kept.write_text(kept.read_text()[:-1])
+    assert pace.measured_pace(*batch) is not None  # timed again, as the file is damaged
+    scenarios, group, codec = batch
+    pace.measured_pace(scenarios, group._replace(steps=2), codec)
+    assert len(list(folder.glob("pace-*.json"))) == 2
+
+
+def test_a_pace_that_cannot_be_kept_is_measured(batch, monkeypatch):
+    monkeypatch.setattr(pace, "cache_folder", lambda: None)
+    assert pace.measured_pace(*batch) is not None
