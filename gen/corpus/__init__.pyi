@@ -2,6 +2,8 @@ from .acdd import publication_attributes as publication_attributes
 from .blocks import (
     RecordBlock as RecordBlock,
     read_channel as read_channel,
+    read_columns as read_columns,
+    read_texts as read_texts,
     stored_blocks as stored_blocks,
     stored_columns as stored_columns,
 )
@@ -49,6 +51,7 @@ from .manifest import (
     corpus_files as corpus_files,
     facts_as_attributes as facts_as_attributes,
     facts_of_parts as facts_of_parts,
+    file_problems as file_problems,
     read_manifest as read_manifest,
     recipe_text as recipe_text,
     record_blocks as record_blocks,

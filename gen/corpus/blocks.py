@@ -2,7 +2,7 @@
 
 import math
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -80,6 +80,30 @@ def stored_blocks(path: Path) -> Iterator[NDArray[Any]]:
             yield read
         first = block.stop
     close([source])  # an open file holds 1 MB
+
+
+def read_columns(
+    path: Path, count: int, names: Iterable[str], where_present: Iterable[str] = ()
+) -> dict[str, NDArray[Any]]:
+    """Numbers of a file with ``count`` records, by the name of their variable: all of ``names``, and others that the file has."""
+    source = source_of(path)
+    with open_source(source) as file:
+        wanted = [*names, *({*where_present} & {*map(bytes.decode, file.handle.id)})]
+        columns = {name: _numbers(file.dataset(name), name, count, range(count)) for name in wanted}
+    close([source])
+    return columns
+
+
+def read_texts(path: Path, name: str, count: int) -> list[str]:
+    """Values of a variable of a file that is text, one for each of ``count`` records or channels."""
+    source = source_of(path)
+    with open_source(source) as file:
+        stored = file.dataset(name)
+        if not is_text(stored, name, "record", count):
+            raise ValueError(f"{name} is numbers, not text")
+        texts = [text.decode() for text in _rows(stored, 0, None).view(f"S{stored.shape[1]}")[:, 0].tolist()]
+    close([source])
+    return texts
 
 
 def stored_columns(path: Path, first: int = 0, stop: int | None = None) -> dict[str, NDArray[Any]]:

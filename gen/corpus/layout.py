@@ -3,16 +3,18 @@
 Files can come from strangers: anything that is not part of the format is refused here, before xarray interprets it.
 """
 
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from gen.corpus.schema import MISSING_COUNT, SIGNAL
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 PACKING = ("scale_factor", "add_offset", "_FillValue")
 """Attributes by which readers decode a signal; only the signal may have them."""
@@ -141,7 +143,7 @@ def _plain(value: Any, name: str) -> Any:
     raise ValueError(f"the attribute {name} is neither text nor numbers")
 
 
-def stored_signal(signal: xr.Variable) -> tuple[NDArray[Any], float | None]:
+def stored_signal(signal: "xr.Variable") -> tuple[NDArray[Any], float | None]:
     """Counts of a decoded signal and their scale, or accelerations and None."""
     if np.dtype(signal.encoding.get("dtype", signal.dtype)).kind != "i":
         return signal.values, None

@@ -201,7 +201,7 @@ def _manifest_of_file(file: Path) -> Manifest:
     """Manifest from the global attributes of a file of records."""
     if file.name == INDEX_NAME:
         raise CorpusError(f"{file}: is the index of a corpus and holds no signals; give its folder, {file.parent}.")
-    attributes, records = file_facts(file)
+    attributes, (records, _, _) = file_facts(file)
     _check_format(attributes.get("raceway_format"), file)
     content: dict[str, Any] = {"raceway_format": FORMAT, "records": records}
     try:

@@ -118,10 +118,10 @@ def close(sources: Sequence[Source]) -> None:
                 _open_files.pop(source).handle.close()
 
 
-def file_facts(path: Path) -> tuple[dict[str, Any], int]:
-    """Global attributes of a file of records, and its number of records; CorpusError if it is none."""
+def file_facts(path: Path) -> tuple[dict[str, Any], tuple[int, int, int]]:
+    """Global attributes of a file of records, and the shape of its signal; CorpusError if it is none."""
     source = source_of(path)
     with open_source(source) as file:
-        facts = attributes_of(file.handle), file.signal().shape[0]
+        facts = attributes_of(file.handle), file.signal().shape
     close([source])  # another library cannot open a file that is open here
     return facts

@@ -4,12 +4,11 @@ import json
 import zlib
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import h5py
 import netCDF4
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 from pydantic import Field
 
@@ -19,6 +18,9 @@ from gen.corpus.hdf5 import LIBRARY_LOCK
 from gen.corpus.schema import SIGNAL
 from gen.corpus.signals import Count, SignalCounts, count_verdicts, judge
 from gen.corpus.unicode_text import set_attributes, write_unicode
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 _INCOMPRESSIBLE = 7.8  # bits per byte
 
@@ -46,7 +48,7 @@ def part_name(number: int) -> str:
 Chunks = Mapping[tuple[int, ...], bytes]
 
 
-def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRow:
+def write_part(dataset: "xr.Dataset", path: Path, codec: Codec = "zlib") -> PartRow:
     """Write records as a part, atomically, with one chunk per record and channel; the attribute ``signals`` counts unusable records.
 
     ``zlib`` can be read everywhere; plain h5py and stock ncdump need a plugin to read ``zstd``.
@@ -80,7 +82,7 @@ def write_part(dataset: xr.Dataset, path: Path, codec: Codec = "zlib") -> PartRo
 
 
 def _declare(
-    file: netCDF4.Dataset, name: str, dataset: xr.Dataset, codec: Codec, labels: str
+    file: netCDF4.Dataset, name: str, dataset: "xr.Dataset", codec: Codec, labels: str
 ) -> tuple[netCDF4.Variable, NDArray[Any]]:
     """Declare a variable, and return it with its values; ``labels`` are the text variables that belong to all others.
 

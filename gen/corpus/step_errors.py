@@ -1,19 +1,22 @@
 """Records that change when they are integrated again at half the step: their signals follow the step, not the model."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
-import xarray as xr
 
 COARSE = 0.05  # relative rms change of the motion; a step of the usual fineness changes a record by some thousandths
 
 
-def step_complaint(corpus: xr.Dataset) -> str | None:
+def step_complaint(columns: Mapping[Any, Any]) -> str | None:
     """Sentence with the number of records whose step is too coarse and the key to change; None if there are none.
 
+    ``columns`` has the variables of a corpus by name: an opened corpus, or arrays.
     The step of some records of a simulated corpus is checked, and of no imported one.
     """
-    if not {"step_error", "oversampling"} <= corpus.variables.keys():
+    if not {"step_error", "oversampling"} <= columns.keys():
         return None
-    error, steps = corpus["step_error"].values, corpus["oversampling"].values
+    error, steps = (np.asarray(columns[name]) for name in ("step_error", "oversampling"))
     coarse = error > COARSE
     if not coarse.any():
         return None

@@ -1,9 +1,9 @@
 """Counts of the faults that can be seen in their records, and of those that were drawn again."""
 
-from typing import NamedTuple
+from collections.abc import Mapping
+from typing import Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from gen.corpus.schema import FAULTS
 
@@ -28,18 +28,20 @@ class FaultCounts(NamedTuple):
 VARIABLES = ("detectable", "fault_tries", "level_tries")
 
 
-def fault_counts(corpus: xr.Dataset) -> FaultCounts | None:
-    """Counts of a corpus; None if it was not simulated or has no record with a fault."""
-    if not set(VARIABLES) <= set(corpus.variables):
+def fault_counts(columns: Mapping[Any, Any]) -> FaultCounts | None:
+    """Counts of an opened corpus, or of its variables as arrays by name; None if it was not simulated or has no record with a fault."""
+    if not set(VARIABLES) <= columns.keys():
         return None
-    faulty = corpus["fault"].values != FAULTS.index("healthy")
-    detectable = corpus["detectable"].values[faulty]
+    fault, specimen, detectable, fault_tries, level_tries = (
+        np.asarray(columns[name]) for name in ("fault", "specimen", *VARIABLES)
+    )
+    detectable = detectable[fault != FAULTS.index("healthy")]
     if not detectable.size:
         return None
     return FaultCounts(
         records=detectable.size,
         detectable=int((detectable == 1).sum()),
         unjudged=int((detectable == UNJUDGED).sum()),
-        redrawn_specimens=np.unique(corpus["specimen"].values[corpus["fault_tries"].values > 0]).size,
-        redrawn_levels=int((corpus["level_tries"].values > 0).sum()),
+        redrawn_specimens=np.unique(specimen[fault_tries > 0]).size,
+        redrawn_levels=int((level_tries > 0).sum()),
     )

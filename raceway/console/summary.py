@@ -4,42 +4,45 @@ They come from the manifest and from the per-record variables; no signal is read
 """
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import xarray as xr
+from numpy.typing import NDArray
 
 from gen.corpus import (
-    DRAWS,
     FAULT_NAMES,
+    INDEX_NAME,
     SPLITS,
     Manifest,
     SignalCounts,
     counts_in_words,
     fault_counts,
-    open_corpus,
-    open_part,
-    plain_file,
+    file_facts,
+    file_problems,
+    read_columns,
     read_manifest,
+    read_texts,
     step_complaint,
 )
+from gen.corpus.schema import operating_problems
 from gen.corpus.visible import VARIABLES
+from gen.support.errors import CorpusError
 from raceway.console import show
+
+Columns = Mapping[str, NDArray[Any]]
 
 _SHOWN = [
     "sample_rate",
     "fault",
     "split",
-    "bearing",
     "rig",
     "specimen",
     "recording",
     "shaft_rate",
     "load",
-    "channel",
-    "elapsed_time",
     "width",
     "depth",
 ]
@@ -76,57 +79,56 @@ def describe(directory: Path) -> dict[str, Any]:
     }
     facts = about | known
     if manifest.records:
-        labels = _labels(directory, manifest)
-        facts |= _content(labels)
-        facts["warnings"] = [*facts["warnings"], *filter(None, [step_complaint(labels)])]
+        facts |= _content(directory, manifest)
     return facts
 
 
-def _labels(directory: Path, manifest: Manifest) -> xr.Dataset:
-    """Variables that ``info`` shows; of an unfinished corpus those of its finished parts."""
-    if manifest.complete:
-        with open_corpus(directory, check="size") as corpus:
-            return _shown(corpus)
-    parts = []
-    for row in manifest.parts:
-        with open_part(plain_file(directory, f"parts/{row.name}")) as part:
-            parts.append(_shown(part))
-    whole: Any = xr.concat(parts, "record", data_vars="minimal", coords="minimal", compat="override", join="override")
-    return whole
+def _labels(files: Mapping[Path, int]) -> Columns:
+    """Numbers that ``info`` shows; ``files`` are those that hold them, with their numbers of records."""
+    known = (*_SEVERITIES.keys() - {*_SHOWN}, *VARIABLES, "step_error", "oversampling")
+    parts = [read_columns(file, records, _SHOWN, known) for file, records in files.items()]
+    labels = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    for problem in operating_problems(labels):
+        raise CorpusError(f"{next(iter(files))}: {problem}")
+    return labels
 
 
-def _shown(records: xr.Dataset) -> xr.Dataset:
-    known = [name for name in (*_SEVERITIES, *VARIABLES, "step_error", "oversampling") if name in records.variables]
-    return records.drop_vars(DRAWS, errors="ignore")[[*_SHOWN, *known]].load()
-
-
-def _content(labels: xr.Dataset) -> dict[str, Any]:
+def _content(directory: Path, manifest: Manifest) -> dict[str, Any]:
+    """Contents of a corpus, read without xarray; of an unfinished corpus those of its finished parts."""
+    for problem in file_problems(directory, manifest, "size"):
+        raise CorpusError(problem)
+    parts = {directory / "parts" / row.name: row.records for row in manifest.parts} or {directory: manifest.records}
+    whole = manifest.complete and directory.is_dir()
+    files = {directory / INDEX_NAME: manifest.records} if whole else parts
+    labels, first = _labels(files), next(iter(parts))
+    _, (_, channels, samples) = file_facts(first)
     fs = float(labels["sample_rate"][0])
+    bearings = Counter(name for file, records in files.items() for name in read_texts(file, "bearing", records))
     return {
-        "title": str(labels.attrs.get("title", "")),
-        "channels": [str(name) for name in labels["channel"].values],
+        "channels": read_texts(first, "channel", channels),
         "sample_rate": fs,
-        "duration": labels.sizes["elapsed_time"] / fs,
-        "samples": labels.sizes["elapsed_time"],
-        "classes": _named_counts(labels["fault"].values, FAULT_NAMES),
-        "splits": _named_counts(labels["split"].values, dict(enumerate(SPLITS))),
-        "bearings": _counts(labels["bearing"].values),
-        "rigs": _distinct(labels["rig"].values),
-        "specimens": _distinct(labels["rig"].values, labels["specimen"].values),
-        "recordings": _distinct(labels["rig"].values, labels["specimen"].values, labels["recording"].values),
-        "shaft_rate": _range(labels["shaft_rate"].values),
-        "load": _range(labels["load"].values),
+        "duration": samples / fs,
+        "samples": samples,
+        "classes": _named_counts(labels["fault"], FAULT_NAMES),
+        "splits": _named_counts(labels["split"], dict(enumerate(SPLITS))),
+        "bearings": dict(sorted(bearings.items())),
+        "rigs": _distinct(labels["rig"]),
+        "specimens": _distinct(labels["rig"], labels["specimen"]),
+        "recordings": _distinct(labels["rig"], labels["specimen"], labels["recording"]),
+        "shaft_rate": _range(labels["shaft_rate"]),
+        "load": _range(labels["load"]),
         "severities": _severities(labels),
+        "warnings": [*manifest.warnings, *filter(None, [step_complaint(labels)])],
         "faults": None if (counts := fault_counts(labels)) is None else counts._asdict(),
     }
 
 
-def _severities(labels: xr.Dataset) -> dict[str, dict[str, list[float]]]:
+def _severities(labels: Columns) -> dict[str, dict[str, list[float]]]:
     """Smallest and largest value of each severity that is known and not 0, by class, in SI units."""
     by_class: dict[str, dict[str, list[float]]] = {}
     for code, fault in FAULT_NAMES.items():
-        rows = labels["fault"].values == code
-        values = {name: labels[name].values[rows] for name in _SEVERITIES if name in labels.variables}
+        rows = labels["fault"] == code
+        values = {name: labels[name][rows] for name in _SEVERITIES if name in labels}
         ranges = {name: _range(some[some != 0]) for name, some in values.items()}
         known = {name: ends for name, ends in ranges.items() if ends is not None}
         if known:
@@ -136,11 +138,6 @@ def _severities(labels: xr.Dataset) -> dict[str, dict[str, list[float]]]:
 
 def _named_counts(codes: np.ndarray, names: Mapping[int, str]) -> dict[str, int]:
     return {name: int((codes == code).sum()) for code, name in names.items() if (codes == code).any()}
-
-
-def _counts(values: np.ndarray) -> dict[str, int]:
-    names, numbers = np.unique(values.astype(str), return_counts=True)
-    return dict(zip(names.tolist(), numbers.tolist(), strict=True))
 
 
 def _distinct(*keys: np.ndarray) -> int:
