@@ -102,7 +102,7 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Integration] | None =
         If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
     known, runs, settings = known or {}, [], common_settings(scenarios)
-    of_group: dict[int, Integration | None] = {-1: None}
+    of_group: dict[tuple[int, int], Integration | None] = {}
     inputs, failures = kernel_inputs(scenarios, timeline(settings))
     for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True)):
         number = scenario.record.number
@@ -111,16 +111,20 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Integration] | None =
             continue
         steps = steps_per_sample(given, number, settings)
         own, twin = Integration(number, given, group_of(given, steps)), None
+        before = known.get(number)
+        if before is not None and before.group.steps != steps:
+            before = None
         if _has_twin(scenario):
-            twin = known.get(number) or of_group.get(scenario.record.pair)
+            twin = before or of_group.get((scenario.record.pair, steps))
             if twin is None:
                 healthy = _healthy_input(scenario, given)
                 # it takes the step of the record with the fault, so the difference of the two is due to the fault alone
                 twin = Integration(number, healthy, group_of(healthy, steps))
-        elif number in known:
-            own = known[number]
+        elif before is not None:
+            own = before
         runs.append(Run(scenario, given, "", own, twin))
-        of_group.setdefault(scenario.record.pair, runs[-1].healthy)
+        if scenario.record.pair >= 0:
+            of_group.setdefault((scenario.record.pair, steps), runs[-1].healthy)
     return runs
 
 

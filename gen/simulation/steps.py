@@ -17,6 +17,7 @@ ENOUGH = 6  # steps per sample for all modes up to half the sample rate
 # omega * dt of the stiffest mode that is recorded, and of a faster one, which the anti-alias filter removes and the integration has only to
 # follow; at 1.0 a mode still rings at its frequency, and above 2.8 the method is unstable
 FINE_STEP, FOLLOWED_STEP, COARSEST_STEP = math.pi / ENOUGH, 0.75, 1.0
+PASSAGE_STEPS = 4  # in which a ball rolls over the narrowest spall at least; with fewer the edges of the spall fall between two steps
 _FACTORS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, MAX_OVERSAMPLING)
 LARGEST_TURN = 0.7  # of the shaft per sample [rad]: its rate is constant within a sample
 
@@ -33,6 +34,7 @@ def steps_per_sample(given: KernelInput, number: int, settings: Settings) -> int
     _check_turn(given, number, fs)
     rate = fastest_rate(given)
     need = max(min(rate / (FINE_STEP * fs), ENOUGH), rate / (FOLLOWED_STEP * fs))
+    need = max(need, min(PASSAGE_STEPS * passage_rate(given) / fs, MAX_OVERSAMPLING))
     if asked is not None:
         if rate / (asked * fs) > COARSEST_STEP:
             raise SimulationError(
@@ -50,7 +52,7 @@ def steps_per_sample(given: KernelInput, number: int, settings: Settings) -> int
 
 
 def _check_turn(given: KernelInput, number: int, fs: float) -> None:
-    fastest = given.turning.shaft_rate * (float(given.schedule[:, 0].max()) if given.schedule.size else 1.0)
+    fastest = _fastest_shaft_rate(given)
     if 2 * math.pi * fastest / fs > LARGEST_TURN:
         raise SimulationError(
             f"record {number}: its shaft turns {360 * fastest / fs:.3g} degrees per sample; raise "
@@ -63,6 +65,18 @@ def fastest_rate(given: KernelInput) -> float:
     machine, n_balls = given.machine, given.bearing.n_balls
     stiffness = likely_stiffness(machine, n_balls, largest_pull(given))
     return max(highest_angular_frequency(machine, stiffness), highest_damping_rate(machine, n_balls) / 2.5)
+
+
+def passage_rate(given: KernelInput) -> float:
+    """Speed at which balls roll on the races over the width of the narrowest spall, 0 without one [Hz]."""
+    narrowest = min((spall.width for spall in given.spalls), default=math.inf)
+    cage_rate = 0.5 * (1 - given.bearing.gamma) * _fastest_shaft_rate(given)
+    return 2 * math.pi * cage_rate * given.bearing.radius("outer") / narrowest
+
+
+def _fastest_shaft_rate(given: KernelInput) -> float:
+    """Largest shaft rate of the speed profile [Hz]."""
+    return abs(given.turning.shaft_rate) * (float(given.schedule[:, 0].max()) if given.schedule.size else 1.0)
 
 
 def largest_pull(given: KernelInput) -> float:

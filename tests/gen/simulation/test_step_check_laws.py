@@ -62,6 +62,15 @@ def test_at_half_the_step_ordinary_records_change_by_less_than_a_hundredth(check
     assert tried.max() < 1e-2
 
 
+@pytest.mark.parametrize("rpm", [15_000, 60_000])
+def test_at_half_the_step_fast_records_change_little(recipe_with, rpm):
+    recipe = recipe_with({"operation.shaft_rpm": rpm, "recording.sample_rate_hz": 12_000})
+    scenarios = draw_scenarios(recipe, 0, 8)
+    errors = step_errors(scenarios, recipe, simulate(scenarios))
+    assert np.isfinite(errors).any()
+    assert np.nanmax(errors) < 0.03
+
+
 def checked_records(recipe):
     """Scenarios whose step is checked, part by part, if no two share a batch."""
     size = recipe.storage.records_per_part

@@ -4,21 +4,31 @@ import math
 
 import pytest
 
+from gen.physics.bearing import orders
 from gen.physics.rotor import likely_stiffness
 from gen.scenarios import draw_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
-from gen.simulation.steps import ENOUGH, FINE_STEP, FOLLOWED_STEP, fastest_rate, largest_pull, steps_per_sample
+from gen.simulation.steps import (
+    ENOUGH,
+    FINE_STEP,
+    FOLLOWED_STEP,
+    PASSAGE_STEPS,
+    fastest_rate,
+    largest_pull,
+    passage_rate,
+    steps_per_sample,
+)
 from gen.simulation.timeline import timeline
 
 
 @pytest.fixture
 def drawn(recipe_with):
-    """A recipe, a scenario of it and its record, with no mode that is faster than that of the contacts."""
+    """A recipe, a scenario of it and its record, without a spall and a mode that is faster than that of the contacts."""
     recipe = recipe_with()
     (scenario,) = draw_scenarios(recipe, 0, 1)
     record = kernel_input(scenario, timeline(settings_of(recipe)))
     machine = record.machine._replace(sensor_mass=0.0, half_clearance=1e-6, contact_damping=0.0)
-    return recipe, scenario, record._replace(machine=machine)
+    return recipe, scenario, record._replace(machine=machine, spalls=())
 
 
 def stiffness_of_three_balls(record):
@@ -58,3 +68,23 @@ def test_a_mode_above_half_the_sample_rate_is_followed_and_not_resolved(drawn, m
     sampled = recipe.model_copy(update={"recording": recipe.recording.model_copy(update={"sample_rate_hz": rate})})
     assert steps_per_sample(record, scenario.record.number, settings_of(sampled)) == steps
     assert 2 * math.pi * mode / steps < FOLLOWED_STEP
+
+
+@pytest.mark.parametrize("width", [0.3, 1.0])
+def test_a_ball_rolls_over_the_narrowest_spall_in_some_steps(recipe_with, width):
+    """At the mean speed of the contacts of its damaged race: a ball rolls, so that it is the same on both races and on the ball."""
+    fast = {"operation.shaft_rpm": 30_000, "recording.sample_rate_hz": 12_000}
+    spalls = [{"kind": site, "width_mm": width} for site in ("inner", "outer", "ball")]
+    recipe = recipe_with(fast | {"faults": spalls})
+    for scenario in draw_scenarios(recipe, 0, 3):
+        record, bearing = kernel_input(scenario, timeline(settings_of(recipe))), scenario.rig.bearing
+        of = orders(bearing)
+        speed = {
+            "outer": of.ftf * bearing.outer_radius,
+            "inner": (1 - of.ftf) * bearing.inner_radius,
+            "ball": of.bsf * bearing.ball_diameter / 2,
+        }[scenario.specimen.fault]
+        rate = 2 * math.pi * record.turning.shaft_rate * speed / (1e-3 * width)
+        assert passage_rate(record) == pytest.approx(rate, rel=0.05)
+        steps = steps_per_sample(record, scenario.record.number, settings_of(recipe))
+        assert steps * 12_000 >= PASSAGE_STEPS * passage_rate(record)
