@@ -12,9 +12,10 @@ SENTENCE = re.compile(
 
 @pytest.fixture(scope="module")
 def fast(tiny_recipe, tmp_path_factory):
-    """Recipe of a shaft that turns so fast that a ball passes a spall within a few steps."""
+    """Recipe of a shaft that turns so fast that a ball passes a spall within one of the steps that the recipe asks for."""
     path = tmp_path_factory.mktemp("fast") / "fast.yaml"
-    path.write_text(tiny_recipe.read_text().replace("uniform(4500, 6000)", "60000"))
+    given = tiny_recipe.read_text().replace("uniform(4500, 6000)", "60000")
+    path.write_text(given.replace("duration_s: 0.1", "duration_s: 0.1, oversampling: 4"))
     return path
 
 
@@ -30,9 +31,10 @@ def test_every_command_that_shows_a_corpus_tells_of_coarse_steps(run, told, fast
     assert sentence[0] in checked.stderr
 
 
-def test_a_finer_step_ends_the_warning(run, fast, tmp_path):
+@pytest.mark.parametrize("asked", ["", ", oversampling: 64"])
+def test_the_chosen_step_or_a_finer_one_ends_the_warning(run, fast, tmp_path, asked):
     fine = tmp_path / "fine.yaml"
-    fine.write_text(fast.read_text().replace("duration_s: 0.1", "duration_s: 0.1, oversampling: 64"))
+    fine.write_text(fast.read_text().replace(", oversampling: 4", asked))
     made = run("generate", fine, "-o", tmp_path / "c", "--workers", 1)
     assert made.exit_code == 0
     assert "whose step was checked" not in made.stderr
