@@ -19,7 +19,7 @@ from features.signal.spectra import fourier_coefficients
 CELLS = 48  # per multiple of an order
 MULTIPLES = 3.3  # end of the grid
 GRID = np.arange(1, int(MULTIPLES * CELLS) + 1) / CELLS
-FAMILY_NAMES = (*FAMILIES, "2fr")  # sidebands and whatever follows the shaft lie at multiples of half of 2 fr
+FAMILY_NAMES = (*FAMILIES, "2fr")  # harmonics of the shaft lie at multiples of one half
 BANDS = 2 + len(DEFAULT_BAND.narrow)
 
 
