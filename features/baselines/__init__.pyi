@@ -8,7 +8,8 @@ from .results import (
 from .calibration import Calibration as Calibration
 from .curves import CurvePoint as CurvePoint, learning_curve as learning_curve
 from .estimators import DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, ESTIMATORS as ESTIMATORS
-from .models import Model as Model, predict as predict
+from .classifying import predict as predict
+from .models import Model as Model
 from .own import EstimatorError as EstimatorError, load_maker as load_maker
 from .predictions import UNSURE as UNSURE, Predictions as Predictions
 from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_unknown

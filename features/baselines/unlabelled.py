@@ -5,7 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from features.baselines.models import Model, predict
+from features.baselines.classifying import predict
+from features.baselines.models import Model
 from features.baselines.predictions import Predictions
 from features.baselines.reference_choice import choose_reference
 from gen.corpus import UNKNOWN_CODE

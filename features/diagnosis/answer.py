@@ -243,7 +243,7 @@ def _predict(
     if references:
         import xarray as xr
 
-        from features.baselines.models import predict
+        from features.baselines.classifying import predict
 
         if isinstance(model, PlainModel):
             raise TypeError(f"{model.name}: a plain model compares with no healthy recording; give the whole model.")
@@ -265,7 +265,7 @@ def _probabilities(model: "Model | PlainModel", rows: FloatArray, where: str) ->
         return model.probabilities(rows)
     from pandas import DataFrame, Index
 
-    from features.baselines.models import estimator_probabilities
+    from features.baselines.classifying import estimator_probabilities
 
     return estimator_probabilities(model, DataFrame(rows, columns=Index(model.features)), where)
 

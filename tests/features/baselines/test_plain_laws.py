@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from features.baselines import Model, estimators
-from features.baselines.models import estimator_probabilities
+from features.baselines.classifying import estimator_probabilities
 from features.baselines.plain import PlainModel
 from features.baselines.records import feature_rows
 from tests.model_files import make_table

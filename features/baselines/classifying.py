@@ -1,0 +1,129 @@
+"""Predictions of a fitted model for feature tables and waveforms, alone or compared with healthy records."""
+
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+import xarray as xr
+
+from features.band import band_of
+from features.baselines.calibration import Calibration
+from features.baselines.colour import Colour
+from features.baselines.estimators import class_probabilities
+from features.baselines.predictions import Predictions, predictions
+from features.baselines.records import FloatArray, feature_rows, title_of
+from features.baselines.references import colour_of, relative_to
+from features.channels import channels_of
+from features.recording_speeds import recording_numbers
+from features.signal.rows import group_means
+from features.waveforms import Waveforms
+from gen.support.errors import CorpusError
+
+if TYPE_CHECKING:
+    from pandas import DataFrame
+
+
+class Fitted(Protocol):
+    """What predictions need of a `Model`; see there."""
+
+    estimator: Any
+    classes: tuple[str, ...]
+    features: tuple[str, ...]
+    band: tuple[float, float]
+    corpus: str
+    calibration: Calibration
+    relative: Any
+
+    @property
+    def name(self) -> str:
+        """Name of the classifier."""
+        ...
+
+
+def predict(data: xr.Dataset | Waveforms, model: Fitted, reference: xr.Dataset | None = None) -> Predictions:
+    """Predictions of a model for all records of a feature table or waveforms, labelled or not.
+
+    Those of a recording are made from the mean features of its records, in which noise counts less; from waveforms they are the
+    geometric means of the probabilities of its records.
+
+    Parameters
+    ----------
+    data
+        A feature table, or waveforms for a classifier of waveforms.
+    model
+        A trained model.
+    reference
+        Feature table with healthy records of the same rigs, which the records are compared with: see `relative_to`. Its records of
+        other classes are not used.
+
+    Raises
+    ------
+    CorpusError
+        If the table lacks a feature of the model or is computed from another band, features or model contain numbers too large to
+        compute with, or the model or the records cannot be used with the reference.
+    """
+    if isinstance(data, Waveforms) == bool(model.features):
+        takes = "features" if model.features else "waveforms"
+        title = title_of(data.labels if isinstance(data, Waveforms) else data)
+        raise CorpusError(f"{title}: {model.name} was trained on {takes}; give {takes}.")
+    if isinstance(data, Waveforms):
+        each = estimator_probabilities(model, data, title_of(data.labels))
+        return predictions(each, model.classes, recording_numbers(data.labels), model.calibration)
+    table = data
+    tables, used, colour = channels_of(table), model, None
+    if reference is not None:
+        if model.relative is None:
+            message = (
+                f"{title_of(reference)}: the model takes no reference, because {model.corpus} has no rig with two healthy "
+                "recordings and records of each other class; leave the reference out, or train on another corpus."
+            )
+            raise CorpusError(message)
+        references = channels_of(reference)
+        if len(references) != len(tables):
+            raise CorpusError(
+                f"{title_of(reference)}: the reference has {len(references)} channels and the records have {len(tables)}; give "
+                "a corpus with the same channels."
+            )
+        pairs = list(zip(tables, references, strict=True))
+        used, tables = model.relative, [relative_to(*pair, model.features) for pair in pairs]
+        colours = [colour_of(*pair) for pair in pairs]
+        colour = Colour(*map(np.concatenate, zip(*colours, strict=True)))
+    recording = recording_numbers(table)
+    rows = [_rows(one, used) for one in tables]
+    means = [type(one)(group_means(one.to_numpy(), recording), columns=one.columns) for one in rows]
+    each, whole = (
+        np.stack([estimator_probabilities(used, some, title_of(table)) for some in values]) for values in (rows, means)
+    )
+    return predictions(each, used.classes, recording, used.calibration, of_recordings=whole, colour=colour)
+
+
+def _rows(table: xr.Dataset, model: Fitted) -> "DataFrame":
+    """Features that a model takes of the records of a feature table of one channel."""
+    band = band_of(table.attrs)
+    if band != model.band:
+        low, high = model.band
+        raise CorpusError(
+            f"{title_of(table)}: its features are computed from {band.low:g}-{band.high:g} Hz, and the model was trained on "
+            f"{low:g}-{high:g} Hz; compute them with --band {low:g} {high:g}."
+        )
+    return feature_rows(table, model.features)
+
+
+def estimator_probabilities(model: Fitted, features: "DataFrame | Waveforms", where: str) -> FloatArray:
+    """Probability of each class as the estimator of a model gives it, shape (record, class).
+
+    Raises
+    ------
+    CorpusError
+        If features or model contain numbers too large to compute with.
+    """
+    try:
+        with np.errstate(all="ignore"):
+            probabilities = class_probabilities(model.estimator, features)
+    except ValueError as error:  # scikit-learn refuses numbers that are infinite, or too large for single precision
+        reason = str(error).splitlines()[0]
+        raise CorpusError(
+            f"{where}: {model.name} cannot classify these records ({reason}); train the model again."
+        ) from error
+    if not np.isfinite(probabilities).all():
+        raise CorpusError(f"{where}: {model.name} gives probabilities that are not finite; train the model again.")
+    return probabilities
