@@ -88,13 +88,16 @@ class PlainModel(NamedTuple):
 
     @classmethod
     def read(cls, path: Path) -> Self | None:
-        """Model of a file, None if it is missing or damaged."""
+        """Model of a file, None if it is missing, damaged or of another version."""
         try:
             with np.load(io.BytesIO(path.read_bytes()), allow_pickle=False) as file:
                 held: dict[str, Any] = dict(file)
-        except (OSError, ValueError, EOFError, zipfile.BadZipFile):
+            held["nodes"] = {name: held.pop(name) for name in NODES}
+            held |= {name: tuple(held[name].tolist()) for name in (*TEXTS[1:], "band")}
+            held |= {
+                "name": str(held["name"]),
+                "calibration": Calibration.model_validate_json(str(held["calibration"])),
+            }
+            return cls(**held)
+        except (OSError, ValueError, EOFError, KeyError, TypeError, AttributeError, zipfile.BadZipFile):
             return None
-        held["nodes"] = {name: held.pop(name) for name in NODES}
-        held |= {name: tuple(held[name].tolist()) for name in (*TEXTS[1:], "band")}
-        held |= {"name": str(held["name"]), "calibration": Calibration.model_validate_json(str(held["calibration"]))}
-        return cls(**held)
