@@ -3,7 +3,7 @@
 ``python -m benchmarks [NAME...]`` runs all or some benchmarks, ``python -m benchmarks --pages`` makes the tables of docs/performance.md
 from the files, and ``python -m benchmarks against CHECKOUT`` compares with another checkout (:mod:`benchmarks.against`). Each row
 compares a value with that of a named alternative: medians over interleaved pairs, and the median of the ratios. Small values in s, ms,
-MB, GB or core hours are good, large rates are good. All benchmarks take about a quarter of an hour.
+MB, GB or core hours are good, large rates are good. All benchmarks take about five minutes.
 """
 
 import argparse
@@ -58,7 +58,7 @@ def _cells(row: Row) -> tuple[str, ...]:
 
 def main(arguments: list[str]) -> None:
     if arguments[:1] == ["against"]:
-        keep([against.main(arguments[1:])], results_file(processor_key()), facts())
+        against.main(arguments[1:])
         return
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(SUBJECTS)}; by default all")

@@ -17,7 +17,7 @@ from gen.recipe import find_recipe
 ROOT = Path(__file__).parents[1]
 
 
-def main(arguments: list[str]) -> Row:
+def main(arguments: list[str]) -> None:
     """Read the command line and print the row."""
     parser = argparse.ArgumentParser(prog="python -m benchmarks against", description=__doc__.partition("\n")[0])
     parser.add_argument("checkout", type=Path, help="folder of the other checkout")
@@ -30,7 +30,6 @@ def main(arguments: list[str]) -> Row:
     found = compared(given.checkout.resolve(), given.recipe, given.records, given.pairs)
     print(f"{found.what}: {found.value:.4g} records/s, {found.alternative}: {found.alternative_value:.4g} records/s")
     print(f"ratio {found.ratio:.3f}, median of {found.pairs} pairs")
-    return found
 
 
 def compared(checkout: Path, recipe: Path | str, records: int, pairs: int) -> Row:

@@ -4,10 +4,8 @@
 under its name. The scheduler is a process of its own, as are groups of the workers; their processor time is read from the system. All
 else is as for any corpus: lock, manifest, index and data card.
 
-``python -m benchmarks.growth --parts 100 1000 10000 --workers 64`` prints one line for each number of parts.
 """
 
-import argparse
 import asyncio
 import logging
 import multiprocessing
@@ -32,7 +30,7 @@ from gen.corpus import PartRow, part_name, read_manifest
 from gen.generation import corpus as making
 from gen.generation.parts import Outcome
 
-PARTS = (100, 10_000)
+PARTS = (100, 1000)
 WORKERS = 64
 TASK_S = 0.1  # shorter than any real part, so that a run takes minutes
 GROUPS = 4  # processes that hold the workers
@@ -170,20 +168,3 @@ def _run_workers(address: str, count: int) -> None:
 def _cpu_seconds(process: psutil.Process) -> float:
     used = process.cpu_times()
     return used.user + used.system
-
-
-def main() -> None:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks.growth", description=(__doc__ or "").partition("\n")[0])
-    parser.add_argument("--parts", type=int, nargs="+", default=PARTS, help="numbers of parts")
-    parser.add_argument("--records-per-part", type=int, default=1, help="records of each part")
-    parser.add_argument("--workers", type=int, default=WORKERS, help="number of workers")
-    parser.add_argument("--task-seconds", type=float, default=TASK_S, help="time that a task waits [s]")
-    given = parser.parse_args()
-    print("  parts   driver  scheduler   ending  memory of the driver")
-    for cost in simulated_runs(tuple(given.parts), given.workers, given.task_seconds, given.records_per_part):
-        of_part = "  ".join(f"{1e3 * seconds:6.2f} ms" for seconds in (cost.driver, cost.scheduler, cost.ending))
-        print(f"{cost.parts:7,}{of_part}  {cost.memory:6.0f} MB", flush=True)
-
-
-if __name__ == "__main__":
-    main()

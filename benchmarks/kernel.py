@@ -55,7 +55,7 @@ Outputs = Callable[[CBatch, float, int], Single]
 
 
 def rows(
-    pairs: int = 9, *, recipe: Path | str = SEED, full: Path | str = FULL, records: int = 128, full_records: int = 32
+    pairs: int = 5, *, recipe: Path | str = SEED, full: Path | str = FULL, records: int = 128, full_records: int = 32
 ) -> Iterator[Line]:
     """Lines of the table: ``records`` records of the seed model, 64 healthy and 64 with a fault in every program."""
     with tempfile.TemporaryDirectory() as folder:

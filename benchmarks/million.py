@@ -1,28 +1,24 @@
 """What a million one-second records cost, in core hours and on disk, from the cost of a small corpus of the same recipe.
 
 A corpus repeats 1 % of its records at half the step and fills the batches of these, which is more of a small corpus than of a large one: a
-million records cost a little less. The alternatives simulate one record at a time and write nothing: ``solve_ivp`` of SciPy on the seed
-model, as programs for one bearing do it, and a train of impulses with ring-down and noise of the package viblearn.
+million records cost a little less. The alternative simulates one record at a time and writes nothing: ``solve_ivp`` of SciPy on the seed
+model, as programs for one bearing do it.
 """
 
-import importlib
-import importlib.util
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
-import numpy as np
-
 from benchmarks.kernel import FULL, SEED, step_seconds
-from benchmarks.pairs import Line, Skipped, cpu_seconds, row
+from benchmarks.pairs import Line, cpu_seconds, row
 from benchmarks.pipeline import corpus_cost, variant
 from benchmarks.rivals import adaptive, spalled
 from gen.recipe import find_recipe, read_recipe
 
 RECORDS = 1e6
-RECIPES = {"full": (FULL, 512), "domain_randomised": ("domain_randomised", 1500)}
+COMPILED = 64  # records of a first corpus
+RECIPES = {"full": (FULL, 512), "domain_randomised": ("domain_randomised", 750)}
 IVP = "solve_ivp of SciPy, seed model, one record at a time"
-IMPULSES = "viblearn, impulses with ring-down and noise"
 
 
 def rows(
@@ -37,22 +33,15 @@ def rows(
 
 
 def _rows_of(name: str, recipe: Path, records: int, folder: Path, pairs: int, sampled_s: float) -> Iterator[Line]:
-    rivals = {"ivp": _of_solve_ivp(sampled_s)}
-    if importlib.util.find_spec("viblearn"):
-        rivals["impulses"] = _of_viblearn(read_recipe(recipe).recording.sample_rate_hz)
-    corpus_cost(recipe, folder, records)  # compiles the kernels
-    costs, others = [], {rival: [] for rival in rivals}
+    rival = _of_solve_ivp(sampled_s)
+    corpus_cost(recipe, folder, COMPILED)  # compiles the kernels
+    costs, others = [], []
     for _ in range(pairs):
         costs.append(corpus_cost(recipe, folder, records))
-        for rival, measure in rivals.items():
-            others[rival].append(_core_hours(measure()))
+        others.append(_core_hours(rival()))
     hours = [_core_hours(cost["ms"] / 1e3) for cost in costs]
     what = f"a million one-second records of {name}"
-    yield row(f"million {name}", what, "core hours", hours, IVP, others["ivp"])
-    if "impulses" in others:
-        yield row(f"million {name} impulses", what, "core hours", hours, IMPULSES, others["impulses"])
-    else:
-        yield Skipped(f"million {name} impulses", "viblearn is not installed; pip install viblearn.")
+    yield row(f"million {name}", what, "core hours", hours, IVP, others)
     size = [RECORDS * cost["bytes"] / 1e9 for cost in costs]
     plain = [RECORDS * 4 * read_recipe(recipe).recording.sample_rate_hz / 1e9] * pairs
     yield row(f"million {name} disk", f"{what} on disk", "GB", size, "uncompressed float32", plain)
@@ -74,14 +63,3 @@ def _of_solve_ivp(sampled_s: float) -> Callable[[], float]:
     dt, factor = step_seconds(SEED)
     seed, state = spalled(SEED, 64)
     return lambda: cpu_seconds(adaptive, seed, state, sampled_s, dt * factor) / sampled_s
-
-
-def _of_viblearn(fs: float, times: int = 50) -> Callable[[], float]:
-    """Function that measures the CPU time of one second of a fault on the outer race of a 6205 [s]."""
-    synthetic, rng = importlib.import_module("viblearn.synthetic"), np.random.default_rng(0)
-
-    def run() -> None:
-        for _ in range(times):
-            synthetic.bearing_fault_signal(fault_freq_hz=107.4, resonance_hz=3000.0, fs=fs, rng=rng)
-
-    return lambda: cpu_seconds(run) / times

@@ -23,7 +23,7 @@ Rows = dict[str, dict[str, Any]]
 def facts() -> dict[str, Any]:
     """Processor, versions and settings that the values depend on."""
     found = machine() | {"OMP_NUM_THREADS": os.environ.get("OMP_NUM_THREADS")}
-    for name in ("xarray", "netCDF4", "h5py", "dask", "jax", "tsfel"):
+    for name in ("xarray", "netCDF4", "h5py", "dask", "tsfel"):
         try:
             found[name] = version(name)
         except PackageNotFoundError:

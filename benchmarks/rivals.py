@@ -1,32 +1,27 @@
-"""The kernel compared with general tools: NumPy over a batch, ``solve_ivp`` of SciPy, ``vmap`` and ``scan`` of JAX.
+"""The kernel compared with general tools: NumPy over a batch, and ``solve_ivp`` of SciPy.
 
-All three integrate the records of the seed recipe with one right-hand side, which covers the seed model only. CPU time of all threads is
-counted: JAX runs on all cores.
+Both integrate the records of the seed recipe with one right-hand side, which covers the seed model only.
 """
 
-import importlib
-import importlib.util
 from collections.abc import Callable, Iterator
-from functools import partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from benchmarks.kernel import SEED, UNIT, kernel_rate, step_seconds
-from benchmarks.pairs import Line, Skipped, cpu_seconds, interleaved, row
+from benchmarks.pairs import Line, cpu_seconds, interleaved, row
 from benchmarks.seed import N_BALLS, SPACING, FloatArray, Seed, seed_of, seed_records
 from gen.recipe import read_recipe
 
 PLACE = SPACING * np.arange(N_BALLS)
 COS, SIN = np.cos(PLACE), np.sin(PLACE)
-NUMPY_RECORDS, JAX_RECORDS = 1024, 512
+NUMPY_RECORDS = 1024
 ATOL = np.repeat([5e-12, 5e-9], 4)  # a millionth of the rms of displacements [m] and rates [m/s]
 
 
 def rows(
-    pairs: int = 5, *, recipe: Path | str = SEED, records: int = 64, steps: int = 400, sampled_s: float = 0.1
+    pairs: int = 3, *, recipe: Path | str = SEED, records: int = 64, steps: int = 400, sampled_s: float = 0.1
 ) -> Iterator[Line]:
     """Lines of the table; rivals take ``steps`` steps, ``solve_ivp`` simulates ``sampled_s`` seconds."""
     dt, factor = step_seconds(recipe)
@@ -36,52 +31,45 @@ def rows(
         "ivp": lambda: sampled_s / cpu_seconds(adaptive, seed, state, sampled_s, dt * factor),
         "numpy": _numpy_speed(seed, state, dt, steps),
     }
-    if importlib.util.find_spec("jax"):
-        measures["jax"] = _jax_speed(seed, state, dt, steps)
     found = interleaved(pairs, **measures)
     simulated = [speed * dt for speed in found["ours"]]
     ivp = "solve_ivp, RK45, rtol 1e-6, one record"
     yield row("kernel solve_ivp", "seed model, at the same sample times", "record-s/s", simulated, ivp, found["ivp"])
     batch = f"NumPy RK4, batch of {NUMPY_RECORDS} records"
     yield row("kernel numpy", "seed model, one core", UNIT, found["ours"], batch, found["numpy"])
-    if "jax" in found:
-        batch = f"JAX vmap and scan, {JAX_RECORDS} records"
-        yield row("kernel jax", "seed model, per core", UNIT, found["ours"], batch, found["jax"])
-    else:
-        yield Skipped("kernel jax", "jax is not installed; pip install 'raceway[bench]'.")
 
 
-def slope(xp: Any, t: float, q: Any, seed: Seed) -> Any:
-    """Rates and accelerations of records, of the shape of ``q``: (8,) or (8, record); ``xp`` is numpy or jax.numpy."""
+def slope(t: float, q: FloatArray, seed: Seed) -> FloatArray:
+    """Rates and accelerations of records, of the shape of ``q``: (8,) or (8, record)."""
     x1, y1, x2, y2, u1, v1, u2, v2 = q
     cage, shaft = seed.cage_angle + seed.cage_rate * t, seed.shaft_angle + seed.omega * t
-    c, s = xp.cos(cage), xp.sin(cage)
+    c, s = np.cos(cage), np.sin(cage)
     dx, dy = x1 - x2, y1 - y2
     along, across = dx * c + dy * s, dy * c - dx * s  # in the frame of the cage, in which the balls stand still
     place, cos, sin = (values.reshape(-1, *[1] * x1.ndim) for values in (PLACE, COS, SIN))
     passed = shaft + seed.spall_angle - cage - place
-    offset = abs(passed - 2 * np.pi * xp.rint(passed / (2 * np.pi)))
-    gap = seed.half_clearance + xp.where(offset < seed.half_span, seed.depth, 0.0)
-    squeeze = xp.maximum(cos * along + sin * across - gap, 0.0)
-    force = seed.load_deflection_factor * squeeze * xp.sqrt(squeeze)
+    offset = abs(passed - 2 * np.pi * np.rint(passed / (2 * np.pi)))
+    gap = seed.half_clearance + np.where(offset < seed.half_span, seed.depth, 0.0)
+    squeeze = np.maximum(cos * along + sin * across - gap, 0.0)
+    force = seed.load_deflection_factor * squeeze * np.sqrt(squeeze)
     fx, fy = (force * cos).sum(axis=0), (force * sin).sum(axis=0)
     jx = fx * c - fy * s + seed.ring_damping * (u1 - u2)
     jy = fx * s + fy * c + seed.ring_damping * (v1 - v2)
-    return xp.array([
+    return np.array([
         u1, v1, u2, v2,
-        (seed.load_x + seed.unbalance * xp.cos(shaft) - jx) / seed.shaft_mass,
-        (seed.load_y + seed.unbalance * xp.sin(shaft) - jy) / seed.shaft_mass,
+        (seed.load_x + seed.unbalance * np.cos(shaft) - jx) / seed.shaft_mass,
+        (seed.load_y + seed.unbalance * np.sin(shaft) - jy) / seed.shaft_mass,
         (jx - seed.support_damping_x * u2 - seed.support_stiffness_x * x2) / seed.housing_mass,
         (jy - seed.support_damping_y * v2 - seed.support_stiffness_y * y2) / seed.housing_mass,
     ])  # fmt: skip
 
 
-def step(xp: Any, t: float, q: Any, dt: float, seed: Seed) -> tuple[Any, Any]:
+def step(t: float, q: FloatArray, dt: float, seed: Seed) -> tuple[FloatArray, FloatArray]:
     """State after a classical Runge-Kutta step, and the slope before it."""
-    k1 = slope(xp, t, q, seed)
-    k2 = slope(xp, t + dt / 2, q + dt / 2 * k1, seed)
-    k3 = slope(xp, t + dt / 2, q + dt / 2 * k2, seed)
-    k4 = slope(xp, t + dt, q + dt * k3, seed)
+    k1 = slope(t, q, seed)
+    k2 = slope(t + dt / 2, q + dt / 2 * k1, seed)
+    k3 = slope(t + dt / 2, q + dt / 2 * k2, seed)
+    k4 = slope(t + dt, q + dt * k3, seed)
     return q + dt / 6 * (k1 + 2 * k2 + 2 * k3 + k4), k1
 
 
@@ -89,7 +77,7 @@ def numpy_march(seed: Seed, state: FloatArray, dt: float, steps: int) -> FloatAr
     """Accelerations x1 y1 x2 y2 of a batch at the start of each step, shape (step, 4, record) [m s-2]."""
     made, q = np.empty((steps, 4, state.shape[1])), state
     for number in range(steps):
-        q, before = step(np, number * dt, q, dt, seed)
+        q, before = step(number * dt, q, dt, seed)
         made[number] = before[4:]
     return made
 
@@ -98,23 +86,8 @@ def adaptive(seed: Seed, state: FloatArray, duration: float, sample: float) -> F
     """Accelerations of the first record at its samples, shape (4, sample) [m s-2]."""
     one = Seed(*(float(values[0]) for values in seed))
     times = sample * np.arange(round(duration / sample))
-    found = solve_ivp(lambda t, q: slope(np, t, q, one), (0, duration), state[:, 0], t_eval=times, rtol=1e-6, atol=ATOL)
-    return np.stack([slope(np, t, q, one)[4:] for t, q in zip(times, found.y.T, strict=True)], axis=1)
-
-
-def jax_march(steps: int) -> Callable[[Seed, FloatArray, float], Any]:
-    """Compiled function with the arguments and the result of `numpy_march`."""
-    jax = importlib.import_module("jax")
-    jax.config.update("jax_enable_x64", True)
-
-    def march(seed: Seed, state: Any, dt: float) -> Any:
-        def one(q: Any, number: Any) -> tuple[Any, Any]:
-            after, before = step(jax.numpy, number * dt, q, dt, seed)
-            return after, before[4:]
-
-        return jax.lax.scan(one, state, jax.numpy.arange(steps))[1]
-
-    return jax.jit(jax.vmap(march, in_axes=(0, 1, None), out_axes=2))
+    found = solve_ivp(lambda t, q: slope(t, q, one), (0, duration), state[:, 0], t_eval=times, rtol=1e-6, atol=ATOL)
+    return np.stack([slope(t, q, one)[4:] for t, q in zip(times, found.y.T, strict=True)], axis=1)
 
 
 def spalled(recipe: Path | str, records: int) -> tuple[Seed, FloatArray]:
@@ -130,9 +103,3 @@ def _tiled(seed: Seed, state: FloatArray, records: int) -> tuple[Seed, FloatArra
 def _numpy_speed(seed: Seed, state: FloatArray, dt: float, steps: int) -> Callable[[], float]:
     batch = _tiled(seed, state, NUMPY_RECORDS)
     return lambda: steps * NUMPY_RECORDS / cpu_seconds(numpy_march, *batch, dt, steps)
-
-
-def _jax_speed(seed: Seed, state: FloatArray, dt: float, steps: int) -> Callable[[], float]:
-    march = partial(jax_march(steps), *_tiled(seed, state, JAX_RECORDS), dt)
-    march().block_until_ready()  # compiles
-    return lambda: steps * JAX_RECORDS / cpu_seconds(lambda: march().block_until_ready())

@@ -8,16 +8,17 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
+
 from benchmarks.kernel import FULL
 from benchmarks.pairs import Line, interleaved, process_seconds, row
 from benchmarks.pipeline import SHORT, variant
 from gen.generation.corpus import generate
 
-IMPORTS = ("gen", "gen.corpus", "features")
 ALTERNATIVE = "import xarray, netCDF4"
 
 
-def rows(pairs: int = 9, first_records: int = 3) -> Iterator[Line]:
+def rows(pairs: int = 5, first_records: int = 2) -> Iterator[Line]:
     """Lines of the table."""
     yield from first_record_rows(first_records)
     yield from command_rows(pairs)
@@ -28,12 +29,15 @@ def command_rows(pairs: int) -> Iterator[Line]:
     with tempfile.TemporaryDirectory() as folder:
         recipe = variant(SHORT, Path(folder) / "short.yaml", storage={"records_per_part": 20})
         corpus = str(generate(recipe, Path(folder) / "corpus", records=40).path)
+        recording = Path(folder) / "noise.npy"
+        np.save(recording, np.random.default_rng(0).standard_normal(48_000))
+        machine = ["--bearing", "6205", "--rpm", "1772", "--rate", "12000"]
         commands = {
             "help": ("-m", "raceway", "--help"),
-            "recipes": ("-m", "raceway", "recipes"),
             "info": ("-m", "raceway", "info", corpus),
-            "misspelt": ("-m", "raceway", "plan", "quikstart"),
-            **{f"import {name}": ("-c", f"import {name}") for name in IMPORTS},
+            "plan": ("-m", "raceway", "plan", "quickstart"),
+            "diagnose": ("-m", "raceway", "diagnose", str(recording), *machine),
+            "import gen": ("-c", "import gen"),
         }
         found = interleaved(
             pairs,
@@ -41,7 +45,7 @@ def command_rows(pairs: int) -> Iterator[Line]:
             **{name: lambda given=given: process_seconds(*given, check=False) for name, given in commands.items()},
         )
     for name, given in commands.items():
-        what = "raceway " + " ".join(given[2:]).replace(corpus, "CORPUS") if given[0] == "-m" else given[1]
+        what = " ".join(given[1:]).replace(corpus, "CORPUS").replace(str(recording), "RECORDING")
         yield row(f"starting {name}", f"{what}, CPU", "s", found[name], ALTERNATIVE, found["alternative"])
 
 

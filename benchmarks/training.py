@@ -22,7 +22,7 @@ SCALE = np.float32(1e-3)  # of the counts of a noise corpus
 Places = np.ndarray
 
 
-def rows(pairs: int = 7, *, parts: int = 8, samples: int = 12_800, batch: int = 64) -> Iterator[Line]:
+def rows(pairs: int = 3, *, parts: int = 8, samples: int = 12_800, batch: int = 64) -> Iterator[Line]:
     """Lines of the table."""
     with tempfile.TemporaryDirectory() as temporary:
         folder = noise_corpus(Path(temporary) / "zlib", parts * PER_PART, samples)

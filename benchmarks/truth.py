@@ -19,7 +19,7 @@ SETTINGS = {
 }
 
 
-def rows(pairs: int = 7, records: int = 480, recipe: Path | str = "domain_randomised") -> Iterator[Line]:
+def rows(pairs: int = 2, records: int = 320, recipe: Path | str = "domain_randomised") -> Iterator[Line]:
     """Lines of the table."""
     checked = read_recipe(recipe, records=records)
     recipes = {

@@ -67,10 +67,5 @@ def test_a_small_figure_is_good_where_the_target_says_so(results):
     assert line.endswith("| 15 | 10 | - | 20 M (missed) |")
 
 
-def test_wall_time_is_said(tmp_path):
-    keep([row("kernel full", 0.5)], results_file("amd-1-2", tmp_path), FACTS | {"clock": "wall"})
-    assert "record-steps/s, wall time)" in dict(tables(every_result(tmp_path)))["kernel"]()
-
-
 def test_numbers_have_three_digits():
     assert [short(value) for value in (0.99951, 999.4, 48e6)] == ["1", "999", "48 M"]

@@ -37,13 +37,12 @@ def test_the_kernel_is_compared_with_c_and_the_full_model_with_the_seed(brief_se
 
 
 def test_the_kernel_is_compared_with_its_rivals(brief_seed):
-    lines = list(rivals.rows(1, recipe=brief_seed, records=4, steps=4, sampled_s=0.002))
-    assert {"kernel solve_ivp", "kernel numpy"} <= set(finite_rows(lines))
-    assert isinstance(lines[-1], Row if importlib.util.find_spec("jax") else Skipped)
+    lines = rivals.rows(1, recipe=brief_seed, records=4, steps=4, sampled_s=0.002)
+    assert set(finite_rows(lines)) == {"kernel solve_ivp", "kernel numpy"}
 
 
 def test_a_corpus_is_compared_with_the_kernel_alone(brief_full):
-    assert set(finite_rows(pipeline.throughput_rows(1, brief_full, (4, 40)))) == {"pipeline zlib", "pipeline zstd"}
+    assert set(finite_rows(pipeline.throughput_rows(1, brief_full, (4, 40)))) == {"pipeline parts"}
 
 
 def test_two_workers_are_compared_with_one(few_short):
@@ -95,18 +94,13 @@ def test_a_corpus_of_many_parts_is_compared_with_one_of_few():
     assert set(found) == {"growth driver", "growth scheduler", "growth ending"}
 
 
-def test_features_are_compared_where_tsfel_is_installed_and_their_memory_does_not_grow():
-    memory, line = features.rows(1, records=2, theirs=1, scales=(250, 4000))
+def test_features_are_compared_where_tsfel_is_installed():
+    (line,) = features.rows(1, records=2, theirs=1)
     assert isinstance(line, Row if importlib.util.find_spec("tsfel") else Skipped)
-    assert 0 < memory.value < memory.alternative_value + 15  # MB; the signals are 20 MB
 
 
 def test_opening_a_corpus_is_compared_with_opening_its_parts():
-    assert set(finite_rows(opening.rows(1, parts=3, records_per_part=2))) == {
-        "opening size",
-        "opening file",
-        "opening sha256",
-    }
+    assert set(finite_rows(opening.rows(1, parts=3, records_per_part=2))) == {"opening folder", "opening file"}
 
 
 def test_records_for_training_are_compared_with_numpy_and_h5py():
@@ -116,9 +110,9 @@ def test_records_for_training_are_compared_with_numpy_and_h5py():
 
 def test_short_commands_are_compared_with_the_import_of_the_libraries_they_need():
     found = finite_rows(starting.command_rows(1))
-    names = ("help", "recipes", "info", "misspelt", "import gen", "import gen.corpus", "import features")
+    names = ("help", "info", "plan", "diagnose", "import gen")
     assert set(found) == {f"starting {name}" for name in names}
-    assert all(line.value < 5 for line in found.values())
+    assert all(line.value < 30 for line in found.values())
 
 
 def test_a_record_is_the_same_from_the_index_and_from_the_parts(few_short, tmp_path):
