@@ -70,15 +70,16 @@ def envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatAr
     -------
     Shapes (frequency,) and (record, frequency).
     """
-    return _amplitude_spectrum(np.sqrt(squared_modulus(z)), rate)
+    return amplitude_spectrum(np.sqrt(squared_modulus(z)), rate)
 
 
 def squared_envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatArray]:
     """Frequencies [Hz] and amplitude spectrum of the squared envelope, else as `envelope_spectrum`."""
-    return _amplitude_spectrum(squared_modulus(z), rate)
+    return amplitude_spectrum(squared_modulus(z), rate)
 
 
-def _amplitude_spectrum(y: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
+def amplitude_spectrum(y: FloatArray, rate: float) -> tuple[FloatArray, FloatArray]:
+    """Frequencies [Hz] and amplitude spectrum of real signals, else as `envelope_spectrum`."""
     bins = ZERO_PADDING * y.shape[-1] // 2 + 1
     return np.arange(bins) * (rate / (ZERO_PADDING * y.shape[-1])), fine_amplitudes(weight_by_hann(y), bins)
 

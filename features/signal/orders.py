@@ -1,32 +1,61 @@
 """Computed order tracking: signals sampled at equal angles of the shaft instead of at equal times.
 
-A sample at angle a [turns] is taken at the time a / shaft_rate, by interpolation with a windowed sinc function [1]_. The
-function is also the anti-alias filter: its cut-off is half the lower one of the two sample rates. A line at order k of
-the shaft then lies at order k at any speed.
+``shaft rates or tacho -> angle of every sample -> samples at equal angles -> order spectrum, average, map``
+
+The time at which the shaft has turned by a given angle is interpolated from the angles of the samples, and the signal is
+taken there by interpolation with a windowed sinc function [1]_. The function is also the anti-alias filter: its cut-off
+is half the lower one of the two sample rates, at every instant. A line at order k of the shaft then lies at order k at
+any speed. Everything that repeats with the shaft is in the synchronous average; the rest is its residual [2]_.
 
 .. [1] K. R. Fyfe, E. D. S. Munck, "Analysis of computed order tracking", *Mechanical Systems and Signal Processing*
-       11 (2), 1997.
+       11 (2) (1997) 187-205.
+.. [2] P. D. McFadden, "A revised model for the extraction of periodic waveforms by time domain averaging", *Mechanical
+       Systems and Signal Processing* 1 (1) (1987) 83-95.
 """
 
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
-from features.signal.rows import FloatArray, row_kernel
+from features.signal.demodulation import amplitude_spectrum
+from features.signal.rows import FloatArray, as_records, row_kernel
 
 CROSSINGS = 32  # zero crossings of the sinc function to each side
 BETA = 8.0  # of the Kaiser window: orders above half the samples per turn are 80 dB down
 PASS_SHARE = 0.92  # -6 dB point over half the lower sample rate; flat within 0.1 % up to 0.84 of it
 TABLE_STEPS = 512  # table values from one zero crossing to the next; linear between them, which errs by 5e-6
+REARMED = 0.1  # of the range of a tacho, by which it must fall below the threshold before it counts again
+
+
+class SynchronousAverage(NamedTuple):
+    """Part of resampled signals that repeats with the shaft, and the rest, in the unit of the signals."""
+
+    average: FloatArray
+    """Mean over all whole periods, shape (record, angle), one period long."""
+    residual: FloatArray
+    """Signals without the periodic repetition of their average, shape (record, angle)."""
+
+
+class OrderMap(NamedTuple):
+    """Order spectra of windows that overlap by half."""
+
+    turns: FloatArray
+    """Middle of each window [turns after the first sample], shape (window,)."""
+    orders: FloatArray
+    """Shape (order,)."""
+    amplitude: FloatArray
+    """Amplitudes in the unit of the signals, shape (record, window, order)."""
 
 
 def resample_to_orders(
     x: FloatArray, fs: FloatArray | float, shaft_rate: FloatArray, per_turn: int, count: int
 ) -> FloatArray:
-    """Samples at equal angles of the shaft, shape (record, time) to (record, ``count``), in single precision.
+    """Samples at equal angles of a shaft of constant speed, shape (record, time) to (record, ``count``).
 
     Sample k is at k / ``per_turn`` turns after the first sample of the record. A record counts as zero outside its
-    time, so the first and last 32 samples (of the lower sample rate) contain less of it.
+    time, so the first and last 32 samples (of the lower sample rate) contain less of it. In single precision.
 
     Parameters
     ----------
@@ -42,7 +71,182 @@ def resample_to_orders(
         Number of samples of each resampled record.
     """
     interval = np.asarray(fs, dtype=float) / (np.asarray(shaft_rate, dtype=float) * per_turn)
-    return _interpolate(x, interval, count, _kernel_table())
+    intervals = np.repeat(np.broadcast_to(interval, len(x))[:, None], count, axis=1)
+    return _interpolate(x, np.arange(count) * intervals, intervals, _kernel_table())
+
+
+def resample_to_angle(x: FloatArray, angle: FloatArray, per_turn: int) -> FloatArray:
+    """Samples at equal angles of a shaft of any speed, shape (record, time) to (record, turns * ``per_turn``).
+
+    The first sample is at the first angle of the record that is a whole number of turns. All records have as many whole
+    turns as the one with the fewest. A record counts as zero outside its time, so the first and last 32 samples (of the
+    lower sample rate) contain less of it. In single precision.
+
+    Parameters
+    ----------
+    x
+        Signals, shape (record, time).
+    angle
+        Angle of the shaft at each sample [rad], ascending, shape (record, time) or (1, time) for all records.
+    per_turn
+        Samples per turn of the shaft. Orders above half of it are removed.
+
+    Raises
+    ------
+    ValueError
+        If an angle does not ascend or is not finite, or a record has no whole turn.
+    """
+    x = as_records(x)
+    turns = np.broadcast_to(np.asarray(angle, dtype=float) / (2 * np.pi), x.shape)
+    wrong = np.flatnonzero(~(np.diff(turns, axis=1) > 0).all(axis=1))
+    if len(wrong):
+        raise ValueError(
+            f"angle: that of record {wrong[0]} does not ascend; give the angle since the start, in radians."
+        )
+    first = np.ceil(turns[:, 0] - 1e-9)
+    whole = int(np.min(turns[:, -1] - first) + 1e-9)
+    if per_turn < 2 or whole < 1:
+        raise ValueError(f"{whole} turns of {per_turn} samples are no signal; give a whole turn, and per_turn above 1.")
+    at, time = np.arange(whole * per_turn) / per_turn, np.arange(x.shape[1], dtype=float)
+    place = np.stack([np.interp(start + at, of_record, time) for start, of_record in zip(first, turns, strict=True)])
+    return _interpolate(x, place, np.gradient(place, axis=1), _kernel_table())
+
+
+def angles_from_speed(shaft_rate: FloatArray, fs: float) -> FloatArray:
+    """Angle of the shaft at each sample [rad], 0 at the first, from its rate at each sample [Hz]; both (record, time)."""
+    rate = as_records(shaft_rate).astype(float, copy=False)
+    angle = np.zeros(rate.shape)
+    np.cumsum((rate[:, 1:] + rate[:, :-1]) * (np.pi / fs), axis=1, out=angle[:, 1:])
+    return angle
+
+
+def angles_from_tacho(tacho: FloatArray, pulses_per_turn: int = 1, threshold: float | None = None) -> FloatArray:
+    """Angle of the shaft at each sample [rad], 0 at the first pulse, shape (record, time).
+
+    A pulse is where the tacho rises through the threshold, interpolated linearly between two samples. A cubic spline
+    joins the angles of the pulses; before the first and after the last one the speed is constant.
+
+    Parameters
+    ----------
+    tacho
+        Signals of a tachometer or keyphasor, shape (record, time). One that rises through the threshold again counts
+        only after it has fallen below it by a tenth of its range, so that noise gives no pulses.
+    pulses_per_turn
+        Pulses in a turn of the shaft.
+    threshold
+        In the unit of the tacho; by default the middle of the range of each record.
+
+    Raises
+    ------
+    ValueError
+        If a record has fewer than two pulses.
+    """
+    tacho = as_records(tacho).astype(float, copy=False)
+    low, high = tacho.min(axis=1), tacho.max(axis=1)
+    level = 0.5 * (low + high) if threshold is None else np.full(len(tacho), float(threshold))
+    time, angle = np.arange(tacho.shape[1], dtype=float), np.empty(tacho.shape)
+    for row, signal in enumerate(tacho):
+        pulses = _pulses(signal, level[row], level[row] - REARMED * (high[row] - low[row]))
+        if len(pulses) < 2:
+            raise ValueError(
+                f"tacho: record {row} has {len(pulses)} pulses above {level[row]:.4g}; give two or more, or a threshold."
+            )
+        course = CubicSpline(pulses, 2 * np.pi / pulses_per_turn * np.arange(len(pulses)))
+        first, last = int(np.ceil(pulses[0])), int(pulses[-1]) + 1
+        angle[row, first:last] = course(time[first:last])
+        for beyond, end in ((slice(0, first), pulses[0]), (slice(last, None), pulses[-1])):
+            angle[row, beyond] = course(end) + course(end, 1) * (time[beyond] - end)
+    return angle
+
+
+@row_kernel
+def _pulses(signal: FloatArray, threshold: float, rearmed: float) -> FloatArray:
+    """Places at which a signal rises through a threshold after it was below another one, in samples, shape (pulse,)."""
+    places = np.empty(len(signal))
+    count, armed = 0, signal[0] < threshold
+    for n in range(1, len(signal)):
+        if armed and signal[n] >= threshold:
+            places[count] = n - (signal[n] - threshold) / (signal[n] - signal[n - 1])
+            count += 1
+            armed = False
+        elif signal[n] < rearmed:
+            armed = True
+    return places[:count]
+
+
+def order_spectrum(y: FloatArray, per_turn: int) -> tuple[FloatArray, FloatArray]:
+    """Orders, shape (order,), and amplitude spectrum of resampled signals, shape (record, order).
+
+    As `features.signal.demodulation.envelope_spectrum`: a sine of amplitude a gives a line of height a, and the grid is
+    four times finer than one over the number of turns.
+
+    Parameters
+    ----------
+    y
+        Signals at equal angles, shape (record, angle), as from `resample_to_angle`.
+    per_turn
+        Samples per turn.
+    """
+    return amplitude_spectrum(as_records(y), per_turn)
+
+
+def synchronous_average(y: FloatArray, per_turn: int, turns: int = 1) -> SynchronousAverage:
+    """Mean of resampled signals over periods of ``turns`` turns, and the signals without it.
+
+    Noise is weaker in the average by the root of the number of periods. A part that does not repeat with the period is
+    in the residual, such as lines of a bearing. Give the turns of a whole mesh of a gear to average several shafts.
+
+    Parameters
+    ----------
+    y
+        Signals at equal angles, shape (record, angle), as from `resample_to_angle`.
+    per_turn
+        Samples per turn.
+    turns
+        Length of the period [turns].
+
+    Raises
+    ------
+    ValueError
+        If the signals are shorter than a period.
+    """
+    y = as_records(y)
+    length = per_turn * turns
+    periods = y.shape[1] // length
+    if periods < 1:
+        raise ValueError(
+            f"y: {y.shape[1] / per_turn:.3g} turns are less than a period of {turns}; give a longer signal."
+        )
+    average = y[:, : periods * length].reshape(len(y), periods, length).mean(axis=1)
+    repeated = np.tile(average, periods + 1)[:, : y.shape[1]]
+    return SynchronousAverage(average, y - repeated)
+
+
+def order_map(y: FloatArray, per_turn: int, turns: int = 16) -> OrderMap:
+    """Order spectra of windows of some turns, which overlap by half: a waterfall in which lines of the shaft stand still.
+
+    Parameters
+    ----------
+    y
+        Signals at equal angles, shape (record, angle), as from `resample_to_angle`.
+    per_turn
+        Samples per turn.
+    turns
+        Length of a window [turns]; lines closer than 2 / ``turns`` orders are not separated.
+
+    Raises
+    ------
+    ValueError
+        If the signals are shorter than a window.
+    """
+    y = as_records(y)
+    length = per_turn * turns
+    if y.shape[1] < length:
+        raise ValueError(f"y: {y.shape[1] / per_turn:.3g} turns are less than a window of {turns}; give fewer turns.")
+    windows = np.lib.stride_tricks.sliding_window_view(y, length, axis=1)[:, :: length // 2]
+    orders, amplitude = amplitude_spectrum(windows.reshape(-1, length), per_turn)
+    middle = 0.5 * turns + np.arange(windows.shape[1]) * (length // 2) / per_turn
+    return OrderMap(middle, orders, amplitude.reshape(*windows.shape[:2], -1))
 
 
 @lru_cache(1)
@@ -54,20 +258,20 @@ def _kernel_table() -> FloatArray:
 
 
 @row_kernel
-def _interpolate(x: FloatArray, interval: FloatArray, count: int, table: FloatArray) -> FloatArray:
-    """Signals at multiples of an interval, in samples of the signal, that each record has for itself."""
-    out = np.zeros((len(x), count), np.float32)
-    for row in range(len(x)):
-        cutoff = min(1.0, 1.0 / interval[row])
-        reach = CROSSINGS / cutoff
-        for k in range(count):
-            place = k * interval[row]
-            first = max(0, int(np.ceil(place - reach)))
-            last = min(x.shape[1] - 1, int(np.floor(place + reach)))
+def _interpolate(x: FloatArray, place: FloatArray, interval: FloatArray, table: FloatArray) -> FloatArray:
+    """Signals at places [samples], with the distance of neighbouring places there [samples], all (record, angle)."""
+    out = np.zeros(place.shape, np.float32)
+    slopes = table[1:] - table[:-1]
+    for row in range(place.shape[0]):
+        for k in range(place.shape[1]):
+            cutoff = min(1.0, 1.0 / interval[row, k])
+            reach = CROSSINGS / cutoff
+            first = max(0, int(np.ceil(place[row, k] - reach)))
+            last = min(x.shape[1] - 1, int(np.floor(place[row, k] + reach)))
             value = 0.0
             for n in range(first, last + 1):
-                u = abs(n - place) * cutoff * TABLE_STEPS
-                i = int(u)
-                value += x[row, n] * (table[i] + (u - i) * (table[i + 1] - table[i]))
+                u = abs(n - place[row, k]) * cutoff * TABLE_STEPS
+                i = np.uint32(u)  # indices with a sign are checked for negative ones, which takes a quarter more time
+                value += x[row, n] * (table[i] + (u - i) * slopes[i])
             out[row, k] = cutoff * value
     return out

@@ -1,10 +1,19 @@
-"""Laws of resampling at equal angles: a line at order k lies at order k, at any speed and sample rate."""
+"""Laws of order tracking: a line at order k lies at order k, at any speed, course of the speed and sample rate."""
 
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from features.signal import (
+    angles_from_speed,
+    angles_from_tacho,
+    order_map,
+    order_spectrum,
+    resample_to_angle,
+    synchronous_average,
+    track_speed,
+)
 from features.signal.orders import resample_to_orders
 
 PER_TURN, TURNS = 128, 4
@@ -63,3 +72,102 @@ def test_a_record_is_zero_after_its_end():
     found = resample_to_orders(np.ones((1, 400)), 4000.0, np.array([20.0]), PER_TURN, 10 * PER_TURN)[0]
     np.testing.assert_allclose(found[EDGE : 2 * PER_TURN - EDGE], 1, atol=1e-3)
     assert np.all(found[2 * PER_TURN + EDGE :] == 0)
+
+
+FS, SECONDS = 12_800.0, 10.0
+TIME = np.arange(round(FS * SECONDS)) / FS
+RATE = np.stack([5 + 4 * TIME, 45 - 3 * TIME + np.sin(TIME)])
+ANGLE = 2 * np.pi * np.stack([5 * TIME + 2 * TIME**2, 45 * TIME - 1.5 * TIME**2 - np.cos(TIME) + 1])
+LINES = (1.0, 3.585, 5.415, 20.3)
+
+
+def run_ups(orders=LINES, noise=0.3):
+    """Two records with lines at orders of the shaft, of which one runs up and one down, shape (record, time)."""
+    rng = np.random.default_rng(5)
+    return sum(np.cos(order * ANGLE) for order in orders) + noise * rng.standard_normal(ANGLE.shape)
+
+
+def assert_lines(x, angle, orders=LINES, height=0.02):
+    """Each line stands within half a bin of its order, with its amplitude."""
+    y = resample_to_angle(x, angle, PER_TURN)
+    order, spectrum = order_spectrum(y, PER_TURN)
+    for line in orders:
+        near = np.abs(order - line) < 0.3
+        found = order[near][spectrum[:, near].argmax(axis=1)]
+        np.testing.assert_allclose(found, line, rtol=0, atol=0.5 * PER_TURN / y.shape[1])
+        np.testing.assert_allclose(spectrum[:, near].max(axis=1), 1, rtol=height)
+
+
+def test_lines_of_a_run_up_stand_at_their_orders_along_the_known_angle_and_the_known_speed():
+    assert_lines(run_ups(), ANGLE)
+    np.testing.assert_allclose(angles_from_speed(RATE, FS), ANGLE, atol=1e-6)
+
+
+def test_lines_of_a_run_up_stand_at_their_orders_along_a_tacho_whatever_its_offset_and_noise():
+    pulses = np.clip(20 * np.cos(2 * ANGLE + 1) - 15, 0, 2) + 0.05 * np.random.default_rng(1).standard_normal(
+        ANGLE.shape
+    )
+    angle = angles_from_tacho(pulses - 7, pulses_per_turn=2)
+    np.testing.assert_allclose(np.diff(angle - ANGLE)[:, 5000:-5000], 0, atol=2e-4)
+    assert_lines(run_ups(), angle)
+    with pytest.raises(ValueError, match="record 0 has 0 pulses above 3"):
+        angles_from_tacho(pulses, threshold=3)
+
+
+def test_lines_of_a_run_up_stand_at_their_orders_along_the_speed_that_is_tracked():
+    x = run_ups((1.0, 2.0, 5.0, 7.3))
+    found = track_speed(x, FS, 4, 60)
+    np.testing.assert_allclose(found[:, 6400:-6400], RATE[:, 6400:-6400], rtol=0.03)
+    assert_lines(x, angles_from_speed(found, FS), (1.0, 2.0, 5.0, 7.3), height=0.06)
+    np.testing.assert_array_equal(track_speed(x[1:], FS, 4, 60)[0], found[1])
+
+
+@pytest.mark.parametrize(("slowest", "fastest", "said"), [(30, 20, "no range"), (5, 3000, "no range"), (1, 9, "16 s")])
+def test_a_range_of_speeds_that_a_signal_does_not_show_is_refused(slowest, fastest, said):
+    with pytest.raises(ValueError, match=said):
+        track_speed(run_ups(), FS, slowest, fastest)
+
+
+def test_orders_above_half_the_samples_per_turn_are_removed_at_every_speed():
+    x = np.cos([[80.0], [100.0]] * ANGLE)
+    y = resample_to_angle(x, ANGLE, PER_TURN)
+    assert np.abs(y[:, EDGE:-EDGE]).max() < 1e-3
+
+
+def test_both_ways_to_resample_agree_at_a_constant_speed_and_the_first_sample_is_at_a_whole_turn():
+    angle = 2 * np.pi * (25.0 * TIME[None] - 3.25)
+    x = np.cos(5 * angle)
+    y = resample_to_angle(x, angle, PER_TURN)
+    np.testing.assert_allclose(
+        y[0, EDGE : 6 * PER_TURN], np.cos(10 * np.pi * np.arange(6 * PER_TURN) / PER_TURN)[EDGE:], atol=1e-3
+    )
+    constant = resample_to_orders(x, FS, np.array([25.0]), PER_TURN, y.shape[1])
+    quarter = PER_TURN // 4
+    np.testing.assert_allclose(constant[0, EDGE + quarter : -EDGE], y[0, EDGE : -EDGE - quarter], atol=1e-5)
+    with pytest.raises(ValueError, match="angle: that of record 0 does not ascend"):
+        resample_to_angle(x, angle[:, ::-1], PER_TURN)
+
+
+def test_a_synchronous_average_keeps_what_repeats_and_its_residual_the_rest():
+    rng, turns = np.random.default_rng(3), 400
+    angle = 2 * np.pi * np.arange(PER_TURN * turns + 50) / PER_TURN
+    gear, noise = np.cos(11 * angle) + 0.5 * np.sin(angle), rng.standard_normal((2, len(angle)))
+    average, residual = synchronous_average(gear + noise, PER_TURN)
+    np.testing.assert_allclose(average, np.tile(gear[:PER_TURN], (2, 1)), atol=5 / np.sqrt(turns))
+    np.testing.assert_allclose(np.std(residual, axis=1), 1, rtol=0.02)
+    slower = synchronous_average(np.cos(angle / 3)[None], PER_TURN, turns=3)
+    assert np.abs(slower.residual).max() < 1e-9 < 0.9 < np.abs(slower.average).max()
+    with pytest.raises(ValueError, match="400 turns are less than a period"):
+        synchronous_average(gear[None], PER_TURN, turns=402)
+
+
+def test_lines_stand_still_in_an_order_map_and_move_with_the_speed_in_none_of_its_windows():
+    y = resample_to_angle(run_ups(), ANGLE, PER_TURN)
+    turns, orders, amplitude = order_map(y, PER_TURN, turns=8)
+    assert amplitude.shape == (2, len(turns), len(orders))
+    near = np.abs(orders - 3.585) < 0.3
+    highest = orders[near][amplitude[:, 1:-1, near].argmax(axis=2)]
+    np.testing.assert_allclose(highest, 3.585, atol=0.5 / 8)
+    assert (turns[0], turns[1]) == (4.0, 8.0)
+    with pytest.raises(ValueError, match="are less than a window"):
+        order_map(y, PER_TURN, turns=10_000)

@@ -1,0 +1,9 @@
+from .orders import (
+    angles_from_speed as angles_from_speed,
+    angles_from_tacho as angles_from_tacho,
+    order_map as order_map,
+    order_spectrum as order_spectrum,
+    resample_to_angle as resample_to_angle,
+    synchronous_average as synchronous_average,
+)
+from .tracking import track_speed as track_speed
