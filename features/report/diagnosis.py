@@ -11,7 +11,6 @@ from matplotlib.figure import Figure
 
 from features.band import DEFAULT_BAND
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
-from features.diagnosis.levels import VELOCITY_BAND
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.faults import CLASSES, HEALTHY, SHAFT
 from features.report.pictures import (
@@ -28,6 +27,7 @@ from features.report.pictures import (
 )
 from features.report.templates import template
 from features.signal.lines import Orders
+from features.signal.motion import VELOCITY_BAND
 from features.signal.rows import FloatArray
 from gen.corpus import check_result, write_text_durably
 

@@ -9,6 +9,7 @@ rows         compilation of loops over records, sums in a fixed order, windows
 spectra      power spectra, Fourier coefficients, whitening
 demodulation analytic signals of bands, envelope spectra and their floor
 orders       signals at equal angles of the shaft in place of equal times, their spectra and averages
+motion       velocity and displacement, and the zones of their level
 lines        levels of fault lines and combs at orders of the shaft
 speed        shaft speed that fits fault lines and shaft harmonics together
 tracking     course of the shaft speed of a run-up

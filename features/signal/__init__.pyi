@@ -1,3 +1,9 @@
+from .motion import (
+    displacement as displacement,
+    iso_zone as iso_zone,
+    velocity as velocity,
+    velocity_rms as velocity_rms,
+)
 from .orders import (
     angles_from_speed as angles_from_speed,
     angles_from_tacho as angles_from_tacho,

@@ -1,0 +1,121 @@
+"""Velocity and displacement of an acceleration, and the zone of ISO 20816-3 that a machine is in.
+
+A signal is integrated in the frequency domain: its Fourier coefficients are divided by ``2 pi i frequency``, once for
+each integration [1]_. Division raises slow drift without limit, so a high-pass is part of the operation. The rms of the
+velocity in the band of ISO 20816 is taken from the power spectral density, and compared with the zones of [2]_.
+
+.. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, section 3.2.
+.. [2] ISO 20816-3, *Mechanical vibration - Measurement and evaluation of machine vibration - Part 3: Industrial machinery
+       with a power rating above 15 kW and operating speeds between 120 r/min and 30 000 r/min*, 2022.
+"""
+
+from collections.abc import Mapping
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.fft import irfft, next_fast_len, rfft
+
+from features.signal.rows import FloatArray, as_records
+from features.signal.spectra import psd
+
+HIGH_PASS = 10.0  # Hz, lower end of the band of ISO 20816
+VELOCITY_BAND = (HIGH_PASS, 1000.0)  # Hz
+VELOCITY_SECONDS = 1.0  # window of its spectrum, and the shortest signal
+
+ZONES = "ABCD"
+ZONE_LIMITS: Mapping[tuple[int, str], tuple[float, float, float]] = {
+    (1, "rigid"): (2.3, 4.5, 7.1),
+    (1, "flexible"): (3.5, 7.1, 11.0),
+    (2, "rigid"): (1.4, 2.8, 4.5),
+    (2, "flexible"): (2.3, 4.5, 7.1),
+}
+"""Highest rms velocity of zones A, B and C [mm/s] by group of machines and support [2]_."""
+
+
+def velocity(x: FloatArray, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
+    """Velocity, from accelerations of shape (record, time), in their unit times seconds and of the same shape.
+
+    The gain of the high-pass is 1 from ``high_pass`` on, 0 up to half of it, and rises as half a cosine in between. The
+    signal counts as zero beyond its ends, which the high-pass spreads: of a sine that is cut there, the velocity errs by
+    up to 2 % of its amplitude at 2 / ``high_pass`` seconds from an end, and by up to 0.3 % at 5 / ``high_pass``.
+
+    Parameters
+    ----------
+    x
+        Accelerations, shape (record, time).
+    fs
+        Sample rate [Hz].
+    high_pass
+        Lowest frequency that is kept whole [Hz].
+
+    Raises
+    ------
+    ValueError
+        If the high-pass is not between 0 and half the sample rate.
+    """
+    return _integrate(x, fs, high_pass, 1)
+
+
+def displacement(x: FloatArray, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
+    """Displacement, from accelerations of shape (record, time), in their unit times s²; as `velocity`."""
+    return _integrate(x, fs, high_pass, 2)
+
+
+def _integrate(x: FloatArray, fs: float, high_pass: float, times: int) -> FloatArray:
+    if not 0 < high_pass < fs / 2:
+        raise ValueError(f"high_pass: {high_pass:g} Hz is not between 0 and half the sample rate, {fs / 2:g} Hz.")
+    x = as_records(x)
+    count = next_fast_len(x.shape[1] + round(fs / high_pass), real=True)  # zeros part the end from the start
+    coefficients = np.asarray(rfft(x - x.mean(axis=1, keepdims=True), count, axis=1))
+    frequency = np.arange(count // 2 + 1) * (fs / count)
+    gain = 0.5 - 0.5 * np.cos(np.pi * np.clip(2 * frequency / high_pass - 1, 0, 1))
+    response = gain / (2j * np.pi * np.maximum(frequency, fs / count)) ** times
+    coefficients *= response.astype(coefficients.dtype)
+    return np.asarray(irfft(coefficients, count, axis=1, overwrite_x=True))[:, : x.shape[1]]
+
+
+def velocity_rms(x: FloatArray, fs: float) -> FloatArray:
+    """Root mean square of the velocity in 10-1000 Hz [m/s] of accelerations [m/s²], shape (record, time) to (record,).
+
+    NaN for signals shorter than 1 s, or a sample rate of 2000 Hz or less.
+    """
+    x = as_records(x)
+    low, high = VELOCITY_BAND
+    if x.shape[1] < VELOCITY_SECONDS * fs or fs <= 2 * high:
+        return np.full(len(x), np.nan)
+    frequencies, density = psd(x, fs, VELOCITY_SECONDS)
+    band = (frequencies >= low) & (frequencies <= high)
+    power = density[:, band] / (2 * np.pi * frequencies[band]) ** 2
+    return np.sqrt(np.trapezoid(power, frequencies[band], axis=1))
+
+
+def iso_zone(
+    velocity_rms_mm_s: ArrayLike, group: Literal[1, 2], support: Literal["rigid", "flexible"] = "rigid"
+) -> NDArray[np.str_]:
+    """Zone of ISO 20816-3, ``A`` (as new) to ``D`` (may cause damage), of the shape of the argument; empty for NaN.
+
+    The velocity is that of a bearing housing; its zone is of the highest of the directions and bearings of a machine.
+
+    >>> iso_zone([1.0, 2.3, 5.0, 9.0], group=1).tolist()
+    ['A', 'A', 'C', 'D']
+
+    Parameters
+    ----------
+    velocity_rms_mm_s
+        Rms of the velocity in 10-1000 Hz [mm/s], as ``1e3 * velocity_rms(x, fs)``.
+    group
+        1 for machines of 300 kW to 50 MW, 2 for those of 15 to 300 kW.
+    support
+        Of the machine in the direction of the measurement.
+
+    Raises
+    ------
+    ValueError
+        For a group or support that the standard does not have.
+    """
+    if (group, support) not in ZONE_LIMITS:
+        raise ValueError(f"group {group!r}, support {support!r}: give group 1 or 2, and support rigid or flexible.")
+    level = np.asarray(velocity_rms_mm_s, dtype=float)
+    zone = np.searchsorted(ZONE_LIMITS[group, support], level, side="left")
+    return np.where(np.isnan(level), "", np.array(list(ZONES))[zone])
