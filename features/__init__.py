@@ -23,6 +23,7 @@ auditing         splits of real recordings that can leak
 waveforms        signals of a corpus as an array that is read when it is indexed
 network_input    envelope levels at multiples of the fault orders, for networks [pure]
 baselines        classifiers on a feature table, scored by specimen or rig beside their controls
+ranking          features by how well they tell the classes, or follow a series to its end
 realism          synthetic records against real ones: AUC of measures, class by class
 diagnosis        class of one recording, and the lines that speak for it
 report           figures of records, corpora and scores, and one page with all of them

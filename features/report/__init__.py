@@ -6,6 +6,7 @@ module     responsibility
 pictures   drawings of one record, of the contents of a corpus, and of scores
 envelopes  drawings of several envelope spectra: a grid, and a waterfall
 curves     drawing of a learning curve
+ranking    drawing of the best features of a ranking
 sides      drawings of several sets side by side: examples, and distributions
 examples   records of a corpus as pictures
 templates  templates of pages

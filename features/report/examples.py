@@ -10,8 +10,8 @@ from features.band import DEFAULT_BAND, LEAST_WIDTH, checked_band
 from features.channels import channel_number
 from features.faults import COMBS, LOOKS
 from features.indicators import Orders, feature_names, indicators
-from features.report.pictures import PictureFormat, Shown, draw_record, picture
-from gen.corpus import FAULT_NAMES, SIGNAL, check_result, open_corpus, write_durably
+from features.report.pictures import Shown, check_picture, draw_record, picture, write_picture
+from gen.corpus import FAULT_NAMES, SIGNAL, open_corpus
 from gen.support.errors import CorpusError
 
 CANDIDATES = 15  # records of a class among which its example is chosen
@@ -58,11 +58,7 @@ def plot_record(
     """
     band = checked_band(*band)
     path = Path(path)
-    formats: dict[str, PictureFormat] = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
-    suffix = path.suffix.lower()
-    if suffix not in formats:
-        message = f"{path}: {path.suffix or 'no suffix'} is no format of pictures; use .png, .svg or .pdf."
-        raise CorpusError(message)
+    check_picture(path)
     with open_corpus(corpus) as opened:
         if not 0 <= record < opened.sizes["record"]:
             raise CorpusError(f"{corpus}: no record {record}; give one of 0 to {opened.sizes['record'] - 1}.")
@@ -79,8 +75,7 @@ def plot_record(
             f"finite number or not positive; choose another record."
         )
         raise CorpusError(message)
-    check_result(path, "picture")
-    write_durably(picture(draw_record(shown), formats[suffix]), path)
+    write_picture(draw_record(shown), path)
 
 
 def draw_examples(corpus: xr.Dataset) -> list[Example]:

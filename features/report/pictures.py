@@ -10,6 +10,7 @@ can distinguish. Pictures contain numbers and class names, and no text of a corp
 import io
 from collections.abc import Mapping, Sequence
 from itertools import cycle
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
@@ -24,12 +25,14 @@ from features.indicators import WHITENING_WIDTH, Orders
 from features.signal.demodulation import analytic_band, squared_envelope_spectrum
 from features.signal.rows import FloatArray, IntArray
 from features.signal.spectra import fourier_coefficients, psd, whiten_by_psd
-from gen.corpus import FAULT_NAMES, GENERATOR
+from gen.corpus import FAULT_NAMES, GENERATOR, check_result, write_durably
+from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     from features.baselines import Baseline, Scores
 
 PictureFormat = Literal["png", "svg", "pdf"]
+FORMATS: Mapping[str, PictureFormat] = {".png": "png", ".svg": "svg", ".pdf": "pdf"}
 
 INK, FAINT = "#222222", "#8a8a8a"
 BLUE, VERMILION = "#0072B2", "#D55E00"
@@ -95,6 +98,20 @@ def picture(figure: Figure, suffix: PictureFormat) -> bytes:
     }[suffix]
     figure.savefig(stream, format=suffix, metadata=facts)
     return stream.getvalue()
+
+
+def check_picture(path: Path) -> PictureFormat:
+    """Format of a picture by the suffix of its file; CorpusError for another suffix, or a file that may not be replaced."""
+    suffix = path.suffix.lower()
+    if suffix not in FORMATS:
+        raise CorpusError(f"{path}: {path.suffix or 'no suffix'} is no format of pictures; use .png, .svg or .pdf.")
+    check_result(path, "picture")
+    return FORMATS[suffix]
+
+
+def write_picture(figure: Figure, path: Path) -> None:
+    """Write a figure as .png, .svg or .pdf, whole or not at all; CorpusError as `check_picture`, or if the disk refuses it."""
+    write_durably(picture(figure, check_picture(path)), path)
 
 
 @rc_context(STYLE)

@@ -23,14 +23,18 @@ from raceway.console.progress import notice, progress
 
 if TYPE_CHECKING:
     import xarray as xr
+    from pandas import DataFrame
 
     from features.recording_speeds import Speed
+
+PICTURES = (".png", ".svg", ".pdf")
+PRINTED = 10  # features of a ranking
 
 
 @click.command()
 @corpus_argument
 @record_option
-@file_option("FILE", "Picture: .png, .svg or .pdf.", (".png", ".svg", ".pdf"), kind="picture")
+@file_option("FILE", "Picture: .png, .svg or .pdf.", PICTURES, kind="picture")
 @analysis_options
 def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tuple[float, float] | None) -> None:
     """Draw one record with its fault lines.
@@ -49,6 +53,14 @@ def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tup
 @click.command()
 @corpus_argument
 @file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"), kind="feature table")
+@file_option(
+    "PICTURE",
+    "Also rank the features by how well they tell the classes, and draw the best: .png, .svg or .pdf.",
+    PICTURES,
+    kind="picture",
+    required=False,
+    flags=("--rank",),
+)
 @analysis_options
 @speed_option
 @worker_options
@@ -56,6 +68,7 @@ def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tup
 def features(
     corpus: Path,
     output: Path,
+    rank: Path | None,
     channel: str | None,
     band: tuple[float, float] | None,
     speed: "Speed",
@@ -69,6 +82,7 @@ def features(
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
+      raceway features corpus -o features.nc --rank ranking.png
       raceway features corpus -o features.nc --channel fan_end --band 300 9000
       raceway features recordings -o features.nc --speed correct
       raceway features corpus -o features.nc --workers 8
@@ -78,15 +92,37 @@ def features(
     check_destination(output)
     table = table_of(corpus, speed, Team(workers, scheduler), Analysis(channel, band))
     write_table(table, output)
+    ranked = None if rank is None else _ranking(table, rank)
     records, columns = table.sizes["record"], table.sizes["feature"]
     missing = table.attrs["records_with_missing_features"]
     if as_json:
         facts = {"table": output, "records": records, "features": columns, "records_with_missing_features": missing}
         other = table.attrs.get("recordings_with_other_speed")  # none if speeds were not estimated
-        show.as_json(facts | {"recordings_with_other_speed": other})
+        ranking = None if ranked is None else ranked.reset_index().to_dict("records")
+        show.as_json(facts | {"recordings_with_other_speed": other, "ranking": ranking})
         return
     lacking = f"; some are missing in {show.count_text(missing, 'record')}" if missing else ""
     show.text(f"{output}: {columns} features of {show.count_text(records, 'record')}{lacking}.")
+    if ranked is not None:
+        best = ranked.head(PRINTED).itertuples()
+        show.table(
+            ("feature", "ANOVA F", "Kruskal H", "mutual information", "importance"),
+            ((name, f"{f:.4g}", f"{h:.4g}", f"{nats:.2f}", f"{loss:.3f}") for name, _, f, h, nats, loss, _ in best),
+        )
+        show.text(
+            f"{rank}: the best of {columns} features, by their mean rank in the first three measures; --json prints all."
+        )
+
+
+def _ranking(table: "xr.Dataset", path: Path) -> "DataFrame":
+    """Features from best to worst, of which the best are drawn."""
+    from features import rank_features
+    from features.report.pictures import write_picture
+    from features.report.ranking import draw_ranking
+
+    ranked = rank_features(table)
+    write_picture(draw_ranking(ranked), path)
+    return ranked
 
 
 def notice_of_unknown(corpus: Path, unknown: int) -> None:

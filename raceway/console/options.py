@@ -202,7 +202,13 @@ def checked_file(path: Path, suffixes: tuple[str, ...] = (), kind: str | None = 
 
 
 def file_option(
-    metavar: str, what: str, suffixes: tuple[str, ...] = (), *, kind: str | None = None, required: bool = True
+    metavar: str,
+    what: str,
+    suffixes: tuple[str, ...] = (),
+    *,
+    kind: str | None = None,
+    required: bool = True,
+    flags: tuple[str, ...] = ("-o", "--output"),
 ) -> Decorator:
     """Make the option that names the file for a result, with any suffix or with one of ``suffixes``.
 
@@ -212,4 +218,4 @@ def file_option(
     def check(_context: click.Context, _option: click.Parameter, path: Path | None) -> Path | None:
         return None if path is None else checked_file(path, suffixes, kind)
 
-    return click.option("-o", "--output", type=A_PATH, required=required, metavar=metavar, help=what, callback=check)
+    return click.option(*flags, type=A_PATH, required=required, metavar=metavar, help=what, callback=check)

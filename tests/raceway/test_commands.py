@@ -243,6 +243,16 @@ def test_features_are_written_as_netcdf_and_parquet(told, tiny_corpus, tmp_path)
     assert parquet.read_table(tmp_path / "features.parquet").num_rows == 48
 
 
+def test_features_are_ranked_on_request_and_the_best_drawn(told, run, tiny_corpus, tmp_path):
+    target, drawn = tmp_path / "features.nc", tmp_path / "ranking.png"
+    made = told("features", tiny_corpus, "-o", target, "--rank", drawn)
+    assert drawn.read_bytes().startswith(b"\x89PNG")
+    assert len(made["ranking"]) == made["features"]
+    printed = run("features", tiny_corpus, "-o", target, "--rank", drawn).stdout.splitlines()
+    assert [line.split()[0] for line in printed[2:12]] == [row["feature"] for row in made["ranking"][:10]]
+    assert told("features", tiny_corpus, "-o", target)["ranking"] is None
+
+
 def test_train_scores_on_the_test_split_and_trains_on_the_other_records(told, run, tiny_corpus, tmp_path):
     path = tmp_path / "model.skops"
     made = told("train", tiny_corpus, "-o", path, "--estimator", "logistic_regression")
