@@ -21,7 +21,7 @@ import numpy as np
 from scipy.fft import irfft, next_fast_len
 
 from features.band import DEFAULT_BAND, Band, energy_names
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, running_median, weight_by_hann
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.lines import (
     FAMILIES,
     FITTED_NAMES,
@@ -36,7 +36,7 @@ from features.signal.rows import ComplexArray, FloatArray, centre, squared_modul
 from features.signal.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd, whiten_cepstrally
 
-__all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators", "log_level"]
+__all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators"]
 
 WHITENING_WIDTH = 50.0  # Hz
 FLOOR_WIDTH = (3.0, 30.0)  # window of the floor: orders of the shaft, and its least width [Hz]
@@ -237,17 +237,6 @@ def levels_and_shape(
         level[:, number, :end] = log_level(spectrum, width, min(bins, end))
         shape[:, number] = envelope_shape(power, weighted, spectrum, z.shape[-1] / duration, shaft_rate)
     return level, shape, shaft_rate / resolution
-
-
-def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
-    """Logarithm of the ratio of envelope spectra to their running median, shape (record, bins).
-
-    ``width`` is the width of the median window in bins, shape (record,). The spectra must extend at least this width
-    beyond the first ``bins`` bins, or to their end.
-    """
-    floor = running_median(spectrum, width, bins)
-    least = np.finfo(spectrum.dtype).tiny
-    return np.log(np.maximum(spectrum[:, :bins], least) / np.maximum(floor, least))
 
 
 def _views(values: FloatArray) -> FloatArray:

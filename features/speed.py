@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from features.band import DEFAULT_BAND
-from features.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, log_level, usable_records
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, weight_by_hann
+from features.indicators import BATCH, FLOOR_WIDTH, LOWEST_RATE, SHORTEST, bands_of, usable_records
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.lines import Orders
 from features.signal.rows import FloatArray, centre, squared_modulus
 from features.signal.spectra import fourier_coefficients

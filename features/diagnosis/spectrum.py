@@ -20,8 +20,8 @@ from scipy.special import gammainccinv, gammaincinv
 from features.band import DEFAULT_BAND
 from features.indicators import WHITENING_WIDTH
 from features.signal.demodulation import analytic_band, envelope_spectrum, running_median
+from features.signal.impulsive import band_kurtosis, equal_bands
 from features.signal.rows import FloatArray
-from features.signal.shape import most_impulsive_band
 from features.signal.spectra import fourier_coefficients, whiten_by_psd
 
 SEGMENT_TURNS = (20, 40)  # least and most shaft revolutions of a segment; 40 resolve a twentieth of an order
@@ -102,7 +102,8 @@ def bands_of(x: FloatArray, fs: float) -> list[tuple[float, float]]:
     piece = x[: round(min(len(x), 4 * fs))]
     coefficients = whiten_by_psd(fourier_coefficients(piece[None], fs, top), round(WHITENING_WIDTH * len(piece) / fs))
     levels = tuple(level for level in KURTOSIS_LEVELS if top / level >= NARROWEST) or (1,)
-    low, high = (edge * fs / len(piece) for edge in most_impulsive_band(coefficients, levels))
+    cuts = equal_bands(coefficients.shape[-1], levels)
+    low, high = cuts[np.argmax(band_kurtosis(coefficients, cuts)[0])] * fs / len(piece)
     return [*bands, (float(max(low, 1.0)), float(min(high, top)))]
 
 

@@ -13,13 +13,14 @@ from scipy.fft import irfft
 
 from features.band import DEFAULT_BAND
 from features.faults import CLASSES, COMBS
-from features.indicators import FLOOR_WIDTH, Orders, log_level
+from features.indicators import FLOOR_WIDTH, Orders
 from features.signal.colour import centroid, roll_off, tonality
-from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, weight_by_hann
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
+from features.signal.impulsive import band_kurtosis, equal_bands
 from features.signal.lines import single_lines
 from features.signal.modulation import cyclostationarity, highest_place, phase_wander, sideband_ratio
 from features.signal.rows import FloatArray, squared_modulus
-from features.signal.shape import SHAPE_NAMES, envelope_shape, highest_spectral_kurtosis, time_statistics
+from features.signal.shape import SHAPE_NAMES, envelope_shape, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
@@ -146,7 +147,9 @@ def _impulsiveness(x: FloatArray, fs: float, top: float) -> dict[str, FloatArray
         "kurtosis": kurtosis,
         "crest_factor": crest,
         "skewness": np.abs(skewness),
-        "spectral_kurtosis": highest_spectral_kurtosis(coefficients, KURTOSIS_BANDS),
+        "spectral_kurtosis": band_kurtosis(coefficients, equal_bands(coefficients.shape[-1], KURTOSIS_BANDS)).max(
+            axis=-1
+        ),
     }
 
 

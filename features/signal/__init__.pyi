@@ -13,3 +13,9 @@ from .orders import (
     synchronous_average as synchronous_average,
 )
 from .tracking import track_speed as track_speed
+from .impulsive import (
+    BandTree as BandTree,
+    comb_bands as comb_bands,
+    kurtogram as kurtogram,
+    spectral_kurtosis as spectral_kurtosis,
+)

@@ -199,6 +199,17 @@ def running_median(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatA
     return _join(0.5 * (window[..., half - 1] + window[..., half]), step, bins)
 
 
+def log_level(spectrum: FloatArray, width: FloatArray, bins: int) -> FloatArray:
+    """Logarithm of the ratio of envelope spectra to their running median, shape (record, bins).
+
+    ``width`` is the width of the median window in bins, shape (record,). The spectra must extend at least this width
+    beyond the first ``bins`` bins, or to their end.
+    """
+    floor = running_median(spectrum, width, bins)
+    least = np.finfo(spectrum.dtype).tiny
+    return np.log(np.maximum(spectrum[:, :bins], least) / np.maximum(floor, least))
+
+
 @row_kernel
 def _surroundings(spectrum: FloatArray, width: FloatArray, step: FloatArray, knots: int) -> FloatArray:
     """Points of the window around each knot, shape (record, knot, point)."""

@@ -1,20 +1,15 @@
 """Shape of a signal independent of its periods: impulsiveness, slow fluctuation, statistics of the waveform.
 
 Impacts make the distribution of a signal heavy-tailed (kurtosis, crest factor). A load zone, a cage or the process of a
-machine modulates its power more slowly than the shaft turns [1]_. The spectral kurtosis finds the band in which a
-signal is most impulsive [2]_.
+machine modulates its power more slowly than the shaft turns [1]_.
 
 .. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, sections 3.3 and 5.5.
-.. [2] J. Antoni, "The spectral kurtosis: a useful tool for characterising non-stationary signals", *Mech. Syst. Signal
-       Process.* 20 (2006) 282-307.
 """
-
-from itertools import pairwise
 
 import numpy as np
 
-from features.signal.demodulation import ZERO_PADDING, analytic_band
-from features.signal.rows import PARTIAL_SUMS, ComplexArray, FloatArray, row_kernel, squared_modulus, total, total_with
+from features.signal.demodulation import ZERO_PADDING
+from features.signal.rows import PARTIAL_SUMS, FloatArray, row_kernel, total, total_with
 
 SHAPE_NAMES = ("impulsiveness", "slow_fluctuation", "slow_share")
 SMOOTHING_TURNS = 0.5  # shaft revolutions over which the power is averaged
@@ -85,41 +80,6 @@ def _fluctuation(power: FloatArray, span: int) -> float:
         within = power[number * step : number * step + span]
         means[number] = total_with(within, parts) / len(within)
     return float(np.std(means))
-
-
-def highest_spectral_kurtosis(coefficients: ComplexArray, levels: tuple[int, ...]) -> FloatArray:
-    """Largest kurtosis of the analytic signals of bands, ``E|z|^4 / (E|z|^2)^2 - 2``, shape (record,).
-
-    It is near 0 for Gaussian noise, -1 for a tone and positive for impulses.
-
-    Parameters
-    ----------
-    coefficients
-        Shape (record, frequency), as from `features.signal.spectra.fourier_coefficients`.
-    levels
-        Each divides the spectrum into that number of equal bands.
-    """
-    return np.max([_band_kurtosis(coefficients, *band) for band in _equal_bands(coefficients, levels)], axis=0)
-
-
-def most_impulsive_band(coefficients: ComplexArray, levels: tuple[int, ...]) -> tuple[int, int]:
-    """First bin of the band of highest spectral kurtosis, averaged over the records, and the bin after its last.
-
-    Arguments as of `highest_spectral_kurtosis`.
-    """
-    return max(_equal_bands(coefficients, levels), key=lambda band: _band_kurtosis(coefficients, *band).mean())
-
-
-def _equal_bands(coefficients: ComplexArray, levels: tuple[int, ...]) -> list[tuple[int, int]]:
-    """First bin of each band, and the bin after its last."""
-    cuts = [np.linspace(0, coefficients.shape[-1], level + 1).round().astype(int).tolist() for level in levels]
-    return [band for edges in cuts for band in pairwise(edges)]
-
-
-def _band_kurtosis(coefficients: ComplexArray, low: int, high: int) -> FloatArray:
-    power = squared_modulus(analytic_band(coefficients, low, high)).astype(float)
-    mean = np.maximum(power.mean(axis=-1), np.finfo(float).tiny)
-    return np.mean((power / mean[:, None]) ** 2, axis=-1) - 2.0
 
 
 def time_statistics(x: FloatArray) -> FloatArray:

@@ -1,0 +1,109 @@
+"""Laws of the choice of a band, against a plain filter bank and planted resonances."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.signal import firwin, hilbert, oaconvolve
+
+from features.signal import comb_bands, kurtogram, spectral_kurtosis
+from features.signal.impulsive import band_kurtosis, equal_bands
+from features.signal.spectra import fourier_coefficients
+
+FS = 20_000.0
+law = settings(deadline=None, max_examples=25)
+
+
+def impacts(rng, n, resonance, rate, decibels, slip=0.01):
+    """Impacts that excite a resonance of 200 Hz bandwidth, at a ratio to white noise of unit power."""
+    t = np.arange(round(0.05 * FS)) / FS
+    response = np.exp(-np.pi * 200 * t) * np.sin(2 * np.pi * resonance * t)
+    between = FS / rate * (1 + slip * rng.standard_normal(int(n / FS * rate) + 5))
+    places = np.cumsum(between) - rng.uniform(0, between[0])
+    train = np.zeros(n)
+    train[places[places < n].astype(int)] = 1.0
+    ringing = np.convolve(train, response)[:n]
+    return 10 ** (decibels / 20) * ringing / ringing.std() + rng.standard_normal(n)
+
+
+def filter_bank(x, levels):
+    """Kurtosis of the envelopes behind a bank of complex filters per level: the definition of the kurtogram."""
+    values = []
+    for level in levels:
+        taps = firwin(16 * level + 1, 0.5 / level) if level > 1 else np.ones(1)
+        for band in range(level):
+            carrier = np.exp(1j * np.pi * (band + 0.5) / level * np.arange(len(taps)))
+            power = np.abs(oaconvolve(x, taps * carrier, mode="valid") if level > 1 else hilbert(x)) ** 2
+            values.append(np.mean(power**2) / np.mean(power) ** 2 - 2)
+    return np.array(values)
+
+
+@pytest.mark.parametrize(("resonance", "decibels"), [(1250.0, -11), (1250.0, 0), (2700.0, -11), (6000.0, -11)])
+def test_the_kurtogram_picks_the_planted_band_wherever_a_filter_bank_does(resonance, decibels):
+    rng = np.random.default_rng(int(resonance) + decibels)
+    x = np.stack([impacts(rng, 20_000, resonance, 100.0, decibels) for _ in range(100)])
+    tree = kurtogram(x.astype(np.float32), FS)
+
+    def picked(edges):
+        return (edges[:, 0] <= resonance) & (resonance <= edges[:, 1]) & (np.diff(edges)[:, 0] < 3400)
+
+    defined = picked(np.stack([tree.edges[np.argmax(filter_bank(row, np.unique(tree.levels)))] for row in x]))
+    assert defined.sum() > 60
+    assert np.mean(picked(tree.best())[defined]) >= 0.95
+
+
+@law
+@given(st.integers(0, 2**32 - 1), st.floats(1e-3, 1e3))
+def test_the_kurtogram_finds_impulses_hidden_in_louder_noise_of_another_band(seed, gain):
+    rng = np.random.default_rng(seed)
+    low = np.cumsum(rng.standard_normal(20_000))  # louder below 1 kHz than the impulses are
+    pulses = np.zeros(20_000)
+    pulses[500::1000] = 40.0
+    noise, hidden = kurtogram(gain * np.stack([rng.standard_normal(20_000), low + pulses]), FS).score.max(axis=-1)
+    assert -0.2 < noise < 1.5
+    assert hidden > 5.0
+
+
+def test_the_bands_of_each_level_cover_the_spectrum_once():
+    tree = kurtogram(np.random.default_rng(0).standard_normal((1, 4096)), FS)
+    assert np.unique(tree.levels).tolist() == [1, 2, 3, 4, 6, 8]
+    for level in np.unique(tree.levels):
+        edges = tree.edges[tree.levels == level]
+        np.testing.assert_allclose(edges[1:, 0], edges[:-1, 1])
+        np.testing.assert_allclose(edges[[0, -1], [0, 1]], [0, FS / 2])
+    with pytest.raises(ValueError, match="longer records"):
+        kurtogram(np.ones((1, 100)), FS)
+
+
+def test_the_kurtosis_of_a_tone_is_minus_one():
+    x = np.sin(2 * np.pi * 1000.0 * np.arange(10_000) / 10_000.0)[None]
+    around = fourier_coefficients(x, 10_000.0, 5000.0)[:, 900:1101]
+    np.testing.assert_allclose(band_kurtosis(around, equal_bands(201, 1)), -1.0, atol=0.05)
+
+
+@pytest.mark.parametrize("samples", [2000, 20_000])
+def test_the_spectral_kurtosis_of_noise_exceeds_its_threshold_as_often_as_promised(samples):
+    x = np.random.default_rng(4).standard_normal((1000, samples))
+    found = spectral_kurtosis(x, FS, segment=0.005)
+    assert abs(found.kurtosis.mean()) < 0.005
+    np.testing.assert_allclose(found.kurtosis.std(), 2 / np.sqrt(found.segments), rtol=0.1)
+    for probability in (0.05, 0.01):
+        np.testing.assert_allclose(np.mean(found.kurtosis > found.threshold(probability)), probability, rtol=0.15)
+
+
+def test_the_spectral_kurtosis_is_high_at_the_planted_resonance_alone():
+    found = spectral_kurtosis(impacts(np.random.default_rng(5), 100_000, 4000.0, 60.0, -3)[None], FS)
+    limit = found.threshold(1e-6)
+    near = abs(found.frequencies - 4000) < 200
+    assert np.all(found.kurtosis[0, near] > limit)
+    assert np.all(found.kurtosis[0, abs(found.frequencies - 4000) > 2000] < limit)
+
+
+def test_the_comb_lies_in_the_band_of_its_fault_and_not_in_that_of_another():
+    rng = np.random.default_rng(6)
+    for _ in range(10):
+        outer, inner = impacts(rng, 40_000, 2500.0, 87.0, -8, 0.0), impacts(rng, 40_000, 7000.0, 131.0, -4, 0.0)
+        tree = comb_bands(np.stack([outer + inner] * 2), FS, np.array([87.0, 131.0]))
+        for (low, high), resonance in zip(tree.best(), (2500.0, 7000.0), strict=True):
+            assert low <= resonance <= high
+            assert high - low < 4000
