@@ -16,6 +16,7 @@ tracking     course of the shaft speed of a run-up
 modulation   phase wander, sidebands and cyclostationarity of a line of an envelope
 colour       roll-off, centroid and tonality of a power spectrum
 shape        impulsiveness, slow fluctuation, statistics of the waveform
+cyclic       spectral coherence, enhanced envelope spectrum, and their thresholds
 impulsive    kurtogram, spectral kurtosis, band in which a fault line stands out
 ============ ======================================================================
 """

@@ -13,6 +13,11 @@ from .orders import (
     synchronous_average as synchronous_average,
 )
 from .tracking import track_speed as track_speed
+from .cyclic import (
+    Coherence as Coherence,
+    enhanced_envelope_spectrum as enhanced_envelope_spectrum,
+    spectral_coherence as spectral_coherence,
+)
 from .impulsive import (
     BandTree as BandTree,
     comb_bands as comb_bands,

@@ -1,0 +1,75 @@
+"""Laws of the spectral coherence: planted cyclic frequencies, false alarms as promised, agreement with SciPy."""
+
+import numpy as np
+import pytest
+from scipy.signal import csd, lfilter
+
+from features.signal import enhanced_envelope_spectrum, spectral_coherence
+
+FS = 20_000.0
+
+
+def bursts(rng, n, rate):
+    """Noise of a resonance at 3 kHz that swells sharply at a rate, in stationary white noise."""
+    resonance = np.poly(0.9 * np.exp(2j * np.pi * 3000 / FS * np.array([1, -1]))).real
+    swelling = np.exp(1.5 * np.cos(2 * np.pi * rate * np.arange(n) / FS))
+    ringing = lfilter([1.0], resonance, rng.standard_normal(n)) * swelling
+    return ringing / ringing.std() + rng.standard_normal(n)
+
+
+@pytest.mark.parametrize("colour", [0.0, 0.9])
+def test_stationary_noise_exceeds_the_thresholds_as_often_as_promised(colour):
+    x = lfilter([1.0], [1.0, -colour], np.random.default_rng(0).standard_normal((100, 20_000)))
+    found = spectral_coherence(x, FS, 300.0)
+    beyond = found.cyclic > 4.0  # resolutions
+    for probability in (0.05, 0.01, 0.001):
+        share = np.mean(found.squared[..., beyond] > found.threshold(probability))
+        np.testing.assert_allclose(share, probability, rtol=0.1)
+    for band in (None, (2000.0, 4000.0)):
+        spectrum = enhanced_envelope_spectrum(found, band)[:, beyond]
+        assert 0.007 < np.mean(spectrum > found.envelope_threshold(0.01, band)) < 0.0105
+
+
+@pytest.mark.parametrize("rate", [87.0, 87.3127, 151.9])
+def test_modulated_noise_has_its_depth_as_coherence_within_one_per_cent(rate):
+    rng, n, depth = np.random.default_rng(1), 1_000_000, 0.8
+    x = rng.standard_normal((1, n)) * (1 + depth * np.cos(2 * np.pi * rate * np.arange(n) / FS))
+    found = spectral_coherence(x, FS, 200.0)
+    spectrum = enhanced_envelope_spectrum(found)[0]
+    near = abs(found.cyclic - rate) < 0.2
+    np.testing.assert_allclose(np.sqrt(spectrum[near].max()), depth / (1 + depth**2 / 2), rtol=0.01)
+
+
+def test_the_enhanced_envelope_spectrum_has_lines_at_the_planted_rate_and_its_harmonics_alone():
+    rng, rate = np.random.default_rng(2), 73.4
+    found = spectral_coherence(np.stack([bursts(rng, 200_000, rate) for _ in range(3)]), FS, 350.0)
+    for band in (None, (2000.0, 4000.0)):
+        spectrum = enhanced_envelope_spectrum(found, band)
+        harmonic = np.rint(found.cyclic / rate)
+        near = abs(found.cyclic - harmonic * rate) < 2 * FS / 200_000  # the main lobe
+        assert np.all(spectrum[:, ~near] < found.envelope_threshold(1e-10, band))
+        for number in range(1, 4):
+            assert np.all(spectrum[:, near & (harmonic == number)].max(axis=-1) > found.envelope_threshold(1e-10, band))
+
+
+def test_the_coherence_is_that_of_scipy_between_a_record_and_its_shifted_copy():
+    rng, n, rate = np.random.default_rng(3), 400_000, 100.0
+    x = rng.standard_normal(n) * (1 + 0.6 * np.cos(2 * np.pi * rate * np.arange(n) / FS)) + 0.3
+    found = spectral_coherence(x[None], FS, 150.0)
+    shifted = (x - x.mean()) * np.exp(-2j * np.pi * rate * np.arange(n) / FS)
+
+    def density(a, b):
+        frequencies, values = csd(a, b, FS, nperseg=128, return_onesided=False)
+        return values[(frequencies > 0) & (frequencies < 9000)]
+
+    expected = abs(density(x, shifted)) ** 2 / abs(density(x, x) * density(shifted, shifted))
+    place = np.argmin(abs(found.cyclic - rate))
+    np.testing.assert_allclose(found.squared[0, :, place].mean(), expected.mean(), rtol=0.03)
+
+
+def test_a_short_record_or_an_empty_band_is_refused():
+    with pytest.raises(ValueError, match="at least 30 cycles"):
+        spectral_coherence(np.ones((1, 1000)), FS, 100.0)
+    found = spectral_coherence(np.random.default_rng(0).standard_normal((1, 20_000)), FS, 100.0)
+    with pytest.raises(ValueError, match="wider band"):
+        enhanced_envelope_spectrum(found, (10.0, 20.0))
