@@ -11,6 +11,7 @@ band             band of frequencies that features are computed from [pure]
 channels         channel of a corpus by name or number
 faults           the fault classes: colour, lines and telling features of each, in one table
 signal           spectra, envelope spectra, levels of fault lines, statistics of the waveform [pure]
+definitions      name, unit, meaning, formula and range of every feature [pure]
 indicators       the feature vector of records, in four groups [pure]
 speed            shaft speed of a recording, from its windows [pure]
 fault_bands      bands of the fault lines of a bearing, and what a spectrum has in them

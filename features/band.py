@@ -54,11 +54,6 @@ def checked_band(low: float, high: float) -> Band:
     return Band(float(low), float(high))
 
 
-def energy_names(band: Band = DEFAULT_BAND) -> tuple[str, ...]:
-    """Names of the features that are energies in bands of frequency."""
-    return tuple(f"energy_{low:g}-{high:g}_Hz" for low, high in pairwise(band.energy_edges))
-
-
 def band_of(attributes: Mapping[str, Any]) -> Band:
     """Band that the features of a table were computed from, by the attributes of the table."""
     default = band_attributes(DEFAULT_BAND)

@@ -8,35 +8,28 @@ Frequencies above the band are not used, so that features depend as little as po
 ``lines`` and ``shape`` are independent of gain and spectral colour; ``bands`` and ``time`` are not, and depend strongly
 on the machine. The lines are those of [1]_.
 
-A new group needs a function in ``GROUP_FEATURES`` and its names in ``NAMES``, both in this module.
+`features.definitions` has the name and definition of every feature. A new group needs its definitions there and a function
+in ``GROUP_FEATURES``.
 
 .. [1] R. B. Randall, J. Antoni, "Rolling element bearing diagnostics: a tutorial", *Mech. Syst. Signal
        Process.* 25 (2011) 485-520.
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from itertools import combinations, pairwise
+from itertools import combinations
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len
 
-from features.band import DEFAULT_BAND, Band, energy_names
+from features.band import DEFAULT_BAND, Band
+from features.definitions import ENERGY_ORDERS, GROUPS, SHAPES, define_features
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
-from features.signal.lines import (
-    FAMILIES,
-    FITTED_NAMES,
-    LINE_NAMES,
-    Orders,
-    families,
-    fitted_combs,
-    highest_order,
-    read_lines,
-)
+from features.signal.lines import FAMILIES, Orders, families, fitted_combs, highest_order, read_lines
 from features.signal.rows import ComplexArray, FloatArray, centre, squared_modulus
-from features.signal.shape import SHAPE_NAMES, TIME_NAMES, envelope_shape, moments, peaks, time_statistics
+from features.signal.shape import envelope_shape, moments, peaks, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd, whiten_cepstrally
 
-__all__ = ["GROUPS", "NAMES", "Orders", "feature_groups", "feature_names", "indicators"]
+__all__ = ["Orders", "feature_names", "indicators"]
 
 WHITENING_WIDTH = 50.0  # Hz
 FLOOR_WIDTH = (3.0, 30.0)  # window of the floor: orders of the shaft, and its least width [Hz]
@@ -44,29 +37,11 @@ FLOOR_WIDTH = (3.0, 30.0)  # window of the floor: orders of the shaft, and its l
 SHORTEST = (2.0, 0.05)  # shaft revolutions and seconds below which a record shows no line
 LOWEST_RATE = 2.0 * DEFAULT_BAND.narrow[0][1]  # Hz, lowest sample rate for lines in the default band
 
-ENERGY_ORDERS = (0.5, 1.5, 2.5, 3.5, 5.5, 10.5, 20.5, 40.5)
 FAINTEST_ENERGY = 1e-12  # of the total energy, 120 dB below it
 
 BATCH = 16  # records computed together, so that their arrays fit into the cache of a core; features do not depend on it
 
-ORDER_ENERGIES = tuple(f"energy_{low:g}-{high:g}_orders" for low, high in pairwise(ENERGY_ORDERS))
-VIEWS = ("cepstral", "whitened", "bands_max", "bands_mean")
 RIVALS = tuple(combinations(range(len(FAMILIES)), 2))
-NAMES = {
-    "lines": (
-        *(f"{view}_{line}" for view in VIEWS for line in LINE_NAMES),
-        *(f"{view}_{FAMILIES[a]}_over_{FAMILIES[b]}" for view in VIEWS for a, b in RIVALS),
-        *FITTED_NAMES,
-    ),
-    "shape": (
-        *(f"{view}_{shape}" for view in VIEWS for shape in SHAPE_NAMES),
-        *("raw_kurtosis", "raw_crest_factor"),
-    ),
-    "bands": (*energy_names(), *ORDER_ENERGIES),
-    "time": tuple(f"time_{name}" for name in TIME_NAMES),
-}
-"""Names of the features of each group, computed from the default band."""
-GROUPS = tuple(NAMES)
 
 
 def feature_names(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[str, ...]:
@@ -77,24 +52,7 @@ def feature_names(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> 
     ValueError
         For a group that does not exist.
     """
-    return tuple(name for group in _checked(groups) for name in _names(group, band))
-
-
-def feature_groups(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -> tuple[str, ...]:
-    """Group of each feature of `feature_names`."""
-    return tuple(group for group in _checked(groups) for _ in _names(group, band))
-
-
-def _names(group: str, band: Band) -> tuple[str, ...]:
-    return NAMES[group] if group != "bands" else (*energy_names(band), *ORDER_ENERGIES)
-
-
-def _checked(groups: Sequence[str]) -> Sequence[str]:
-    unknown = [group for group in groups if group not in NAMES]
-    if unknown or isinstance(groups, str):
-        message = f"groups: {groups!r} is not a list of feature groups; choose from {', '.join(GROUPS)}."
-        raise ValueError(message)
-    return groups
+    return tuple(feature.name for feature in define_features(groups, band))
 
 
 def indicators(
@@ -166,8 +124,8 @@ def _lines_and_shape(
     x: FloatArray, fs: float, shaft_rate: FloatArray, orders: Orders, band: Band
 ) -> dict[str, FloatArray]:
     duration = x.shape[-1] / fs
-    lines = np.full((len(x), len(NAMES["lines"])), np.nan)
-    shape = np.full((len(x), len(NAMES["shape"])), np.nan)
+    lines = np.full((len(x), len(feature_names(("lines",)))), np.nan)
+    shape = np.full((len(x), len(feature_names(("shape",)))), np.nan)
     long_enough = np.flatnonzero(duration * shaft_rate >= SHORTEST[0])
     features = {"lines": lines, "shape": shape}
     if fs < 2 * band.narrow[0][1] or duration < SHORTEST[1] or not long_enough.size:
@@ -227,7 +185,7 @@ def levels_and_shape(
     bins = int(np.max(highest * shaft_rate) / resolution) + 2
     width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) / resolution
     level = np.zeros((len(shaft_rate), len(bands), bins), np.float32)
-    shape = np.empty((len(shaft_rate), len(bands), len(SHAPE_NAMES)))
+    shape = np.empty((len(shaft_rate), len(bands), len(SHAPES)))
     for number, band in enumerate(bands):
         z = analytic_band(band, 0, band.shape[-1])
         power = squared_modulus(z)

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from features.band import DEFAULT_BAND, Band, band_attributes
-from features.indicators import GROUPS, Orders, feature_groups, indicators
+from features.definitions import GROUPS, feature_coordinates
+from features.indicators import Orders, indicators
 from features.signal.rows import FloatArray
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def recording_table(
     fault
         Code of the class of all windows.
     groups
-        Some of ``features.indicators.GROUPS``.
+        Some of ``features.definitions.GROUPS``.
     band
         Band that lines and shape are computed from.
 
@@ -65,15 +66,12 @@ def recording_table(
     count = len(windows)
     every = np.ones(count)
     nominal = Orders(*(float(order) * every for order in orders))
-    values, names = indicators(windows, fs, shaft_rate * every, nominal, groups, band)
+    values, _ = indicators(windows, fs, shaft_rate * every, nominal, groups, band)
     same = np.zeros(count, dtype=np.int32)
     variables = {"rig": same, "specimen": same, "recording": same, "fault": np.full(count, fault, dtype=np.int8)}
     variables |= {"sample_rate": fs * every, "shaft_rate": shaft_rate * every, **nominal._asdict()}
     return xr.Dataset(
         {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in variables.items()},
-        {
-            "feature": ("feature", np.array(names, dtype=object)),
-            "group": ("feature", np.array(feature_groups(groups, band), dtype=object)),
-        },
+        feature_coordinates(groups, band),
         {"title": "recording", **band_attributes(band)},
     )

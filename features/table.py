@@ -20,7 +20,8 @@ import xarray as xr
 
 from features.band import DEFAULT_BAND, Band, band_attributes, checked_band
 from features.channels import channel_number, joined_channels
-from features.indicators import GROUPS, Orders, feature_groups, feature_names, indicators
+from features.definitions import GROUPS, feature_coordinates
+from features.indicators import Orders, indicators
 from features.recording_speeds import (
     Speed,
     block_sums,
@@ -60,7 +61,7 @@ def feature_table(
     corpus
         Folder or file of the corpus.
     groups
-        Some of ``features.indicators.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
+        Some of ``features.definitions.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
     speed
         ``check`` also estimates the shaft speed of every recording (`features.shaft_speed`); ``correct`` does so too and
         computes the features at the estimated speed where it is clear. Simulated corpora are not checked.
@@ -78,12 +79,11 @@ def feature_table(
     Returns
     -------
     Dataset
-        ``features (record, feature)``, or ``(channel, record, feature)`` of several channels, coordinates ``feature`` (names) and
-        ``group``, all variables of the records except ``draws``, which is larger than the rest of the table, and the attributes of the
-        corpus with the ``channel``,
-        band and ``records_with_missing_features``, the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and
-        ``shaft_rate_uncertainty`` [Hz], ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of
-        ``recordings_with_other_speed``.
+        ``features (record, feature)``, or ``(channel, record, feature)`` of several channels, coordinates ``feature`` (names),
+        ``group``, ``units`` and ``long_name`` (meanings), all variables of the records except ``draws``, which is larger than the
+        rest of the table, and the attributes of the corpus with the ``channel``, band and ``records_with_missing_features``,
+        the number of rows with a NaN. With ``speed``, also ``shaft_rate_estimate`` and ``shaft_rate_uncertainty`` [Hz],
+        ``shaft_rate_evidence`` (0: not clear) and, as an attribute, the number of ``recordings_with_other_speed``.
 
     Raises
     ------
@@ -96,7 +96,7 @@ def feature_table(
     if not isinstance(channel, int | str):
         each = partial(feature_table, corpus, groups, speed=speed, band=band, workers=workers, scheduler=scheduler)
         return joined_channels({name: each(channel=name, progress=progress) for name in channel})
-    names = feature_names(groups, band)
+    coordinates = feature_coordinates(groups, band)
     with open_corpus(corpus) as opened:
         number = channel_number(opened, channel, corpus)
         read = {"channel": str(opened["channel"].values[number]), **band_attributes(band)}
@@ -114,16 +114,16 @@ def feature_table(
             estimates = recording_speeds(recording, table["shaft_rate"].values, sums)
         table = with_speeds(table, recording, estimates, treatment)
     rates = rates_to_use(table)
-    values, missing = np.empty((table.sizes["record"], len(names))), 0
+    values, missing = np.empty((table.sizes["record"], len(coordinates["feature"][1]))), 0
     compute = partial(_features_of_block, groups=tuple(groups), channel=number, band=band)
     tasks = list(zip(blocks, np.split(rates, starts[1:-1]), strict=True))
     with closing(work(compute, tasks, report)) as made:
         for number, rows in made:
             values[starts[number] : starts[number + 1]] = rows
             missing += int(np.isnan(rows).any(axis=1).sum())
-    return _assemble(table, values, names, feature_groups(groups, band)).assign_attrs(
-        records_with_missing_features=missing, **read
-    )
+    features = ("record", "feature"), values, {"long_name": "features of the signal"}
+    read |= {"records_with_missing_features": missing}
+    return table.assign(features=features).assign_coords(coordinates).assign_attrs(read)
 
 
 def block_features(
@@ -162,12 +162,3 @@ def _run(
 def _numbered(compute: Callable[[Item], Result], task: tuple[int, Item]) -> tuple[int, Result]:
     number, item = task
     return number, compute(item)
-
-
-def _assemble(table: xr.Dataset, values: FloatArray, names: Sequence[str], groups: Sequence[str]) -> xr.Dataset:
-    return table.assign(
-        features=(("record", "feature"), values, {"long_name": "features of the signal", "units": "1"})
-    ).assign_coords(
-        feature=("feature", np.array(names, dtype=object), {"long_name": "name of the feature"}),
-        group=("feature", np.array(groups, dtype=object), {"long_name": "group of the feature"}),
-    )

@@ -14,7 +14,8 @@ from sklearn.utils import Tags
 from sklearn.utils.validation import check_is_fitted, validate_data
 
 from features.band import DEFAULT_BAND, checked_band
-from features.indicators import GROUPS, Orders, feature_names, indicators
+from features.definitions import GROUPS
+from features.indicators import Orders, feature_names, indicators
 from features.signal.rows import FloatArray
 from features.speed import shaft_speed
 
@@ -36,7 +37,7 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
     ftf, bpfo, bpfi, bsf
         Nominal fault orders, by default those of a 6205; ``bsf`` is the ball spin frequency.
     groups
-        Some of ``features.indicators.GROUPS``.
+        Some of ``features.definitions.GROUPS``.
     band
         Lowest and highest frequency that lines and shape are computed from [Hz].
     speed

@@ -12,10 +12,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from features.indicators import NAMES
+from features.indicators import feature_names
 from features.signal.rows import FloatArray, IntArray, group_means
 
-ENERGIES = tuple(name for name in NAMES["bands"] if name.endswith("_Hz"))
+ENERGIES = tuple(name for name in feature_names(("bands",)) if name.endswith("_Hz"))
 COUNTED = tuple(name for name in ENERGIES if int(name.split("_")[1].split("-")[0]) >= 200)
 SCATTER = 3.0  # dB, of healthy recordings of a machine, unless those of the reference differ by more
 STEEPNESS = 4  # of the likelihood of being faulty against the distance

@@ -44,7 +44,7 @@ from features.baselines.references import RELATIVE, paired_table, with_energies
 from features.baselines.scores import Scores, score
 from features.baselines.severities import Covered, covered_widths, uncovered_widths
 from features.channels import channels_of
-from features.indicators import GROUPS
+from features.definitions import GROUPS
 from features.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result
 from gen.support.errors import CorpusError

@@ -16,6 +16,7 @@ import numpy as np
 from features.band import Band
 from features.baselines.plain import PlainModel
 from features.baselines.predictions import UNSURE, Predictions, predictions
+from features.definitions import GROUPS
 from features.diagnosis.evidence import Line, find_evidence
 from features.diagnosis.levels import ACCELERATION, Levels, levels_of
 from features.diagnosis.quality import ENOUGH, Quality, quality_of
@@ -31,7 +32,7 @@ from features.diagnosis.wording import (
     unexplained,
 )
 from features.faults import HEALTHY
-from features.indicators import GROUPS, Orders, feature_names, indicators
+from features.indicators import Orders, feature_names, indicators
 from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray, mean_row
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE

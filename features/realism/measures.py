@@ -20,7 +20,7 @@ from features.signal.impulsive import band_kurtosis, equal_bands
 from features.signal.lines import single_lines
 from features.signal.modulation import cyclostationarity, highest_place, phase_wander, sideband_ratio
 from features.signal.rows import FloatArray, squared_modulus
-from features.signal.shape import SHAPE_NAMES, envelope_shape, time_statistics
+from features.signal.shape import envelope_shape, time_statistics
 from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
@@ -190,8 +190,8 @@ class _Envelopes(NamedTuple):
     def shape(self, shaft_rate: FloatArray) -> FloatArray:
         """Share of the power of the envelopes below 0.8 orders, shape (window,)."""
         weighted = weight_by_hann(np.sqrt(self.power))
-        shapes = envelope_shape(self.power, weighted, self.spectrum, self.rate, shaft_rate)
-        return shapes[:, SHAPE_NAMES.index("slow_share")]
+        *_, slow_share = envelope_shape(self.power, weighted, self.spectrum, self.rate, shaft_rate).T
+        return slow_share
 
 
 def _lines(envelope: _Envelopes, shaft_rate: FloatArray, orders: Orders, fault: str) -> dict[str, FloatArray]:

@@ -24,12 +24,6 @@ FITTED_SPREAD = 0.004  # relative, between families at the fitted speed: slip an
 HIGHEST_LINE_ORDERS = (0.25, 12.0)  # orders between which the highest line is searched
 
 FAMILIES = ("bpfo", "bpfi", "2bsf")
-LINE_NAMES = (
-    *(f"{family}_{kind}" for kind in ("comb", "h1", "h2", "sidebands") for family in FAMILIES),
-    *("bsf", "fr", "2fr", "ftf", "2ftf", "fr-ftf"),
-    "highest_line",
-)
-FITTED_NAMES = (*(f"fitted_{family}_comb" for family in FAMILIES), "fitted_speed_error")
 
 
 class Orders(NamedTuple):
@@ -57,7 +51,7 @@ def highest_order(orders: Orders) -> FloatArray:
 
 
 def read_lines(level: FloatArray, bins_per_order: FloatArray, orders: Orders) -> FloatArray:
-    """Levels of the lines of `LINE_NAMES`, shape (record, line).
+    """Levels of the lines of `features.definitions.LINES`, shape (record, line).
 
     Parameters
     ----------

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from features.band import DEFAULT_BAND
-from features.indicators import GROUP_FEATURES, GROUPS, NAMES, Orders, feature_groups, feature_names, indicators
+from features.definitions import GROUPS, define_features
+from features.indicators import GROUP_FEATURES, Orders, feature_names, indicators
 from features.signal.lines import FAMILIES
 
 law = settings(deadline=None, max_examples=12)
@@ -45,8 +46,8 @@ def impulse_train(order, shaft_rate, fs=12_000, duration=0.5, seed=0):
 
 def test_names_are_unique_and_each_has_its_group():
     names = feature_names()
-    assert len(set(names)) == len(names) == len(feature_groups())
-    assert set(feature_groups()) == set(GROUPS)
+    assert len(set(names)) == len(names)
+    assert tuple(dict.fromkeys(feature.group for feature in define_features())) == GROUPS
 
 
 def test_each_group_has_one_function_that_computes_all_its_features():
@@ -54,7 +55,9 @@ def test_each_group_has_one_function_that_computes_all_its_features():
     for group, compute in GROUP_FEATURES.items():
         found = compute(noise(0).astype(np.float32), 12_000.0, np.full(4, 30.0), orders(4), DEFAULT_BAND)
         assert group in found
-        assert {name: values.shape for name, values in found.items()} == {name: (4, len(NAMES[name])) for name in found}
+        assert {name: values.shape for name, values in found.items()} == {
+            name: (4, len(feature_names((name,)))) for name in found
+        }
 
 
 def test_groups_are_returned_in_the_requested_order_with_the_same_values():
@@ -195,9 +198,9 @@ def test_a_record_of_unknown_speed_has_nan(rate):
 
 def test_a_record_of_less_than_two_revolutions_has_no_lines_and_no_shape_but_statistics():
     values = named(features(noise(3), 12_000.0, [30.0, 3.0, 30.0, 30.0]))
-    for name, group in zip(feature_names(), feature_groups(), strict=True):
-        assert np.isnan(values[name][1]) == (group in TRANSFER)
-        assert np.isfinite(values[name][[0, 2, 3]]).all()
+    for feature in define_features():
+        assert np.isnan(values[feature.name][1]) == (feature.group in TRANSFER)
+        assert np.isfinite(values[feature.name][[0, 2, 3]]).all()
 
 
 @pytest.mark.parametrize(
@@ -215,7 +218,7 @@ def test_a_signal_with_empty_bands_gives_finite_features():
 
 
 def test_zero_records_give_zero_rows():
-    assert features(np.empty((0, 6000)), 12_000.0, 30.0).shape == (0, sum(map(len, NAMES.values())))
+    assert features(np.empty((0, 6000)), 12_000.0, 30.0).shape == (0, len(define_features()))
 
 
 @law

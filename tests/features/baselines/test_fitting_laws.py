@@ -7,20 +7,20 @@ import pytest
 import xarray as xr
 
 from features.baselines import Model, benchmark
-from features.indicators import feature_groups, feature_names
+from features.definitions import feature_coordinates
 
 
 @pytest.fixture(scope="module")
 def table():
     """Six rigs with four specimens of three records, two of them healthy; the fault shifts all features."""
-    rng, record, names = np.random.default_rng(3), np.arange(72), feature_names()
-    rig, specimen = record // 12, record // 3
+    rng, record, coordinates = np.random.default_rng(3), np.arange(72), feature_coordinates()
+    rig, specimen, width = record // 12, record // 3, len(coordinates["feature"][1])
     fault = np.array([0, 0, 1, 2])[specimen % 4]
-    values = rng.standard_normal((len(record), len(names))) + np.outer(fault, rng.standard_normal(len(names)))
+    values = rng.standard_normal((len(record), width)) + np.outer(fault, rng.standard_normal(width))
     columns = {"rig": rig, "specimen": specimen, "recording": record, "fault": fault, "shaft_rate": 20.0 + record % 7}
     return xr.Dataset(
         {"features": (("record", "feature"), values)} | {name: ("record", held) for name, held in columns.items()},
-        {"feature": ("feature", list(names)), "group": ("feature", list(feature_groups()))},
+        coordinates,
         {"title": "Six rigs"},
     )
 

@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from features.signal.lines import FAMILIES, LINE_NAMES, Orders, combs, families, fitted_combs, read_lines, single_lines
+from features.definitions import LINES
+from features.signal.lines import FAMILIES, Orders, combs, families, fitted_combs, read_lines, single_lines
 
 law = settings(deadline=None, max_examples=40)
 ORDERS = Orders(*(np.array([order]) for order in (0.3983, 3.5848, 5.4152, 2.3567)))
@@ -19,7 +20,9 @@ def level_with(*places, height=2.0, bins=1200):
 
 
 def read(level):
-    return dict(zip(LINE_NAMES, read_lines(level, np.array([BINS_PER_ORDER]), ORDERS)[0], strict=True))
+    return dict(
+        zip((line.name for line in LINES), read_lines(level, np.array([BINS_PER_ORDER]), ORDERS)[0], strict=True)
+    )
 
 
 @law
