@@ -38,4 +38,7 @@ def joined_channels(tables: Mapping[str, xr.Dataset]) -> xr.Dataset:
     """Feature table of several channels of the same records, by name; all but the features are those of the first."""
     first = next(iter(tables.values()))
     features = xr.concat([table["features"] for table in tables.values()], xr.Variable("channel", [*tables]))
-    return first.assign(features=features).assign_attrs(channel=", ".join(tables))
+    missing = int(features.isnull().any(["channel", "feature"]).sum())
+    return first.assign(features=features).assign_attrs(
+        channel=", ".join(tables), records_with_missing_features=missing
+    )

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from features.channels import channels_of
 from gen.corpus import LIBRARY_LOCK, check_result, whole_or_not_at_all
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
@@ -20,8 +21,8 @@ ROW_GROUP = 8192  # records that are copied to columns together
 def write_table(table: xr.Dataset, path: Path | str) -> None:
     """Write a feature table as netCDF (``.nc``) or Parquet (``.parquet``), whole or not at all.
 
-    The netCDF file contains the digest of its content. A Parquet file has one column per feature and per variable, and
-    the attributes of a variable as metadata of its column.
+    The netCDF file contains the digest of its content. A Parquet file has one column per variable and per feature, whose
+    name begins with the channel if there are several, and the attributes of a variable as metadata of its column.
 
     Raises
     ------
@@ -107,9 +108,8 @@ def _write_netcdf(table: xr.Dataset, path: Path) -> None:
     for name, variable in table.variables.items():
         text = variable.dtype.kind in "OUT"
         # fixed-length characters: HDF5 2.2 can crash on variable-length strings once another file was closed
-        encoding[name] = (
-            {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None, "zlib": True}
-        )
+        kind = {"dtype": "S1", "char_dim_name": f"{name}_length"} if text else {"_FillValue": None}
+        encoding[name] = {"zlib": True, **kind}
     with LIBRARY_LOCK:
         table.assign_attrs({DIGEST: _digest(table)}).to_netcdf(
             path, engine="netcdf4", format="NETCDF4", encoding=encoding
@@ -122,8 +122,12 @@ def _write_parquet(table: xr.Dataset, path: Path) -> None:
 
     names = [str(name) for name, known in table.variables.items() if known.dims == ("record",)]
     columns = {name: (table[name].values, table[name].attrs) for name in names}
-    features = table["features"]
-    columns |= {str(name): (features.values[:, at], features.attrs) for at, name in enumerate(table["feature"].values)}
+    about = [str(name) for name, known in table.coords.items() if known.dims == ("feature",) and name != "feature"]
+    for one in channels_of(table):
+        prefix = f"{one['channel'].item()}_" if "channel" in one["features"].coords else ""
+        for feature in one["features"].transpose("feature", "record"):
+            known = {name: feature[name].item() for name in about}
+            columns[f"{prefix}{feature['feature'].item()}"] = feature.values, known
     fields = [
         pa.field(name, pa.array(values[:1]).type, metadata={key: str(value) for key, value in attributes.items()})
         for name, (values, attributes) in columns.items()

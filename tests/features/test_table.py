@@ -11,7 +11,8 @@ from distributed import Client
 
 from features import feature_table
 from features.band import Band, band_of
-from features.indicators import GROUPS, feature_names
+from features.definitions import GROUPS
+from features.indicators import feature_names
 from features.table import block_features
 from features.table_files import read_table, write_table
 from gen.corpus import (
@@ -252,7 +253,19 @@ def test_a_table_is_unchanged_in_the_columns_of_parquet(tmp_path, table):
         np.testing.assert_array_equal(again[name].to_numpy(), table["features"].sel(feature=name))
     assert again["bearing"].to_pylist() == table["bearing"].values.tolist()
     assert again.schema.field("width").metadata[b"units"] == b"m"
+    known = {b"group": b"time", b"units": b"m s-2", b"long_name": b"root mean square"}
+    assert again.schema.field("time_rms").metadata == known
     assert [file.name for file in tmp_path.iterdir()] == ["table.parquet"]
+
+
+def test_columns_of_several_channels_are_named_by_channel(tmp_path, corpus):
+    parquet = pytest.importorskip("pyarrow.parquet")
+    both = feature_table(corpus, ("time",), channel=["sensor", "housing"])
+    write_table(both, tmp_path / "both.parquet")
+    again = parquet.read_table(tmp_path / "both.parquet")
+    for name in ("sensor", "housing"):
+        held = both["features"].sel(channel=name, feature="time_rms")
+        np.testing.assert_array_equal(again[f"{name}_time_rms"].to_numpy(), held)
 
 
 def test_parquet_without_pyarrow_says_what_to_install(tmp_path, table, monkeypatch):
