@@ -85,10 +85,7 @@ def _show_keys(prefix: str, as_json: bool) -> None:
     if as_json:
         show.as_json({"keys": [key._asdict() for key in keys]})
         return
-    rows = [Key._fields, *(key._replace(kinds="/".join(key.kinds)) for key in keys)]
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    for row in rows:
-        show.text("  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip())
+    show.columns([Key._fields, *(key._replace(kinds="/".join(key.kinds)) for key in keys)])
 
 
 @click.command()

@@ -7,12 +7,16 @@ import click
 
 from raceway.console import show
 from raceway.console.options import (
+    A_PATH,
     USUAL,
     USUAL_ANALYSIS,
     Analysis,
     Team,
     analysis_options,
+    band_option,
+    channels_option,
     corpus_argument,
+    corpus_path,
     file_option,
     json_option,
     record_option,
@@ -51,8 +55,8 @@ def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tup
 
 
 @click.command()
-@corpus_argument
-@file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"), kind="feature table")
+@click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_path, required=False)
+@file_option("FILE", "Feature table: .nc or .parquet.", (".nc", ".parquet"), kind="feature table", required=False)
 @file_option(
     "PICTURE",
     "Also rank the features by how well they tell the classes, and draw the best: .png, .svg or .pdf.",
@@ -61,15 +65,18 @@ def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tup
     required=False,
     flags=("--rank",),
 )
-@analysis_options
+@click.option("--list", "listed", is_flag=True, help="List the features with unit, range and meaning instead.")
+@channels_option
+@band_option
 @speed_option
 @worker_options
 @json_option
 def features(
-    corpus: Path,
-    output: Path,
+    corpus: Path | None,
+    output: Path | None,
     rank: Path | None,
-    channel: str | None,
+    listed: bool,
+    channel: tuple[str, ...] | None,
     band: tuple[float, float] | None,
     speed: "Speed",
     workers: int | None,
@@ -79,18 +86,27 @@ def features(
     """Compute the features of every record of DIR.
 
     The table has one row per record, with the features of its signal and all its labels. It does not depend on the number of workers.
+    Several channels are further columns of a Parquet file, and a dimension of a netCDF file.
 
       raceway features corpus -o features.nc
       raceway features corpus -o features.parquet
       raceway features corpus -o features.nc --rank ranking.png
       raceway features corpus -o features.nc --channel fan_end --band 300 9000
+      raceway features corpus -o features.parquet --channel drive_end,fan_end
       raceway features recordings -o features.nc --speed correct
       raceway features corpus -o features.nc --workers 8
+      raceway features --list
     """
+    if listed:
+        _list_features(Analysis(band=band), as_json)
+        return
+    if corpus is None or output is None:
+        raise click.UsageError("Missing argument 'DIR' or option '-o' / '--output': only --list needs neither.")
     from features.table_files import check_destination, write_table
 
     check_destination(output)
-    table = table_of(corpus, speed, Team(workers, scheduler), Analysis(channel, band))
+    one, *more = channel or (None,)
+    table = table_of(corpus, speed, Team(workers, scheduler), Analysis(channel if more else one, band))
     write_table(table, output)
     ranked = None if rank is None else _ranking(table, rank)
     records, columns = table.sizes["record"], table.sizes["feature"]
@@ -123,6 +139,17 @@ def _ranking(table: "xr.Dataset", path: Path) -> "DataFrame":
     ranked = rank_features(table)
     write_picture(draw_ranking(ranked), path)
     return ranked
+
+
+def _list_features(analysis: Analysis, as_json: bool) -> None:
+    from features.definitions import define_features
+
+    defined = define_features(band=analysis.options()["band"])
+    if as_json:
+        show.as_json({"features": [feature._asdict() for feature in defined]})
+        return
+    rows = ((one.group, one.name, one.unit, one.range, one.meaning) for one in defined)
+    show.columns([("group", "feature", "unit", "range", "meaning"), *rows])
 
 
 def notice_of_unknown(corpus: Path, unknown: int) -> None:

@@ -113,8 +113,7 @@ channels_option: Decorator = click.option(
     "--channel",
     metavar="NAME[,NAME]",
     callback=names,
-    help="Channel by its name, or several that are axes of one housing, whose answers are combined; by default the first "
-    "(raceway info DIR lists them).",
+    help="Channel by its name, or several, such as the axes of one housing; by default the first (raceway info DIR lists them).",
 )
 band_option: Decorator = click.option(
     "--band",

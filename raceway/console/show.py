@@ -72,6 +72,14 @@ def table(header: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
         click.echo(printable("  ".join([first, *others]).rstrip()))
 
 
+def columns(rows: Iterable[Sequence[Any]]) -> None:
+    """Print columns that are aligned left."""
+    lines = [[str(cell) for cell in row] for row in rows]
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    for line in lines:
+        text("  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip())
+
+
 def counts(numbers: Mapping[str, int]) -> str:
     """Counts on one line.
 

@@ -305,6 +305,12 @@ def test_several_channels_have_the_features_of_each(corpus):
         np.testing.assert_array_equal(both["features"].sel(channel=name), alone)
 
 
+def test_a_record_lacks_features_if_one_of_its_channels_does(tmp_path):
+    spoiled = make_corpus(tmp_path / "corpus", spoiled=1)  # in two records of its first channel
+    for channels in (["housing", "sensor"], ["sensor", "housing"]):
+        assert feature_table(spoiled, ("time",), channel=channels).attrs["records_with_missing_features"] == 2
+
+
 @pytest.mark.parametrize("channel", [-1, 2])
 def test_a_channel_that_does_not_exist_is_refused(corpus, channel):
     with pytest.raises(CorpusError, match="give one of housing, sensor"):

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
+from features.indicators import feature_names
 from features.table_files import read_table
 from gen.corpus import FAULTS, SIGNAL, open_corpus
 from gen.simulation.simulate import response_of
@@ -251,6 +252,19 @@ def test_features_are_ranked_on_request_and_the_best_drawn(told, run, tiny_corpu
     printed = run("features", tiny_corpus, "-o", target, "--rank", drawn).stdout.splitlines()
     assert [line.split()[0] for line in printed[2:12]] == [row["feature"] for row in made["ranking"][:10]]
     assert told("features", tiny_corpus, "-o", target)["ranking"] is None
+
+
+def test_the_list_of_features_has_a_row_for_each_column(told, run):
+    names = [feature["name"] for feature in told("features", "--list")["features"]]
+    assert tuple(names) == feature_names()
+    rows = run("features", "--list").stdout.splitlines()
+    assert [row.split()[1] for row in rows] == ["feature", *names]
+    assert "energy_7000-9000_Hz" in run("features", "--list", "--band", 300, 9000).stdout
+
+
+def test_features_need_a_corpus_and_a_file_unless_they_are_listed(run, tiny_corpus):
+    for line in (("features",), ("features", tiny_corpus)):
+        assert run(*line).stderr.startswith("raceway features: Missing argument 'DIR' or option '-o'")
 
 
 def test_train_scores_on_the_test_split_and_trains_on_the_other_records(told, run, tiny_corpus, tmp_path):

@@ -58,6 +58,13 @@ def test_commands_that_compute_features_pass_on_workers_and_scheduler(
     assert options["scheduler"] is None
 
 
+def test_features_pass_on_one_channel_or_several(run, given, tiny_corpus):
+    options = given("features.feature_table")
+    for text, channel in (("x", "x"), ("x,y", ("x", "y"))):
+        run("features", tiny_corpus, "-o", "new.nc", "--channel", text)
+        assert options["channel"] == channel
+
+
 @pytest.mark.parametrize("name", ["cwru", "mfpt", "generic"])
 def test_import_passes_on_the_length_of_a_record(run, given, tmp_path, name):
     options = given(f"gen.importers.import_{name}")
