@@ -51,13 +51,13 @@ class Feature(NamedTuple):
         return f">= {self.least:g}" if self.least > -inf else "any"
 
 
-RANDALL = "Randall, Vibration-based Condition Monitoring, 2021, section 5.5"
+RANDALL = "Randall, Vibration-based Condition Monitoring (2021)"
 _level = partial(
     Feature,
     group="lines",
     unit="Np",
     parameters="band, shaft rate, fault orders",
-    source="Randall and Antoni, Mech. Syst. Signal Process. 25 (2011); whitening by the cepstrum: Borghesani et al., 36 (2013)",
+    source="Randall and Antoni, MSSP 25 (2011)",
 )
 _shape = partial(Feature, group="shape", unit="1", parameters="band, shaft rate", source=RANDALL, least=0.0)
 _raw = partial(Feature, group="shape", unit="1", parameters="end of the band", source=RANDALL, least=1.0)
@@ -133,7 +133,7 @@ SHAPES = (
         "logarithm of the kurtosis of the analytic signal, 0.69 for Gaussian noise",
         "ln(E|z|^4 / (E|z|^2)^2)",
         parameters="band",
-        source="Antoni, Mech. Syst. Signal Process. 20 (2006)",
+        source="Antoni, MSSP 20 (2006)",
     ),
     _shape(
         "slow_fluctuation",

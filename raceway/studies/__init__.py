@@ -11,6 +11,7 @@ statements      the statements of the seed paper, measured
 orbits          picture of two crossed sensors on one machine
 sensor_faults   pictures of every sensor fault and of a gear mesh
 gallery         a page of pictures: the seed paper, every fault, run-ups, sensor faults
+feature_page    tables and picture of docs/features.md
 card_pictures   pictures and scores of a data card
 timing          speed of this machine, stage by stage
 doctor          facts of this machine, with advice

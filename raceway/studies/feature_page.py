@@ -1,0 +1,116 @@
+"""Tables and picture of docs/features.md: ``python -m raceway.studies.feature_page docs/features.md [PICTURE]``.
+
+A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``; a test compares the page with the definitions.
+"""
+
+import re
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+import gen
+from features.band import DEFAULT_BAND
+from features.definitions import FITTED, LINES, RAW, RIVALS, SHAPES, VIEWS, Feature, define_features
+from features.indicators import Orders, bands_of, levels_and_shape
+from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, picture
+from features.signal.demodulation import analytic_band
+from features.signal.spectra import band_energies, fourier_coefficients, psd
+
+_TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+_HEADER = ("feature", "unit", "range", "meaning", "formula", "depends on", "source")
+TURNS, HIGHEST_ORDER = 2, 13.0  # drawn shaft revolutions and orders
+
+
+def _in_every_view(features: Sequence[Feature]) -> list[Feature]:
+    return [feature._replace(name=f"VIEW_{feature.name}") for feature in features]
+
+
+TABLES: Mapping[str, Sequence[Feature]] = {
+    "lines": (*_in_every_view((*LINES, *RIVALS)), *FITTED),
+    "shape": (*_in_every_view(SHAPES), *RAW),
+    "bands": define_features(("bands",)),
+    "time": define_features(("time",)),
+}
+
+
+def with_tables(page: str) -> str:
+    """A page with its tables made again."""
+    tables = {name: _markdown(_HEADER, map(_cells, features)) for name, features in TABLES.items()}
+    tables["views"] = _markdown(("view", "meaning"), ((f"`{view}`", meaning) for view, meaning in VIEWS.items()))
+    return _TABLE.sub(lambda found: f"{found[1]}\n{tables[found[2]]}\n{found[3]}", page)
+
+
+def _cells(feature: Feature) -> Sequence[str]:
+    formula = feature.formula.replace("|", "\\|")
+    return (
+        f"`{feature.name}`",
+        feature.unit,
+        feature.range,
+        feature.meaning,
+        f"`{formula}`",
+        feature.parameters,
+        feature.source,
+    )
+
+
+def _markdown(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    return "".join(f"| {' | '.join(row)} |\n" for row in (header, ["---"] * len(header), *rows))
+
+
+@rc_context(STYLE)
+def draw_features() -> Figure:
+    """A simulated spall on the outer race, and what each group of features measures of it."""
+    record = gen.record(gen.outer(width_mm=0.8), bearing="6205", shaft_rpm=1480, duration_s=1, waviness_nm=20, seed=1)
+    x, fs, rate = (
+        record["acceleration"].values.reshape(1, -1),
+        float(record["sample_rate"]),
+        record["shaft_rate"].values,
+    )
+    orders = Orders(*(record[name].values.reshape(1) for name in Orders._fields))
+    whitened = bands_of(fourier_coefficients(x, fs, DEFAULT_BAND.high), x.size / fs, fs)[1]
+    level, _, bins = levels_and_shape([whitened], x.size / fs, rate.reshape(1), np.array([HIGHEST_ORDER]))
+    figure = Figure(figsize=(7, 4.6), layout="constrained", dpi=72)
+    (waveform, density), (envelope, spectrum) = figure.subplots(2, 2)
+    _draw_moduli(waveform, x[0] - x.mean(), fs * TURNS / float(rate))
+    waveform.set(title="time: the waveform, its rms and its peak", ylabel="acceleration [m/s²]")
+    _draw_energies(density, *psd(x, fs))
+    z = np.abs(analytic_band(whitened, 0, whitened.shape[-1])[0])
+    _draw_moduli(envelope, z / np.sqrt(np.mean(z**2)), z.size / (x.size / fs) * TURNS / float(rate))
+    envelope.set(title="shape: the envelope of the whitened band", ylabel="envelope over its rms")
+    spectrum.plot(np.arange(level.shape[-1]) / bins, level[0, 0], color=INK, linewidth=0.7)
+    for harmonic in (1, 2, 3):
+        spectrum.axvline(harmonic * float(orders.bpfo[0]), color=VERMILION, linewidth=4, alpha=0.25)
+    spectrum.set(title="lines: BPFO and harmonics over the floor", xlim=(0, HIGHEST_ORDER), ylim=(-2, None))
+    spectrum.set(xlabel="order of the shaft", ylabel="level [Np]")
+    return figure
+
+
+def _draw_moduli(axes: Axes, values: np.ndarray, samples: float) -> None:
+    """Draw some revolutions of a signal with its rms and its peak."""
+    axes.plot(np.arange(round(samples)) * (TURNS / samples), values[: round(samples)], color=INK, linewidth=0.4)
+    for height, colour in ((np.sqrt(np.mean(values**2)), BLUE), (np.abs(values).max(), VERMILION)):
+        axes.axhline(height, color=colour, linewidth=1)
+    axes.set(xlabel="shaft revolutions", xlim=(0, TURNS))
+
+
+def _draw_energies(axes: Axes, frequencies: np.ndarray, density: np.ndarray) -> None:
+    """Draw a power spectral density with its mean in each band."""
+    edges = np.array(DEFAULT_BAND.energy_edges)
+    means = band_energies(density, frequencies, edges)[0] / np.diff(edges)
+    axes.plot(frequencies / 1e3, 10 * np.log10(density[0]), color=FAINT, linewidth=0.7)
+    axes.stairs(10 * np.log10(means), edges / 1e3, baseline=None, color=BLUE, linewidth=1.5)
+    axes.set(
+        title="bands: mean power in each band", xlabel="frequency [kHz]", ylabel="PSD [dB]", xlim=(0, edges[-1] / 1e3)
+    )
+
+
+if __name__ == "__main__":
+    written, *pictures = map(Path, sys.argv[1:])
+    written.write_text(with_tables(written.read_text(encoding="utf-8")), encoding="utf-8")
+    for path in pictures:
+        path.write_bytes(picture(draw_features(), "png"))

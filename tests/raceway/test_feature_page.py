@@ -1,0 +1,46 @@
+"""The tables of ``docs/features.md`` are the definitions, its examples run, and its commands exist."""
+
+import re
+import shlex
+
+import pytest
+
+from features.definitions import GROUPS, VIEWS, define_features
+from raceway.cli import cli
+from raceway.studies.feature_page import TABLES, draw_features, with_tables
+from tests.paths import ROOT
+from tests.tone_corpora import write_corpus
+
+PAGE = (ROOT / "docs" / "features.md").read_text(encoding="utf-8")
+
+
+def test_the_tables_are_the_definitions():
+    assert with_tables(PAGE) == PAGE, "run make generated"
+
+
+def test_the_tables_have_every_feature_in_its_group():
+    for group in GROUPS:
+        views = [name.replace("VIEW", view) for name in (row.name for row in TABLES[group]) for view in VIEWS]
+        assert set(views) == {feature.name for feature in define_features((group,))}
+
+
+def test_the_examples_run_one_after_the_other(tmp_path, monkeypatch, capsys):
+    write_corpus(tmp_path / "corpus")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    for block in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL):
+        exec(compile(block, "docs/features.md", "exec"), names)  # noqa: S102 - our own page
+    assert names["values"].shape == (4, len(define_features()))
+    assert "time_rms m s-2 >= 0 root mean square" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("line", re.findall(r"^raceway (.*?)(?: +#.*)?$", PAGE, re.MULTILINE))
+def test_a_command_of_the_page_has_these_options(line):
+    name, *arguments = shlex.split(line)
+    command = cli.commands[name]
+    known = {option for parameter in command.params for option in parameter.opts}
+    assert {argument for argument in arguments if argument.startswith("-")} <= known
+
+
+def test_the_picture_has_a_panel_for_each_group():
+    assert sorted(axes.get_title(loc="left").split(":")[0] for axes in draw_features().axes) == sorted(GROUPS)
