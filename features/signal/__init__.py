@@ -17,6 +17,7 @@ modulation   phase wander, sidebands and cyclostationarity of a line of an envel
 colour       roll-off, centroid and tonality of a power spectrum
 shape        impulsiveness, slow fluctuation, statistics of the waveform
 cyclic       spectral coherence, enhanced envelope spectrum, and their thresholds
+separation   tones, transfer paths and impacts of a record, apart from one another
 impulsive    kurtogram, spectral kurtosis, band in which a fault line stands out
 ============ ======================================================================
 """

@@ -24,3 +24,11 @@ from .impulsive import (
     kurtogram as kurtogram,
     spectral_kurtosis as spectral_kurtosis,
 )
+from .separation import (
+    Separation as Separation,
+    cepstrum as cepstrum,
+    lifter as lifter,
+    prediction_residual as prediction_residual,
+    separate_random as separate_random,
+    sharpen as sharpen,
+)

@@ -1,0 +1,186 @@
+"""Separation of the parts of a record: tones from impacts, transfer path from excitation, impacts from their smear.
+
+============================ ==========================================================================================
+`cepstrum`, `lifter`         transfer path (low quefrencies) and families of harmonics (their period), in the log spectrum [1]_
+`separate_random`            tones, which repeat after a delay, from impacts that do not, because a bearing slips [2]_
+`prediction_residual`        the part of a record that its past does not predict: impacts and noise [3]_
+`sharpen`                    the filter whose output is closest to impulses at a known rate [4]_
+============================ ==========================================================================================
+
+Cepstral pre-whitening, which sets the whole cepstrum to zero, is `features.signal.spectra.whiten_cepstrally`.
+
+.. [1] R. B. Randall, N. Sawalhi, "A new method for separating discrete components from a signal", *Sound Vib.* 45 (2011)
+       6-9.
+.. [2] J. Antoni, R. B. Randall, "Unsupervised noise cancellation for vibration signals: part II - a novel
+       frequency-domain algorithm", *Mech. Syst. Signal Process.* 18 (2004) 103-117.
+.. [3] N. Sawalhi, R. B. Randall, H. Endo, "The enhancement of fault detection and diagnosis in rolling element bearings
+       using minimum entropy deconvolution combined with spectral kurtosis", *Mech. Syst. Signal Process.* 21 (2007)
+       2616-2633.
+.. [4] G. L. McDonald, Q. Zhao, "Multipoint optimal minimum entropy deconvolution and convolution fix: application to
+       vibration fault detection", *Mech. Syst. Signal Process.* 82 (2017) 461-477.
+"""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.fft import irfft, next_fast_len, rfft
+from scipy.linalg import cho_factor, cho_solve, solve_toeplitz
+
+from features.signal.rows import ComplexArray, FloatArray, squared_modulus
+from features.signal.spectra import hann_segments
+
+OVERLAP_LOSS = 1.056  # segments per independent segment, Hann window and half overlap
+CHANCE = 0.01  # that a coherence of noise counts as that of a tone
+LOADING = 1e-9  # of the power, added as white noise: it keeps the equations of pure tones solvable
+
+
+class Separation(NamedTuple):
+    """Two parts of records that add up to them without their mean, shapes (record, time)."""
+
+    deterministic: FloatArray
+    random: FloatArray
+
+
+def cepstrum(x: FloatArray) -> FloatArray:
+    """Real cepstrum, shape (record, time): value k belongs to the quefrency of k samples, and to the same from the end."""
+    return np.asarray(irfft(_log_modulus(np.asarray(rfft(x, axis=-1))), n=x.shape[-1], axis=-1))
+
+
+def lifter(x: FloatArray, fs: float, removed: Sequence[tuple[float, float]]) -> FloatArray:
+    """Records with ranges of their cepstrum set to zero and with their phases unchanged, shape (record, time).
+
+    Parameters
+    ----------
+    x
+        Records, shape (record, time), none of them constant.
+    fs
+        Sample rate [Hz].
+    removed
+        Lowest and highest quefrency of each range [s], both included. ``[(0.002, inf)]`` keeps the transfer path,
+        ``[(0, 0.002)]`` removes it together with the gain, and ranges around the multiples of ``1 / rate`` remove a
+        family of harmonics or sidebands.
+    """
+    n = x.shape[-1]
+    coefficients = np.asarray(rfft(x, axis=-1))
+    quefrency = np.minimum(np.arange(n), n - np.arange(n)) / fs
+    gone = np.logical_or.reduce([(quefrency >= low) & (quefrency <= high) for low, high in removed])
+    change = np.asarray(rfft(np.where(gone, irfft(_log_modulus(coefficients), n=n, axis=-1), 0.0), axis=-1)).real
+    return np.asarray(irfft(coefficients * np.exp(-change), n=n, axis=-1))
+
+
+def _log_modulus(coefficients: ComplexArray) -> FloatArray:
+    modulus = np.sqrt(squared_modulus(coefficients))
+    return np.log(np.maximum(modulus, np.finfo(modulus.dtype).tiny))
+
+
+def separate_random(x: FloatArray, fs: float, *, segment: float = 0.1, delay: float = 0.1) -> Separation:
+    """Tones, and the rest of each record, by the correlation of segments with later ones.
+
+    The modulus of the coherence of segments with those ``delay`` later is near 1 at a tone and, in noise, as low as the
+    number of segments allows. Less this bias it is the gain of a zero-phase filter, that of the tones; where noise would
+    reach it in one of a hundred bins, the gain is 0. Within one segment of both ends less of the tones is removed.
+
+    Parameters
+    ----------
+    x
+        Records, shape (record, time).
+    fs
+        Sample rate [Hz].
+    segment
+        Length of a segment [s]. Two tones closer than ``4 / segment`` are one; half of the record is the most.
+    delay
+        Time in which the random part forgets its phase [s]: several periods of the fault, and at least a segment.
+    """
+    n, length, shift = x.shape[-1], round(segment * fs), round(delay * fs)
+    if length < 4 or n < 2 * length + shift:
+        raise ValueError(
+            f"records of {n / fs:.3g} s are too short: two segments of {segment:g} s and the delay must fit."
+        )
+    centred = x - x.mean(axis=-1, keepdims=True)
+    early = np.asarray(rfft(hann_segments(centred[:, : n - shift], length), axis=-1))
+    late = np.asarray(rfft(hann_segments(centred[:, shift:], length), axis=-1))
+    cross = np.abs(np.sum(late * early.conj(), axis=1)) ** 2
+    power = np.sum(np.abs(early) ** 2, axis=1) * np.sum(np.abs(late) ** 2, axis=1)
+    count = max(early.shape[1] / OVERLAP_LOSS, 1.01)
+    ratio = cross / np.maximum(power, np.finfo(power.dtype).tiny)
+    significant = ratio > 1 - CHANCE ** (1 / (count - 1))
+    gain = np.where(significant, np.sqrt(np.clip((count * ratio - 1) / (count - 1), 0, 1)), 0.0)
+    deterministic = _filter(centred, gain, length)
+    return Separation(deterministic, centred - deterministic)
+
+
+def _filter(x: FloatArray, gain: FloatArray, length: int) -> FloatArray:
+    """Records through zero-phase filters of given gain at the frequencies of segments of ``length``, shape (record, time)."""
+    n = next_fast_len(x.shape[-1] + length, real=True)
+    place = np.arange(n // 2 + 1) * (length / n)
+    fine = np.stack([np.interp(place, np.arange(len(row)), row) for row in gain]).astype(x.dtype)
+    return np.asarray(irfft(np.asarray(rfft(x, n=n, axis=-1)) * fine, n=n, axis=-1))[:, : x.shape[-1]]
+
+
+def prediction_residual(x: FloatArray, order: int) -> FloatArray:
+    """Records less their linear prediction from ``order`` samples before, shape (record, time).
+
+    The coefficients solve the equations of Yule and Walker; the residual of an autoregressive process is its innovation.
+    """
+    n = x.shape[-1]
+    if not 0 < order < n:
+        raise ValueError(f"order {order} is not in 1 to {n - 1}, the length of the records less one.")
+    centred = x - x.mean(axis=-1, keepdims=True)
+    length = next_fast_len(n + order, real=True)
+    coefficients = np.asarray(rfft(centred, n=length, axis=-1))
+    correlation = np.asarray(irfft(squared_modulus(coefficients).astype(float), n=length, axis=-1))[:, : order + 1]
+    correlation[:, 0] += LOADING * correlation[:, 0] + np.finfo(float).tiny
+    weights = np.stack([solve_toeplitz(row[:-1], row[1:]) for row in correlation])
+    filters = np.concatenate([np.ones((len(x), 1)), -weights], axis=-1).astype(x.dtype)
+    return np.asarray(irfft(coefficients * rfft(filters, n=length, axis=-1), n=length, axis=-1))[:, :n]
+
+
+def sharpen(x: FloatArray, fs: float, rate: FloatArray, length: int) -> FloatArray:
+    """Records through the filter whose output is closest to a train of unit impulses, shape (record, time - length + 1).
+
+    The filter is the solution of one least-squares system for the phase of the train that fits best. It uses only complete
+    products of record and filter, and so does not sharpen the ends of the record. It finds a weak train of ``rate`` in
+    pure noise, too: compare with other rates.
+
+    Parameters
+    ----------
+    x
+        Records, shape (record, time).
+    fs
+        Sample rate [Hz].
+    rate
+        Impulses per second, shape (record,), right within a sample over the record.
+    length
+        Number of coefficients of the filter.
+    """
+    count = x.shape[-1] - length + 1
+    if length < 1 or count < 2 * length:
+        raise ValueError(f"{length} coefficients are too many for {x.shape[-1]} samples: take at most a third of them.")
+    periods = fs / np.broadcast_to(np.asarray(rate, dtype=float), len(x))
+    rows = zip(np.asarray(x - x.mean(axis=-1, keepdims=True), dtype=float), periods, strict=True)
+    return np.stack([_sharpen(row, period, length, count) for row, period in rows]).astype(x.dtype)
+
+
+def _sharpen(x: FloatArray, period: float, length: int, count: int) -> FloatArray:
+    """Output of the filter of one record, shape (time,)."""
+    places = np.arange(0.0, count - int(period), period).round().astype(int)
+    summed = x[places[:, None] + np.arange(int(period) + length - 1)].sum(axis=0)
+    products = np.lib.stride_tricks.sliding_window_view(summed, length).T  # one column for each phase of the train
+    solved = np.asarray(cho_solve(cho_factor(_covariance(x, length, count)), products))
+    best = np.argmax(np.sum(products * solved, axis=0))
+    return np.convolve(x, solved[::-1, best], mode="valid")
+
+
+def _covariance(x: FloatArray, length: int, count: int) -> FloatArray:
+    """Sums of ``x[k + i] * x[k + j]`` over k < ``count``, shape (length, length), each from that of i - 1 and j - 1."""
+    padded = next_fast_len(len(x) + count, real=True)
+    head = np.asarray(rfft(x[:count], n=padded)).conj()
+    out = np.empty((length, length))
+    out[0] = irfft(head * np.asarray(rfft(x, n=padded)), n=padded)[:length]
+    first, last = x[: length - 1], x[count : count + length - 1]
+    for i in range(1, length):
+        out[i, 1:] = out[i - 1, :-1] + last[i - 1] * last - first[i - 1] * first
+        out[i, 0] = out[0, i]
+    out[np.diag_indices(length)] += LOADING * out[0, 0] + np.finfo(float).tiny
+    return out
