@@ -1,0 +1,110 @@
+"""How often the strongest comb of a real recording is that of its fault, by band and by separation method.
+
+``python -m benchmarks.envelope_bands REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them.
+A comb is the mean level of the lines of outer race, inner race or balls at three harmonics over the floor of the envelope spectrum, at the
+speed that is known best. A recording carries a line if the comb of its fault has 1 neper in any of the cells, averaged over its windows.
+One of three is chance.
+"""
+
+import argparse
+import tempfile
+from collections.abc import Callable, Iterator, Mapping
+from pathlib import Path
+
+import numpy as np
+from scipy.fft import irfft
+
+from benchmarks.speed import Recording, real_corpora, recordings
+from features.band import DEFAULT_BAND
+from features.indicators import FLOOR_WIDTH, WHITENING_WIDTH
+from features.signal import comb_bands, kurtogram, prediction_residual, separate_random
+from features.signal.demodulation import ZERO_PADDING, analytic_band, envelope_spectrum, log_level
+from features.signal.lines import combs
+from features.signal.spectra import fourier_coefficients, whiten_by_psd, whiten_cepstrally
+
+FAMILIES = ("outer", "inner", "ball")
+CLEAR = 1.0  # nepers
+NARROWEST = 600.0  # Hz, of a band of the kurtogram: a line and three harmonics must fit
+WINDOW_SECONDS = 1.0
+ORDER = 100  # of the linear prediction
+
+Signal = np.ndarray
+Cell = tuple[str, str]
+
+
+def whitened(x: Signal, fs: float, method: Callable) -> Signal:
+    """Records whose Fourier coefficients are whitened."""
+    return np.asarray(irfft(method(fourier_coefficients(x, fs, fs / 2)), n=x.shape[-1], norm="forward"))
+
+
+SEPARATIONS: Mapping[str, Callable[[Signal, float], Signal]] = {
+    "as recorded": lambda x, _: x,
+    "whitened by its spectrum": lambda x, fs: whitened(
+        x, fs, lambda c: whiten_by_psd(c, round(WHITENING_WIDTH * x.shape[-1] / fs))
+    ),
+    "cepstral pre-whitening": lambda x, fs: whitened(x, fs, whiten_cepstrally),
+    "discrete/random separation": lambda x, fs: separate_random(x, fs).random,
+    "linear prediction": lambda x, _: prediction_residual(x, ORDER),
+    "separation, then prediction": lambda x, fs: prediction_residual(separate_random(x, fs).random, ORDER),
+}
+
+
+def chosen_bands(x: Signal, fs: float, rates: np.ndarray) -> dict[str, np.ndarray]:
+    """Edges of the band of each family [Hz], shape (family, 2), by way of choice; one band for all windows."""
+    by_kurtosis = kurtogram(x, fs, narrowest=NARROWEST)
+    by_comb = [comb_bands(x, fs, np.full(len(x), rate)) for rate in rates]
+    best = [tree._replace(score=tree.score.mean(axis=0)[None]).best()[0] for tree in (by_kurtosis, *by_comb)]
+    fixed = (DEFAULT_BAND.low, min(DEFAULT_BAND.high, fs / 2))
+    return {"fixed": np.tile(fixed, (3, 1)), "kurtogram": np.tile(best[0], (3, 1)), "comb": np.stack(best[1:])}
+
+
+def comb_level(x: Signal, fs: float, band: np.ndarray, rate: float, shaft_rate: float) -> float:
+    """Comb of a rate [Hz] in the envelope spectrum of a band [Hz], mean of the windows [nepers]."""
+    duration = x.shape[-1] / fs
+    low, high = np.rint(band * duration).astype(int)
+    z = analytic_band(fourier_coefficients(x, fs, fs / 2), low, high)
+    _, spectrum = envelope_spectrum(z, z.shape[-1] / duration)
+    width = max(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) * duration * ZERO_PADDING
+    level = log_level(spectrum, np.full(len(x), width), spectrum.shape[-1])
+    return float(combs(level, np.full((len(x), 1), rate * duration * ZERO_PADDING)).mean())
+
+
+def comb_levels(recording: Recording) -> Iterator[tuple[Cell, list[float]]]:
+    """Comb of each family in each cell of the table."""
+    fs, rate = recording.fs, recording.true if np.isfinite(recording.true) else recording.label
+    _, bpfo, bpfi, bsf = recording.orders
+    rates = rate * np.array([bpfo, bpfi, 2 * bsf])
+    whole = recording.x.reshape(1, -1).astype(np.float32)
+    length = min(round(WINDOW_SECONDS * fs), whole.shape[-1])
+    for separation, separate in SEPARATIONS.items():
+        x = separate(whole, fs)[0, : whole.shape[-1] // length * length].reshape(-1, length)
+        for band, edges in chosen_bands(x, fs, rates).items():
+            yield (separation, band), [comb_level(x, fs, *pair, rate) for pair in zip(edges, rates, strict=True)]
+
+
+def main() -> None:
+    """Print a table for each set and one for all."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("real", type=Path)
+    right: dict[str, list[dict[Cell, bool]]] = {"all": []}
+    with tempfile.TemporaryDirectory() as name:
+        for title, corpus in real_corpora(parser.parse_args().real, Path(name)).items():
+            for recording in recordings(corpus):
+                if recording.fault in FAMILIES:
+                    own = FAMILIES.index(recording.fault)
+                    levels = dict(comb_levels(recording))
+                    if max(values[own] for values in levels.values()) > CLEAR:
+                        found = {cell: int(np.argmax(values)) == own for cell, values in levels.items()}
+                        right.setdefault(title, []).append(found)
+                        right["all"].append(found)
+    print(
+        "| set | recordings | separation | fixed band, % | kurtogram, % | comb band, % |\n|---|---:|---|---:|---:|---:|"
+    )
+    for title, found in right.items():
+        for separation in SEPARATIONS:
+            rates = [100 * np.mean([one[separation, band] for one in found]) for band in ("fixed", "kurtogram", "comb")]
+            print(f"| {title} | {len(found)} | {separation} | {' | '.join(f'{rate:.1f}' for rate in rates)} |")
+
+
+if __name__ == "__main__":
+    main()
