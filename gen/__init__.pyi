@@ -21,6 +21,7 @@ from .recipe.constructors import (
     uniform as uniform,
 )
 from .scenarios import draw_scenarios as draw_scenarios, read_scenarios as read_scenarios
+from .simulation.shaft import shaft_angles as shaft_angles
 from .support.errors import (
     ClusterError as ClusterError,
     CorpusError as CorpusError,

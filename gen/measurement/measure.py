@@ -30,7 +30,7 @@ from gen.measurement.mixing import Products, mix
 from gen.measurement.rig import RigFilters, rig_filters
 from gen.measurement.sensor_faults import SensorFlags, disturb
 from gen.scenarios import Gains, Purpose, Scenario, common_settings
-from gen.simulation.shaft import shaft_angles
+from gen.simulation.shaft import scenario_angles
 from gen.simulation.simulate import Twins
 from gen.simulation.timeline import Timeline, timeline
 
@@ -188,7 +188,7 @@ def _parts(
         np.subtract(acceleration[row], both[row], out=both[place])
     _through_paths(both, [*filters, *(filters[row] for row in faulty)])
     rngs = [scenario.rng(Purpose.NOISE) for scenario in scenarios]
-    angles = [shaft_angles(scenario, axis) for scenario in scenarios]
+    angles = [scenario_angles(scenario, axis) for scenario in scenarios]
     lines = [lines_of(*given, axis) for given in zip(filters, scenarios, rngs, strict=True)]
     background = noise_of(filters, n_channels, rngs)
     impulses = impulses_of(filters, angles, rngs)

@@ -7,19 +7,64 @@ locked to the shaft turn by this one angle.
 import math
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 
+from gen.corpus import DRAWS
 from gen.physics.kernel.layout import SPEED_TERMS
 from gen.physics.kernel.turning import STRIDE
 from gen.physics.profile import share_at
-from gen.scenarios import Scenario
+from gen.scenarios import Scenario, read_scenarios
 from gen.simulation.motion import Start, cosine_sum, start_of
-from gen.simulation.timeline import Timeline
+from gen.simulation.timeline import Timeline, timeline
+from gen.support.errors import CorpusError
 
 FloatArray = NDArray[np.float64]
 
 
-def shaft_angles(scenario: Scenario, timeline: Timeline) -> FloatArray:
+def shaft_angles(records: xr.Dataset) -> xr.DataArray:
+    """Angle of the shaft at every sample of records [rad], with the dimensions ``record`` and ``elapsed_time``.
+
+    Simulated records have the angle by which bearing and machine turned. Recordings of real machines have that of their
+    labelled rate, as if it were constant, from 0 at their first sample: where the speed varies, give a tacho or the
+    course of the speed to `features.signal.angles_from_tacho` or `features.signal.angles_from_speed` instead.
+
+    Parameters
+    ----------
+    records : Dataset
+        Records, all or some, of :func:`gen.record`, :func:`gen.records` or :func:`gen.open_corpus`.
+
+    Raises
+    ------
+    CorpusError
+        If a simulated record has no scenario because its signal was changed, or the shaft rate of a recording is not known.
+    """
+    rows = records if "record" in records.dims else records.expand_dims("record")
+    angles = np.empty((rows.sizes["record"], rows.sizes["elapsed_time"]))
+    for place in range(len(angles)):
+        angles[place] = _record_angles(rows.isel(record=[place]), place)
+    known = xr.DataArray(angles, dims=("record", "elapsed_time"), name="shaft_angle")
+    known.attrs = {"long_name": "angle of the shaft", "units": "rad"}
+    known = known.assign_coords(elapsed_time=records["elapsed_time"])
+    return known if rows is records else known[0]
+
+
+def _record_angles(row: xr.Dataset, place: int) -> FloatArray:
+    """Angle at every sample of one record, shape (time,)."""
+    if DRAWS in row and (str(row[DRAWS].item()) or np.isfinite(row["true_shaft_rate"].item())):
+        try:
+            (scenario,) = read_scenarios(row)
+        except CorpusError as error:
+            raise CorpusError(f"record {place}{str(error).removeprefix('record 0')}") from None
+        axis = timeline(scenario.settings)
+        return scenario_angles(scenario, axis)[axis.kept]
+    rate = row["shaft_rate"].item()
+    if not rate > 0:
+        raise CorpusError(f"record {place} has no shaft rate, so that the angle of its shaft is not known.")
+    return 2 * math.pi * rate / row["sample_rate"].item() * np.arange(row.sizes["elapsed_time"])
+
+
+def scenario_angles(scenario: Scenario, timeline: Timeline) -> FloatArray:
     """Angle of the shaft of a record from the lead ahead of it on, shape (time,) [rad].
 
     With a constant nominal speed it is ``angle + omega (t + s integral(eta))``, with the rms ``s`` of the wander and its cosine sum

@@ -11,7 +11,7 @@ from features.report.pictures import BLUE, INK, STYLE, VERMILION, WIDTH
 from gen.measurement.measure import measure
 from gen.recipe import Recipe
 from gen.scenarios import draw_scenarios, settings_of
-from gen.simulation.shaft import shaft_angles
+from gen.simulation.shaft import scenario_angles
 from gen.simulation.timeline import timeline
 
 FloatArray = NDArray[np.floating]
@@ -45,7 +45,7 @@ def draw_orbits() -> Figure:
     silence = np.zeros((1, 2, axis.returned), np.float32)
     measured = measure(silence, scenarios)
     signal = measured.signal[0].astype(float) / (measured.counts_per_unit or 1.0)
-    angles = shaft_angles(scenarios[0], axis)[axis.kept]
+    angles = scenario_angles(scenarios[0], axis)[axis.kept]
     with rc_context(STYLE):
         figure = Figure((WIDTH, 0.42 * WIDTH), layout="constrained")
         left, right = figure.subplots(1, 2, width_ratios=(1, 1.5))

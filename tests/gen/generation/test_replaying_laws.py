@@ -17,7 +17,7 @@ from gen import (
 )
 from gen.corpus import finish_corpus, part_name, write_part
 from gen.simulation.motion import start_of
-from gen.simulation.shaft import shaft_angles
+from gen.simulation.shaft import scenario_angles
 from gen.simulation.timeline import timeline
 from gen.support.errors import CorpusError
 from tests import corpora
@@ -130,7 +130,7 @@ def test_the_angle_of_the_shaft_turns_at_the_true_rate_of_the_record(tiny_corpus
         rates, time, scenarios = corpus["true_shaft_rate"].values, corpus["elapsed_time"].values, read_scenarios(corpus)
     axis = timeline(scenarios[0].settings)
     for record in (0, 17):
-        angles = shaft_angles(scenarios[record], axis)
+        angles = scenario_angles(scenarios[record], axis)
         conditions, settle = scenarios[record].record.conditions, scenarios[record].settings.settle
         turned = angles[axis.kept][0] - start_of(scenarios[record]).shaft
         assert turned == pytest.approx(2 * np.pi * conditions.shaft_rate * settle, rel=0.02)

@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
-from gen.scenarios import draw_scenarios, settings_of
+from gen import open_corpus, shaft_angles
+from gen.scenarios import draw_scenarios, read_scenarios, settings_of
 from gen.simulation.inputs import kernel_input
-from gen.simulation.shaft import shaft_angles
+from gen.simulation.shaft import scenario_angles
 from gen.simulation.timeline import timeline
+from gen.support.errors import CorpusError
 from tests.reference import slow_motion
 from tests.responses import truth
 
@@ -33,7 +35,7 @@ def test_the_angle_is_that_by_which_the_kernel_turns_the_bearing(recipe_with, ch
         in_kernel = slow_motion(kernel_input(scenario, axis), 1 / axis.fs, axis.knots).angles[:, 0]
         in_kernel = in_kernel[axis.dropped : axis.dropped + axis.returned]
         # the kernel takes the wander as linear between every eighth knot
-        np.testing.assert_allclose(shaft_angles(scenario, axis), in_kernel, rtol=0, atol=2e-5)
+        np.testing.assert_allclose(scenario_angles(scenario, axis), in_kernel, rtol=0, atol=2e-5)
 
 
 @courses
@@ -41,6 +43,24 @@ def test_the_turns_of_a_record_are_its_labelled_mean_rate_times_its_duration(rec
     recipe = recipe_with({"recording.settle_s": 0.2} | changes)
     axis = timeline(settings_of(recipe))
     for scenario in draw_scenarios(recipe, 0, 4):
-        angles = shaft_angles(scenario, axis)[axis.kept]
+        angles = scenario_angles(scenario, axis)[axis.kept]
         turns = (angles[-1] - angles[0]) / (2 * np.pi) * len(angles) / (len(angles) - 1)
         assert turns == pytest.approx(truth(scenario, recipe).true_shaft_rate * axis.duration, rel=2e-3)
+
+
+def test_records_of_a_corpus_have_the_angle_of_their_scenarios_and_imported_ones_that_of_their_label(tiny_corpus):
+    with open_corpus(tiny_corpus) as corpus:
+        some = corpus.isel(record=[3, 17]).load()
+    axis = timeline(read_scenarios(some)[0].settings)
+    angles = shaft_angles(some)
+    assert angles.dims == ("record", "elapsed_time")
+    for found, scenario in zip(angles.values, read_scenarios(some), strict=True):
+        np.testing.assert_array_equal(found, scenario_angles(scenario, axis)[axis.kept])
+    np.testing.assert_array_equal(shaft_angles(some.isel(record=1)), angles[1])
+    imported = some.drop_vars("draws")
+    turns = shaft_angles(imported) / (2 * np.pi)
+    np.testing.assert_allclose(turns, imported.shaft_rate * imported.elapsed_time, atol=1e-9)
+    with pytest.raises(CorpusError, match="record 1 has no shaft rate"):
+        shaft_angles(imported.assign(shaft_rate=imported.shaft_rate * [1, np.nan]))
+    with pytest.raises(CorpusError, match="record 0 has no scenario"):
+        shaft_angles(some.assign(draws=("record", ["", ""])))
