@@ -14,7 +14,7 @@ signal           spectra, envelope spectra, levels of fault lines, statistics of
 definitions      name, unit, meaning, formula and range of every feature [pure]
 indicators       the feature vector of records, in four groups [pure]
 speed            shaft speed of a recording, from its windows [pure]
-fault_bands      bands of the fault lines of a bearing, and what a spectrum has in them
+line_bands       bands of the fault lines of a bearing, and what a spectrum has in them
 transformer      the feature vector as a scikit-learn transformer
 recording_table  feature table of one recording that lies in no corpus
 recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels

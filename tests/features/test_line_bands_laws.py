@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import gen
-from features.fault_bands import fault_bands, fault_metrics
+from features.line_bands import fault_bands, fault_metrics
 from features.signal import order_spectrum
 from features.signal.demodulation import amplitude_spectrum
 
