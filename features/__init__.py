@@ -15,6 +15,7 @@ definitions      name, unit, meaning, formula and range of every feature [pure]
 indicators       the feature vector of records, in four groups [pure]
 speed            shaft speed of a recording, from its windows [pure]
 line_bands       bands of the fault lines of a bearing, and what a spectrum has in them
+accessor         the functions of `signal` on xarray
 transformer      the feature vector as a scikit-learn transformer
 recording_table  feature table of one recording that lies in no corpus
 recording_speeds shaft speed of every recording of a corpus, and warnings of wrong labels

@@ -18,6 +18,7 @@ colour       roll-off, centroid and tonality of a power spectrum
 shape        impulsiveness, slow fluctuation, statistics of the waveform
 cyclic       spectral coherence, enhanced envelope spectrum, and their thresholds
 separation   tones, transfer paths and impacts of a record, apart from one another
+envelopes    envelope spectrum of a band of records
 impulsive    kurtogram, spectral kurtosis, band in which a fault line stands out
 ============ ======================================================================
 """

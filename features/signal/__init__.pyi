@@ -18,6 +18,7 @@ from .cyclic import (
     enhanced_envelope_spectrum as enhanced_envelope_spectrum,
     spectral_coherence as spectral_coherence,
 )
+from .envelopes import band_envelope_spectrum as band_envelope_spectrum
 from .impulsive import (
     BandTree as BandTree,
     comb_bands as comb_bands,
@@ -32,3 +33,4 @@ from .separation import (
     separate_random as separate_random,
     sharpen as sharpen,
 )
+from .spectra import psd as psd, whiten_cepstrally as whiten_cepstrally
