@@ -20,6 +20,7 @@ from raceway.commands import (
     feature_tables,
     importing,
     models,
+    plotting,
     publishing,
     reproduce,
 )
@@ -35,7 +36,7 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         copying.copy,
         publishing.card,
     ),
-    "Look at them": (corpora.info, corpora.validate, corpora.replay, feature_tables.plot, comparing.compare),
+    "Look at them": (corpora.info, corpora.validate, corpora.replay, plotting.plot, comparing.compare),
     "Learn from them": (
         feature_tables.features,
         models.train,

@@ -9,7 +9,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from features.band import DEFAULT_BAND
+from features.band import DEFAULT_BAND, Band
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
 from features.faults import CLASSES, HEALTHY, SHAFT
@@ -125,9 +125,8 @@ def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded, healthy: Recorded 
     under = None if healthy is None else _shown(diagnosis, healthy)
     figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
-    band = DEFAULT_BAND if diagnosis.spectrum is None else diagnosis.spectrum.band
     draw_waveform(waveform, shown, under)
-    draw_density(density, shown, band, under)
+    draw_density(density, shown, under)
     if diagnosis.spectrum is not None:
         spectrum = diagnosis.spectrum
         if under is not None:
@@ -144,9 +143,8 @@ def _shown(diagnosis: Diagnosis, recording: Recorded) -> Shown:
     """Channel whose spectrum is shown, or the first one, at the speed of the diagnosis."""
     channel = next(iter(recording.signals)) if diagnosis.spectrum is None else diagnosis.spectrum.channel
     signal = recording.used.signals[channel]
-    return Shown(
-        "", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY, DEFAULT_BAND, recording.unit
-    )
+    band = DEFAULT_BAND if diagnosis.spectrum is None else Band(*diagnosis.spectrum.band)
+    return Shown("", signal, recording.fs, diagnosis.shaft_rate, diagnosis.orders, HEALTHY, band, recording.unit)
 
 
 def _levels(spectrum: BandSpectrum, shaft_rate: float) -> tuple[FloatArray, FloatArray]:

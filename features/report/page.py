@@ -18,7 +18,8 @@ from features.baselines.tracks import NOVELTY
 from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve
 from features.report.examples import draw_examples
-from features.report.pictures import Quantity, draw_content, draw_reliability, draw_scores, picture
+from features.report.pictures import picture
+from features.report.summaries import Quantity, draw_content, draw_reliability, draw_scores
 from features.report.templates import template
 from gen.corpus import (
     FAULT_NAMES,

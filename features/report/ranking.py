@@ -4,12 +4,13 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from pandas import DataFrame
 
-from features.indicators import GROUPS
+from features.definitions import GROUPS
 from features.ranking import MEASURES
-from features.report.pictures import BLUE, INK, STYLE, TEST_MARKERS, WIDTH
+from features.report.pictures import BLUE, INK, STYLE, WIDTH
+from features.report.summaries import TEST_MARKERS
 
 DRAWN = 25  # features
-COLOURS = dict(zip(GROUPS, (BLUE, *(colour for colour, _ in TEST_MARKERS)), strict=False))
+COLOURS: dict[str, str] = dict(zip(GROUPS, (BLUE, *(colour for colour, _ in TEST_MARKERS)), strict=False))
 TITLES = ("ANOVA F", "Kruskal-Wallis H", "mutual\ninformation [nat]", "permutation\nimportance")
 
 

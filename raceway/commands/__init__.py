@@ -6,12 +6,13 @@ module           responsibility
 corpora          commands that make corpora and look at them
 importing        commands that convert real recordings into the format
 copying          corpora copied, cut, joined, and in the forms of other programs
-feature_tables   a picture of one record, and features of all
+plotting         a picture of one record or recording
+feature_tables   features of all records
 models           a model trained, and scored on another corpus
 references       healthy records that the tested ones are compared with
 diagnosing       a diagnosis of a recording, or of each in a folder
 diagnosis_output facts and table of diagnoses
-recordings       files of recordings of the user
+recordings       options and files of recordings of the user
 benchmarking     scores of all baselines
 comparing        synthetic records against real ones
 publishing       the data card with terms of use, pictures and scores

@@ -1,6 +1,5 @@
 """Command that diagnoses a recording of the user, or each of a folder."""
 
-import math
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -8,34 +7,24 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.diagnosis_output import assumptions, diagnosis_facts, show_table
-from raceway.commands.recordings import Reading, read_recording, readings_of, recordings_in, set_aside
+from raceway.commands.recordings import (
+    Reading,
+    read_recording,
+    reading_options,
+    readings_of,
+    recordings_in,
+    rpm_option,
+    set_aside,
+)
 from raceway.console import show
-from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, names
+from raceway.console.options import A_PATH, checked_file, checked_pages, json_option
 from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
     from features.diagnosis import Diagnosis, Given, Recorded
     from gen.physics.bearing import Bearing
 
-UNITS = ("g", "m/s2", "V", "mV")
-SLOWEST, FASTEST = 0.001, 1e7  # rpm
 ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
-
-
-def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
-    """Lowest and highest speed [rpm]; equal for one number."""
-    if text is None:
-        return None
-    low, dash, high = text.partition("-")
-    try:
-        first, last = float(low), float(high if dash else low)
-    except ValueError:
-        first, last = math.nan, math.nan
-    if not SLOWEST <= first <= last <= FASTEST:
-        raise click.BadParameter(
-            f"{text!r} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
-        )
-    return first, last
 
 
 def _checked_output(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
@@ -43,12 +32,6 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
     if path is None or context.params["recording"].is_dir():
         return path and checked_pages(context, option, path)
     return checked_file(path, (".html",), "page")
-
-
-def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
-    if value is not None and math.isnan(value):  # it passes every range
-        raise click.BadParameter("nan is not a number")
-    return value
 
 
 @click.command()
@@ -61,45 +44,8 @@ def _a_number(_context: click.Context, _option: click.Parameter, value: float | 
     help="Designation in the catalogue, such as 6205, or a geometry: n_balls=8,pitch_diameter_mm=33.5,ball_diameter_mm=7.938. "
     "Repeat it for alternatives; without it, the whole catalogue is searched.",
 )
-@click.option(
-    "--rpm",
-    "speeds",
-    callback=_speeds,
-    metavar="RPM",
-    help="Speed of the shaft during the recording, or a range such as 1400-1900; without it, 300 to 6,000 rpm are searched.",
-)
-@click.option(
-    "--rate",
-    type=click.FloatRange(1, 1e8),
-    callback=_a_number,
-    metavar="HZ",
-    help="Sample rate, unless the file states it: in its header or by a column of times.",
-)
-@click.option(
-    "--unit",
-    type=click.Choice(UNITS),
-    help="Unit of the values; by default that in the header, or else m/s2; a WAV file has none. V and mV need --sensitivity.",
-)
-@click.option(
-    "--sensitivity",
-    type=click.FloatRange(1e-6, 1e6),
-    callback=_a_number,
-    metavar="MV_PER_G",
-    help="Of the sensor [mV per g], if the values are voltages.",
-)
-@click.option(
-    "--channel",
-    "channels",
-    callback=names,
-    metavar="A,B,C",
-    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
-    "of one housing.",
-)
-@click.option(
-    "--variable",
-    metavar="NAME",
-    help="Variable of a MATLAB file whose columns --channel counts, or sheet of an Excel file, by default the first.",
-)
+@rpm_option
+@reading_options
 @click.option(
     "--healthy",
     type=A_PATH,
@@ -121,11 +67,7 @@ def diagnose(
     recording: Path,
     bearings: tuple[str, ...],
     speeds: tuple[float, float] | None,
-    rate: float | None,
-    unit: Any,
-    sensitivity: float | None,
-    channels: tuple[str, ...] | None,
-    variable: str | None,
+    reading: Reading,
     healthy: tuple[Path, ...],
     model: Path | None,
     output: Path | None,
@@ -155,7 +97,6 @@ def diagnose(
     docs/diagnose.md tells how to record and how to read the page.
     """
     known = _bearings(bearings, speeds)
-    reading = Reading(channels or (), variable, unit, sensitivity, rate)
     several = recording.is_dir()
     unusable: dict[Path, str] = {}
     paths = recordings_in(recording, healthy) if several else [recording]

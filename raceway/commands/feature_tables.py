@@ -1,4 +1,4 @@
-"""Commands that show one record and compute features, and the feature table that further commands need."""
+"""Command that computes features, and the feature table that further commands need."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,14 +12,11 @@ from raceway.console.options import (
     USUAL_ANALYSIS,
     Analysis,
     Team,
-    analysis_options,
     band_option,
     channels_option,
-    corpus_argument,
     corpus_path,
     file_option,
     json_option,
-    record_option,
     speed_option,
     worker_options,
 )
@@ -33,25 +30,6 @@ if TYPE_CHECKING:
 
 PICTURES = (".png", ".svg", ".pdf")
 PRINTED = 10  # features of a ranking
-
-
-@click.command()
-@corpus_argument
-@record_option
-@file_option("FILE", "Picture: .png, .svg or .pdf.", PICTURES, kind="picture")
-@analysis_options
-def plot(corpus: Path, record: int, output: Path, channel: str | None, band: tuple[float, float] | None) -> None:
-    """Draw one record with its fault lines.
-
-    The picture has the waveform, the power spectrum and the envelope spectrum.
-
-      raceway plot corpus --record 17 -o record.png
-      raceway plot corpus --record 17 -o fan_end.png --channel fan_end --band 2000 9000
-    """
-    from features.report.examples import plot_record
-
-    plot_record(corpus, record, output, **Analysis(channel, band).options())
-    show.text(f"{output}: record {record} of {corpus}.")
 
 
 @click.command()

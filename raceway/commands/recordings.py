@@ -1,13 +1,21 @@
-"""Recordings of the user: the files of a folder, and the channels of each."""
+"""Recordings of the user: options that say how they are read, the files of a folder, and the channels of each."""
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager
+from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
+
+import click
+
+from raceway.console.options import Decorator, names
 
 if TYPE_CHECKING:
     from features.diagnosis import Recorded
 
+UNITS = ("g", "m/s2", "V", "mV")
+SLOWEST, FASTEST = 0.001, 1e7  # rpm
 OPTIONS = {"column": "--channel", "variable": "--channel", "rate": "--rate", "unit": "--unit"}
 
 
@@ -19,6 +27,79 @@ class Reading(NamedTuple):
     unit: Any
     sensitivity: float | None
     rate: float | None
+
+
+def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
+    """Lowest and highest speed [rpm]; equal for one number."""
+    if text is None:
+        return None
+    low, dash, high = text.partition("-")
+    try:
+        first, last = float(low), float(high if dash else low)
+    except ValueError:
+        first, last = math.nan, math.nan
+    if not SLOWEST <= first <= last <= FASTEST:
+        raise click.BadParameter(
+            f"{text!r} is no speed and no range such as 1400-1900, of {SLOWEST:g} to {FASTEST:,.0f} rpm"
+        )
+    return first, last
+
+
+def _a_number(_context: click.Context, _option: click.Parameter, value: float | None) -> float | None:
+    if value is not None and math.isnan(value):  # it passes every range
+        raise click.BadParameter("nan is not a number")
+    return value
+
+
+rpm_option: Decorator = click.option(
+    "--rpm",
+    "speeds",
+    callback=_speeds,
+    metavar="RPM",
+    help="Speed of the shaft during the recording, or a range such as 1400-1900; without it, 300 to 6,000 rpm are searched.",
+)
+_rate: Decorator = click.option(
+    "--rate",
+    type=click.FloatRange(1, 1e8),
+    callback=_a_number,
+    metavar="HZ",
+    help="Sample rate, unless the file states it: in its header or by a column of times.",
+)
+_unit: Decorator = click.option(
+    "--unit",
+    type=click.Choice(UNITS),
+    help="Unit of the values; by default that in the header, or else m/s2; a WAV file has none. V and mV need --sensitivity.",
+)
+_sensitivity: Decorator = click.option(
+    "--sensitivity",
+    type=click.FloatRange(1e-6, 1e6),
+    callback=_a_number,
+    metavar="MV_PER_G",
+    help="Of the sensor [mV per g], if the values are voltages.",
+)
+_channels: Decorator = click.option(
+    "--channel",
+    "channels",
+    callback=names,
+    metavar="A,B,C",
+    help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
+    "of one housing.",
+)
+_variable: Decorator = click.option(
+    "--variable",
+    metavar="NAME",
+    help="Variable of a MATLAB file whose columns --channel counts, or sheet of an Excel file, by default the first.",
+)
+
+
+def reading_options(command: Any) -> Any:
+    """Add the options that say how a recording is read; the command gets them as ``reading``."""
+
+    @wraps(command)
+    def reads(*given: Any, rate: Any, unit: Any, sensitivity: Any, channels: Any, variable: Any, **others: Any) -> Any:
+        return command(*given, reading=Reading(channels or (), variable, unit, sensitivity, rate), **others)
+
+    return _rate(_unit(_sensitivity(_channels(_variable(reads)))))
 
 
 def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:

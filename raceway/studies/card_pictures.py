@@ -18,7 +18,8 @@ from PIL import Image
 from features.faults import LOOKS
 from features.report.examples import chosen_example
 from features.report.page import quantities
-from features.report.pictures import STYLE, WIDTH, Shown, draw_content, draw_envelope_spectrum, draw_waveform, picture
+from features.report.pictures import STYLE, WIDTH, Shown, draw_envelope_spectrum, draw_waveform, picture
+from features.report.summaries import draw_content
 from gen.corpus import (
     FAULT_NAMES,
     card_folder,

@@ -10,8 +10,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from features.band import DEFAULT_BAND
 from features.baselines import Model
-from features.report.examples import plot_record
+from features.report.pictures import draw_record, write_picture
+from features.report.shown import shown_record
 from features.table import feature_table
 from features.table_files import write_table
 from gen import copy, generate, write_corpus
@@ -125,7 +127,7 @@ def test_a_folder_with_pages_of_the_user_is_refused(run, places, line, name, tmp
 @pytest.mark.parametrize("name", ["result.png", "result.svg", "result.pdf"])
 def test_pictures_of_all_formats_are_recognised(places, name, tmp_path):
     for _ in range(2):
-        plot_record(places["corpus"], 1, tmp_path / name)
+        write_picture(draw_record(shown_record(places["corpus"], 1, 0, DEFAULT_BAND)), tmp_path / name)
 
 
 @pytest.mark.parametrize("line", [line for line, name in RESULTS.items() if "." in name])

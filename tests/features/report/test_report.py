@@ -10,21 +10,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from features.band import DEFAULT_BAND
 from features.baselines import ESTIMATORS, Model, benchmark
 from features.indicators import Orders
 from features.report import examples
-from features.report.examples import plot_record
 from features.report.page import QUANTITIES, _findings, _of_faults, write_report
-from features.report.pictures import (
-    Shown,
-    draw_record,
-    draw_reliability,
-    draw_scores,
-    fault_lines,
-    picture,
-    squared_envelope,
-    thin,
-)
+from features.report.pictures import Shown, draw_record, fault_lines, picture, squared_envelope, thin, write_picture
+from features.report.shown import shown_record
+from features.report.summaries import draw_reliability, draw_scores
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
 from gen.support.errors import CorpusError
@@ -267,8 +260,8 @@ def test_the_page_says_if_no_record_of_a_class_can_be_drawn(results, tmp_path):
 )
 def test_a_record_is_drawn_reproducibly_in_the_format_of_the_suffix(corpus, tmp_path, suffix, start):
     first, second = tmp_path / f"first{suffix}", tmp_path / f"second{suffix}"
-    plot_record(corpus, 3, first)
-    plot_record(corpus, 3, second)
+    for path in (first, second):
+        write_picture(draw_record(shown_record(corpus, 3, 0, DEFAULT_BAND)), path)
     assert first.read_bytes().startswith(start)
     assert first.read_bytes() == second.read_bytes()
     assert len(list(tmp_path.iterdir())) == 2
@@ -287,13 +280,13 @@ def test_a_record_is_drawn_reproducibly_in_the_format_of_the_suffix(corpus, tmp_
 )
 def test_a_record_that_cannot_be_drawn_is_refused_in_one_sentence(corpus, tmp_path, record, channel, name, sentence):
     with pytest.raises(CorpusError, match=sentence):
-        plot_record(corpus, record, tmp_path / name, channel=channel)
+        write_picture(draw_record(shown_record(corpus, record, channel, DEFAULT_BAND)), tmp_path / name)
 
 
 def test_a_record_without_a_shaft_rate_is_refused(tmp_path):
     unknown = write_corpus(tmp_path / "corpus", shaft_rate=np.zeros(24))
-    with pytest.raises(CorpusError, match="record 1 cannot be drawn"):
-        plot_record(unknown, 1, tmp_path / "picture.png")
+    with pytest.raises(CorpusError, match="record 1: cannot be drawn"):
+        shown_record(unknown, 1, 0, DEFAULT_BAND)
 
 
 def test_a_constant_record_can_be_drawn():

@@ -1,0 +1,104 @@
+"""What is drawn: a record of a corpus, or a recording of the user, with the angle of its shaft where the speed varies."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from features.band import LEAST_WIDTH, Band
+from features.channels import channel_number
+from features.faults import UNKNOWN
+from features.indicators import Orders
+from features.report.pictures import Shown
+from features.signal.orders import angles_from_speed
+from features.signal.rows import FloatArray
+from features.signal.tracking import track_speed
+from gen.corpus import FAULT_NAMES, SIGNAL, open_corpus
+from gen.support.errors import CorpusError
+
+CONSTANT = 1.02  # largest ratio of two speeds that count as one
+MARGIN = 1.05  # by which a tracked speed may leave the labelled range
+
+
+def shown_record(corpus: Path | str, record: int, channel: int | str, band: Band) -> Shown:
+    """A record of a corpus.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus cannot be read or has no such record or channel, the band lies above half the sample rate, or the
+        signal, shaft rate or orders of the record are not positive finite numbers.
+    """
+    with open_corpus(corpus) as opened:
+        if not 0 <= record < opened.sizes["record"]:
+            raise CorpusError(f"{corpus}: no record {record}; give one of 0 to {opened.sizes['record'] - 1}.")
+        number = channel_number(opened, channel, corpus)
+        several = opened.sizes["channel"] > 1
+        shown = shown_of(opened.isel(record=record), record, number, named=several)._replace(band=band)
+    return _checked(shown, f"{corpus}: record {record}")
+
+
+def shown_recording(
+    name: str, signal: FloatArray, fs: float, shaft_rates: tuple[float, float], orders: Sequence[float], band: Band
+) -> Shown:
+    """A recording of the user, shape (time,) [m s-2], at a shaft rate between two [Hz].
+
+    Raises
+    ------
+    CorpusError
+        If the band lies above half the sample rate, or a sample is not a finite number.
+    """
+    signal = np.asarray(signal, dtype=float)
+    nominal = Orders(*(np.asarray(order, dtype=float) for order in orders))
+    shown = Shown(name, signal, fs, float(np.mean(shaft_rates)), nominal, UNKNOWN, band)
+    return _turning(_checked(shown, name), *shaft_rates)
+
+
+def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = False) -> Shown:
+    """Record of an opened corpus; ``named`` puts the channel into the title."""
+    fault = FAULT_NAMES[int(record["fault"])]
+    sensor = f", {record['channel'].values[channel]}" if named else ""
+    shown = Shown(
+        title=f"Record {number}{sensor}: {fault}",
+        signal=record[SIGNAL].isel(channel=channel).values.astype(float),
+        fs=float(record["sample_rate"]),
+        shaft_rate=float(record["shaft_rate"]),
+        orders=Orders(*(np.asarray(record[name].values, dtype=float) for name in Orders._fields)),
+        fault=fault,
+    )
+    ends = [float(record[name]) for name in ("first_shaft_rate", "last_shaft_rate") if name in record]
+    return _turning(shown, *(sorted(ends) if len(ends) == 2 else [shown.shaft_rate] * 2))
+
+
+def can_be_drawn(shown: Shown) -> bool:
+    """Whether signal, rates and orders are finite, and the latter positive."""
+    numbers = np.array([shown.fs, shown.shaft_rate, *shown.orders])
+    return bool(np.isfinite(numbers).all() and (numbers > 0).all() and np.isfinite(shown.signal).all())
+
+
+def _turning(shown: Shown, slowest: float, fastest: float) -> Shown:
+    """The same with its speed in the title, and with the angle of the shaft if the speed varies: it is tracked in the signal."""
+    if not (can_be_drawn(shown) and fastest > CONSTANT * slowest):
+        return shown._replace(title=f"{shown.title}, {60 * shown.shaft_rate:.0f} rpm")
+    title = f"{shown.title}, {60 * slowest:.0f}-{60 * fastest:.0f} rpm"
+    try:
+        rates = track_speed(shown.signal[None], shown.fs, slowest / MARGIN, fastest * MARGIN)
+    except ValueError:  # too short, or sampled too slowly, for a course
+        return shown._replace(title=f"{title} (taken as constant)")
+    angle = angles_from_speed(rates, shown.fs)[0]
+    return shown._replace(title=title, angle=angle, shaft_rate=float(rates.mean()))
+
+
+def _checked(shown: Shown, where: str) -> Shown:
+    low, high = shown.band
+    if 2 * low + LEAST_WIDTH > shown.fs:
+        raise CorpusError(
+            f"{where}: the band {low:g}-{high:g} Hz lies above half the sample rate of {shown.fs:g} Hz; give a lower one."
+        )
+    if not can_be_drawn(shown):
+        raise CorpusError(
+            f"{where}: cannot be drawn, because its signal, shaft rate or a fault order is not a finite number or not "
+            f"positive; choose another record."
+        )
+    return shown

@@ -1,0 +1,155 @@
+"""Pictures of corpora and scores, drawn from plain arrays."""
+
+from collections.abc import Mapping, Sequence
+from itertools import cycle
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
+
+from features.faults import LOOKS
+from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
+from features.signal.rows import FloatArray, IntArray
+from gen.corpus import FAULT_NAMES
+
+if TYPE_CHECKING:
+    from features.baselines import Baseline, Scores
+
+TEST_MARKERS = ((VERMILION, "s"), ("#009E73", "^"), ("#CC79A7", "v"), ("#E69F00", "P"))
+
+
+class Quantity(NamedTuple):
+    """Values of a per-record variable, in the unit of its label, shape (record,)."""
+
+    label: str
+    values: FloatArray
+
+
+@rc_context(STYLE)
+def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity]) -> Figure:
+    """Records per rig, and histograms of the quantities that vary, stacked by class.
+
+    Parameters
+    ----------
+    fault, rig
+        Class and rig number of each record, shape (record,).
+    quantities
+        Each gets a histogram if it varies; values that are not finite are omitted.
+    """
+    quantities = [quantity for quantity in quantities if _varies(quantity.values)]
+    rows = -(-(1 + len(quantities)) // 2)
+    figure = Figure(figsize=(WIDTH, 0.4 + 1.9 * rows), layout="constrained")
+    panels = figure.subplots(rows, 2, squeeze=False).ravel()
+    present = np.unique(fault)
+    _draw_rigs(panels[0], fault, rig, present)
+    for axes, quantity in zip(panels[1:], quantities, strict=False):
+        _draw_distribution(axes, fault, quantity, present)
+    for axes in panels[1 + len(quantities) :]:
+        axes.remove()
+    handles, labels = panels[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside upper left", ncols=len(FAULT_NAMES))
+    return figure
+
+
+def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) -> None:
+    rigs, number = np.unique(rig, return_inverse=True)
+    bottom = np.zeros(len(rigs))
+    for c in present:
+        count = np.bincount(number[fault == c], minlength=len(rigs))
+        axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=LOOKS[FAULT_NAMES[c]].colour, label=FAULT_NAMES[c])
+        bottom += count
+    step = max(1, len(rigs) // 10)
+    axes.set_xticks(np.arange(0, len(rigs), step), [str(name) for name in rigs[::step]])
+    axes.set(xlabel="rig", ylabel="records")
+
+
+def _varies(values: FloatArray) -> bool:
+    finite = values[np.isfinite(values)]
+    return finite.size > 0 and bool(finite.min() < finite.max())
+
+
+def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present: IntArray) -> None:
+    finite = np.isfinite(quantity.values)
+    values = quantity.values[finite]
+    wide = values.min() > 0 and values.max() > 10 * values.min()
+    spaced = np.geomspace if wide else np.linspace
+    edges = spaced(values.min(), values.max(), 25)
+    axes.hist(
+        [values[fault[finite] == c] for c in present],
+        bins=edges.tolist(),
+        stacked=True,
+        color=[LOOKS[FAULT_NAMES[c]].colour for c in present],
+    )
+    axes.set(xlabel=quantity.label, ylabel="records")
+    axes.locator_params(axis="x", nbins=5)
+    if wide:
+        axes.set_xscale("log")
+        subs = (1.0, 3.0) if values.max() > 100 * values.min() else (1.0, 2.0, 5.0)  # labels of more would overlap
+        axes.xaxis.set_major_locator(LogLocator(subs=subs))
+        axes.xaxis.set_major_formatter("{x:g}")
+        axes.xaxis.set_minor_locator(NullLocator())
+
+
+@rc_context(STYLE)
+def draw_scores(baselines: Mapping[str, "Baseline"], chance: float, unseen: str) -> Figure:
+    """Balanced accuracy on unseen groups beside its controls, one row per baseline or track; bars are 95 % intervals."""
+    scored = list(baselines.values())
+    figure = Figure(figsize=(WIDTH, 1.2 + (0.4 + 0.05 * len(scored[0].tests)) * len(scored)), layout="constrained")
+    axes = figure.subplots()
+    rows = np.arange(len(baselines))[::-1]
+    axes.hlines(rows, 0, 1, color=FAINT, linewidth=0.4, alpha=0.5)
+    axes.vlines(chance, -0.6, len(rows) - 0.45, color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
+    axes.text(chance, len(rows) - 0.4, "chance", color=INK, fontsize=8, va="bottom", ha="center")
+    _draw_intervals(axes, [b.grouped for b in scored], rows + 0.13, BLUE, "o", f"unseen {unseen}")
+    tests = zip(*(baseline.tests for baseline in scored), strict=True)
+    for number, (test, (colour, marker)) in enumerate(zip(tests, cycle(TEST_MARKERS), strict=False), start=1):
+        _draw_intervals(axes, test, rows - 0.1 - 0.09 * number, colour, marker, f"other corpus {number}")
+    null, leaky = ([getattr(b, kind).balanced_accuracy for b in scored] for kind in ("null", "leaky"))
+    axes.plot(
+        leaky, rows + 0.13, "D", color=FAINT, markerfacecolor="none", markersize=9, label="random records (leaks)"
+    )
+    axes.plot(null, rows, "x", color=FAINT, markersize=6, label="labels permuted")
+    axes.set_yticks(rows, [name.replace("_", " ") for name in baselines])
+    axes.set(xlabel="balanced accuracy", xlim=(0, 1.02), ylim=(-0.6, len(rows) - 0.1))
+    axes.spines["left"].set_visible(False)
+    axes.tick_params(axis="y", length=0)
+    figure.legend(loc="outside upper left", ncols=4, handletextpad=0.3, columnspacing=1.0)
+    return figure
+
+
+def _draw_intervals(
+    axes: Axes, scores: "Sequence[Scores]", rows: FloatArray, colour: str, marker: str, label: str
+) -> None:
+    """Draw balanced accuracies, and the intervals that are known."""
+    for score, row in zip(scores, rows, strict=True):
+        if score.interval is not None:
+            axes.hlines(row, *score.interval, color=colour, linewidth=1.6)
+    axes.plot([score.balanced_accuracy for score in scores], rows, marker, color=colour, markersize=5.5, label=label)
+
+
+@rc_context(STYLE)
+def draw_reliability(scores: Mapping[str, "Scores"]) -> Figure:
+    """Accuracy against largest probability in bins, one panel for each of some scores by title."""
+    columns = min(max(len(scores), 2), 3)
+    rows = -(-len(scores) // columns)
+    figure = Figure(figsize=(WIDTH, 2.7 * rows), layout="constrained")
+    grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
+    panels = grid.ravel()
+    for axes, (title, score) in zip(panels, scores.items(), strict=False):
+        probability, accuracy = (
+            [getattr(bin_, name) for bin_ in score.reliability] for name in ("probability", "accuracy")
+        )
+        area = 260 * np.array([bin_.records for bin_ in score.reliability]) / score.records
+        axes.plot([0, 1], [0, 1], color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
+        axes.plot(probability, accuracy, color=BLUE, linewidth=0.8)
+        axes.scatter(probability, accuracy, area + 4, color=BLUE, linewidth=0, zorder=3)
+        axes.set(xlabel="largest probability", xlim=(0, 1.04), ylim=(-0.02, 1.06), aspect="equal")
+        axes.set_title(f"{title}\ncalibration error {score.ece:.3f}")
+    for axes in grid[:, 0]:
+        axes.set_ylabel("accuracy")
+    for axes in panels[len(scores) :]:
+        axes.remove()
+    return figure

@@ -1,0 +1,201 @@
+"""One view of a record on one picture: what an analyst looks at, with the fault lines where they belong.
+
+The lines are drawn over orders of the shaft. At a varying speed the signal is resampled over the angle of the shaft, so
+that they stand still. Every view takes the mean away, and shows the healthy recording where two curves can be compared.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from matplotlib import rc_context
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from features.band import Band
+from features.faults import FUNDAMENTALS, LOOKS, SHAFT
+from features.report.pictures import (
+    FAINT,
+    OVER,
+    PER_TURN,
+    STYLE,
+    UNDER,
+    VERMILION,
+    WIDTH,
+    Shown,
+    draw_cursors,
+    draw_density,
+    draw_envelope_spectrum,
+    draw_waveform,
+    envelope_over_angle,
+    fault_lines,
+    name_lines,
+)
+from features.signal.cyclic import spectral_coherence
+from features.signal.impulsive import comb_bands, kurtogram
+from features.signal.orders import order_map, order_spectrum, resample_to_angle
+from features.signal.rows import FloatArray
+from features.signal.separation import cepstrum
+
+HEIGHT = 3.6  # inches
+MAP_TURNS = 24  # revolutions of a window of the waterfall
+CEPSTRUM_TURNS = 1.3  # end of the axis, in revolutions
+SHORTEST_CEPSTRUM = 0.06  # revolutions: what lies below is the shape of the spectrum
+COHERENCE_BAND = 200.0  # Hz
+COLUMNS = 340  # of a map
+ONE_FALSE_ALARM = 0.01  # expected in a whole map of coherence of noise
+NARROWEST_BAND = 1000.0  # Hz, of a chosen band: as that of a band that is given
+
+
+@rc_context(STYLE)
+def draw_view(view: str, shown: Shown, under: Shown | None = None) -> Figure:
+    """Draw one of `VIEWS` of a record over that of another one.
+
+    Raises
+    ------
+    ValueError
+        If the record is too short for the view.
+    """
+    figure = Figure(figsize=(WIDTH, HEIGHT), layout="constrained")
+    figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
+    axes = figure.subplots()
+    VIEWS[view](axes, shown, under)
+    if under is not None and view not in MAPS:
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2)
+    return figure
+
+
+def band_by(choice: str, shown: Shown) -> Band:
+    """Band of the envelope that is the most impulsive (``kurtogram``), or in which a fault line stands out most (``line``)."""
+    x, fs = shown.signal[None], shown.fs
+    if choice == "kurtogram":
+        return Band(*kurtogram(x, fs, narrowest=NARROWEST_BAND).best()[0].tolist())
+    own, others = fault_lines(shown.orders, shown.fault)
+    labels = [line.label for line in FUNDAMENTALS]
+    wanted = [label for label in own if label in labels] or [label for label in others if label in labels]
+    trees = [comb_bands(x, fs, np.array([(own | others)[label] * shown.shaft_rate])) for label in wanted]
+    best = max(trees, key=lambda tree: tree.score.max())
+    return Band(*best.best()[0].tolist())
+
+
+def _orders(axes: Axes, shown: Shown, under: Shown | None) -> None:
+    """Amplitude spectrum of the signal over orders."""
+    top = draw_cursors(axes, shown)
+    for one, look in ((under, UNDER), (shown, OVER)):
+        if one is not None:
+            orders, spectrum = order_spectrum(_over_angle(one), PER_TURN)
+            drawn = (orders > 0) & (orders <= top)
+            axes.semilogy(orders[drawn], spectrum[0, drawn], linewidth=0.7, **look)
+    axes.set(ylabel=f"amplitude [{shown.unit}]")
+    axes.set_title("Order spectrum of the signal", pad=30)
+
+
+def _over_angle(shown: Shown, per_turn: int = PER_TURN) -> FloatArray:
+    return resample_to_angle((shown.signal - shown.signal.mean())[None], 2 * np.pi * shown.turns[None], per_turn)
+
+
+def _waterfall(axes: Axes, shown: Shown, _: Shown | None) -> None:
+    """Envelope spectra of windows over orders, one above the other."""
+    y = envelope_over_angle(shown)
+    found = order_map(y, PER_TURN, min(MAP_TURNS, max(2, y.shape[1] // PER_TURN // 4)))
+    top = draw_cursors(axes, shown)
+    drawn = (found.orders > 0) & (found.orders <= top)
+    amplitude = found.amplitude[0][:, drawn]
+    level = 20 * np.log10(amplitude / np.median(amplitude, axis=1, keepdims=True) + 1e-12)
+    first = np.ceil(shown.turns[0])
+    time = np.interp(first + found.turns, shown.turns, np.arange(shown.signal.size) / shown.fs)
+    _map(axes, (found.orders[drawn], time, level), (0.0, 20.0), "dB above the median")
+    axes.set(ylabel="time [s]")
+    axes.set_title("Envelope spectrum of the whitened band over time", pad=30)
+
+
+def _kurtogram(axes: Axes, shown: Shown, _: Shown | None) -> None:
+    """Kurtosis of the analytic signal of each band, a row for each division of the spectrum."""
+    tree = kurtogram(shown.signal[None], shown.fs)
+    divisions, score = np.unique(tree.levels), tree.score[0]
+    limits = {"vmin": min(0.0, float(score.min())), "vmax": max(1.0, float(score.max())), "cmap": "Greys"}
+    mesh: Any = None
+    for row, division in enumerate(divisions):
+        chosen = tree.levels == division
+        edges = np.append(tree.edges[chosen, 0], tree.edges[chosen, 1][-1]) / 1e3
+        mesh = axes.pcolormesh(edges, [row - 0.5, row + 0.5], score[chosen][None], rasterized=True, **limits)
+    low, high = tree.best()[0] / 1e3
+    row = int(np.searchsorted(divisions, tree.levels[np.argmax(score)]))
+    axes.plot([low, high, high, low, low], row + np.array([-0.5, -0.5, 0.5, 0.5, -0.5]), color=VERMILION)
+    axes.set_yticks(range(len(divisions)), [f"{division}" for division in divisions])
+    axes.set(xlabel="frequency [kHz]", ylabel="number of bands", xlim=(0, shown.fs / 2e3))
+    axes.invert_yaxis()
+    axes.figure.colorbar(mesh, ax=axes, label="kurtosis", pad=0.01)
+    axes.set_title(f"Kurtogram: {score.max():.3g} is the highest kurtosis, in {low:.3g}-{high:.3g} kHz")
+
+
+def _coherence(axes: Axes, shown: Shown, _: Shown | None) -> None:
+    """Squared spectral coherence over orders of the envelope and frequency; what noise reaches stays white."""
+    top = draw_cursors(axes, shown)
+    rate = shown.shaft_rate
+    x, fs = shown.signal[None], shown.fs
+    if shown.angle is not None:  # at equal angles, the shaft turns once in a unit of time
+        per_turn = round(fs / rate)
+        x, fs, rate = _over_angle(shown, per_turn), float(per_turn), 1.0
+    found = spectral_coherence(x, fs, top * rate, resolution=COHERENCE_BAND * rate / shown.shaft_rate)
+    lowest = found.threshold(ONE_FALSE_ALARM / found.squared[0].size)
+    # near 0 any signal is coherent with itself; of the fine grid, each column shows its highest value
+    first, width = int(0.5 * rate / found.cyclic[1]), max(1, len(found.cyclic) // COLUMNS)
+    starts = np.arange(first, len(found.cyclic), width)
+    squared = np.maximum.reduceat(found.squared[0], starts, axis=1)
+    grid = found.cyclic[starts] / rate, found.spectral * (shown.shaft_rate / rate / 1e3), squared
+    _map(axes, grid, (lowest, max(2 * lowest, float(squared.max()))), "squared coherence")
+    axes.set(ylabel="frequency [kHz]" if shown.angle is None else "frequency at the mean speed [kHz]")
+    axes.set_title("Spectral coherence; noise reaches the lowest grey once in a hundred pictures", pad=30)
+
+
+def _map(axes: Axes, grid: tuple[FloatArray, FloatArray, FloatArray], limits: tuple[float, float], label: str) -> None:
+    """Shades of grey over x, shape (column,), and y, shape (row,); values below the lower limit stay white."""
+    mesh = axes.pcolormesh(
+        *grid, cmap="Greys", vmin=limits[0], vmax=limits[1], shading="nearest", rasterized=True, zorder=0
+    )
+    axes.figure.colorbar(mesh, ax=axes, label=label, pad=0.01)
+
+
+def _cepstrum(axes: Axes, shown: Shown, under: Shown | None) -> None:
+    """Real cepstrum over revolutions: a family of lines is a peak at one revolution over its order, and at its multiples."""
+    own, others = fault_lines(shown.orders, shown.fault)
+    fundamentals = {line.label for line in (SHAFT, *FUNDAMENTALS)}
+    own, others = (
+        {name: 1 / order for name, order in lines.items() if name in fundamentals} for lines in (own, others)
+    )
+    colour = LOOKS[shown.fault].colour
+    for lines, ink in ((own, colour), (others, FAINT)):
+        for place in lines.values():
+            axes.axvline(place, color=ink, linewidth=0.7, linestyle=(0, (2, 2)))
+    name_lines(
+        axes, own, {name: place for name, place in others.items() if place < CEPSTRUM_TURNS}, colour, CEPSTRUM_TURNS
+    )
+    for one, look in ((under, UNDER), (shown, OVER)):
+        if one is not None:
+            y, rate = (
+                (_over_angle(one), float(PER_TURN))
+                if one.angle is not None
+                else (one.signal[None], one.fs / one.shaft_rate)
+            )
+            values = cepstrum(y)[0]
+            at = np.arange(values.size) / rate
+            drawn = (at > SHORTEST_CEPSTRUM) & (at < CEPSTRUM_TURNS)
+            axes.plot(at[drawn], values[drawn], linewidth=0.6, **look)
+    axes.set(xlabel="quefrency [revolutions]", ylabel="real cepstrum [1]", xlim=(0, CEPSTRUM_TURNS))
+    axes.set_title("Cepstrum", pad=30)
+
+
+VIEWS: Mapping[str, Callable[[Axes, Shown, Shown | None], None]] = {
+    "waveform": draw_waveform,
+    "psd": draw_density,
+    "envelope": draw_envelope_spectrum,
+    "kurtogram": _kurtogram,
+    "coherence": _coherence,
+    "orders": _orders,
+    "waterfall": _waterfall,
+    "cepstrum": _cepstrum,
+}
+"""Views by name: each draws a record, over that of another one."""
+MAPS = ("kurtogram", "coherence", "waterfall")
+"""Views that show one record."""

@@ -1,0 +1,113 @@
+"""Command that draws one record of a corpus, or a recording of the user."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from raceway.commands.recordings import Reading, read_recording, reading_options, rpm_option
+from raceway.console import show
+from raceway.console.options import A_PATH, Analysis, band_option, file_option
+from raceway.console.progress import notice
+
+if TYPE_CHECKING:
+    from features.report.pictures import Shown
+
+PICTURES = (".png", ".svg", ".pdf")
+VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "waterfall", "cepstrum")
+
+
+@click.command()
+@click.argument("source", metavar="DIR|FILE", type=A_PATH)
+@click.option("--record", type=int, metavar="I", help="Of a corpus: number of the record, from 0.")
+@click.option("--view", type=click.Choice(VIEWS), help="One view; by default waveform, PSD and envelope spectrum.")
+@file_option("PICTURE", "Picture: .png, .svg or .pdf.", PICTURES, kind="picture")
+@click.option("--healthy", metavar="I|FILE", help="Record of the same corpus, or recording, drawn under it as healthy.")
+@click.option("--bearing", metavar="BEARING", help="Of a recording: designation such as 6205, or a geometry.")
+@rpm_option
+@band_option
+@click.option(
+    "--band-by",
+    type=click.Choice(["kurtogram", "line"]),
+    help="Choose the band of the envelope: the most impulsive one, or that in which a fault line stands out most.",
+)
+@reading_options
+def plot(
+    source: Path,
+    record: int | None,
+    view: str | None,
+    output: Path,
+    healthy: str | None,
+    bearing: str | None,
+    speeds: tuple[float, float] | None,
+    band: tuple[float, float] | None,
+    band_by: str | None,
+    reading: Reading,
+) -> None:
+    """Draw a record of a corpus, or a recording.
+
+      raceway plot corpus --record 17 -o record.png
+      raceway plot corpus --record 17 --view waterfall -o run_up.png
+      raceway plot corpus --record 17 --healthy 3 --view envelope -o record.png --channel fan_end --band 2000 9000
+      raceway plot pump.csv --bearing 6205 --rpm 1797 --rate 12000 --view kurtogram -o pump.png
+      raceway plot run_up.wav --bearing 6205 --rpm 600-3000 --view orders -o run_up.png
+
+    The views: waveform, psd (power spectral density), envelope (spectrum of the squared envelope), kurtogram (kurtosis by band),
+    coherence (spectral coherence), orders (order spectrum of the signal), waterfall (envelope spectra over time), cepstrum.
+
+    Lines of the fault are shaded, their sidebands dotted, lines of other faults dashed. A recording has no known fault. At a speed that
+    varies, --rpm is its range; the speed is then found in the signal, and the lines are drawn over orders of the shaft.
+    """
+    from features.report.pictures import draw_record, write_picture
+    from features.report.views import band_by as chosen_band
+    from features.report.views import draw_view
+    from gen.support.errors import CorpusError
+
+    shown = _shown(source, record, bearing, speeds, band, reading)
+    if band_by is not None:
+        shown = shown._replace(band=chosen_band(band_by, shown))
+    under = None
+    if healthy is not None:
+        of_corpus = _is_corpus(source) and healthy.isdecimal()
+        path, number = (source, int(healthy)) if of_corpus else (Path(healthy), None)
+        under = _shown(path, number, bearing, speeds, band, reading)._replace(band=shown.band)
+    try:
+        figure = draw_record(shown, under) if view is None else draw_view(view, shown, under)
+    except ValueError as error:
+        raise CorpusError(f"{source}: cannot be drawn as {view or 'a record'}: {error}") from None
+    write_picture(figure, output)
+    what = source.name if record is None else f"record {record} of {source}"
+    band_text = f", envelope of {shown.band[0]:.0f}-{shown.band[1]:.0f} Hz" if band_by is not None else ""
+    show.text(f"{output}: {what}{band_text}.")
+
+
+def _is_corpus(source: Path) -> bool:
+    return source.is_dir() or source.suffix == ".nc"
+
+
+def _shown(
+    source: Path,
+    record: int | None,
+    bearing: str | None,
+    speeds: tuple[float, float] | None,
+    band: tuple[float, float] | None,
+    reading: Reading,
+) -> "Shown":
+    from features.report.shown import shown_record, shown_recording
+    from gen import bearing_orders
+
+    options = Analysis(band=band).options()
+    if len(reading.channels) > 1:
+        raise click.UsageError("--channel: a picture shows one channel; give one")
+    if _is_corpus(source):
+        if record is None:
+            raise click.UsageError(f"{source} is a corpus: give the number of a record with --record")
+        return shown_record(source, record, next(iter(reading.channels), 0), options["band"])
+    if bearing is None or speeds is None:
+        raise click.UsageError(f"{source} is a recording: give --bearing and --rpm, which tell where its lines lie")
+    recorded, _, notes = read_recording(source, reading)
+    for note in notes:
+        notice(f"warning: {note}")
+    (signal,) = recorded.signals.values()
+    rates = speeds[0] / 60, speeds[1] / 60
+    return shown_recording(source.name, signal, recorded.fs, rates, bearing_orders(bearing), options["band"])

@@ -1,0 +1,73 @@
+"""Views of a record: lines stand where they belong at any speed, and a chosen band is the planted one."""
+
+import numpy as np
+import pytest
+
+from features.band import DEFAULT_BAND
+from features.report.pictures import draw_record, picture, squared_envelope
+from features.report.shown import shown_recording
+from features.report.views import MAPS, VIEWS, band_by, draw_view
+from raceway.commands import plotting
+from tests.pulses import pulse_train
+
+FS = 12_000.0
+ORDERS = (0.3983, 3.5848, 5.4152, 2.3567)
+BPFO = ORDERS[1]
+
+
+@pytest.fixture(scope="module")
+def steady():
+    x = pulse_train(FS, 4.0, 30.0 * BPFO, 3000.0, np.random.default_rng(0), noise=0.3)
+    return shown_recording("steady", x, FS, (30.0, 30.0), ORDERS, DEFAULT_BAND)
+
+
+@pytest.fixture(scope="module")
+def run_up():
+    """Impacts at the BPFO and harmonics of a shaft that runs up from 15 to 30 turns a second."""
+    rate = np.linspace(15.0, 30.0, round(6 * FS))
+    turns, rng = np.cumsum(rate) / FS, np.random.default_rng(1)
+    hits = np.diff(np.floor(turns * BPFO), prepend=0.0)
+    times = np.arange(200) / FS
+    ringing = np.convolve(hits, np.exp(-600 * times) * np.sin(2 * np.pi * 3000 * times))[: len(rate)]
+    shaft = sum(0.2 * np.sin(2 * np.pi * k * turns) for k in (1, 2, 3))
+    return shown_recording(
+        "run-up", ringing + shaft + 0.02 * rng.standard_normal(len(rate)), FS, (15.0, 30.0), ORDERS, DEFAULT_BAND
+    )
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_every_view_is_drawn_at_constant_and_at_varying_speed_and_over_another_record(view, steady, run_up):
+    for shown, under in ((steady, None), (run_up, None), (steady, steady)):
+        figure = draw_view(view, shown, under)
+        assert bool(figure.legends) == (under is not None and view not in MAPS)
+        assert picture(figure, "png").startswith(b"\x89PNG")
+
+
+def test_the_command_offers_every_view():
+    assert tuple(VIEWS) == plotting.VIEWS
+
+
+def test_the_envelope_of_a_run_up_has_its_line_within_half_a_bin_of_its_order(run_up):
+    orders, spectrum = squared_envelope(run_up)
+    near = np.abs(orders - BPFO) < 0.3
+    found = orders[near][spectrum[near].argmax()]
+    assert found == pytest.approx(BPFO, abs=0.5 / run_up.turns[-1])
+    _, smeared = squared_envelope(run_up._replace(angle=None))
+    assert spectrum[near].max() > 5 * smeared[(np.abs(_ - BPFO) < 0.3)].max()
+
+
+def test_the_title_of_a_run_up_has_its_range_and_the_waveform_counts_its_revolutions(run_up):
+    assert run_up.title == "run-up, 900-1800 rpm"
+    assert draw_record(run_up).axes[0].get_title(loc="left").startswith("Waveform: first 0.5")  # 8 turns at 15 to 16 Hz
+
+
+def test_too_short_a_record_for_a_course_of_the_speed_says_that_its_speed_is_taken_as_constant():
+    x = np.random.default_rng(2).standard_normal(6000)
+    assert shown_recording("short", x, FS, (10.0, 30.0), ORDERS, DEFAULT_BAND).title.endswith("rpm (taken as constant)")
+
+
+@pytest.mark.parametrize("choice", ["kurtogram", "line"])
+def test_the_chosen_band_holds_the_resonance(choice, steady):
+    low, high = band_by(choice, steady)
+    assert low < 3000 < high
+    assert high - low < 4000

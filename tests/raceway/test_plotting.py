@@ -1,0 +1,46 @@
+"""``raceway plot`` of records and recordings."""
+
+import numpy as np
+import pytest
+
+MACHINE = ("--bearing", "6205", "--rpm", 1797, "--rate", 12000)
+
+
+@pytest.fixture
+def recording(tmp_path):
+    np.save(tmp_path / "pump.npy", np.random.default_rng(0).standard_normal(24_000))
+    return tmp_path / "pump.npy"
+
+
+def test_a_recording_is_drawn_over_a_healthy_one(run, recording, tmp_path):
+    line = ("plot", recording, *MACHINE, "--view", "envelope", "--band-by", "kurtogram", "--healthy", recording)
+    assert "pump.npy, envelope of " in run(*line, "-o", tmp_path / "x.png").stdout
+    assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_record_is_drawn_over_another_one_of_the_corpus(run, tiny_corpus, tmp_path):
+    line = ("plot", tiny_corpus, "--record", 1, "--healthy", 0, "--view", "psd", "-o", tmp_path / "x.svg")
+    assert run(*line).exit_code == 0
+    assert (tmp_path / "x.svg").read_text().count("<svg") == 1
+
+
+@pytest.mark.parametrize(
+    ("given", "sentence"),
+    [
+        ((), "give --bearing and --rpm"),
+        ((*MACHINE, "--view", "spectrogram"), "is not one of 'waveform'"),
+        ((*MACHINE, "--channel", "0,1"), "a picture shows one channel"),
+        ((*MACHINE, "--band", 6000, 9000), "lies above half the sample rate"),
+        ((*MACHINE, "--healthy", "none.npy"), "none.npy"),
+    ],
+)
+def test_what_a_picture_of_a_recording_lacks_is_told_in_one_sentence(run, recording, tmp_path, given, sentence):
+    result = run("plot", recording, *given, "-o", tmp_path / "x.png")
+    assert result.exit_code == 2
+    assert sentence in result.stderr
+    assert len(result.stderr.splitlines()) == 1
+
+
+def test_a_corpus_needs_the_number_of_a_record(run, tiny_corpus, tmp_path):
+    result = run("plot", tiny_corpus, "-o", tmp_path / "x.png")
+    assert (result.exit_code, "with --record" in result.stderr) == (2, True)
