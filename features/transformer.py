@@ -1,7 +1,9 @@
 """The features of this package as a scikit-learn transformer, for signals outside a corpus.
 
 The transformer is stateless: ``fit`` only stores the number of samples, and ``transform`` does not need it. All signals
-have the same sample rate, shaft rate and bearing.
+have the same sample rate and bearing. They have the same shaft rate, or each its own as metadata: with
+``sklearn.set_config(enable_metadata_routing=True)`` and ``transformer.set_transform_request(shaft_rate=True)`` a pipeline
+or a cross-validation passes ``shaft_rate`` on.
 """
 
 from collections.abc import Sequence
@@ -72,24 +74,35 @@ class IndicatorTransformer(TransformerMixin, BaseEstimator):
         self._signals(X, reset=True)
         return self
 
-    def transform(self, X: ArrayLike) -> FloatArray:
-        """Features of X, shape (record, time) to (record, feature)."""
+    def fit_transform(  # type: ignore[override]
+        self, X: ArrayLike, y: object = None, shaft_rate: ArrayLike | None = None
+    ) -> FloatArray:
+        """As `fit` and `transform`."""
+        return self.fit(X, y).transform(X, shaft_rate)
+
+    def transform(self, X: ArrayLike, shaft_rate: ArrayLike | None = None) -> FloatArray:
+        """Features of X, shape (record, time) to (record, feature).
+
+        ``shaft_rate``, shape (record,) [Hz], replaces that of the transformer.
+        """
         x = self._signals(X, reset=False)
         records = np.ones(len(x))
         orders = Orders(*(order * records for order in (self.ftf, self.bpfo, self.bpfi, self.bsf)))
-        values, _ = indicators(x, self.fs, self._shaft_rates(x), orders, self.groups, checked_band(*self.band))
+        rates = self._shaft_rates(x, self.shaft_rate if shaft_rate is None else shaft_rate)
+        values, _ = indicators(x, self.fs, rates, orders, self.groups, checked_band(*self.band))
         return values
 
-    def _shaft_rates(self, x: FloatArray) -> FloatArray:
+    def _shaft_rates(self, x: FloatArray, labelled: ArrayLike) -> FloatArray:
         """Shaft rate of each signal [Hz], shape (record,)."""
+        rates = np.broadcast_to(np.asarray(labelled, dtype=float), len(x))
         if self.speed == "off":
-            return np.full(len(x), float(self.shaft_rate))
+            return rates
         if self.speed != "correct":
             message = f"speed: {self.speed!r} is no treatment of shaft speeds; choose off or correct."
             raise ValueError(message)
         orders = (self.ftf, self.bpfo, self.bpfi, self.bsf)
-        estimates = (shaft_speed(signal, self.fs, self.shaft_rate, orders) for signal in x)
-        return np.array([speed.rate if speed.clear else self.shaft_rate for speed in estimates], dtype=float)
+        estimates = [shaft_speed(signal, self.fs, rate, orders) for signal, rate in zip(x, rates, strict=True)]
+        return np.where([speed.clear for speed in estimates], [speed.rate for speed in estimates], rates)
 
     def _signals(self, X: ArrayLike, *, reset: bool) -> FloatArray:
         x: Any = X

@@ -2,7 +2,10 @@
 
 import numpy as np
 import pytest
+from sklearn import config_context
 from sklearn.base import clone
+from sklearn.linear_model import LogisticRegression
+from sklearn.pipeline import make_pipeline
 from sklearn.utils.estimator_checks import parametrize_with_checks
 
 from features.indicators import Orders, feature_names, indicators
@@ -29,6 +32,19 @@ def test_the_transformer_computes_the_indicators():
     transformer = IndicatorTransformer(12_800.0, 25.0, 0.4, 3.6, 5.4, 2.4, ("shape", "lines"))
     np.testing.assert_array_equal(transformer.fit_transform(x), expected)
     assert tuple(transformer.get_feature_names_out()) == names
+
+
+def test_a_pipeline_passes_the_shaft_rate_of_each_signal():
+    x, rates = np.random.default_rng(0).standard_normal((6, 6000)), np.linspace(20.0, 30.0, 6)
+    transformer = IndicatorTransformer(groups=("bands",)).set_output(transform="pandas")
+    with config_context(enable_metadata_routing=True):
+        pipeline = make_pipeline(transformer.set_transform_request(shaft_rate=True), LogisticRegression())
+        pipeline.fit(x, np.arange(6) % 2, shaft_rate=rates)
+    found = transformer.transform(x, rates)
+    expected = [transformer.transform(row[None], rate).iloc[0] for row, rate in zip(x, rates, strict=True)]
+    np.testing.assert_array_equal(found, expected)
+    assert tuple(found.columns) == feature_names(("bands",))
+    assert (pipeline[-1].n_features_in_, found.columns[0]) == (found.shape[1], pipeline[:-1].get_feature_names_out()[0])
 
 
 def test_a_wrong_speed_is_corrected_signal_by_signal():
