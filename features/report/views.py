@@ -38,6 +38,7 @@ from features.signal.rows import FloatArray
 from features.signal.separation import cepstrum
 
 HEIGHT = 3.6  # inches
+FAINTEST = 1e-12  # of an amplitude
 MAP_TURNS = 24  # revolutions of a window of the waterfall
 CEPSTRUM_TURNS = 1.3  # end of the axis, in revolutions
 SHORTEST_CEPSTRUM = 0.06  # revolutions: what lies below is the shape of the spectrum
@@ -85,7 +86,7 @@ def _orders(axes: Axes, shown: Shown, under: Shown | None) -> None:
         if one is not None:
             orders, spectrum = order_spectrum(_over_angle(one), PER_TURN)
             drawn = (orders > 0) & (orders <= top)
-            axes.semilogy(orders[drawn], spectrum[0, drawn], linewidth=0.7, **look)
+            axes.semilogy(orders[drawn], np.maximum(spectrum[0, drawn], FAINTEST), linewidth=0.7, **look)
     axes.set(ylabel=f"amplitude [{shown.unit}]")
     axes.set_title("Order spectrum of the signal", pad=30)
 
@@ -101,7 +102,8 @@ def _waterfall(axes: Axes, shown: Shown, _: Shown | None) -> None:
     top = draw_cursors(axes, shown)
     drawn = (found.orders > 0) & (found.orders <= top)
     amplitude = found.amplitude[0][:, drawn]
-    level = 20 * np.log10(amplitude / np.median(amplitude, axis=1, keepdims=True) + 1e-12)
+    floor = np.median(amplitude, axis=1, keepdims=True)
+    level = 20 * np.log10(np.maximum(amplitude, FAINTEST) / np.maximum(floor, FAINTEST))
     first = np.ceil(shown.turns[0])
     time = np.interp(first + found.turns, shown.turns, np.arange(shown.signal.size) / shown.fs)
     _map(axes, (found.orders[drawn], time, level), (0.0, 20.0), "dB above the median")
