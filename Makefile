@@ -20,13 +20,15 @@ $(VENV)/installed: pyproject.toml
 
 quickstart: $(VENV)/installed
 	@$(BIN)/raceway generate quickstart -o $(OUT)/corpus
+	@$(BIN)/raceway plot $(OUT)/corpus -o $(OUT)/classes.png
 	@$(BIN)/raceway features $(OUT)/corpus -o $(OUT)/features.nc
 	@$(BIN)/raceway train $(OUT)/corpus -o $(OUT)/model.skops
 	@$(BIN)/raceway benchmark $(OUT)/corpus -o $(OUT)/benchmark
-	@echo "corpus  $(OUT)/corpus"
-	@echo "model   $(OUT)/model.skops"
-	@echo "report  $(OUT)/benchmark/report.html"
-	@echo "scores  $(OUT)/benchmark/results.json"
+	@echo "corpus   $(OUT)/corpus"
+	@echo "picture  $(OUT)/classes.png"
+	@echo "model    $(OUT)/model.skops"
+	@echo "scores   $(OUT)/benchmark/results.json"
+	@echo "Open     $(OUT)/benchmark/report.html"
 
 lint: $(VENV)/installed
 	$(BIN)/ruff format --check .

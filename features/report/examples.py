@@ -1,13 +1,23 @@
-"""An example of each class of a corpus as a picture."""
+"""An example of each class of a corpus as a picture, and all of them on one."""
 
 from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
+from matplotlib import rc_context
+from matplotlib.figure import Figure
 
 from features.faults import COMBS, LOOKS
 from features.indicators import Orders, feature_names, indicators
-from features.report.pictures import Shown, draw_record, picture
+from features.report.pictures import (
+    STYLE,
+    WIDTH,
+    Shown,
+    draw_envelope_spectrum,
+    draw_record,
+    draw_waveform,
+    picture,
+)
 from features.report.shown import can_be_drawn, shown_of
 from gen.corpus import FAULT_NAMES
 
@@ -25,6 +35,28 @@ class Example(NamedTuple):
 def draw_examples(corpus: xr.Dataset) -> list[Example]:
     """Example of each class that the corpus contains."""
     return [_example(corpus, code) for code in np.unique(corpus["fault"].values)]
+
+
+@rc_context(STYLE)
+def draw_overview(corpus: xr.Dataset) -> Figure:
+    """Waveform and squared envelope spectrum of an example of each class that the corpus contains, a row for each.
+
+    Raises
+    ------
+    ValueError
+        If no record can be drawn.
+    """
+    chosen = [chosen_example(corpus, code)[0] for code in np.unique(corpus["fault"].values)]
+    drawn = [shown for shown in chosen if shown is not None]
+    if not drawn:
+        raise ValueError("no record has a signal, a shaft rate and fault orders to draw.")
+    figure = Figure(figsize=(1.6 * WIDTH, 1.9 * len(drawn)), layout="constrained")
+    for (waveform, envelope), shown in zip(figure.subplots(len(drawn), 2, squeeze=False), drawn, strict=True):
+        draw_waveform(waveform, shown)
+        draw_envelope_spectrum(envelope, shown)
+        waveform.set_title(shown.title, color=LOOKS[shown.fault].colour, fontweight="bold")
+        envelope.set_title("")
+    return figure
 
 
 def _example(corpus: xr.Dataset, code: int) -> Example:

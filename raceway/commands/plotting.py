@@ -19,7 +19,12 @@ VIEWS = ("waveform", "psd", "envelope", "kurtogram", "coherence", "orders", "wat
 
 @click.command()
 @click.argument("source", metavar="DIR|FILE", type=A_PATH)
-@click.option("--record", type=int, metavar="I", help="Of a corpus: number of the record, from 0.")
+@click.option(
+    "--record",
+    type=int,
+    metavar="I",
+    help="Of a corpus: number of the record, from 0; without it, an example of each class is drawn.",
+)
 @click.option("--view", type=click.Choice(VIEWS), help="One view; by default waveform, PSD and envelope spectrum.")
 @file_option("PICTURE", "Picture: .png, .svg or .pdf.", PICTURES, kind="picture")
 @click.option("--healthy", metavar="I|FILE", help="Record of the same corpus, or recording, drawn under it as healthy.")
@@ -44,8 +49,9 @@ def plot(
     band_by: str | None,
     reading: Reading,
 ) -> None:
-    """Draw a record of a corpus, or a recording.
+    """Draw records of a corpus, or a recording.
 
+      raceway plot corpus -o classes.png
       raceway plot corpus --record 17 -o record.png
       raceway plot corpus --record 17 --view waterfall -o run_up.png
       raceway plot corpus --record 17 --healthy 3 --view envelope -o record.png --channel fan_end --band 2000 9000
@@ -58,6 +64,9 @@ def plot(
     Lines of the fault are shaded, their sidebands dotted, lines of other faults dashed. A recording has no known fault. At a speed that
     varies, --rpm is its range; the speed is then found in the signal, and the lines are drawn over orders of the shaft.
     """
+    if _is_corpus(source) and (record, view, healthy, band, band_by) == (None,) * 5:
+        _draw_classes(source, output)
+        return
     from features.report.pictures import draw_record, write_picture
     from features.report.views import band_by as chosen_band
     from features.report.views import draw_view
@@ -79,6 +88,21 @@ def plot(
     what = source.name if record is None else f"record {record} of {source}"
     band_text = f", envelope of {shown.band[0]:.0f}-{shown.band[1]:.0f} Hz" if band_by is not None else ""
     show.text(f"{output}: {what}{band_text}.")
+
+
+def _draw_classes(corpus: Path, output: Path) -> None:
+    from features.report.examples import draw_overview
+    from features.report.pictures import write_picture
+    from gen.corpus import open_corpus
+    from gen.support.errors import CorpusError
+
+    with open_corpus(corpus) as opened:
+        try:
+            figure = draw_overview(opened)
+        except ValueError as error:
+            raise CorpusError(f"{corpus}: {error}") from None
+    write_picture(figure, output)
+    show.text(f"{output}: a record of each class of {corpus}.")
 
 
 def _is_corpus(source: Path) -> bool:

@@ -41,6 +41,11 @@ def test_what_a_picture_of_a_recording_lacks_is_told_in_one_sentence(run, record
     assert len(result.stderr.splitlines()) == 1
 
 
-def test_a_corpus_needs_the_number_of_a_record(run, tiny_corpus, tmp_path):
-    result = run("plot", tiny_corpus, "-o", tmp_path / "x.png")
+def test_without_a_record_an_example_of_each_class_is_drawn(run, tiny_corpus, tmp_path):
+    assert "a record of each class" in run("plot", tiny_corpus, "-o", tmp_path / "x.png").stdout
+    assert (tmp_path / "x.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_a_view_of_a_corpus_needs_the_number_of_a_record(run, tiny_corpus, tmp_path):
+    result = run("plot", tiny_corpus, "--view", "psd", "-o", tmp_path / "x.png")
     assert (result.exit_code, "with --record" in result.stderr) == (2, True)
