@@ -10,7 +10,7 @@ FLOORS := .venv-floors
 FLOOR_TESTS := tests/test_packaging.py tests/gen/recipe tests/gen/corpus tests/gen/importers tests/gen/physics tests/gen/support/test_yaml_files_laws.py \
 	tests/features tests/raceway/test_commands.py --ignore=tests/gen/physics/kernel
 
-.PHONY: quickstart test tests lint generated reference bench thorough floors clean
+.PHONY: quickstart test tests lint generated reference docs bench thorough floors clean
 
 $(VENV)/installed: pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo "Raceway needs Python 3.11 or later; set PYTHON=..."; exit 2; }
@@ -49,6 +49,12 @@ generated: $(VENV)/installed
 # the feature table that ships with Raceway, from which the reference model is trained
 reference: $(VENV)/installed
 	$(BIN)/python -m raceway.studies.reference_model
+
+# the site under out/docs; index.html opens it, without a server
+docs: $(VENV)/installed
+	$(BIN)/python -m pip install --quiet --editable '.[docs]'
+	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs/site -b html . out/docs
+	@echo "Open     out/docs/index.html"
 
 bench: $(VENV)/installed
 	$(BIN)/python -m benchmarks

@@ -130,7 +130,7 @@ class SpectralKurtosis(NamedTuple):
 
 
 def spectral_kurtosis(x: FloatArray, fs: float, *, segment: float = 0.005) -> SpectralKurtosis:
-    """Kurtosis of the coefficients of Hann-windowed segments that overlap by half, without bias in stationary noise [4]_.
+    """Kurtosis of the coefficients of Hann-windowed segments that overlap by half, without bias in stationary noise.
 
     The two lowest and the two highest frequencies are left out, where a coefficient overlaps with its mirror image.
 
