@@ -17,6 +17,7 @@ from raceway.commands import (
     corpora,
     diagnosing,
     doctor,
+    exploring,
     feature_tables,
     importing,
     models,
@@ -36,7 +37,14 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
         copying.copy,
         publishing.card,
     ),
-    "Look at them": (corpora.info, corpora.validate, corpora.replay, plotting.plot, comparing.compare),
+    "Look at them": (
+        corpora.info,
+        corpora.validate,
+        corpora.replay,
+        plotting.plot,
+        exploring.explore,
+        comparing.compare,
+    ),
     "Learn from them": (
         feature_tables.features,
         models.train,

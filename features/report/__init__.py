@@ -1,4 +1,4 @@
-"""Pictures of records and of scores, one page of a corpus and its benchmark, one of a comparison, and one of a diagnosis.
+"""Pictures of records and of scores, and pages: a corpus and its benchmark, a comparison, a diagnosis, a corpus to browse.
 
 ========== ======================================================================
 module     responsibility
@@ -16,5 +16,6 @@ templates  templates of pages
 page       a corpus and its benchmark on one page
 comparison a synthetic corpus and real ones on one page
 diagnosis  a diagnosis on one page
+explore    a corpus on one page to browse
 ========== ======================================================================
 """

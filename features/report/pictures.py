@@ -196,7 +196,7 @@ def draw_envelope_spectrum(axes: Axes, shown: Shown, under: Shown | None = None)
 def draw_cursors(axes: Axes, shown: Shown) -> float:
     """Lines of the fault over orders, shaded, with their sidebands dotted, and those of other faults dashed; the last order drawn."""
     own, others = fault_lines(shown.orders, shown.fault)
-    top = _highest_drawn_order(own, others)
+    top = highest_drawn_order(own, others)
     look = LOOKS[shown.fault]
     side = 1.0 if look.side == SHAFT.base else float(getattr(shown.orders, look.side))
     for line in own.values():
@@ -210,7 +210,7 @@ def draw_cursors(axes: Axes, shown: Shown) -> float:
     return top
 
 
-def _highest_drawn_order(own: Mapping[str, float], others: Mapping[str, float]) -> float:
+def highest_drawn_order(own: Mapping[str, float], others: Mapping[str, float]) -> float:
     """Order at which the axis ends: beyond the third harmonics of all classes.
 
     If all lines of the fault lie below the highest fundamental line, as those of a cage do, the axis ends just above

@@ -77,6 +77,15 @@ def can_be_drawn(shown: Shown) -> bool:
     return bool(np.isfinite(numbers).all() and (numbers > 0).all() and np.isfinite(shown.signal).all())
 
 
+def check_band(band: Band, fs: float, where: str) -> None:
+    """Refuse a band that lies above half the sample rate [Hz] with a CorpusError."""
+    low, high = band
+    if 2 * low + LEAST_WIDTH > fs:
+        raise CorpusError(
+            f"{where}: the band {low:g}-{high:g} Hz lies above half the sample rate of {fs:g} Hz; give a lower one."
+        )
+
+
 def _turning(shown: Shown, slowest: float, fastest: float) -> Shown:
     """The same with its speed in the title, and with the angle of the shaft if the speed varies: it is tracked in the signal."""
     if not (can_be_drawn(shown) and fastest > CONSTANT * slowest):
@@ -91,11 +100,7 @@ def _turning(shown: Shown, slowest: float, fastest: float) -> Shown:
 
 
 def _checked(shown: Shown, where: str) -> Shown:
-    low, high = shown.band
-    if 2 * low + LEAST_WIDTH > shown.fs:
-        raise CorpusError(
-            f"{where}: the band {low:g}-{high:g} Hz lies above half the sample rate of {shown.fs:g} Hz; give a lower one."
-        )
+    check_band(shown.band, shown.fs, where)
     if not can_be_drawn(shown):
         raise CorpusError(
             f"{where}: cannot be drawn, because its signal, shaft rate or a fault order is not a finite number or not "

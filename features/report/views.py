@@ -44,6 +44,7 @@ CEPSTRUM_TURNS = 1.3  # end of the axis, in revolutions
 SHORTEST_CEPSTRUM = 0.06  # revolutions: what lies below is the shape of the spectrum
 COHERENCE_BAND = 200.0  # Hz
 COLUMNS = 340  # of a map
+BRIGHTEST_DB = 20.0  # level drawn black in a waterfall, above the median
 ONE_FALSE_ALARM = 0.01  # expected in a whole map of coherence of noise
 NARROWEST_BAND = 1000.0  # Hz, of a chosen band: as that of a band that is given
 
@@ -97,18 +98,29 @@ def _over_angle(shown: Shown, per_turn: int = PER_TURN) -> FloatArray:
 
 def _waterfall(axes: Axes, shown: Shown, _: Shown | None) -> None:
     """Envelope spectra of windows over orders, one above the other."""
-    y = envelope_over_angle(shown)
-    found = order_map(y, PER_TURN, min(MAP_TURNS, max(2, y.shape[1] // PER_TURN // 4)))
-    top = draw_cursors(axes, shown)
-    drawn = (found.orders > 0) & (found.orders <= top)
-    amplitude = found.amplitude[0][:, drawn]
-    floor = np.median(amplitude, axis=1, keepdims=True)
-    level = 20 * np.log10(np.maximum(amplitude, FAINTEST) / np.maximum(floor, FAINTEST))
-    first = np.ceil(shown.turns[0])
-    time = np.interp(first + found.turns, shown.turns, np.arange(shown.signal.size) / shown.fs)
-    _map(axes, (found.orders[drawn], time, level), (0.0, 20.0), "dB above the median")
+    orders, time, level = envelope_map(shown, draw_cursors(axes, shown))
+    _map(axes, (orders, time, level), (0.0, BRIGHTEST_DB), "dB above the median")
     axes.set(ylabel="time [s]")
     axes.set_title("Envelope spectrum of the whitened band over time", pad=30)
+
+
+def envelope_map(shown: Shown, top: float) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Orders up to ``top``, times [s], and levels over the median [dB] of the envelope spectra of windows, shape (time, order).
+
+    Raises
+    ------
+    ValueError
+        If the record has fewer than two turns.
+    """
+    y = envelope_over_angle(shown)
+    found = order_map(y, PER_TURN, min(MAP_TURNS, max(2, y.shape[1] // PER_TURN // 4)))
+    drawn = (found.orders > 0) & (found.orders <= top)
+    amplitude = found.amplitude[0][:, drawn]
+    median = np.median(amplitude, axis=1, keepdims=True)
+    level = 20 * np.log10(np.maximum(amplitude, FAINTEST) / np.maximum(median, FAINTEST))
+    first = np.ceil(shown.turns[0])
+    time = np.interp(first + found.turns, shown.turns, np.arange(shown.signal.size) / shown.fs)
+    return found.orders[drawn], time, level
 
 
 def _kurtogram(axes: Axes, shown: Shown, _: Shown | None) -> None:

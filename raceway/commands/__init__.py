@@ -7,6 +7,7 @@ corpora          commands that make corpora and look at them
 importing        commands that convert real recordings into the format
 copying          corpora copied, cut, joined, and in the forms of other programs
 plotting         a picture of one record or recording
+exploring        a page to browse a corpus
 feature_tables   features of all records
 models           a model trained, and scored on another corpus
 references       healthy records that the tested ones are compared with

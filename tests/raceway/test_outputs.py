@@ -27,6 +27,7 @@ RESULTS = {
     "features {corpus} --band 300 5000": "result.parquet",
     "train {corpus} --estimator majority": "result.skops",
     "plot {corpus} --record 1": "result.png",
+    "explore {corpus}": "result.html",
     "diagnose {recording} --bearing 6205 --rpm 1500 --rate 12000 --unit g --model {model}": "result.html",
     "replay {corpus} --record 1": "record.nc",
     "benchmark {corpus}": "report",

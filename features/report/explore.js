@@ -1,0 +1,244 @@
+// Choice of records, and the chosen record. Texts of the corpus become textContent and attribute values only.
+// Parts of the page are inflated when they are needed: a quantity or a block of records when it is shown.
+
+const KEPT = 24; // blocks in memory
+const ROLES = { operating: true, label: true, feature: false, latent: false, provenance: false }; // open at first?
+const COMPARE = {
+  "==": (a, b) => a === b,
+  "!=": (a, b) => a !== b,
+  "<": (a, b) => a < b,
+  "<=": (a, b) => a <= b,
+  ">": (a, b) => a > b,
+  ">=": (a, b) => a >= b,
+};
+const KEYS = { ArrowLeft: () => step(-1), ArrowRight: () => step(1), "/": () => byId("condition").focus(), p: play };
+
+let about;
+let numbers; // of the quantities among the parts, by name
+let shown = []; // rows that the filter leaves, in the chosen order
+let current = 0; // row of the shown record
+let scatter;
+let choices = 0;
+let audio, sounding;
+const inflated = new Map();
+
+async function inflate(id) {
+  const isThere = () => byId(id)?.nextElementSibling || document.readyState !== "loading";
+  while (!isThere()) await new Promise((go) => setTimeout(go, 5));
+  const packed = Uint8Array.from(atob(byId(id).textContent), (letter) => letter.charCodeAt(0));
+  return new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate")));
+}
+
+function keep(id, read) {
+  if (!inflated.has(id)) inflated.set(id, inflate(id).then(read));
+  const blocks = [...inflated.keys()].filter((key) => !key.startsWith("quantity"));
+  if (blocks.length > KEPT) inflated.delete(blocks[0]);
+  return inflated.get(id);
+}
+
+// Values of a quantity by row; NaN where there is none.
+function valuesOf(name) {
+  return keep(`quantity${numbers[name]}`, async (part) => (await part.json()).map((value) => value ?? NaN));
+}
+
+// Buffer of the block of a row, the place of the row in it, and the number of its rows.
+async function blockOf(kind, row) {
+  const place = row % about.block;
+  const buffer = await keep(`${kind}${Math.floor(row / about.block)}`, (part) => part.arrayBuffer());
+  return [buffer, place, Math.min(about.block, about.records - row + place)];
+}
+
+async function arraysOf(row) {
+  const [buffer, place, rows] = await blockOf("block", row);
+  const types = { float32: Float32Array, int8: Int8Array, uint8: Uint8Array };
+  const arrays = {};
+  let start = 0;
+  for (const [name, type, size] of about.fields) {
+    const all = new types[type](buffer, start, rows * size);
+    arrays[name] = all.subarray(place * size, (place + 1) * size);
+    start += all.byteLength;
+  }
+  about.scales.forEach((name, number) => (arrays[name] = arrays.scales[number]));
+  return arrays;
+}
+
+async function drawRecord(row) {
+  const names = ["record", "fault", "shaft_rate", "ftf", "bpfo", "bpfi", "bsf"];
+  const [arrays, ...columns] = await Promise.all([arraysOf(row), ...names.map(valuesOf)]);
+  if (row !== current) return; // another record was chosen meanwhile
+  const [record, fault, rate, ftf, bpfo, bpfi, bsf] = columns.map((values) => values[row]);
+  const speed = Number.isNaN(rate) ? "" : `, ${Math.round(60 * rate)} rpm`;
+  byId("name").textContent = `Record ${record}: ${fault}${speed}`;
+  const undrawn = Number.isNaN(arrays.peak);
+  byId("undrawn").hidden = !undrawn;
+  document.querySelector(".plots").hidden = undrawn;
+  if (undrawn) return;
+  const nominal = { shaft: 1, ftf, bpfo, bpfi, bsf };
+  drawWaveform(arrays);
+  drawDensity(arrays);
+  drawEnvelope(arrays, fault, nominal);
+  drawWaterfall(arrays, fault, nominal);
+}
+
+async function tellLabels(row) {
+  for (const [name] of about.quantities) {
+    if (!byId(`value_${name}`).closest("details").open) continue;
+    const value = (await valuesOf(name))[row];
+    if (row !== current) return;
+    byId(`value_${name}`).textContent = Number.isNaN(value) ? "–" : value;
+  }
+}
+
+async function play() {
+  if (!about.sound) return;
+  const [buffer, place, rows] = await blockOf("sound", current);
+  const size = buffer.byteLength / rows;
+  const samples = Float32Array.from(new Int8Array(buffer, place * size, size), (value) => value / 128);
+  audio ??= new AudioContext();
+  const piece = audio.createBuffer(1, size, about.sound_rate);
+  piece.copyToChannel(samples, 0);
+  sounding?.stop();
+  sounding = new AudioBufferSourceNode(audio, { buffer: piece });
+  sounding.connect(audio.destination);
+  sounding.start();
+}
+
+// Tests of a condition such as "shaft_rate > 20 and split == train".
+async function conditions(text) {
+  const tests = [];
+  for (const part of text.split(/\band\b/).map((one) => one.trim()).filter(Boolean)) {
+    const found = /^(\w+)\s*(==|!=|<=|>=|<|>|=)\s*(?:'([^']*)'|"([^"]*)"|(\S.*))$/.exec(part);
+    if (!found) throw new Error(`${part}: write a quantity, a sign and a value, such as shaft_rate > 20.`);
+    const [, name, sign, ...given] = found;
+    const wanted = given.find((one) => one !== undefined);
+    if (!(name in numbers)) throw new Error(`${name}: no such quantity.`);
+    const numeric = about.quantities[numbers[name]][4];
+    if (numeric && Number.isNaN(+wanted)) throw new Error(`${name} has numbers, and ${wanted} is none.`);
+    const values = await valuesOf(name);
+    const against = numeric ? +wanted : wanted;
+    const compare = COMPARE[sign === "=" ? "==" : sign];
+    tests.push((row) => !Number.isNaN(values[row]) && compare(values[row], against));
+  }
+  return tests;
+}
+
+function withinRange(axis, values) {
+  const [from, to] = ["from", "to"].map((end) => byId(`${axis}_${end}`).value);
+  return (row) => (from === "" || values[row] >= +from) && (to === "" || values[row] <= +to);
+}
+
+// Filter and sort the records, and draw those that are left.
+async function choose() {
+  const turn = ++choices;
+  const quantities = [byId("x").value, byId("y").value];
+  const [across, upwards, faults] = await Promise.all([...quantities, "fault"].map(valuesOf));
+  const classes = new Set([...document.querySelectorAll("#classes input:checked")].map((box) => box.value));
+  const tests = [(row) => classes.has(faults[row]), withinRange("x", across), withinRange("y", upwards)];
+  let complaint = "";
+  try {
+    tests.push(...(await conditions(byId("condition").value)));
+  } catch (error) {
+    complaint = error.message;
+  }
+  if (turn !== choices) return; // the choice was changed meanwhile
+  shown = [...faults.keys()].filter((row) => tests.every((test) => test(row)));
+  const sorted = { x: across, y: upwards }[byId("order").value];
+  const key = (row) => (Number.isNaN(sorted[row]) ? Infinity : sorted[row]);
+  if (sorted) shown.sort((one, other) => key(one) - key(other) || one - other);
+  scatter = drawScatter(across, upwards, faults, shown, quantities.map(titleOf));
+  scatter.svg.addEventListener("click", (event) => show(scatter.nearest(event) ?? current));
+  const lacking = shown.length - scatter.drawn;
+  const note = lacking ? `, ${lacking} of them without a value to draw` : "";
+  byId("complaint").textContent = complaint;
+  byId("count").textContent = `${shown.length} of ${about.records} records${note}.`;
+  show(shown.includes(current) || !shown.length ? current : shown[0]);
+}
+
+function show(row) {
+  current = row;
+  history.replaceState(null, "", `#${row}`);
+  scatter.mark(row);
+  drawRecord(row);
+  tellLabels(row);
+}
+
+function step(by) {
+  const place = shown.indexOf(current) + by;
+  if (place >= 0 && place < shown.length) show(shown[place]);
+}
+
+function titleOf(name) {
+  const [, unit] = about.quantities[numbers[name]];
+  return unit ? `${name} [${unit}]` : name;
+}
+
+function makeClasses(faults) {
+  for (const [value, { colour }] of Object.entries(about.classes)) {
+    const count = faults.filter((fault) => fault === value).length;
+    if (!count) continue;
+    const label = addHtml(byId("classes"), "label");
+    addHtml(label, "input", { type: "checkbox", value, checked: true });
+    addHtml(label, "span", { className: "swatch" }).style.background = colour;
+    label.append(`${value} (${count})`);
+  }
+}
+
+function makeAxis(axis, first) {
+  for (const role of Object.keys(ROLES)) {
+    const names = about.quantities.filter(([, , , of, numeric]) => of === role && numeric).map(([name]) => name);
+    const group = addHtml(byId(axis), "optgroup", { label: role, hidden: !names.length });
+    group.append(...names.map((name) => new Option(titleOf(name), name)));
+  }
+  byId(axis).value = first;
+  byId(axis).addEventListener("change", () => (byId(`${axis}_from`).value = byId(`${axis}_to`).value = ""));
+}
+
+function makeLabels() {
+  for (const [role, open] of Object.entries(ROLES)) {
+    const rows = about.quantities.filter((one) => one[3] === role);
+    if (!rows.length) continue;
+    const details = addHtml(byId("labels"), "details", { open });
+    addHtml(details, "summary", { textContent: `${role} (${rows.length})` });
+    details.addEventListener("toggle", () => tellLabels(current));
+    const table = addHtml(details, "table");
+    for (const [name, unit, meaning] of rows) {
+      const row = Object.assign(table.insertRow(), { title: meaning });
+      addHtml(row, "th", { textContent: name, scope: "row" });
+      row.insertCell().id = `value_${name}`;
+      row.insertCell().textContent = unit;
+    }
+  }
+}
+
+function onKey(event) {
+  const writing = event.target.matches("select, input:not([type=checkbox])");
+  if (writing && event.key === "Escape") event.target.blur();
+  if (writing || event.ctrlKey || event.altKey || event.metaKey || !(event.key in KEYS)) return;
+  event.preventDefault();
+  KEYS[event.key]();
+}
+
+async function start() {
+  about = await (await inflate("about")).json();
+  numbers = Object.fromEntries(about.quantities.map(([name], place) => [name, place]));
+  const faults = await valuesOf("fault");
+  about.records = faults.length;
+  makeClasses(faults);
+  makeAxis("x", about.axes[0]);
+  makeAxis("y", about.axes[1]);
+  makeLabels();
+  current = Math.min(about.records - 1, Number.parseInt(location.hash.slice(1), 10) || 0);
+  document.querySelector("section").addEventListener("input", choose);
+  byId("previous").addEventListener("click", () => step(-1));
+  byId("next").addEventListener("click", () => step(1));
+  byId("play")?.addEventListener("click", play);
+  document.addEventListener("keydown", onKey);
+  let width = innerWidth;
+  addEventListener("resize", () => {
+    if (innerWidth !== width) choose();
+    width = innerWidth;
+  });
+  await choose();
+}
+
+start();

@@ -1,0 +1,333 @@
+"""A corpus on one page to browse: its records by class and range, and each one with its pictures, labels and sound.
+
+``records, 64 at a time -> small arrays of each record -> one deflated text -> a page that inflates the block it shows``
+
+The page is one file without a server or a network. Corpora come from unknown sources: their text is stored as deflated
+JSON and put into the page as text alone, and the only script that may run is the one whose digest the page names.
+"""
+
+import base64
+import hashlib
+import json
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing
+from functools import partial
+from importlib.resources import files
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy.signal import resample
+
+from features.band import DEFAULT_BAND, Band, checked_band
+from features.channels import channel_number, channels_of
+from features.faults import COMBS, FUNDAMENTALS, LOOKS, SHAFT
+from features.indicators import Orders
+from features.report.pictures import (
+    SEGMENT,
+    TOLERANCE,
+    TURNS,
+    Shown,
+    fault_lines,
+    highest_drawn_order,
+    squared_envelope,
+)
+from features.report.shown import can_be_drawn, check_band, shown_of
+from features.report.templates import template
+from features.report.views import BRIGHTEST_DB, envelope_map
+from features.signal.rows import FloatArray
+from features.signal.spectra import psd
+from features.table_files import read_table
+from gen.corpus import (
+    DRAWS,
+    IDENTITY,
+    ROLES,
+    SIGNAL,
+    check_result,
+    class_names,
+    open_corpus,
+    write_text_durably,
+)
+from gen.support.errors import CorpusError
+from gen.support.progress import Progress, counter
+from gen.support.workers import run
+
+if TYPE_CHECKING:
+    from distributed import Client
+
+TINY = float(np.finfo(np.float32).tiny)  # keeps silent records finite
+RECORDS = 10_000  # on a page, by default
+SCRIPTS = ("plots.js", "explore.js")
+BLOCK = 64  # records that are inflated together
+STEP_DB = 0.5  # of the stored spectra
+SHADES = 15  # of the stored waterfall, beside white
+COLUMNS, DENSITIES, LEVELS, ROWS, CELLS = 256, 200, 400, 12, 128  # of waveform, PSD, envelope spectrum and waterfall
+SCALES = ("peak", "seconds", "highest_db", "last_order", "first_time", "last_time", "rows")
+FIELDS: Mapping[str, tuple[str, int]] = {
+    "scales": ("float32", len(SCALES)),
+    "lowest": ("int8", COLUMNS),
+    "highest": ("int8", COLUMNS),
+    "density": ("uint8", DENSITIES),
+    "envelope": ("uint8", LEVELS),
+    "waterfall": ("uint8", ROWS * CELLS // 2),
+}
+"""Arrays of a record by name, with their type and number of values. In a block, those of all its records follow each other."""
+SOUND_RATE, SOUND_S = 8000, 0.5  # Hz, s
+LONGEST_TEXT = 200
+AXES = ("shaft_rate", "load", "record"), ("width", "depth", "load", "record")  # at first: the first that varies
+READ = ("fault", "sample_rate", "shaft_rate", "first_shaft_rate", "last_shaft_rate", *Orders._fields)
+
+
+class Explored(NamedTuple):
+    """What a page has: its records, and those of the corpus."""
+
+    page: Path
+    shown: int
+    records: int
+
+
+class Quantity(NamedTuple):
+    """Quantity of the records for table, axes and conditions; numbers, or texts."""
+
+    name: str
+    unit: str
+    meaning: str
+    role: str
+    values: list[Any]
+
+
+def write_explorer(
+    corpus: Path | str,
+    output: Path | str,
+    *,
+    table: Path | str | None = None,
+    records: int = RECORDS,
+    sound: bool = False,
+    channel: int | str = 0,
+    band: tuple[float, float] = DEFAULT_BAND,
+    workers: int = 1,
+    scheduler: "Client | str | None" = None,
+    progress: Progress | None = None,
+) -> Explored:
+    """Write a page to browse a corpus.
+
+    Parameters
+    ----------
+    corpus
+        Folder or file of the corpus.
+    output
+        The page, a file.
+    table
+        Feature table of the corpus, whose features become quantities of the page.
+    records
+        Largest number of records on the page; of more, an even choice is taken.
+    sound
+        Whether to store half a second of each record to play.
+    channel, band
+        Number or name of the channel, and band of the envelopes [Hz].
+    workers, scheduler, progress
+        As in `features.feature_table`; progress counts records.
+
+    Raises
+    ------
+    CorpusError
+        If the corpus or the table cannot be read, they have other records, the band lies above half the sample rate, or
+        the disk refuses the page.
+    """
+    band, output = checked_band(*band), Path(output)
+    check_result(output, "page")
+    with open_corpus(corpus) as opened:
+        number, count = channel_number(opened, channel, corpus), opened.sizes["record"]
+        check_band(band, float(opened["sample_rate"][0]), str(corpus))
+        places = np.linspace(0, count - 1, min(count, records)).round().astype(int)
+        known = [*_labels(opened, places), *_features(table, opened, places, str(opened["channel"].values[number]))]
+        kept = opened[[SIGNAL, *(name for name in READ if name in opened)]].isel(record=places, channel=[number])
+        kept = kept.assign({name: kept[name].load() for name in kept.data_vars if name != SIGNAL})
+        blocks = ((k, kept.isel(record=slice(k * BLOCK, (k + 1) * BLOCK))) for k in range(-(-len(places) // BLOCK)))
+        reduced, report = dict[int, list[str]](), counter(progress, len(places))
+        task = partial(_reduced_block, band=band, sound=sound)
+        with closing(run(task, blocks, workers=workers, scheduler=scheduler)) as made:
+            for block, size, texts in made:
+                reduced[block] = texts
+                report(size)
+        sensor = str(opened["channel"].values[number]) if opened.sizes["channel"] > 1 else ""
+        title = _text(opened.attrs.get("title", "untitled corpus"))
+        facts = {"band": [*band], "fs": float(opened["sample_rate"][0]), "sound": sound, "axes": _axes(known)}
+    folder = files("features.report")
+    script = "\n".join(folder.joinpath(name).read_text(encoding="utf-8") for name in SCRIPTS)
+    page = template("explore.html.jinja").render(
+        title=title,
+        channel=_text(sensor),
+        shown=len(places),
+        records=count,
+        sound=sound,
+        script=script,
+        digest=base64.b64encode(hashlib.sha256(script.encode()).digest()).decode(),
+        parts=_parts(facts, known, [reduced[block] for block in sorted(reduced)]),
+    )
+    write_text_durably(page, output)
+    return Explored(output, len(places), count)
+
+
+def reduce_record(shown: Shown) -> dict[str, np.ndarray]:
+    """Arrays of `FIELDS` of one record; without scales and levels if it cannot be drawn."""
+    empty = {name: np.zeros(size, kind) for name, (kind, size) in FIELDS.items()}
+    empty["scales"][:] = np.nan
+    if not can_be_drawn(shown):
+        return empty
+    try:
+        return _reduced(shown)
+    except ValueError:  # too short for one of the spectra
+        return empty
+
+
+def _reduced(shown: Shown) -> dict[str, np.ndarray]:
+    visible = int(np.searchsorted(shown.turns, TURNS))
+    x = shown.signal[: max(2, visible)] - np.mean(shown.signal)
+    peak = max(float(np.abs(x).max()), TINY)
+    lowest, highest = (np.round(127 / peak * _thinned(edge, x, COLUMNS)) for edge in (np.minimum, np.maximum))
+    density = psd(shown.signal[None], shown.fs, SEGMENT)[1][0, 1:]  # the mean is removed
+    density_db = 10 * np.log10(np.maximum(density, TINY))
+    orders, spectrum = squared_envelope(shown)
+    last = min(highest_drawn_order(*fault_lines(shown.orders, shown.fault)), orders[-1])
+    level = spectrum[(orders > 0) & (orders <= last)]
+    level_db = 20 * np.log10(level / max(float(np.median(level)), TINY) + 1e-12)
+    _, times, grid = envelope_map(shown, last)
+    rows = min(ROWS, len(times))
+    cells = np.zeros((ROWS, CELLS))
+    cells[:rows] = _thinned(np.maximum, _thinned(np.maximum, grid, CELLS).T, rows).T
+    shades = np.clip(np.round(SHADES / BRIGHTEST_DB * cells), 0, SHADES).astype(np.uint8).reshape(-1, 2)
+    scales = (peak, x.size / shown.fs, density_db.max(), last, times[0], times[-1], rows)
+    return {
+        "scales": np.array(scales, np.float32),
+        "lowest": lowest.astype(np.int8),
+        "highest": highest.astype(np.int8),
+        "density": _steps(density_db.max() - _thinned(np.maximum, density_db, DENSITIES)),
+        "envelope": _steps(_thinned(np.maximum, level_db, LEVELS)),
+        "waterfall": shades[:, 0] | shades[:, 1] << 4,
+    }
+
+
+def _thinned(edge: np.ufunc, values: FloatArray, count: int) -> FloatArray:
+    """Highest or lowest value in each of ``count`` columns of the last axis; of fewer values, each several times."""
+    starts = np.arange(count) * values.shape[-1] // count
+    return edge.reduceat(values, starts, axis=-1)
+
+
+def _steps(level_db: FloatArray) -> np.ndarray:
+    return np.clip(np.round(level_db / STEP_DB), 0, 255).astype(np.uint8)
+
+
+def _reduced_block(block: tuple[int, xr.Dataset], band: Band, sound: bool) -> tuple[int, int, list[str]]:
+    """Number of the block, its number of records, its arrays as a text, and its sound as another one."""
+    number, records = block
+    records = records.load()
+    shown = [shown_of(records.isel(record=k), k, 0)._replace(band=band) for k in range(records.sizes["record"])]
+    arrays = [reduce_record(one) for one in shown]
+    contents = [b"".join(one[name].tobytes() for name in FIELDS for one in arrays)]
+    if sound:
+        contents.append(b"".join(_sound(one).tobytes() for one in shown))
+    return number, len(shown), [_packed(content) for content in contents]
+
+
+def _sound(shown: Shown) -> np.ndarray:
+    """First half second as 8 bits at 8 kHz, as loud as it goes; silence if a sample is not finite."""
+    samples = np.zeros(round(SOUND_S * SOUND_RATE))
+    x = shown.signal[: round(SOUND_S * shown.fs)]
+    if np.isfinite(x).all():
+        heard = resample(x - x.mean(), min(len(samples), round(len(x) * SOUND_RATE / shown.fs)))
+        samples[: len(heard)] = heard / max(np.abs(heard).max(), TINY)
+    return np.round(127 * samples).astype(np.int8)
+
+
+def _labels(corpus: xr.Dataset, places: np.ndarray) -> Iterator[Quantity]:
+    """Number and variables of the chosen records, without scenario and identity."""
+    yield Quantity("record", "", "number of the record in the corpus", "provenance", places.tolist())
+    for name, variable in corpus.variables.items():
+        role = variable.attrs.get("role")
+        if variable.dims != ("record",) or role not in ROLES or name in (DRAWS, IDENTITY):
+            continue
+        values, words = variable[places].values.tolist(), class_names(variable.attrs)
+        told = [words.get(value, str(value)) for value in values] if words else _plain(values)
+        yield Quantity(str(name), _unit(variable.attrs), _text(variable.attrs.get("long_name", "")), role, told)
+
+
+def _features(path: Path | str | None, corpus: xr.Dataset, places: np.ndarray, channel: str) -> Iterator[Quantity]:
+    """Features of the chosen records; a table of several channels has this one among them."""
+    if path is None:
+        return
+    table = read_table(path)
+    if IDENTITY not in table or not np.array_equal(table[IDENTITY].values, corpus[IDENTITY].values):
+        raise CorpusError(f"{path}: has other records than the corpus; compute it again with raceway features.")
+    several = "channel" in table.coords
+    of = {str(one["channel"].item() if several else table.attrs["channel"]): one for one in channels_of(table)}
+    if channel not in of:
+        raise CorpusError(f"{path}: has features of {', '.join(of)}, not of {channel}; choose one with --channel.")
+    for feature in of[channel]["features"][places].transpose("feature", "record"):
+        unit, meaning = _unit({"units": feature["units"].item()}), _text(feature["long_name"].item())
+        yield Quantity(str(feature["feature"].item()), unit, meaning, "feature", _plain(feature.values.tolist()))
+
+
+def _plain(values: Sequence[Any]) -> list[Any]:
+    """Numbers with five digits, None for those that are not finite; texts shortened.
+
+    >>> _plain([1234567.0, float("nan"), 3])
+    [1234600.0, None, 3]
+    """
+    return [
+        (float(f"{value:.5g}") if np.isfinite(value) else None)
+        if isinstance(value, float)
+        else value
+        if isinstance(value, int)
+        else _text(value)
+        for value in values
+    ]
+
+
+def _unit(attributes: Mapping[Any, Any]) -> str:
+    unit = _text(attributes.get("units", ""))
+    return "" if unit == "1" else unit
+
+
+def _text(value: object) -> str:
+    """Text of a corpus, shortened."""
+    return str(value)[:LONGEST_TEXT]
+
+
+def _axes(known: Sequence[Quantity]) -> list[str]:
+    """Names of the quantities on the axes at first: two combs of fault lines, or an operating condition and a severity."""
+    varying = {one.name for one in known if len(set(one.values)) > 1} | {"record"}
+    combs = [name for name in COMBS.values() if name in varying]
+    return combs[:2] if len(combs) > 1 else [next(n for n in axis if n in varying) for axis in AXES]
+
+
+def _parts(facts: Mapping[str, Any], known: Sequence[Quantity], blocks: Sequence[Sequence[str]]) -> dict[str, str]:
+    """Deflated parts of the page by their names, in the order in which they are needed."""
+    about = {
+        **facts,
+        "block": BLOCK,
+        "scales": SCALES,
+        "fields": [(name, *field) for name, field in FIELDS.items()],
+        "step_db": STEP_DB,
+        "shades": SHADES,
+        "cells": CELLS,
+        "sound_rate": SOUND_RATE,
+        "tolerance": TOLERANCE,
+        "compared": [SHAFT, *FUNDAMENTALS],
+        "classes": {
+            name: {"colour": look.colour, "lines": look.lines, "side": look.side if look.comb else None}
+            for name, look in LOOKS.items()
+        },
+        "quantities": [(*one[:4], not any(isinstance(value, str) for value in one.values)) for one in known],
+    }
+    parts = {"about": about} | {f"quantity{n}": one.values for n, one in enumerate(known)}
+    parts = {name: _packed(json.dumps(part, allow_nan=False).encode()) for name, part in parts.items()}
+    for number, texts in enumerate(blocks):
+        parts |= dict(zip((f"block{number}", f"sound{number}"), texts, strict=False))
+    return parts
+
+
+def _packed(content: bytes) -> str:
+    return base64.b64encode(zlib.compress(content, 9)).decode()
