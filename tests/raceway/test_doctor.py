@@ -9,6 +9,7 @@ from click.testing import CliRunner
 
 from raceway.cli import cli
 from raceway.studies import doctor
+from tests.paths import ROOT
 
 
 @pytest.fixture
@@ -52,3 +53,9 @@ def test_a_slow_machine_is_told_so_and_an_unknown_one_gets_no_verdict(monkeypatc
         monkeypatch.setattr(doctor, "PUBLISHED", published)
         assert doctor._speed().state == state
     assert "no figure is published" in doctor._speed().value
+
+
+def test_the_pages_publish_the_speed_that_doctor_compares_with():
+    (published,) = doctor.PUBLISHED.values()
+    for page in ("README.md", "docs/performance.md"):
+        assert f"{published / 1e6:.0f} million record-steps/s" in " ".join((ROOT / page).read_text().split())
