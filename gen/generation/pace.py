@@ -92,16 +92,16 @@ def _kept_file(settings: Settings, group: Group, codec: Codec) -> Path:
 
 
 def _time(scenarios: list[Scenario], codec: Codec) -> tuple[float, float]:
-    """Seconds of the simulation, and of measurement, labels and writing."""
+    """Seconds of the simulation, and of measurement, labels and writing: CPU time, since other programs may be busy at the moment."""
     from gen.corpus import write_part  # these three load xarray and SciPy for 0.7 s
     from gen.generation.labels import part_dataset
     from gen.measurement.measure import measure
 
-    start = time.perf_counter()
+    start = time.process_time()
     response = simulate(scenarios)
-    simulated = time.perf_counter()
+    simulated = time.process_time()
     measured = measure(response.acceleration, scenarios, response.twins)
     with tempfile.TemporaryDirectory() as folder:
         dataset = part_dataset(measured, response)
         write_part(dataset, Path(folder) / "part-00000.nc", codec)
-    return simulated - start, time.perf_counter() - simulated
+    return simulated - start, time.process_time() - simulated

@@ -29,6 +29,7 @@ MOST_DRAWN_DEAR = 1500  # with an axial load or a load that wanders: each takes 
 
 STORED_BYTES = {"adc": 2.0, "float32": 4.0}  # per sample
 BYTES_PER_RECORD = 700  # labels and drawn values
+START_S = 2.0  # CPU time: start of the process, libraries, kernels from the cache, index and data card
 BYTES_PER_FILE = 80_000  # overhead of a part or of the index
 
 Groups = dict[Group, list[int]]
@@ -40,8 +41,9 @@ class Plan:
     """Counts, size and time of a corpus.
 
     ``classes``, ``splits`` and ``steps_per_sample`` count records; the last does not count the ``left_out`` records, which cannot be
-    simulated. If fewer records were ``drawn`` than the corpus has, these counts are scaled up. ``estimated_seconds`` is for one process
-    and compiled kernels; None if a kernel is not compiled on this machine, or if one batch of records takes too long for a sample.
+    simulated. If fewer records were ``drawn`` than the corpus has, these counts are scaled up. ``estimated_seconds`` is for one process,
+    from its start to the finished corpus, with compiled kernels; None if a kernel is not compiled on this machine, or if one batch of
+    records takes too long for a sample.
     """
 
     recipe: str
@@ -105,7 +107,7 @@ def plan(recipe: Path | str, *, seed: int | None = None, records: int | None = N
         channels=tuple(channel.name for channel in recording.channels),
         kernels=len({group.shape for part in groups for group in part}),
         bytes=_bytes(checked),
-        estimated_seconds=None if seconds is None else (seconds + drawing) * checked.n_records,
+        estimated_seconds=None if seconds is None else START_S + (seconds + drawing) * checked.n_records,
         drawn=n_drawn,
         left_out=round(len(failures) * checked.n_records / n_drawn),
         first_left_out=failures[0] if failures else None,
