@@ -56,6 +56,15 @@ GROUPS: Mapping[str, tuple[click.Command, ...]] = {
 }
 """Commands in the order of the work."""
 
+ROAD = """\
+  raceway generate quickstart -o corpus              make labelled records
+  raceway plot corpus --record 7 -o record.png       look at one of them
+  raceway features corpus -o features.nc             compute features
+  raceway train corpus -o model.skops                train a classifier
+  raceway benchmark corpus -o report                 score classifiers without leakage
+  raceway diagnose my.csv --bearing 6205 --rpm 1772  say what is wrong with a recording of your own
+"""
+
 
 class Raceway(click.Group):
     """The group of all commands; :mod:`raceway.console.ending` gives the exit code."""
@@ -86,7 +95,11 @@ class Raceway(click.Group):
         return result
 
 
-@click.group(cls=Raceway, context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100})
+@click.group(
+    cls=Raceway,
+    invoke_without_command=True,
+    context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
+)
 @click.version_option(package_name="raceway", message="%(package)s %(version)s")
 @click.option(
     "--limit",
@@ -95,15 +108,12 @@ class Raceway(click.Group):
     metavar="NAME=NUMBER",
     help="Raise a limit on the contents of files, by the name in its error.",
 )
-def cli(limits: tuple[str, ...]) -> None:
+@click.option("--quiet", is_flag=True, help="Print no progress and no notices, only results and errors.")
+@click.pass_context
+def cli(ctx: click.Context, limits: tuple[str, ...], quiet: bool) -> None:  # noqa: ARG001 - read where notices are printed
     """Make labelled vibration corpora of healthy and damaged rolling bearings, and score classifiers on them.
 
-    First steps:
-
-      raceway plan quickstart                       counts, size and time
-      raceway generate quickstart -o corpus         generate the corpus
-      raceway info corpus                           show its contents
-      raceway benchmark corpus -o report            score classifiers without leakage
+    raceway without a command shows the first steps.
 
     RECIPE is a YAML file or the name of a recipe that ships with Raceway (raceway recipes). DIR is a corpus: a folder,
     or one .nc file. With --json a command prints one JSON object on standard output; progress and errors go to standard error.
@@ -113,7 +123,7 @@ def cli(limits: tuple[str, ...]) -> None:
       0 done   1 checked and found wanting   2 bad usage or input
       70 an error of Raceway itself   130 interrupted
 
-    Completion of commands and options:
+    Completion of commands, options and recipes:
 
       eval "$(_RACEWAY_COMPLETE=bash_source raceway)"     in ~/.bashrc
       eval "$(_RACEWAY_COMPLETE=zsh_source raceway)"      in ~/.zshrc
@@ -124,6 +134,8 @@ def cli(limits: tuple[str, ...]) -> None:
 
         parse_limits(",".join(limits))
         os.environ[VARIABLE] = ",".join(filter(None, (os.environ.get(VARIABLE), *limits)))  # workers inherit it
+    if ctx.invoked_subcommand is None:
+        click.echo(f"{ROAD}\nEach command has examples: raceway generate --help. All commands: raceway --help.")
 
 
 def keep_examples(command: click.Command) -> None:

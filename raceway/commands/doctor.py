@@ -4,12 +4,18 @@ import click
 
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
-from raceway.console.options import json_option
+from raceway.console.options import complete_recipes, json_option
 from raceway.console.progress import notice_compilation
 
 
 @click.command()
-@click.option("--speed", "recipe", metavar="RECIPE", help="Measure the speed of this machine on a recipe instead.")
+@click.option(
+    "--speed",
+    "recipe",
+    metavar="RECIPE",
+    shell_complete=complete_recipes,
+    help="Measure the speed of this machine on a recipe instead.",
+)
 @click.option(
     "--records",
     type=click.IntRange(1, 16_384),

@@ -16,6 +16,7 @@ from raceway.console.options import (
     Team,
     analysis_options,
     channels_option,
+    complete_recipes,
     corpus_argument,
     corpus_path,
     file_option,
@@ -43,7 +44,7 @@ ESTIMATORS = (
 
 
 @click.command()
-@click.argument("source", metavar="DIR|RECIPE")
+@click.argument("source", metavar="DIR|RECIPE", shell_complete=complete_recipes)
 @file_option(
     "MODEL", "Model file; without it the model of a RECIPE is kept for this user.", kind="model", required=False
 )

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import click
+from click.shell_completion import CompletionItem
 
 Decorator = Callable[[Any], Any]
 
@@ -18,8 +19,16 @@ def corpus_path(_context: click.Context | None, _parameter: click.Parameter | No
     return path.parent if path is not None and path.name == "index.nc" and path.is_file() else path
 
 
+def complete_recipes(_context: click.Context, _parameter: click.Parameter, begun: str) -> list[CompletionItem]:
+    """Recipes that ship with Raceway, and files."""
+    from gen.recipe import shipped_recipes  # not at the top: help needs nothing of gen
+
+    named = [CompletionItem(name) for name in shipped_recipes() if name.startswith(begun)]
+    return named or [CompletionItem(begun, type="file")]
+
+
 json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
-recipe_argument: Decorator = click.argument("recipe")
+recipe_argument: Decorator = click.argument("recipe", shell_complete=complete_recipes)
 corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_path)
 record_option: Decorator = click.option(
     "--record", type=int, required=True, metavar="I", help="Number of the record, from 0."

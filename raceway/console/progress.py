@@ -7,13 +7,16 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
+import click
+
 from raceway.console import show
 
 if TYPE_CHECKING:
     from gen.support.progress import Progress
 
 SECONDS_BETWEEN_LINES = 10.0
-REPORTS_IN_SPEED = 32
+BURST_S = 1.0  # records of a batch are reported together, and parts that were kept from before are too
+BURSTS_IN_SPEED = 32
 
 
 @contextmanager
@@ -22,7 +25,9 @@ def progress(doing: str, unit: str) -> "Iterator[Progress]":
 
     ``doing`` is the activity, such as "generating"; ``unit`` is the unit that is counted, such as "records".
     """
-    if sys.stderr.isatty():
+    if _quiet():
+        yield lambda _done, _total: None
+    elif sys.stderr.isatty():
         with _bar(doing, unit) as report:
             yield report
     else:
@@ -48,38 +53,50 @@ def _bar(doing: str, unit: str) -> "Iterator[Progress]":
 
 
 def _lines(doing: str, unit: str) -> "Progress":
-    last, pace = time.monotonic(), _pace(unit)
+    start = last = time.monotonic()
+    pace = _pace(unit)
 
     def report(done: int, total: int) -> None:
         nonlocal last
-        current = pace(done, total)
-        if done == total or time.monotonic() - last >= SECONDS_BETWEEN_LINES:
-            last = time.monotonic()
-            notice(f"{doing}: {done:,} of {total:,} {unit}, {current}")
+        current, now = pace(done, total), time.monotonic()
+        if done == total or now - last >= SECONDS_BETWEEN_LINES:
+            last = now
+            ending = f"in {show.duration(now - start)}" if done == total else current
+            notice(f"{doing}: {done:,} of {total:,} {unit}, {ending}")
 
     return report
 
 
 def _pace(unit: str) -> Callable[[int, int], str]:
-    """Speed over the last reports, and time left at that speed; parts that were kept from before soon leave the window."""
-    marks = deque([(time.monotonic(), 0)], maxlen=REPORTS_IN_SPEED)
+    """Speed between the first and the last of the latest bursts of reports, and time left at that speed."""
+    bursts: deque[tuple[float, int]] = deque(maxlen=BURSTS_IN_SPEED)
 
     def pace(done: int, total: int) -> str:
-        if done > marks[-1][1]:
-            marks.append((time.monotonic(), done))
-        (then, before), (now, latest) = marks[0], marks[-1]
-        if latest == before:
+        now = time.monotonic()
+        if bursts and now - bursts[-1][0] < BURST_S:
+            bursts[-1] = (bursts[-1][0], done)
+        elif not bursts or done > bursts[-1][1]:
+            bursts.append((now, done))
+        (then, before), (latest, after) = bursts[0], bursts[-1]
+        if after == before:
             return "speed not known yet"
-        rate = (latest - before) / max(now - then, 1e-9)
+        rate = (after - before) / (latest - then)
         left = f", {show.duration((total - done) / rate)} left" if done < total else ""
         return f"{rate:,.3g} {unit}/s{left}"
 
     return pace
 
 
+def _quiet() -> bool:
+    """Whether ``raceway --quiet`` was called."""
+    context = click.get_current_context(silent=True)
+    return context is not None and context.find_root().params.get("quiet", False)
+
+
 def notice(sentence: str) -> None:
-    """Print a sentence on standard error, above the bar if there is one."""
-    sys.stderr.write(show.printable(sentence) + "\n")
+    """Print a sentence on standard error, above the bar if there is one; none with ``--quiet``."""
+    if not _quiet():
+        sys.stderr.write(show.printable(sentence) + "\n")
 
 
 @contextmanager

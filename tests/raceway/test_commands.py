@@ -9,6 +9,7 @@ from importlib.metadata import version
 import netCDF4
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
 from features.baselines import DEFAULT_ESTIMATOR, ESTIMATORS
 from features.indicators import feature_names
@@ -47,6 +48,26 @@ def test_help_shows_how_a_command_is_called(run, path, command):
     assert f"\n    {' '.join(path)}" in result.stdout  # an example on a line of its own
     assert len(command.get_short_help_str(60)) < 60
     assert "..." not in command.get_short_help_str(60)
+
+
+def test_raceway_alone_shows_the_road_and_every_command_of_it_exists(run):
+    result = run()
+    steps = [line.split()[1] for line in result.stdout.splitlines() if line.startswith("  raceway ")]
+    assert (result.exit_code, steps) == (0, ["generate", "plot", "features", "train", "benchmark", "diagnose"])
+    assert "raceway --help" in result.stdout
+    assert set(steps) < set(cli.commands)
+
+
+@pytest.mark.parametrize("words", ["plan", "generate", "train", "doctor --speed"])
+def test_a_shell_completes_names_of_recipes_and_else_files(words):
+    parts = ["raceway", *words.split()]
+
+    def completed(begun):
+        environment = {"_RACEWAY_COMPLETE": "bash_complete", "COMP_WORDS": " ".join([*parts, begun])}
+        return CliRunner().invoke(cli, [], prog_name="raceway", env=environment | {"COMP_CWORD": str(len(parts))})
+
+    assert completed("qui").output == "plain,quickstart\n"
+    assert completed("my_").output == "file,my_\n"
 
 
 def test_the_version_is_that_of_the_distribution(run):

@@ -27,14 +27,28 @@ def test_a_line_comes_every_ten_seconds_and_at_the_end(clock, lines):
     assert [line.partition(",")[0] for line in lines] == [f"generating: {done} of 30 records" for done in (11, 21, 30)]
 
 
-def test_speed_and_time_left_are_those_of_the_last_reports(clock):
-    """Half of the units are there after a second, kept from before; then each takes a second."""
+def test_speed_and_time_left_are_those_between_the_bursts(clock):
+    """Half of the units are kept from before; then a batch of ten is done every five seconds, after a minute of compilation."""
     pace = progress._pace("records")
-    assert pace(0, 200) == "speed not known yet"
-    clock[0] = 1.0
-    assert pace(100, 200) == "100 records/s, 1 s left"
-    for clock[0] in range(2, 51):
-        said = pace(99 + clock[0], 200)
-    assert said == "1 records/s, 51 s left"
-    clock[0] = 51.0
-    assert pace(200, 200).endswith("records/s")
+    clock[0] = 60.0
+    assert [pace(done, 200) for done in (99, 100)] == ["speed not known yet"] * 2
+    for batch in range(1, 6):
+        clock[0] = 60.0 + 5 * batch
+        for done in range(10):
+            said = pace(100 + 10 * (batch - 1) + done + 1, 200)
+    assert said == "2 records/s, 25 s left"
+
+
+def test_the_last_line_tells_the_time_taken(clock, lines):
+    report = progress._lines("generating", "records")
+    clock[0] = 4.2
+    report(30, 30)
+    assert lines == ["generating: 30 of 30 records, in 4 s"]
+
+
+def test_quiet_prints_results_alone(run, tiny_recipe, tmp_path):
+    loud = run("generate", tiny_recipe, "-o", tmp_path / "loud")
+    quiet = run("--quiet", "generate", tiny_recipe, "-o", tmp_path / "quiet")
+    assert "generating:" in loud.stderr
+    assert quiet.stderr == ""
+    assert quiet.stdout == loud.stdout.replace("loud", "quiet")
