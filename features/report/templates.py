@@ -6,16 +6,28 @@ from importlib.resources import files
 import jinja2
 
 
-def template(name: str) -> jinja2.Template:
-    """Template of this package; filter ``image`` makes an address of a picture in SVG, ``figure`` three decimals or a dash."""
-    folder = files("features.report")
+def template(name: str, package: str = "features.report") -> jinja2.Template:
+    """Template of a package; filter ``image`` makes an address of a picture, ``figure`` three decimals or a dash.
+
+    What a template includes, such as the style of all pages, is of this package.
+    """
+
+    def read(wanted: str) -> str:
+        return files(package if wanted == name else "features.report").joinpath(wanted).read_text(encoding="utf-8")
+
     environment = jinja2.Environment(
-        loader=jinja2.FunctionLoader(lambda wanted: folder.joinpath(wanted).read_text(encoding="utf-8")),
+        loader=jinja2.FunctionLoader(read),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,
     )
     environment.filters["figure"] = lambda value: "–" if value is None else f"{value:.3f}"
-    environment.filters["image"] = lambda svg: f"data:image/svg+xml;base64,{base64.b64encode(svg).decode()}"
+    environment.filters["image"] = _address
     return environment.get_template(name)
+
+
+def _address(picture: bytes) -> str:
+    """Address that holds a picture in PNG or SVG."""
+    kind = "png" if picture.startswith(b"\x89PNG") else "svg+xml"
+    return f"data:image/{kind};base64,{base64.b64encode(picture).decode()}"

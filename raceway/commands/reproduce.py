@@ -1,4 +1,4 @@
-"""``raceway reproduce``: the figures and statements of the seed paper, and a page of pictures of simulated signals."""
+"""``raceway reproduce``: a page of the seed paper, and a page of pictures of simulated signals."""
 
 import math
 import time
@@ -23,7 +23,7 @@ def reproduce() -> None:
 
 
 @reproduce.command()
-@pages_option("OUT", "Folder for the figures and findings.json.")
+@pages_option("OUT", "Folder for ophel2025.html and findings.json.")
 @click.option("--preset", metavar="NAME", help="Run this parameter set only.")
 @click.option(
     "--change", "changes", multiple=True, metavar="CONSTANT=VALUE", help="Replace a constant, in SI units; repeatable."
@@ -37,17 +37,18 @@ def ophel2025(
 ) -> None:
     """Run the seed paper again.
 
-    Draws its figures and measures its statements, with three parameter sets: paper is the first one that was found; paper-hertz has the
-    contact stiffness of the geometry, and a load close to the weight of the rotor; paper-refit has that stiffness and exactly that
-    weight. Under the table stands, for each statement that does not hold, the reason and the one constant with which it holds;
-    --change repeats that experiment, and docs/errata.md explains it.
+    Writes a page with the figures of the paper, each beside the values that it prints, and its statements measured,
+    with three parameter sets: paper was fitted freely; paper-hertz has the contact stiffness of the geometry, and a
+    load close to the weight of the rotor; paper-refit has that stiffness and exactly that weight. For each statement
+    that does not hold, the page has the reason and the one constant with which it holds; --change repeats that
+    experiment, and docs/errata.md explains it.
 
       raceway reproduce ophel2025 -o ophel
       raceway reproduce ophel2025 --preset paper --change support_damping_y=4500 -o damped
     """
     from raceway.studies.experiments import changed
     from raceway.studies.paper import PRESETS
-    from raceway.studies.statements import reproduce, span
+    from raceway.studies.paper_page import write_paper_page
 
     if preset is not None and preset not in PRESETS:
         raise click.BadParameter(f"{preset} is none of {', '.join(PRESETS)}", param_hint="'--preset'")
@@ -55,37 +56,24 @@ def ophel2025(
     chosen = {name: constants for name, constants in PRESETS.items() if preset in (None, name)}
     if change:
         chosen = {f"{name}-changed": changed(constants, change) for name, constants in chosen.items()}
-    findings = reproduce(output, chosen)
+    page, findings = write_paper_page(output, chosen)
     if as_json:
-        show.as_json({"findings": [finding._asdict() for finding in findings]})
+        show.as_json({"page": page, "findings": [finding.facts() for finding in findings]})
         return
-    header = ("finding", "preset", "statement", "value", "accepted", "holds")
-    show.table(
-        header,
-        [(f.id, f.preset, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else "NO") for f in findings],
-    )
-    show.text("", "Displacements in thousandths of a millimetre.")
-    reasons = {f"{f.preset} {f.id}": f.reason for f in findings if f.reason}
-    if reasons:
-        show.text("Statements that do not hold, and the change with which each holds:")
-        show.definitions(reasons)
-    for name in dict.fromkeys(f.preset for f in findings):
-        mine = [f for f in findings if f.preset == name]
-        fitted = [f for f in mine if f.fitted]
-        show.text(
-            f"{name}: {sum(f.holds for f in mine)} of {len(mine)} statements hold.",
-            f"  Of the {len(fitted)} that its constants were fitted to, {sum(f.holds for f in fitted)} hold.",
-        )
+    for name in chosen:
+        holds = [finding.holds for finding in findings if finding.preset == name]
+        show.text(f"{name}: {sum(holds)} of {len(holds)} statements hold.")
+    show.text(f"{page}: its figures and statements.")
 
 
 @reproduce.command()
-@pages_option("OUT", "Folder for index.html, its pictures, and the two small corpora they show.")
+@pages_option("OUT", "Folder for index.html, its pictures, the corpora that they show, and ophel2025.html.")
 @json_option
 def gallery(output: Path, as_json: bool) -> None:
     """Draw one page of simulated signals.
 
-    The page has the seed paper's figures beside its statements, the envelope spectrum of every kind of fault (recipe every_fault), run-ups
-    as waterfalls with the shaft orders drawn in (recipe run_up), and every fault of the measuring chain (recipe dirty_sensors).
+    The page has the envelope spectrum of every kind of fault (recipe every_fault), run-ups as waterfalls with the shaft orders drawn in
+    (recipe run_up), every fault of the measuring chain (recipe dirty_sensors), and a link to the page of the seed paper.
 
       raceway reproduce gallery -o gallery
     """

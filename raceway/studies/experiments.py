@@ -32,7 +32,7 @@ class Experiment(NamedTuple):
     """Whether they fail again at some values within 1 % of the changed one."""
 
 
-CLUSTERS = ("C10", "C16.x1", "C16.y1", "C16.x2", "C16.y2")
+CLUSTERS = ("C10", "C16.y1", "C16.x2")
 PEAKS = ("C12.y1", "C12.y2")
 
 EXPERIMENTS = (
@@ -60,7 +60,7 @@ EXPERIMENTS = (
     Experiment("paper", ("C13.300",), {"shaft_rate": 46.5}, "BPFI + fr lies at 287 Hz; at 46.5 Hz it lies at 299 Hz"),
     Experiment(
         "paper",
-        ("C16.y1", "C16.y2"),
+        ("C16.y1",),
         {"half_clearance": -5.3e-6},
         "the contact mode along y lies at 815 Hz, above the band; with a smaller preload it lies at 746 Hz",
     ),
@@ -69,18 +69,6 @@ EXPERIMENTS = (
         ("C17.x",),
         {"support_stiffness_x": 1.8e7},
         "below 225 Hz, the natural frequency of the housing alone on its support, the support holds x2 back",
-    ),
-    Experiment(
-        "paper",
-        ("C17.y",),
-        {"support_stiffness_y": 1.5e7},
-        "below 283 Hz, the natural frequency of the housing alone on its support, the support holds y2 back",
-    ),
-    Experiment(
-        "paper",
-        ("C15.x2",),
-        {"load": 80},
-        "the load, applied at once, swings the healthy housing further than the crack does later",
     ),
     Experiment(
         "paper", ("C18",), {"half_clearance": 0.0}, "balls preloaded on all sides push the housing back and forth alike"
@@ -131,18 +119,6 @@ EXPERIMENTS = (
     ),
     Experiment(
         "paper-hertz",
-        ("C17.y",),
-        {"support_stiffness_y": 1.5e7},
-        "below 271 Hz, the natural frequency of the housing alone on its support, the support holds y2 back",
-    ),
-    Experiment(
-        "paper-hertz",
-        ("C15.x2",),
-        {"load": 14},
-        "the load, applied at once, swings the healthy housing further than the crack does later",
-    ),
-    Experiment(
-        "paper-hertz",
         ("C18",),
         {"half_clearance": 0.0},
         "balls preloaded on all sides push the housing back and forth alike",
@@ -160,18 +136,6 @@ EXPERIMENTS = (
         "the strongest line is 4 BPFI - fr, at 953 Hz; at 42.85 Hz 3 BPFI + fr lies at 740 Hz, but 4 BPFI + fr is almost as "
         "strong and wins at rates beside it",
         narrow=True,
-    ),
-    Experiment(
-        "paper-refit",
-        ("C17.y",),
-        {"support_stiffness_y": 1.5e7},
-        "below 288 Hz, the natural frequency of the housing alone on its support, the support holds y2 back",
-    ),
-    Experiment(
-        "paper-refit",
-        ("C15.x2",),
-        {"load": 25},
-        "the load, applied at once, swings the healthy housing further than the crack does later",
     ),
     Experiment(
         "paper-refit",

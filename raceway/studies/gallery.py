@@ -1,10 +1,8 @@
 """The gallery: one page of pictures of simulated signals.
 
-It shows the seed paper's figures beside its statements, every kind of fault, run-ups, and faults of the measuring chain.
+It shows every kind of fault, run-ups, and faults of the measuring chain, and links to the page of the seed paper.
 """
 
-from collections.abc import Iterator
-from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,33 +12,15 @@ import xarray as xr
 from features.indicators import Orders
 from features.report.envelopes import draw_envelopes, draw_waterfall
 from features.report.pictures import Shown, fault_lines, picture
+from features.report.templates import template
 from gen import generate, open_corpus
 from gen.corpus import FAULTS, make_result_folder, write_durably, write_text_durably
 from gen.physics.profile import share_at
 from gen.scenarios import Specimen, read_scenario
 from raceway.console.progress import progress
 from raceway.studies.orbits import draw_orbits
-from raceway.studies.paper import FIGURES, PRESETS, draw_figures, run
-from raceway.studies.schematics import draw_schematics
+from raceway.studies.paper_page import write_paper_page
 from raceway.studies.sensor_faults import write_sensor_fault_pictures
-from raceway.studies.statements import Finding, findings, span
-
-_STATES = {"healthy": "H", "cracked": "C"}  # state of the bearing, and first letter of the paper's statements about it
-
-_PAGE = """<!doctype html>
-<html lang="en"><meta charset="utf-8"><meta name="generator" content="Raceway">
-<meta name="viewport" content="width=device-width"><title>Raceway: gallery</title>
-<style>
-body {{ font: 15px/1.5 sans-serif; color: #222; max-width: 66rem; margin: 2rem auto; padding: 0 1rem }}
-img {{ max-width: 100%; display: block; margin: 1rem 0 }}
-table {{ border-collapse: collapse; font-size: 13px }}
-td, th {{ padding: .1rem .8rem .1rem 0; text-align: left; vertical-align: top; border-bottom: 1px solid #ddd }}
-.pair {{ display: grid; grid-template-columns: repeat(auto-fit, minmax(24rem, 1fr)); gap: 1rem }}
-</style>
-<h1>What Raceway makes</h1>
-{sections}
-</html>
-"""
 
 
 class Section(NamedTuple):
@@ -50,55 +30,16 @@ class Section(NamedTuple):
     text: str
     pictures: list[str]
     """File names."""
-    table: str = ""
-    """HTML."""
 
 
 def write_gallery(output: Path) -> tuple[Path, list[Path]]:
     """Write the page, its pictures and the two corpora that they show into a folder; returns the page and the pictures."""
     make_result_folder(output)
-    sections = [*_paper(output), _every_fault(output), _run_up(output), _orbits(output), _sensor_faults(output)]
+    sections = [_every_fault(output), _run_up(output), _orbits(output), _sensor_faults(output)]
+    write_paper_page(output)
     page = output / "index.html"
-    write_text_durably(_PAGE.format(sections="\n".join(map(_html, sections))), page)
+    write_text_durably(template("gallery.html.jinja", "raceway.studies").render(sections=sections), page)
     return page, [output / name for section in sections for name in section.pictures]
-
-
-def _html(section: Section) -> str:
-    title = escape(section.title)
-    images = "".join(f'<img src="{escape(name)}" alt="{title}">' for name in section.pictures)
-    if section.table:
-        body = f'<div class="pair"><div>{images}</div><div>{section.table}</div></div>'
-    else:
-        body = images if len(section.pictures) == 1 else f'<div class="pair">{images}</div>'
-    return f"<h2>{title}</h2>\n<p>{escape(section.text)}</p>\n{body}"
-
-
-def _paper(output: Path) -> Iterator[Section]:
-    """Figures 1 to 6 of the seed paper; 3 to 6 beside its statements about them."""
-    preset = PRESETS["paper"]
-    made = run(preset)
-    statements = findings("paper", made)
-    for name, drawn in (*draw_schematics(preset), *draw_figures(made)):
-        write_durably(picture(drawn, "png"), output / f"{name}.png")
-    text = "The system of the seed paper with the constants of preset paper, and its bearing with the crack. Drawn anew, not copied."
-    yield Section("Ophel et al., the system", text, ["figure1.png", "figure2.png"])
-    for state, letter in _STATES.items():
-        names = [f"{figure}.png" for figure, _, shown, _ in FIGURES if shown == state]
-        table = _findings_table([finding for finding in statements if finding.id.startswith(letter)])
-        text = (
-            "Preset paper of the seed paper, displacements in thousandths of a millimetre, and the paper's statements. "
-            "Beside a statement that does not hold stands the change of the preset with which it holds."
-        )
-        yield Section(f"Ophel et al., {state}", text, names, table)
-
-
-def _findings_table(statements: list[Finding]) -> str:
-    cells = [("", "statement", "value", "accepted", "holds")]
-    cells += [
-        (f.id, f.finding, f"{f.value:.4g}", span(f.accept), "yes" if f.holds else f"no: {f.reason}") for f in statements
-    ]
-    rows = ["".join(f"<td>{escape(cell)}</td>" for cell in row) for row in cells]
-    return "<table>" + "".join(f"<tr>{row}</tr>" for row in rows) + "</table>"
 
 
 def _every_fault(output: Path) -> Section:

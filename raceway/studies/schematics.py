@@ -29,11 +29,6 @@ DEPTH = 1e3 * CRACK.depth  # mm
 SHAFT, HOUSING, STEEL = "#dbe6f0", "#ece8df", "#ffffff"
 
 
-def draw_schematics(preset: Preset) -> list[tuple[str, Figure]]:
-    """Figures 1 and 2 of the paper with the constants of a preset: name and figure."""
-    return [("figure1", draw_model(preset)), ("figure2", draw_crack())]
-
-
 @rc_context(STYLE)
 def draw_model(preset: Preset) -> Figure:
     """Coupled shaft and bearing: two bodies, the contacts of the balls, springs and dampers between them and to the ground."""

@@ -7,12 +7,13 @@ import pytest
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
-from raceway.studies.paper import CHANNELS, FIGURES, FS, PRESETS, draw_figures, power_spectrum, run
-from raceway.studies.statements import findings
+from raceway.studies.paper import CHANNELS, FIGURES, FS, PRESETS, power_spectrum, run
+from raceway.studies.paper_page import draw_figure
+from raceway.studies.statements import STATEMENTS, findings
 
 # values of the model study, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
 PAPER = {
-    "H1": 5.61, "H2": 9.74, "H4": 8.30, "H5": 4.53, "H6": 1.83, "H7": 1.44, "H10": 0.87, "H11": 0.87, "H12": 0.891, "H14": 226, "H15": 226,
+    "H1": 5.61, "H2": 9.74, "H4": 8.30, "H5": 4.53, "H6": 1.83, "H7": 1.44, "H10": 0.87, "H11": 0.843, "H12": 0.891, "H14": 226, "H15": 226,
     "C3": 11.5, "C5": 4.22, "C6": -5.95, "C7": 4.53, "C9": 0.40, "C10": 3, "C12.y1": 771.6, "C12.y2": 771.6,
 }  # fmt: skip
 PAPER_HERTZ = {"H1": 4.63, "H2": 8.63, "H4": 8.31, "H7": 0.93, "C3": 7.9, "C7": 4.33, "C9": 0.48, "C12.y1": 773.7}
@@ -30,23 +31,35 @@ def test_the_statements_have_the_values_they_had(runs, preset, values):
 
 
 @pytest.mark.parametrize(
-    ("preset", "fitted", "all_of_them"), [("paper", 33, 49), ("paper-hertz", 29, 45), ("paper-refit", 35, 51)]
+    ("preset", "fitted", "all_of_them"), [("paper", 33, 48), ("paper-hertz", 29, 45), ("paper-refit", 35, 51)]
 )
 def test_at_least_as_many_statements_hold_as_did(runs, preset, fitted, all_of_them):
     found = findings(preset, runs[preset])
-    assert len(found) == len({finding.id for finding in found}) == 61
+    assert len(found) == len({finding.id for finding in found}) == 57
     assert sum(finding.fitted for finding in found) == 38
     assert sum(finding.holds for finding in found if finding.fitted) >= fitted
     assert sum(finding.holds for finding in found) >= all_of_them
 
 
-def test_every_channel_is_judged_where_the_paper_speaks_of_all(runs):
-    """Growth, decay, steadiness, modulation and the cluster at 650-800 Hz: one statement for each of the four displacements."""
-    found = {finding.id for finding in findings("paper", runs["paper"])}
+def test_every_channel_is_judged_where_the_paper_speaks_of_all():
+    """Growth, decay, steadiness and modulation: one statement for each of the four displacements."""
     for key, first in (("C1", "x1"), ("H3", "x1"), ("H9", "x1"), ("C9", "y1")):
-        assert {key, *(f"{key}.{name}" for name in CHANNELS if name != first)} <= found
-    assert {f"C16.{name}" for name in CHANNELS} <= found
-    assert {"H12", "H12.y", "C17.x", "C17.y", "C18"} <= found
+        assert {key, *(f"{key}.{name}" for name in CHANNELS if name != first)} <= set(STATEMENTS)
+    assert {"H12", "H12.y", "C16.y1", "C16.x2", "C17.x", "C18"} <= set(STATEMENTS)
+
+
+def test_what_the_paper_does_not_claim_is_no_statement():
+    assert not {"C17.y", "C16.x1", "C16.y2", "C15.x2"} & set(STATEMENTS)
+
+
+def test_the_first_peak_of_x1_is_marked_as_amended():
+    """The paper prints 1e-3 for x1 and 10e-3 for x2."""
+    assert (STATEMENTS["H2"].printed, STATEMENTS["H4"].printed) == ((1,), (10,))
+    assert {key for key, one in STATEMENTS.items() if one.amended} == {"H2", "H6", "H7", "H8", "C8"}
+
+
+def test_the_energy_of_x2_is_looked_for_up_to_230_hz():
+    assert (STATEMENTS["H10"].printed, STATEMENTS["H11"].printed) == ((100, 250), (100, 230))
 
 
 def test_the_refit_has_the_contact_of_the_geometry_and_the_weight_of_the_rotor_pulling_as_the_figures_show():
@@ -67,30 +80,25 @@ def test_the_values_do_not_depend_on_the_step(runs):
 
 def test_figures_carry_the_numbers_of_the_paper():
     """Displacements are figures 3 and 4, power spectra 5 and 6; of each pair the healthy bearing comes first."""
-    numbered = {number: (state, spectral) for number, _, state, spectral in FIGURES}
-    assert numbered == {
+    assert {number: (state, spectral) for number, (_, state, spectral) in FIGURES.items()} == {
         "figure3": ("healthy", False),
         "figure4": ("cracked", False),
         "figure5": ("healthy", True),
         "figure6": ("cracked", True),
     }
-
-
-def test_the_figures_show_what_their_numbers_say(runs):
-    made = runs["paper"]
-    drawn = dict(draw_figures(made))
-    assert list(drawn) == ["figure3", "figure4", "figure5", "figure6"]
-    for number, state, spectral in (
-        (3, "healthy", False),
-        (4, "cracked", False),
-        (5, "healthy", True),
-        (6, "cracked", True),
-    ):
-        figure = drawn[f"figure{number}"]
-        title = figure.get_suptitle()
-        assert title.startswith(f"Figure {number}. {state.capitalize()}")
+    for number, (title, state, spectral) in FIGURES.items():
+        assert title.startswith(f"Figure {number[-1]}. {state.capitalize()}")
         assert title.endswith("power spectra" if spectral else "displacements")
-        for axes, x in zip(figure.axes, getattr(made, state), strict=True):
-            line = axes.lines[0].get_ydata()
-            expected = power_spectrum(x)[1][1:] if spectral else x
-            assert np.array_equal(line, expected[: len(line)])
+
+
+@pytest.mark.parametrize("number", FIGURES)
+def test_the_figures_show_the_run_and_the_printed_values(runs, number):
+    _, state, spectral = FIGURES[number]
+    figure = draw_figure(number, runs["paper"])
+    for axes, name, x in zip(figure.axes, CHANNELS, getattr(runs["paper"], state), strict=True):
+        line = axes.lines[0].get_ydata()
+        expected = power_spectrum(x)[1][1:] if spectral else x
+        assert np.array_equal(line, expected[: len(line)])
+        about = [one for one in STATEMENTS.values() if (one.figure, one.channel) == (number, name)]
+        texts = {text.get_text() for text in axes.texts}
+        assert texts == {"–".join(f"{value:g}" for value in one.printed) for one in about if one.printed}
