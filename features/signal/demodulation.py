@@ -117,16 +117,16 @@ def fine_amplitudes(weighted: FloatArray, bins: int) -> FloatArray:
     Shape (record, bins), in the unit of the signals.
     """
     n = weighted.shape[-1]
-    window, first, weights = _interpolation(n, weighted.dtype)
+    window, first, weights = _interpolation(n, bins, weighted.dtype)
     padded = np.zeros((len(weighted), len(window)), weighted.dtype)
     start = (len(window) - n) // 2
     np.multiply(weighted, window[start : start + n], out=padded[:, start : start + n])
-    return _interpolate(np.asarray(rfft(padded, axis=-1)), len(window), first[:bins], weights[:bins])
+    return _interpolate(np.asarray(rfft(padded, axis=-1)), len(window), first, weights)
 
 
-@lru_cache(16)
-def _interpolation(n: int, dtype: DTypeLike) -> tuple[FloatArray, np.ndarray, FloatArray]:
-    """Window, first neighbours and weights of the interpolation of spectra of signals of length n.
+@lru_cache(32)  # 16 levels of a tree of bands, with two lengths each
+def _interpolation(n: int, bins: int, dtype: DTypeLike) -> tuple[FloatArray, np.ndarray, FloatArray]:
+    """Window, first neighbours and weights of the interpolation of the first bins of spectra of signals of length n.
 
     The window, shape (time,), is the reciprocal of the transform of the kernel, scaled so that the result is the amplitude
     under a Hann window. Each bin has its first neighbour, shape (bin,), and a weight per neighbour, shape (bin, neighbour).
@@ -136,7 +136,7 @@ def _interpolation(n: int, dtype: DTypeLike) -> tuple[FloatArray, np.ndarray, Fl
     t = np.arange(padded) / padded - 0.5
     root = np.sqrt(np.maximum(bend**2 - (np.pi * NEIGHBOURS * t) ** 2, 1.0))  # above 1 within the signal
     window = 4 / n * root / (NEIGHBOURS * np.sinh(root))
-    place = np.arange(ZERO_PADDING * n // 2 + 1) * (padded / (ZERO_PADDING * n))
+    place = np.arange(bins) * (padded / (ZERO_PADDING * n))
     first = np.floor(place).astype(np.intp) + 1 - NEIGHBOURS // 2
     neighbour = np.arange(NEIGHBOURS)
     offset = (place - first)[:, None] - neighbour

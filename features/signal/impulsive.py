@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 from scipy.fft import rfft
 from scipy.special import gammainccinv
 
-from features.signal.demodulation import ZERO_PADDING, analytic_band, log_level, squared_envelope_spectrum
+from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
 from features.signal.lines import COMB_HARMONICS, combs
 from features.signal.rows import ComplexArray, FloatArray, IntArray, squared_modulus
 from features.signal.spectra import fourier_coefficients, hann_segments
@@ -158,9 +158,10 @@ def spectral_kurtosis(x: FloatArray, fs: float, *, segment: float = 0.005) -> Sp
 
 def _comb_level(z: ComplexArray, duration: float, rate: FloatArray) -> FloatArray:
     """Comb of each record in the squared envelope spectrum of its analytic signal, shape (record,)."""
-    _, spectrum = squared_envelope_spectrum(z, z.shape[-1] / duration)
-    place = rate * duration * ZERO_PADDING
-    level = log_level(spectrum, FLOOR_RATES * place, min(spectrum.shape[-1], int((COMB_HARMONICS + 1) * place.max())))
+    place, end = rate * duration * ZERO_PADDING, ZERO_PADDING * z.shape[-1] // 2 + 1
+    bins, width = int((COMB_HARMONICS + 1) * place.max()), FLOOR_RATES * place
+    spectrum = fine_amplitudes(weight_by_hann(squared_modulus(z)), min(bins + int(width.max()) + 4, end))
+    level = log_level(spectrum, width, min(bins, end))
     return combs(level, place[:, None])[:, 0]
 
 
