@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 
 from benchmarks import (
     against,
+    analysis,
     features,
     growth,
     kernel,
@@ -34,6 +35,7 @@ SUBJECTS: dict[str, Callable[[], Iterator[Line]]] = {
     "pipeline": pipeline.rows,
     "million": million.rows,
     "features": features.rows,
+    "analysis": analysis.rows,
     "opening": opening.rows,
     "training": training.rows,
     "starting": starting.rows,

@@ -20,6 +20,7 @@ GROUPS = {
     "pipeline": ("pipeline", "growth", "start"),
     "million": ("million",),
     "features": ("features",),
+    "analysis": ("analysis",),
     "reading": ("opening", "training"),
     "starting": ("starting",),
     "truth": ("truth",),

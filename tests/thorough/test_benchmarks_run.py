@@ -8,6 +8,7 @@ import pytest
 
 from benchmarks import (
     against,
+    analysis,
     features,
     growth,
     kernel,
@@ -97,6 +98,12 @@ def test_a_corpus_of_many_parts_is_compared_with_one_of_few():
 def test_features_are_compared_where_tsfel_is_installed():
     (line,) = features.rows(1, records=2, theirs=1)
     assert isinstance(line, Row if importlib.util.find_spec("tsfel") else Skipped)
+
+
+def test_functions_of_an_analyst_are_compared_with_scipy():
+    found = finite_rows(analysis.rows(1, samples=20_000))
+    assert len(found) == 14
+    assert found["analysis psd"].alternative == "welch"
 
 
 def test_opening_a_corpus_is_compared_with_opening_its_parts():
