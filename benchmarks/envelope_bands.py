@@ -58,15 +58,15 @@ def chosen_bands(x: Signal, fs: float, rates: np.ndarray) -> dict[str, np.ndarra
     return {"fixed": np.tile(fixed, (3, 1)), "kurtogram": np.tile(best[0], (3, 1)), "comb": np.stack(best[1:])}
 
 
-def comb_level(x: Signal, fs: float, band: np.ndarray, rate: float, shaft_rate: float) -> float:
-    """Comb of a rate [Hz] in the envelope spectrum of a band [Hz], mean of the windows [nepers]."""
+def record_combs(x: Signal, fs: float, band: np.ndarray, rate: np.ndarray, shaft_rate: np.ndarray) -> np.ndarray:
+    """Comb of a rate [Hz] of each record in the envelope spectrum of a band [Hz], shape (record,) [nepers]."""
     duration = x.shape[-1] / fs
     low, high = np.rint(band * duration).astype(int)
     z = analytic_band(fourier_coefficients(x, fs, fs / 2), low, high)
     _, spectrum = envelope_spectrum(z, z.shape[-1] / duration)
-    width = max(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) * duration * ZERO_PADDING
-    level = log_level(spectrum, np.full(len(x), width), spectrum.shape[-1])
-    return float(combs(level, np.full((len(x), 1), rate * duration * ZERO_PADDING)).mean())
+    width = np.maximum(FLOOR_WIDTH[0] * shaft_rate, FLOOR_WIDTH[1]) * duration * ZERO_PADDING
+    level = log_level(spectrum, width, spectrum.shape[-1])
+    return combs(level, (rate * duration * ZERO_PADDING)[:, None])[:, 0]
 
 
 def comb_levels(recording: Recording) -> Iterator[tuple[Cell, list[float]]]:
@@ -78,8 +78,12 @@ def comb_levels(recording: Recording) -> Iterator[tuple[Cell, list[float]]]:
     length = min(round(WINDOW_SECONDS * fs), whole.shape[-1])
     for separation, separate in SEPARATIONS.items():
         x = separate(whole, fs)[0, : whole.shape[-1] // length * length].reshape(-1, length)
+        every = np.ones(len(x))
         for band, edges in chosen_bands(x, fs, rates).items():
-            yield (separation, band), [comb_level(x, fs, *pair, rate) for pair in zip(edges, rates, strict=True)]
+            levels = [
+                record_combs(x, fs, *pair, rate * every) for pair in zip(edges, rates[:, None] * every, strict=True)
+            ]
+            yield (separation, band), [float(of_windows.mean()) for of_windows in levels]
 
 
 def main() -> None:

@@ -103,7 +103,8 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         labelled, found = real_tables(real, folder)
-        for seed, table in enumerate(_corpora(recipe, seeds, folder, workers)):
+        for seed, corpus in enumerate(corpora(recipe, seeds, folder, workers)):
+            table = feature_table(corpus, GROUPS)
             models = {estimator: Model(estimator, seed=seed).fit(table) for estimator in ESTIMATORS}
             for test, other in labelled.items():
                 for estimator, model in models.items():
@@ -138,11 +139,12 @@ def measure(real: Path, seeds: int, recipe: str, workers: int) -> dict[str, Any]
     }
 
 
-def _corpora(recipe: str, seeds: int, folder: Path, workers: int) -> Iterator[xr.Dataset]:
+def corpora(recipe: str, seeds: int, folder: Path, workers: int) -> Iterator[Path]:
+    """Generate a corpus for each seed."""
     for seed in range(seeds):
         corpus = folder / f"seed-{seed}"
         generate(recipe, corpus, workers=workers, seed=20260 + seed)
-        yield feature_table(corpus, GROUPS)
+        yield corpus
 
 
 def _mean(values: list[float | None]) -> float | None:
