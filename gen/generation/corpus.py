@@ -95,7 +95,7 @@ def generate(
         Replace the seed and the number of records of the recipe.
     progress : callable, optional
         Called in this thread with the number of records done and of all records. The last record of a part counts when the part is
-        written, every other record when it is simulated.
+        written, every other record when it is final.
     notice : callable, optional
         Called with a sentence when a kernel is about to be compiled.
 

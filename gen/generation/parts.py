@@ -75,7 +75,7 @@ def make_parts(
     directory : path
         Folder of the corpus; a part that is in it already is kept.
     report : callable
-        Called with the number of a part and the number of its simulated records; the last is not reported before the part is written.
+        Called with the number of a part and the number of its final records; the last is not reported before the part is written.
     meanwhile : callable
         Called in this thread now and then while several threads work.
     crew : Crew

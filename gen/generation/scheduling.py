@@ -65,7 +65,6 @@ class _Part:
     checked: bool
     rows: dict[int, tuple[Records, int]] = field(default_factory=dict)
     """Final records: each by its number, as a place in records that were measured together."""
-    simulated: int = 0
 
 
 @dataclass(eq=False)
@@ -101,7 +100,7 @@ def made_parts(
     finish : callable
         Called with each part, in the thread that completes it.
     report : callable
-        Called with the place of a part and the number of its records that are simulated.
+        Called with the place of a part and the number of its records that are final.
     meanwhile : callable
         Called in this thread now and then while several threads work.
     crew : Crew
@@ -187,10 +186,10 @@ class _Making(Generic[Result]):
         families, self._ready = self._ready, []
         return partial(self._judge, sorted(families, key=lambda family: family.scenarios[0].record.number))
 
-    def _draw(self, numbers: range, report: Report) -> Iterable[Result]:
+    def _draw(self, numbers: range, _report: Report) -> Iterable[Result]:
         """Draw the next records."""
         families = self._families.draw(numbers)
-        waits = [(family.integrations, partial(self._report_simulated, family, report)) for family in families]
+        waits = [(family.integrations, partial(self._make_ready, family)) for family in families]
         with self._change:
             self._growing -= 1
             for integrations, then in waits:
@@ -207,7 +206,7 @@ class _Making(Generic[Result]):
                     pending.then()
         return ()
 
-    def _judge(self, families: list[Family], _report: Report) -> Iterable[Result]:
+    def _judge(self, families: list[Family], report: Report) -> Iterable[Result]:
         """Measure and judge families; those that are final go to their parts."""
         made, again = self._families.judge(families)
         made = Records(replace(made.response, twins=None), made.measured)
@@ -226,6 +225,7 @@ class _Making(Generic[Result]):
             self._growing -= 1
             for part, numbers, piece in pieces:
                 part.rows |= {number: (piece, place) for place, number in enumerate(numbers)}
+                report(part.place, min(len(part.rows), len(part.numbers) - 1))
                 if len(part.rows) == len(part.numbers):
                     self._complete.append(part)
             for integrations, then in waits:
@@ -271,15 +271,6 @@ class _Making(Generic[Result]):
             self._waiting.add(integrations, _Pending(len(integrations), then))
         else:
             then()
-
-    def _report_simulated(self, family: Family, report: Report) -> None:
-        """Report the records of a family that is integrated for the first time."""
-        self._make_ready(family)
-        for scenario in family.scenarios:
-            part = self._part_of(scenario.record.number)
-            if part is not None:
-                part.simulated += 1
-                report(part.place, min(part.simulated, len(part.numbers) - 1))
 
     def _make_ready(self, family: Family) -> None:
         self._ready.append(family)
