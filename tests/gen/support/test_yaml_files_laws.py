@@ -188,10 +188,14 @@ def test_the_recipes_that_ship_keep_their_hashes():
     assert {name: recipe_hash(read_recipe(name))[:16] for name in shipped_recipes()} == {
         "dirty_sensors": "640816a31551cd77",
         "domain_randomised": "c8232bc3ea021d9b",
+        "electric_motor": "b527b2270253f786",
         "every_fault": "2d7d00a6cdca5637",
+        "fan": "de85976f70c769c2",
         "ophel2025": "6dde46564610c042",
+        "pump": "11622f31b47c74a2",
         "quickstart": "4e3882da0bf554d7",
         "run_up": "c174ff528a38b09f",
+        "spindle": "9d9b211a80dcbdfa",
     }
 
 
