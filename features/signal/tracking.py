@@ -23,7 +23,7 @@ are smeared if the shaft lines are weak. A tacho has none of these limits.
 import numpy as np
 from scipy.fft import ifft, rfft
 
-from features.signal.demodulation import ZERO_PADDING, fine_amplitudes, running_median, weight_by_hann
+from features.signal.demodulation import ZERO_PADDING, fine_amplitudes, log_level, weight_by_hann
 from features.signal.orders import angles_from_speed, resample_to_angle
 from features.signal.rows import ComplexArray, FloatArray, IntArray, as_records, row_kernel
 from features.signal.speed import levels_at
@@ -134,9 +134,7 @@ def _ridge(
     bins = int((HARMONICS + 0.5) * candidates[-1] / resolution) + 2
     end = min(bins + int(width) + 1, ZERO_PADDING * length // 2 + 1)
     spectrum = fine_amplitudes(weight_by_hann(windows.reshape(-1, length)), end)
-    floor = running_median(spectrum, np.full(len(spectrum), width), bins)
-    least = np.finfo(spectrum.dtype).tiny
-    level = np.clip(np.log(np.maximum(spectrum[:, :bins], least) / np.maximum(floor, least)), 0, HIGHEST)
+    level = np.clip(log_level(spectrum, np.full(len(spectrum), width), bins), 0, HIGHEST)
     halves = 0.5 * np.arange(1, 2 * HARMONICS + 1)
     places = np.broadcast_to(halves * candidates[0] / resolution, (len(level), len(halves)))
     lines = levels_at(level, places, candidates / candidates[0])
