@@ -2,10 +2,10 @@
 
 ``import features.accessor`` gives every DataArray with the dimension ``elapsed_time`` the accessor ``raceway``. A result
 keeps all other dimensions and coordinates, and has units. A signal in chunks of dask (``chunk({"record": 64})``, whole
-along time) gives a lazy result, computed chunk by chunk.
+along time) gives a lazy result, computed chunk by chunk. ``records.raceway`` tells what a corpus holds and what can be done with it.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 
 import numpy as np
 import xarray as xr
@@ -19,10 +19,35 @@ from features.signal.orders import order_spectrum, resample_to_angle
 from features.signal.rows import FloatArray, as_records
 from features.signal.separation import cepstrum, prediction_residual, separate_random
 from features.signal.spectra import psd
+from gen.support.shown import Shown
 
 TIME = "elapsed_time"
 
 Compute = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
+
+
+@xr.register_dataset_accessor("raceway")
+class CorpusAccessor(Shown):
+    """Classes and signals of records, and the next steps."""
+
+    def __init__(self, records: xr.Dataset) -> None:
+        self._records = records
+
+    def _heading(self) -> str:
+        return f"{self._records.attrs.get('title', 'Corpus')}: {np.size(self._records['fault_name']):,} of its records"
+
+    def _facts(self) -> Mapping[str, object]:
+        records = self._records
+        names, counts = np.unique(np.atleast_1d(records["fault_name"].values), return_counts=True)
+        return {
+            "classes": ", ".join(f"{name} {count:,}" for name, count in zip(names, counts, strict=True)),
+            "rigs": len(np.unique(records["rig"])),
+            "signals": f"{len(records[TIME]) / float(records['sample_rate'].values.flat[0]):g} s of {', '.join(records['channel'].values)}",
+            "choose": 'records.sel(record=records.fault_name == "inner")',
+            "look": "records.acceleration[0].plot(), records.acceleration[0].raceway.envelope_spectrum().plot()",
+            "learn": "features.feature_table(folder), gen.torch_dataset(folder), features.open_waveforms(folder)",
+            "browse": "raceway explore FOLDER -o explore.html",
+        }
 
 
 @xr.register_dataarray_accessor("raceway")

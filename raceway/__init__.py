@@ -1,4 +1,6 @@
-"""The command line of Raceway; ``raceway --help`` lists the commands. From Python, ``raceway.reference_model()`` is its model.
+"""The command line of Raceway; ``raceway --help`` lists the commands.
+
+From Python, ``raceway.reference_model()`` is its model, and ``raceway.show_progress()`` shows the progress of a call.
 
 ======== =====================================================================
 module   responsibility

@@ -49,6 +49,7 @@ from features.waveforms import Waveforms
 from gen.corpus import UNKNOWN_CODE, check_result
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
+from gen.support.shown import Shown
 
 if TYPE_CHECKING:
     pass
@@ -64,7 +65,7 @@ Data = xr.Dataset | Waveforms | Path | str
 
 
 @dataclass(eq=False, repr=False)
-class Model:
+class Model(Shown):
     """A classifier of bearing faults, fitted to a corpus and calibrated on records outside the training.
 
     ``Model("random_forest").fit("corpus").predict("other")`` reads as an estimator of scikit-learn; data are feature tables or corpora.
@@ -119,10 +120,18 @@ class Model:
         """Name of the classifier."""
         return self.classifier if isinstance(self.classifier, str) else maker_name(self.classifier)
 
-    def __repr__(self) -> str:
-        """Classifier and training."""
+    def _heading(self) -> str:
         trained = "not fitted" if self.estimator is None else f"fitted to {self.records:,} records of {self.corpus}"
-        return f"<Model {self.name}: {trained}>"
+        return f"Model {self.name}: {trained}"
+
+    def _facts(self) -> Mapping[str, object]:
+        if self.estimator is None:
+            return {"groups": ", ".join(self.groups), "next": "model.fit(table)"}
+        return {
+            "classes": ", ".join(self.classes),
+            "features": f"{len(self.features)} of {', '.join(self.groups)}",
+            "next": 'model.score(table), model.predict(table), model.save("model.skops")',
+        }
 
     def fit(self, data: Data, *, workers: int = 1, progress: Progress | None = None) -> Self:
         """Fit the classifier to all labelled records, and calibrate it.

@@ -28,7 +28,7 @@ from features.baselines.records import (
     labelled_records,
     records_of,
 )
-from features.baselines.scores import Scores
+from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import Widths, uncovered_in_splits
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
 from features.baselines.tracks import TRACKS, Track
@@ -36,6 +36,7 @@ from features.waveforms import Waveforms
 from gen.corpus import FAULTS, write_numbers
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
+from gen.support.shown import Shown
 
 BRIEF = (*UNTRAINED, DEFAULT_ESTIMATOR)
 """Baselines that are scored on several tracks, because all would take several times as long."""
@@ -88,8 +89,8 @@ class TrackResults:
     baselines: dict[str, Baseline]
 
 
-@dataclass(frozen=True)
-class Results:
+@dataclass(frozen=True, repr=False)
+class Results(Shown):
     """Results of a benchmark, all of plain types.
 
     Attributes
@@ -133,6 +134,24 @@ class Results:
     further: dict[str, TrackResults] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
     curve: tuple[CurvePoint, ...] = ()
+
+    def _heading(self) -> str:
+        return f"Results on {self.corpus.title}: {self.corpus.records:,} records, balanced accuracy over {self.folds} folds by {self.track}"
+
+    def _facts(self) -> Mapping[str, object]:
+        return {
+            name: ", ".join(
+                [
+                    f"{scores.grouped.balanced_accuracy:.3f} ({interval_text(scores.grouped.interval)})",
+                    f"permuted labels {scores.null.balanced_accuracy:.3f}",
+                    *(
+                        f"{test.title} {of.balanced_accuracy:.3f}"
+                        for test, of in zip(self.tests, scores.tests, strict=True)
+                    ),
+                ]
+            )
+            for name, scores in self.baselines.items()
+        }
 
 
 def benchmark(

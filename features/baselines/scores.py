@@ -20,6 +20,7 @@ from features.baselines.predictions import Predictions
 from features.baselines.records import FloatArray, IntArray, Records
 from features.faults import HEALTHY
 from gen.corpus import FAULTS
+from gen.support.shown import Shown
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)
 BINS = 10  # of the reliability diagram
@@ -37,8 +38,8 @@ class Bin:
     accuracy: float
 
 
-@dataclass(frozen=True)
-class Scores:
+@dataclass(frozen=True, repr=False)
+class Scores(Shown):
     """Scores of one classifier on one set of records.
 
     Attributes
@@ -104,6 +105,28 @@ class Scores:
     reference: str = ""
     seen: int = 0
     uncovered_widths: Mapping[str, tuple[float, ...]] = field(default_factory=dict)
+
+    def _heading(self) -> str:
+        return f"Scores of {self.records:,} records: balanced accuracy {self.balanced_accuracy:.3f}"
+
+    def _facts(self) -> Mapping[str, object]:
+        of_confusion = {
+            f"{true} told as": ", ".join(
+                f"{name} {count}" for name, count in zip(self.model_classes, row, strict=True) if count
+            )
+            for true, row in zip(self.classes, self.confusion, strict=True)
+        }
+        named = {"macro-F1": self.macro_f1, "log-loss": self.log_loss, "area under the curve": self.auc}
+        whole = self.by_recording
+        return {
+            "95 % interval": interval_text(self.interval),
+            "by recording": "" if whole is None else f"{whole.balanced_accuracy:.3f} of {whole.records:,}",
+            **{name: value if value is None else f"{value:.3f}" for name, value in named.items()},
+            "false alarms": self.false_alarms if self.false_alarms is None else f"{self.false_alarms:.3f}",
+            **of_confusion,
+            "reference": self.reference,
+            "in the training": self.seen or "",
+        }
 
 
 class Figures(NamedTuple):

@@ -37,6 +37,7 @@ from features.recording_table import recording_table, windows_of
 from features.signal.rows import FloatArray, mean_row
 from gen.corpus import FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
+from gen.support.shown import Shown
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -75,8 +76,8 @@ class Judged(NamedTuple):
     spectra: list[BandSpectrum]
 
 
-@dataclass(frozen=True)
-class Diagnosis:
+@dataclass(frozen=True, repr=False)
+class Diagnosis(Shown):
     """A diagnosis.
 
     Attributes
@@ -126,7 +127,22 @@ class Diagnosis:
     elsewhere: tuple[Pair, ...] = ()
     windows: int = 0
     levels: tuple[Levels, ...] = ()
-    spectrum: BandSpectrum | None = field(default=None, repr=False, compare=False)
+    spectrum: BandSpectrum | None = field(default=None, compare=False)
+
+    def _heading(self) -> str:
+        return f"Diagnosis: {self.verdict}"
+
+    def _facts(self) -> Mapping[str, object]:
+        lines = [f"{line.name} at {line.frequency:.4g} Hz, {line.level:.0f} dB" for line in self.evidence]
+        return {
+            "why": self.sentence,
+            "probabilities": candidates(self.probabilities),
+            "bearing": self.bearing,
+            "speed": f"{60 * self.shaft_rate:,.4g} rpm",
+            "lines": "; ".join(lines),
+            "advice": " ".join(self.advice),
+            "warnings": " ".join(self.warnings),
+        }
 
 
 def diagnose_recording(

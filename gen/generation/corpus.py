@@ -43,6 +43,7 @@ from gen.generation.sources import sources_sha256
 from gen.recipe import Recipe, find_recipe, read_recipe, recipe_text
 from gen.support.errors import ClusterError, CorpusError, RecipeError
 from gen.support.progress import Progress
+from gen.support.shown import Shown
 from gen.support.workers import stream, threads_of
 
 if TYPE_CHECKING:
@@ -51,8 +52,8 @@ if TYPE_CHECKING:
     from gen.corpus import Manifest
 
 
-@dataclass(frozen=True)
-class Generated:
+@dataclass(frozen=True, repr=False)
+class Generated(Shown):
     """Result of :func:`generate`."""
 
     path: Path
@@ -65,6 +66,17 @@ class Generated:
     """One sentence for each record that is left out because it could not be simulated."""
     signals: SignalCounts
     """Number of records that cannot be used."""
+
+    def _heading(self) -> str:
+        return f"Corpus {self.path}: {self.records:,} records"
+
+    def _facts(self) -> Mapping[str, object]:
+        return {
+            "parts": f"{self.parts:,}, of which {self.kept:,} were made before",
+            "left out": " ".join(self.failures),
+            "next": f'gen.open_corpus("{self.path}"), features.feature_table("{self.path}")',
+            "browse": f"raceway explore {self.path} -o explore.html",
+        }
 
 
 def generate(

@@ -7,15 +7,17 @@ from typing import Any, Self
 from pydantic import ValidationError, model_validator
 
 from gen.recipe.checks import check_recipe
+from gen.recipe.faults import fault_class
 from gen.recipe.section import plain
 from gen.recipe.sections import Sections
 from gen.support.errors import RecipeError
 from gen.support.sentences import sentences
+from gen.support.shown import Shown
 
 _NO_KEYS: Mapping[str, Any] = MappingProxyType({})
 
 
-class Recipe(Sections):
+class Recipe(Shown, Sections):
     """All that a corpus is made from."""
 
     def __init__(self, data: Mapping[str, Any] = _NO_KEYS, /, **keys: Any) -> None:
@@ -33,9 +35,21 @@ class Recipe(Sections):
         except ValidationError as error:
             raise RecipeError("\n".join(sentences(error, Recipe))) from None
 
-    def __repr__(self) -> str:
-        """Name and size; ``gen.write_recipe`` shows all keys."""
-        return f"<Recipe {self.name}: {self.n_records:,} records, {len(self.faults)} faults, seed {self.seed}>"
+    def _heading(self) -> str:
+        return f"Recipe {self.name}: {self.n_records:,} records, {len(self.faults)} faults, seed {self.seed}"
+
+    def _facts(self) -> Mapping[str, object]:
+        return {
+            "title": self.title,
+            "records": f"{self.n_records:,} of {self.recording.duration_s:g} s at {self.recording.sample_rate_hz:,g} Hz",
+            "channels": ", ".join(channel.name for channel in self.recording.channels),
+            "rigs": f"{self.n_rigs:,}, with {self.n_specimens:,} bearings",
+            "bearing": self.bearing,
+            "speed": f"{self.operation.shaft_rpm} rpm",
+            "load": f"{self.operation.load_n} N",
+            "classes": ", ".join(dict.fromkeys(map(fault_class, self.faults))),
+            "next": 'gen.generate(recipe, "corpus"), gen.draw_scenarios(recipe), gen.write_recipe(recipe, "my_recipe.yaml")',
+        }
 
     def __hash__(self) -> int:
         """Hash of name and seed; the hash of pydantic fails on the dictionaries of some sections."""

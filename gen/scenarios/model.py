@@ -3,6 +3,7 @@
 Every value is a number, a text or a tuple, in SI units, so that a corpus can store the scenario of each record as JSON.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from typing import Annotated, Literal
@@ -13,6 +14,7 @@ from pydantic import Field
 from gen.physics.bearing import Bearing
 from gen.physics.profile import Profile
 from gen.recipe import MAX_OVERSAMPLING
+from gen.support.shown import Shown
 
 Drawn = dict[str, float]
 """Values drawn from one recipe section, by the key without its unit."""
@@ -361,8 +363,8 @@ class Operation:
         return self.number - max(self.rung, 0)
 
 
-@dataclass(frozen=True)
-class Scenario:
+@dataclass(frozen=True, repr=False)
+class Scenario(Shown):
     """All drawn values of one record, and the settings of its recipe."""
 
     settings: Settings
@@ -370,10 +372,25 @@ class Scenario:
     specimen: Specimen
     record: Operation
 
-    def __repr__(self) -> str:
-        """Numbers and class; the fields have all drawn values."""
+    def _heading(self) -> str:
         numbers = f"rig {self.rig.number}, specimen {self.specimen.number}, record {self.record.number}"
-        return f"<Scenario of {self.settings.recipe}: {numbers}, {self.specimen.fault}>"
+        return f"Scenario of {self.settings.recipe}: {numbers}, {self.specimen.fault}"
+
+    def _facts(self) -> Mapping[str, object]:
+        conditions, bearing = self.record.conditions, self.specimen.bearing
+        spalls = [
+            f"spall of {1e3 * one.width:.3g} mm, {1e6 * one.depth:.3g} µm deep, in the {one.site}"
+            for one in self.specimen.spalls
+        ]
+        return {
+            "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of "
+            f"{1e3 * bearing.ball_diameter:.4g} mm on {1e3 * bearing.pitch_diameter:.4g} mm",
+            "damage": ", ".join(spalls or self.specimen.damaged_parts) or "none",
+            "speed": f"{60 * conditions.shaft_rate:,.4g} rpm",
+            "load": f"{conditions.load:,.4g} N",
+            "record": f"{self.settings.samples / self.settings.sample_rate:g} s at {self.settings.sample_rate:,g} Hz",
+            "next": "gen.simulate([scenario]), scenario.without_fault(), dataclasses.replace(scenario, ...)",
+        }
 
     def rng(self, purpose: Purpose) -> np.random.Generator:
         """Random stream of this record for one purpose."""

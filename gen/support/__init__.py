@@ -6,6 +6,7 @@ module     responsibility
 errors     one exception class per stage; each carries one sentence
 garbage    cheaper making of many objects
 progress   progress of a long call
+shown      what an object shows in print and in a notebook
 limits     how much a file from elsewhere may ask for
 units      units of recipes and mapping files, turned into SI
 yaml_files recipes and mapping files, read within the limits

@@ -1,4 +1,4 @@
-"""Progress of a long command on standard error: a bar on a terminal, else a plain line every ten seconds."""
+"""Progress of a long call: a bar on a terminal, one renewed line in a notebook, else a line every ten seconds on standard error."""
 
 import sys
 import time
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from gen.support.progress import Progress
 
 SECONDS_BETWEEN_LINES = 10.0
+SECONDS_IN_NOTEBOOK = 0.5
 BURST_S = 1.0  # records of a batch are reported together, and parts that were kept from before are too
 BURSTS_IN_SPEED = 32
 
@@ -31,7 +32,7 @@ def progress(doing: str, unit: str) -> "Iterator[Progress]":
         with _bar(doing, unit) as report:
             yield report
     else:
-        yield _lines(doing, unit)
+        yield show_progress(doing, unit)
 
 
 @contextmanager
@@ -52,19 +53,34 @@ def _bar(doing: str, unit: str) -> "Iterator[Progress]":
         yield lambda done, total: bars.update(task, completed=done, total=total, pace=pace(done, total))
 
 
-def _lines(doing: str, unit: str) -> "Progress":
+def show_progress(doing: str = "done", unit: str = "records") -> "Progress":
+    """Progress in lines, for the argument ``progress`` of calls such as ``gen.generate``; a notebook renews one line.
+
+    ``doing`` is the activity, such as "generating"; ``unit`` is the unit that is counted.
+    """
     start = last = time.monotonic()
     pace = _pace(unit)
+    renew = _notebook_line()
+    between = SECONDS_BETWEEN_LINES if renew is None else SECONDS_IN_NOTEBOOK
 
     def report(done: int, total: int) -> None:
         nonlocal last
         current, now = pace(done, total), time.monotonic()
-        if done == total or now - last >= SECONDS_BETWEEN_LINES:
+        if done == total or now - last >= between:
             last = now
             ending = f"in {show.duration(now - start)}" if done == total else current
-            notice(f"{doing}: {done:,} of {total:,} {unit}, {ending}")
+            (renew or notice)(f"{doing}: {done:,} of {total:,} {unit}, {ending}")
 
     return report
+
+
+def _notebook_line() -> Callable[[str], None] | None:
+    """Function that shows a sentence below the cell of a notebook, in place of the one before; None elsewhere."""
+    ipython = sys.modules.get("IPython")
+    if ipython is None or not hasattr(ipython.get_ipython(), "kernel"):
+        return None
+    line = ipython.display.display({"text/plain": ""}, raw=True, display_id=True)
+    return lambda sentence: line.update({"text/plain": sentence}, raw=True)
 
 
 def _pace(unit: str) -> Callable[[int, int], str]:

@@ -47,10 +47,9 @@ def text(*paragraphs: str) -> None:
 
 def facts(pairs: Mapping[str, Any]) -> None:
     """Print names and values, one pair per line; a pair with an empty value is left out."""
-    shown = {name: str(value) for name, value in pairs.items() if value not in (None, "", ())}
-    width = max(map(len, shown), default=0)
-    for name, value in shown.items():
-        click.echo(printable(f"{name.ljust(width)}  {value}"))
+    from gen.support.shown import lines  # not at the top: help needs no gen
+
+    text(*lines(pairs))
 
 
 def definitions(meanings: Mapping[str, str]) -> None:

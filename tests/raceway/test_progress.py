@@ -1,5 +1,8 @@
 """Lines of progress: how many units are done, at which speed, and the time that is left."""
 
+import sys
+from types import SimpleNamespace
+
 import pytest
 
 from raceway.console import progress
@@ -21,7 +24,7 @@ def lines(monkeypatch):
 
 
 def test_a_line_comes_every_ten_seconds_and_at_the_end(clock, lines):
-    report = progress._lines("generating", "records")
+    report = progress.show_progress("generating")
     for clock[0], done in ((9.0, 9), (11.0, 11), (12.0, 12), (22.0, 21), (30.0, 30)):
         report(done, 30)
     assert [line.partition(",")[0] for line in lines] == [f"generating: {done} of 30 records" for done in (11, 21, 30)]
@@ -40,10 +43,23 @@ def test_speed_and_time_left_are_those_between_the_bursts(clock):
 
 
 def test_the_last_line_tells_the_time_taken(clock, lines):
-    report = progress._lines("generating", "records")
+    report = progress.show_progress("generating")
     clock[0] = 4.2
     report(30, 30)
     assert lines == ["generating: 30 of 30 records, in 4 s"]
+
+
+def test_a_notebook_renews_one_line(clock, lines, monkeypatch):
+    shown = []
+    line = SimpleNamespace(update=lambda data, **_: shown.append(data["text/plain"]))
+    display = SimpleNamespace(display=lambda *_, **__: line)
+    notebook = SimpleNamespace(get_ipython=lambda: SimpleNamespace(kernel=1), display=display)
+    monkeypatch.setitem(sys.modules, "IPython", notebook)
+    report = progress.show_progress("generating")
+    for clock[0], done in ((0.1, 1), (2.1, 2), (2.2, 3)):
+        report(done, 3)
+    assert lines == []
+    assert shown == ["generating: 2 of 3 records, 0.5 records/s, 2 s left", "generating: 3 of 3 records, in 2 s"]
 
 
 def test_quiet_prints_results_alone(run, tiny_recipe, tmp_path):

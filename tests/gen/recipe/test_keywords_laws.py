@@ -213,5 +213,5 @@ def test_a_recipe_from_a_dict_has_the_errors_of_the_file(tmp_path):
 def test_faults_recipes_and_scenarios_are_shown_in_one_short_line():
     recipe = gen.make_recipe([gen.outer(width_mm=gen.loguniform(0.1, 2)), "healthy"], n=4, seed=3)
     assert str(recipe.faults[0]) == "outer(width_mm=loguniform(0.1, 2))"
-    assert str(recipe) == "<Recipe records: 8 records, 2 faults, seed 3>"
+    assert repr(recipe) == "<Recipe records: 8 records, 2 faults, seed 3>"
     assert repr(gen.draw_scenarios(recipe, 1, 2)[0]) == "<Scenario of records: rig 0, specimen 1, record 1, healthy>"

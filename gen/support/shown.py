@@ -1,0 +1,44 @@
+"""Objects that show what they hold: one line in a list, lines in print, a table in a notebook."""
+
+from collections.abc import Mapping
+from html import escape
+
+
+class Shown:
+    """Base class of such objects: a heading, and facts by name; those without a value are left out."""
+
+    def _heading(self) -> str:
+        raise NotImplementedError
+
+    def _facts(self) -> Mapping[str, object]:
+        raise NotImplementedError
+
+    def __repr__(self) -> str:
+        """Heading alone."""
+        return f"<{self._heading()}>"
+
+    def __str__(self) -> str:
+        """Heading and facts, one per line."""
+        return "\n".join([self._heading(), *lines(self._facts())])
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f'<tr><th style="text-align:left">{escape(name)}</th><td style="text-align:left">{escape(value)}</td></tr>'
+            for name, value in _stated(self._facts()).items()
+        )
+        return f"<b>{escape(self._heading())}</b><table>{rows}</table>"
+
+
+def lines(facts: Mapping[str, object]) -> list[str]:
+    """Names and values, one pair per line; a pair without a value is left out.
+
+    >>> lines({"records": 448, "split": "", "seed": 0})
+    ['records  448', 'seed     0']
+    """
+    stated = _stated(facts)
+    width = max(map(len, stated), default=0)
+    return [f"{name.ljust(width)}  {value}" for name, value in stated.items()]
+
+
+def _stated(facts: Mapping[str, object]) -> dict[str, str]:
+    return {name: str(value) for name, value in facts.items() if value not in (None, "", ())}
