@@ -46,7 +46,7 @@ def test_the_installed_packages_are_not_below_their_floors():
 
 def test_every_relative_link_of_a_page_leads_to_a_file_of_the_project():
     missing, outside = [], []
-    for page in (*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), *ROOT.glob("recipes/*.md")):
+    for page in (*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("recipes/*.md")):
         for link in LINK.findall(page.read_text(encoding="utf-8")):
             target = (page.parent / link).resolve()
             if not target.is_relative_to(ROOT) or not target.is_file():

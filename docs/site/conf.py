@@ -1,20 +1,32 @@
 """Settings of the documentation site, which ``make docs`` builds from the pages of the repository.
 
 Sphinx, because the docstrings follow the conventions of NumPy, and with the theme of NumPy, pandas and SciPy, whose users ours are; it
-reads the Markdown pages as they are. The site needs no network.
+reads the Markdown pages as they are, and runs the tutorials, so that all output on them is that of this version. The site needs no network.
 """
 
 import importlib.metadata
+import os
+import shutil
+import sys
+import tempfile
+from pathlib import Path
 
 project = "Raceway"
 project_copyright = "the Raceway developers, BSD-3-Clause"
 release = importlib.metadata.version("raceway")
 
-extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
+extensions = ["myst_nb", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 root_doc = "docs/site/index"
 include_patterns = ["README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs/**", "recipes/README.md"]
 exclude_patterns = ["docs/site/extra/**"]
 myst_heading_anchors = 4
+nb_execution_mode = "force"  # Sphinx itself leaves out pages that have not changed
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120  # of a cell [s]
+nb_execution_in_temp = True
+nb_merge_streams = True
+copybutton_prompt_text = "!"  # before commands of the shell, in tutorials
+copybutton_selector = "div:not(.output) > div.highlight pre"  # no button on outputs
 autodoc_member_order = "bysource"
 autodoc_default_options = {
     "exclude-members": "set_transform_request"
@@ -25,6 +37,7 @@ html_theme = "pydata_sphinx_theme"
 html_title = "Raceway"
 html_extra_path = ["extra"]
 html_show_sourcelink = False
+html_context = {"default_mode": "auto"}  # light or dark, as the reader has it
 html_theme_options = {
     "show_toc_level": 2,
     "header_links_before_dropdown": 4,
@@ -32,3 +45,8 @@ html_theme_options = {
     "footer_start": ["copyright"],
     "footer_end": [],
 }
+
+profile = tempfile.TemporaryDirectory()  # the kernel of the tutorials writes into it
+shutil.copytree(Path(__file__).with_name("kernel"), Path(profile.name) / "profile_default")
+os.environ["IPYTHONDIR"] = profile.name
+os.environ["PATH"] = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
