@@ -19,7 +19,8 @@ def response_of(scenarios, recipe, *, impossible=()):
     n, axis = len(scenarios), timeline(settings_of(recipe))
     inputs = [None if n in impossible else kernel_input(scenario, axis) for n, scenario in enumerate(scenarios)]
     truth = [truth_of(scenario, axis, given) for scenario, given in zip(scenarios, inputs, strict=True)]
-    return Response(still(recipe, n), np.arange(n) + 2, np.linspace(0.1, 0.3, n), {}, inputs, truth, None)
+    none = [None] * n
+    return Response(still(recipe, n), np.arange(n) + 2, np.linspace(0.1, 0.3, n), {}, inputs, truth, None, none, none)
 
 
 def truth(scenario, recipe) -> Truth:

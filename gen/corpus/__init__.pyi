@@ -97,7 +97,7 @@ from .signals import (
     counts_in_words as counts_in_words,
     sum_counts as sum_counts,
 )
-from .simulated import SIMULATED as SIMULATED
+from .simulated import OTHER_BEARING as OTHER_BEARING, SIMULATED as SIMULATED
 from .step_errors import step_complaint as step_complaint
 from .validation import validate_corpus as validate_corpus
 from .visible import FaultCounts as FaultCounts, fault_counts as fault_counts

@@ -2,7 +2,7 @@
 
 from gen.corpus.schema import FORMAT, SCHEMA, SIGNAL, Variable, listed_flags
 from gen.corpus.signals import CLIPPED_SHARE
-from gen.corpus.simulated import SIMULATED
+from gen.corpus.simulated import OTHER_BEARING, SIMULATED
 
 _FORMAT = f"""# The corpus format, version {FORMAT}
 
@@ -84,9 +84,17 @@ text there:
 """
 
 
+_OTHER_BEARING = """
+Records of a recipe with `other_bearing` also have these. `fault` is that of the bearing at the sensor, `other_fault`
+that of the bearing at the other end of the shaft:
+
+"""
+
+
 def format_page() -> str:
-    """Markdown page about the format; its tables are the schemas of all and of simulated corpora."""
-    return _FORMAT + _table(SCHEMA) + _SIMULATED + _table(SIMULATED)
+    """Markdown page about the format; its tables are the schemas of all corpora, of simulated ones, and of those with two bearings."""
+    tables = _table(SCHEMA), _table(SIMULATED), _table(OTHER_BEARING)
+    return "".join(text + table for text, table in zip((_FORMAT, _SIMULATED, _OTHER_BEARING), tables, strict=True))
 
 
 def _table(variables: tuple[Variable, ...]) -> str:

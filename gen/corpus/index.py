@@ -30,7 +30,7 @@ from gen.corpus.manifest import (
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_part, open_records
 from gen.corpus.schema import RECIPE_TEXT, SIGNAL, add_class_names, schema_problems
-from gen.corpus.simulated import SIMULATED
+from gen.corpus.simulated import OTHER_BEARING, SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.support.errors import CorpusError
 
@@ -64,7 +64,7 @@ def open_corpus(path: Path | str, check: Check = "sha256") -> xr.Dataset:
     path = Path(path)
     files = corpus_files(path, check)
     opened = open_part(path) if path.is_file() else _open_folder(path, files)
-    for problem in schema_problems(opened, SIMULATED):
+    for problem in schema_problems(opened, SIMULATED + OTHER_BEARING):
         opened.close()
         raise CorpusError(f"{path}: {problem}")
     add_class_names(opened)

@@ -96,11 +96,13 @@ def _time(scenarios: list[Scenario], codec: Codec) -> tuple[float, float]:
     from gen.corpus import write_part  # these three load xarray and SciPy for 0.7 s
     from gen.generation.labels import part_dataset
     from gen.measurement.measure import measure
+    from gen.measurement.other_bearing import with_other_faults
 
     start = time.process_time()
     response = simulate(scenarios)
     simulated = time.process_time()
     measured = measure(response.acceleration, scenarios, response.twins)
+    measured = with_other_faults(measured, response.acceleration, response.twins)
     with tempfile.TemporaryDirectory() as folder:
         dataset = part_dataset(measured, response)
         write_part(dataset, Path(folder) / "part-00000.nc", codec)

@@ -7,7 +7,7 @@ on a sample of the records, once per machine (:mod:`gen.generation.pace`).
 import time
 from collections import Counter, defaultdict
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -153,11 +153,14 @@ def _lane_steps(parts: list[tuple[list[Scenario], Groups]], recipe: Recipe) -> i
     needed: Counter[Group] = Counter()
     for scenarios, groups in parts:
         for group, places in groups.items():
-            needed[group] += integrations([scenarios[place] for place in places])
+            needed[group] += integrations([replace(scenarios[place], other=None) for place in places])
         of_place = {place: group for group, places in groups.items() for place in places}
         in_order = {place: of_place[place] for place in sorted(of_place)}
         for place in checked_places(scenarios, recipe, in_order):
             needed[in_order[place]._replace(steps=2 * in_order[place].steps)] += 1
+        of_others = [of_other for scenario in scenarios if (of_other := scenario.of_other) is not None]
+        for group, places in _groups(of_others, recipe, []).items():
+            needed[group] += integrations([of_others[place] for place in places])
     return sum(group.steps * filled_lanes(count) for group, count in needed.items())
 
 

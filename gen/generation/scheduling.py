@@ -21,6 +21,7 @@ from gen.generation.undetected import Families, Family, Records, pick
 from gen.recipe import Recipe
 from gen.scenarios import settings_of
 from gen.simulation.batches import Integration, Waiting, integrate_together
+from gen.simulation.simulate import open_integrations
 from gen.simulation.timeline import timeline
 from gen.support.workers import stream
 
@@ -255,7 +256,7 @@ class _Making(Generic[Result]):
 
         if finer:
             with self._change:
-                self._wait(list(finer.values()), then)
+                self._wait(open_integrations(finer.values()), then)
             return ()
         return self._write(MadePart(part.place, _light(records), step_changes({}, response, self._recipe)), report)
 
@@ -299,5 +300,6 @@ def _bytes_of_a_record(recipe: Recipe) -> int:
 def _light(made: Records) -> Records:
     """Records without their accelerations and inputs."""
     count = len(made.measured.scenarios)
-    response = replace(made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=[None] * count)
+    none = [None] * count
+    response = replace(made.response, acceleration=np.empty((count, 0, 0), np.float32), inputs=none, others=none)
     return Records(response, made.measured)

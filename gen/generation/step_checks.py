@@ -10,7 +10,7 @@ from gen.physics.kernel.compiling import LANES
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, first_records, settings_of
 from gen.simulation.batches import Group, Integration, group_of
-from gen.simulation.simulate import Response, motion_of
+from gen.simulation.simulate import Response, Run, motion_of
 from gen.simulation.timeline import timeline
 
 FloatArray = NDArray[np.float64]
@@ -18,19 +18,26 @@ FloatArray = NDArray[np.float64]
 CHECKED_PARTS, CHECKED_SHARE = 32, 0.01  # every 32nd part repeats 1 % of the records of 32 parts at half the step
 
 
-def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Integration]:
-    """Integrations of some records of a part at half their step, by place."""
+def step_checks(scenarios: list[Scenario], recipe: Recipe, response: Response) -> dict[int, Run]:
+    """Some records of a part at half their step, by place."""
     usable = {place: some for place, some in enumerate(response.inputs) if some and place not in response.failures}
     groups = {place: group_of(some, int(response.oversampling[place])) for place, some in usable.items()}
-    return {
-        place: Integration(
-            scenarios[place].record.number, usable[place], groups[place]._replace(steps=2 * groups[place].steps)
-        )
-        for place in checked_places(scenarios, recipe, groups)
-    }
+    finer = {}
+    for place in checked_places(scenarios, recipe, groups):
+        other, number = response.others[place], scenarios[place].record.number
+        own = _halved(Integration(number, usable[place], groups[place]))
+        if other is not None and other.own is not None:
+            other = other._replace(own=_halved(other.own), twin=None)
+        finer[place] = Run(scenarios[place], usable[place], "", own, None, other)
+    return finer
 
 
-def step_changes(finer: Mapping[int, Integration], response: Response, recipe: Recipe) -> FloatArray:
+def _halved(one: Integration) -> Integration:
+    """The same integration at half the step."""
+    return Integration(one.number, one.given, one.group._replace(steps=2 * one.group.steps))
+
+
+def step_changes(finer: Mapping[int, Run], response: Response, recipe: Recipe) -> FloatArray:
     """Relative rms change between records and the same at half the step, NaN for the other records, shape (record,)."""
     errors, kept = np.full(len(response.oversampling), np.nan), timeline(settings_of(recipe)).kept
     tried = list(finer)

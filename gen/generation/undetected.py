@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.measurement.measure import Measured, measure
+from gen.measurement.other_bearing import with_other_faults
 from gen.recipe import Recipe
 from gen.scenarios import Scenario, common_settings, draw_scenarios, simulation_errors, with_level
 from gen.simulation.batches import Integration, integrate_all
@@ -75,10 +76,8 @@ class Families:
         specimens = dict.fromkeys(made.measured.scenarios[place].specimen.number for place in unseen)
         again = sorted(number for number in specimens if self._tries.get(number, 0) < FAULT_TRIES - 1)
         every = [run for family in families for run in family.runs]
-        healthy = {  # another fault does not change them
-            run.scenario.record.number: run.healthy
-            for place, run in enumerate(every)
-            if run.healthy is not None and place not in made.response.failures
+        known = {
+            run.scenario.record.number: run for place, run in enumerate(every) if place not in made.response.failures
         }
         advice = "raise level.faulty_db" if self.recipe.level.kind == "snr" else "lower level.background_m_s2"
         for place in unseen:
@@ -88,17 +87,17 @@ class Families:
                     f"record {scenario.record.number}: none of {FAULT_TRIES} drawn faults of class {scenario.specimen.fault} can be seen "
                     f"in it; {advice}, or choose truth.undetected: keep."
                 )
-        return made, self._cut(self._with_hits(self._redrawn(again)), healthy)
+        return made, self._cut(self._with_hits(self._redrawn(again)), known)
 
     def _other_levels(self, scenario: Scenario) -> Iterator[Scenario]:
         """The same record with its further levels, one after the other."""
         tries = LEVEL_TRIES if self._redraws and self.recipe.level.kind == "snr" else 1
         return (with_level(scenario, self.recipe, level_try) for level_try in range(1, tries))
 
-    def _cut(self, scenarios: list[Scenario], healthy: Mapping[int, Integration]) -> list[Family]:
-        """Families of scenarios; ``healthy`` as the known ones of `runs_of`."""
+    def _cut(self, scenarios: list[Scenario], known: Mapping[int, Run]) -> list[Family]:
+        """Families of scenarios; ``known`` as for `runs_of`."""
         families: dict[tuple[int, int], Family] = {}
-        for scenario, run in zip(scenarios, runs_of(scenarios, healthy) if scenarios else [], strict=True):
+        for scenario, run in zip(scenarios, runs_of(scenarios, known) if scenarios else [], strict=True):
             group = 0 if self._redraws else scenario.record.number // self.size
             family = families.setdefault((scenario.specimen.number, group), Family([], []))
             family.scenarios.append(scenario)
@@ -142,7 +141,8 @@ def made_from(scenarios: list[Scenario]) -> Records:
 def made_of(runs: list[Run], other_levels: Callable[[Scenario], Iterable[Scenario]] = lambda _: ()) -> Records:
     """Records of scenarios that have been integrated; ``other_levels`` as for :func:`gen.measurement.measure.measure`."""
     response, scenarios = response_of(runs), [run.scenario for run in runs]
-    return Records(response, measure(response.acceleration, scenarios, response.twins, other_levels=other_levels))
+    measured = measure(response.acceleration, scenarios, response.twins, other_levels=other_levels)
+    return Records(response, with_other_faults(measured, response.acceleration, response.twins))
 
 
 def pick(rows: list[tuple[Records, int]]) -> Records:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from gen.corpus import (
     DRAWS,
     IDENTITY,
+    OTHER_BEARING,
     RECIPE_TEXT,
     SCHEMA,
     SIGNAL,
@@ -148,7 +149,9 @@ def _stored(
     full_scale: float | None,
 ) -> xr.Dataset:
     """The records in the layout of the corpus (undecoded)."""
-    known = {variable.name: variable for variable in SCHEMA + SIMULATED if variable.name in rows.variables}
+    known = {
+        variable.name: variable for variable in SCHEMA + SIMULATED + OTHER_BEARING if variable.name in rows.variables
+    }
     derived = {SIGNAL, "channel", "elapsed_time", *(f"{name}_name" for name in NAMED)}
     further = {}
     for name in sorted(map(str, set(rows.variables) - known.keys() - derived)):
@@ -174,6 +177,6 @@ def _stored(
         attributes={"title": "Vibration records"}
         | {key: rows.attrs[key] for key in ("title", "history", "source") if key in rows.attrs},
     )
-    for problem in schema_problems(stored, SIMULATED):
+    for problem in schema_problems(stored, SIMULATED + OTHER_BEARING):
         raise CorpusError(problem)
     return stored

@@ -65,6 +65,12 @@ class Measured:
     """The scenarios as measured: with the level that was taken if several were tried, and with the gains of records in groups."""
     sensor_flags: list[SensorFlags]
     """Sensor faults in each record, shape (record,)."""
+    gains: list[Gains]
+    """Of each record."""
+    other_fault_snr: FloatArray
+    """As ``fault_snr`` for the fault of the bearing at the other end of the shaft; see :mod:`gen.measurement.other_bearing`."""
+    other_detectable: NDArray[np.int8]
+    """As ``detectable`` for that fault."""
 
 
 def measure(
@@ -99,7 +105,7 @@ def measure(
     signal: Any = np.empty(shape, np.float32 if counts_per_unit is None else np.int16)
     clipped, taken, flags = np.zeros(shape[0], np.int32), list(scenarios), [SensorFlags()] * shape[0]
     snr, fault_snr, fault_share = np.full((3, shape[0]), np.nan)
-    detectable = np.empty(shape[0], np.int8)
+    detectable, gains = np.empty(shape[0], np.int8), [Gains(1.0, 1.0)] * shape[0]
     # rms of an error that is uniform within half a count
     rounding = 0.0 if counts_per_unit is None else 1 / (counts_per_unit * math.sqrt(12))
     several = max(1, _ROWS // shape[1])
@@ -122,11 +128,19 @@ def measure(
             if counts_per_unit is not None:
                 clipped[row] = _to_counts(mixed, counts_per_unit)
             signal[row] = mixed
-            taken[row], detectable[row] = level.scenario, level.detectable
+            taken[row], detectable[row], gains[row] = level.scenario, level.detectable, level.gains
             fault_snr[row], fault_share[row] = level.fault_snr, level.fault_share
             if signal[row].any():
                 snr[row] = bearing_over_background(part.products, level.gains, rounding)
-    return Measured(signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, flags)
+    others = np.full(shape[0], np.nan), np.array([_unjudged(scenario) for scenario in scenarios], np.int8)
+    return Measured(
+        signal, counts_per_unit, clipped, snr, fault_snr, fault_share, detectable, taken, flags, gains, *others
+    )
+
+
+def _unjudged(scenario: Scenario) -> int:
+    """Visibility of the fault of the other bearing before it is judged: 0 if it has none."""
+    return 0 if scenario.other is not None and scenario.other.specimen.fault == "healthy" else UNJUDGED
 
 
 class Part(NamedTuple):

@@ -2,7 +2,7 @@
 
 from gen.recipe.faults import BallFault, CompoundFault, Fault, RaceFault, fault_class
 from gen.recipe.loads import load_problem
-from gen.recipe.machine import CatalogueBearing
+from gen.recipe.machine import CatalogueBearing, designation_problem
 from gen.recipe.operation import OperationSection, Steps, Table
 from gen.recipe.sections import Sections
 from gen.recipe.sensor_faults import sensor_fault_problem
@@ -20,6 +20,7 @@ def check_recipe(recipe: Sections) -> None:
         _edges_problem(recipe)
         or _faults_problem(recipe)
         or _corpus_problem(recipe)
+        or _other_bearing_problem(recipe)
         or _sensing_problem(recipe)
         or _sensor_faults_problem(recipe)
         or share_problem(recipe)
@@ -130,6 +131,18 @@ def _sensor_faults_problem(recipe: Sections) -> str | None:
     converter = recipe.recording.converter
     full_scale = None if converter.kind == "float32" else converter.full_scale_m_s2
     return sensor_fault_problem(recipe.sensor_faults, full_scale, recipe.recording.duration_s)
+
+
+def _other_bearing_problem(recipe: Sections) -> str | None:
+    other = recipe.other_bearing
+    if other is None:
+        return None
+    problem = None if other.bearing is None else designation_problem(other.bearing, recipe.own_bearings)
+    if problem is not None:
+        return f"other_bearing.bearing: {problem}"
+    if other.fault_probability > 0 and not any(one.weight > 0 and one.kind != "healthy" for one in recipe.faults):
+        return "other_bearing.fault_probability: faults has no fault with a weight above 0; add one, or leave it out."
+    return None
 
 
 def _sensing_problem(recipe: Sections) -> str | None:

@@ -64,11 +64,22 @@ def read_recipe(
 
 def recipe_hash(recipe: Recipe) -> str:
     """SHA-256 of the values of a recipe that records depend on; ``publication``, layout and comments do not count."""
-    values = recipe.model_dump(mode="json", exclude={"publication"})
-    if recipe.corpus.fault_choice == "by_weight":  # the key is younger than the first corpora, whose hashes stay
+    values = _values(recipe, {"publication": True})
+    if recipe.corpus.fault_choice == "by_weight":
         del values["corpus"]["fault_choice"]
-    text = json.dumps(values, sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()
+    return _hash(values)
+
+
+def _values(recipe: Recipe, excluded: dict[str, bool]) -> dict[str, Any]:
+    """Values of a recipe; keys that are younger than the first corpora are left out at their defaults, so that hashes stay."""
+    values = recipe.model_dump(mode="json", exclude=excluded)
+    if recipe.other_bearing is None:
+        del values["other_bearing"]
+    return values
+
+
+def _hash(values: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(values, sort_keys=True).encode()).hexdigest()
 
 
 @functools.lru_cache(maxsize=16)
@@ -81,8 +92,7 @@ def corpus_identity(recipe: Recipe) -> str:
         "name": True,
         "title": True,
     }
-    text = json.dumps(recipe.model_dump(mode="json", exclude=storage), sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+    return _hash(_values(recipe, storage))[:12]
 
 
 def recipe_schema() -> str:

@@ -3,6 +3,7 @@
 Keys end in their unit; most numbers can be distributions. Each section is drawn at one level: per rig, per specimen or per record.
 """
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import Annotated, Literal, Self
 
@@ -12,7 +13,15 @@ from gen.corpus import Codec
 from gen.recipe.distributions import Number
 from gen.recipe.fault_entries import FaultList, fault_entries
 from gen.recipe.faults import Fault
-from gen.recipe.machine import BearingSection, ContactSection, MachineSection, SpecimenSection
+from gen.recipe.machine import (
+    BearingSection,
+    CatalogueBearing,
+    ContactSection,
+    MachineSection,
+    OtherBearingSection,
+    OwnBearing,
+    SpecimenSection,
+)
 from gen.recipe.operation import OperationSection
 from gen.recipe.publication import PublicationSection
 from gen.recipe.section import Count, Name, Section
@@ -115,6 +124,8 @@ class Sections(Section):
     bearing: BearingSection
     """Type of the bearing of each rig: a designation such as "6205", a list of them, or dimensions such as
     `{n_balls: 22, pitch_diameter_mm: 60, ball_diameter_mm: 6}`; the sections below say more."""
+    other_bearing: OtherBearingSection | None = None
+    """A second bearing on the shaft, whose vibration the sensors get too; none if left out."""
     machine: MachineSection = MachineSection()
     """Masses, springs and dampers of each rig, and its faults other than those of the bearing."""
     contact: ContactSection = ContactSection()
@@ -143,6 +154,11 @@ class Sections(Section):
     """Size and compression of the files."""
     records: Annotated[StrictInt, Field(ge=1)] | None = None
     """Number of records, if the corpus is to have fewer than rigs * specimens * records per specimen; the first ones are made."""
+
+    @property
+    def own_bearings(self) -> Mapping[str, OwnBearing]:
+        """Bearings that have a designation in this recipe alone."""
+        return self.bearing.entries if isinstance(self.bearing, CatalogueBearing) else {}
 
     @property
     def n_samples(self) -> int:

@@ -6,6 +6,7 @@ module        responsibility
 model         dataclasses of rig, specimen and record; random streams
 points        quasi-random points
 draws         draw values from the distributions of a recipe section
+bearings      draw the bearing of a rig, its deviations as built, and the bearing at the other end of the shaft
 classes       choose the fault class of each specimen
 faults        draw the damage of a specimen
 sensor_faults draw the faults of the measuring chain, and the gear of a rig
@@ -27,6 +28,7 @@ from gen.scenarios.model import (
     Gear,
     Mode,
     Operation,
+    OtherBearing,
     Path,
     Pickup,
     Purpose,
@@ -52,6 +54,7 @@ __all__ = [
     "Gear",
     "Mode",
     "Operation",
+    "OtherBearing",
     "Path",
     "Pickup",
     "Purpose",

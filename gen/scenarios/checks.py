@@ -3,9 +3,10 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+from gen.physics.bearing import Bearing
 from gen.physics.extent import MAX_BALLS
 from gen.scenarios.faults import check_fits
-from gen.scenarios.model import Scenario
+from gen.scenarios.model import Scenario, Specimen
 from gen.support.errors import RecipeError, SimulationError
 from gen.support.limits import check_limit
 
@@ -26,8 +27,14 @@ def check_scenario(scenario: Scenario) -> None:
         raise RecipeError(f"rig.channels and rig.own_paths need one entry for each of {channels} settings.channels.")
     if (record.snr is None) != (record.rms is None):
         raise RecipeError("record.snr and record.rms must both be given, or both be None.")
-    specimen = scenario.specimen
-    if not rig.bearing.n_balls == specimen.bearing.n_balls <= MAX_BALLS:
+    _check_damage(rig.bearing, scenario.specimen)
+    if scenario.other is not None:
+        _check_damage(scenario.other.bearing, scenario.other.specimen)
+
+
+def _check_damage(drawing: Bearing, specimen: Specimen) -> None:
+    """Refuse a specimen that is of another bearing than on the drawing, or whose damage is impossible or differs from its label."""
+    if not drawing.n_balls == specimen.bearing.n_balls <= MAX_BALLS:
         raise RecipeError(f"rig.bearing and specimen.bearing must have the same n_balls, {MAX_BALLS} at most.")
     parts = specimen.damaged_parts
     label = "compound" if len(parts) > 1 else (parts or ["healthy"])[0]

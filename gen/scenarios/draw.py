@@ -7,7 +7,7 @@ fault stream depends on the fault: a record with its fault and the same record w
 
 import functools
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -15,10 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus import SPLITS
-from gen.physics.bearing import Bearing, free_contact_angle
 from gen.recipe import (
-    FREE_ANGLE,
-    CatalogueBearing,
     Fault,
     Modes,
     PathSection,
@@ -26,6 +23,7 @@ from gen.recipe import (
     operations,
 )
 from gen.recipe.distributions import weighted_index
+from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_bearing
 from gen.scenarios.classes import fault_of_each_specimen, possible_entries
 from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import draw_damage
@@ -48,8 +46,6 @@ from gen.scenarios.records import Source, draw_record, record_points, source_of
 from gen.scenarios.sensor_faults import draw_gear, draw_rig_sensor_faults
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio, percent_to_share
-
-STEEPEST_CONTACT = math.radians(45)
 
 
 def draw_scenarios(
@@ -89,7 +85,7 @@ def draw_scenarios(
             operating[specimen.entry] = operating_of(recipe, specimen.entry)
         sources[number] = source_of(
             recipe, rigs[rig], known[rig], specimen, operating[specimen.entry], rig_draws[rig], draws
-        )
+        )._replace(other=draw_other_bearing(recipe, rigs[rig], specimen))
     points = record_points(recipe, numbers)
     return [draw_record(recipe, sources[recipe.specimen_of(number)], number, points) for number in numbers]
 
@@ -101,7 +97,7 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
     machine["unbalance"] = machine["shaft_mass"] * machine["balance"] / (2 * math.pi * highest_rate)
     known = known_of(recipe.machine, machine)
     resonator = None if recipe.machine.resonator is None else draws.section(recipe.machine.resonator, known)
-    bearing = _draw_bearing(recipe, draws)
+    bearing = draw_bearing(recipe, draws)
     level = draws.section(recipe.level)
     channels = []
     for channel in recipe.recording.channels:
@@ -136,24 +132,6 @@ def _draw_rig(recipe: Recipe, number: int, draws: Draws) -> Rig:
         footprint=recipe.contact.footprint == "hertz",
         sensor_faults=draw_rig_sensor_faults(recipe, number),
         ball_mass=recipe.contact.ball_mass == "steel",
-    )
-
-
-def _draw_bearing(recipe: Recipe, draws: Draws) -> Bearing:
-    chosen = recipe.bearing
-    if isinstance(chosen, CatalogueBearing):
-        return chosen.bearing(chosen.designations[int(draws.u() * len(chosen.designations))])
-    drawn = draws.section(chosen)
-    n_balls = round(drawn["n_balls"])
-    rollers = drawn["roller_length"]
-    return Bearing(
-        designation=chosen.designation,
-        n_balls=n_balls,
-        pitch_diameter=drawn["pitch_diameter"],
-        ball_diameter=chosen.fitting_ball(n_balls, drawn["pitch_diameter"], drawn["ball_diameter"]),
-        contact_angle=drawn["contact_angle"],
-        rolling_element="roller" if rollers > 0 else "ball",
-        roller_length=rollers or None,
     )
 
 
@@ -218,18 +196,7 @@ def _draw_specimen(
     classes: list[str],
     fault_try: int,
 ) -> Specimen:
-    properties = draws.section(recipe.specimen, {**known, FREE_ANGLE: functools.partial(_free_angle, rig.bearing)})
-    bearing = replace(
-        rig.bearing,
-        contact_angle=rig.bearing.contact_angle + properties["contact_angle"],
-        inner_conformity=properties["inner_conformity"],
-        outer_conformity=properties["outer_conformity"],
-    )
-    if abs(bearing.contact_angle) > STEEPEST_CONTACT:
-        raise RecipeError(
-            f"specimen {number}: a contact angle of {math.degrees(bearing.contact_angle):.3g} degrees is too large for a radial bearing; "
-            f"keep the angles of bearing and specimen together below {math.degrees(STEEPEST_CONTACT):.0f}."
-        )
+    bearing, properties = draw_as_built(recipe, rig.bearing, known, draws)
     position = number % recipe.corpus.specimens_per_rig
     fault = classes[position]
     wanted, entry = possible_entries(recipe, number, fault), 0
@@ -251,15 +218,6 @@ def _draw_specimen(
 def _same_conditions(one: Fault, other: Fault) -> bool:
     """Whether two entries of ``faults`` have the same operating conditions and levels."""
     return one.operation == other.operation and one.level == other.level
-
-
-def _free_angle(bearing: Bearing, value: Callable[[str], float]) -> float:
-    """Free contact angle of a bearing with the clearance and the grooves of a specimen [rad]; 0 if its drawing has a contact angle."""
-    if bearing.contact_angle != 0:
-        return 0.0
-    inner, outer = value("inner_conformity"), value("outer_conformity")
-    grooved = replace(bearing, inner_conformity=inner, outer_conformity=outer)
-    return free_contact_angle(grooved, value("diametral_clearance_um"))
 
 
 def _draw_split(recipe: Recipe, rig: int, position: int) -> str:

@@ -14,7 +14,7 @@ from gen.physics.profile import Profile
 from gen.physics.rating import static_rating
 from gen.recipe import LEAST_AXIAL_LOAD, STATIC_RATING, Fault, ProfileSection, Recipe, fault_class
 from gen.scenarios.draws import Combination, Draws, Known, known_of
-from gen.scenarios.model import Operation, Purpose, Rig, Scenario, Specimen, stream
+from gen.scenarios.model import Operation, OtherBearing, Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Common, Level, Operating, common_numbers, draw_conditions
 from gen.scenarios.points import points_of
 from gen.scenarios.sensor_faults import draw_record_sensor_faults
@@ -33,6 +33,8 @@ class Source(NamedTuple):
     """Numbers of rig and specimen, for the levels at which some operating quantity is drawn."""
     known: Known
     """Quantities of rig and specimen."""
+    other: OtherBearing | None = None
+    """At the other end of the shaft."""
 
 
 def source_of(
@@ -117,7 +119,7 @@ def draw_record(recipe: Recipe, source: Source, number: int, points: Mapping[int
         pair=pair,
         rung=rung,
     )
-    return Scenario(settings_of(recipe), source.rig, specimen, operation)
+    return Scenario(settings_of(recipe), source.rig, specimen, operation, source.other)
 
 
 def _draw_level(draws: Draws, recipe: Recipe, entry: Fault, rig: int) -> tuple[float | None, float | None]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from gen.physics.impact import hertz_time, rolling_mass
 from gen.physics.inputs import KernelInput, at_rest
+from gen.physics.kernel.layout import SPEED_TERMS
 from gen.scenarios import Scenario
 from gen.simulation.damage import spall_inputs, waviness_of
 from gen.simulation.machine import check_load, heaviest_ball_load, machine_of, with_axial_loads
@@ -38,6 +39,17 @@ def kernel_inputs(scenarios: Sequence[Scenario], timeline: Timeline) -> tuple[li
         except ValueError as error:
             inputs[place], failures[place] = None, _name(scenario, error)
     return resting(inputs), failures
+
+
+def on_shaft(given: KernelInput, first: KernelInput) -> KernelInput:
+    """Kernel input of the bearing at the other end of the shaft, which turns, and is loaded over time, as the ``first`` one."""
+    own = slice(SPEED_TERMS, None)
+    return given._replace(
+        turning=given.turning._replace(shaft_angle=first.turning.shaft_angle),
+        frequencies=np.concatenate([first.frequencies[:SPEED_TERMS], given.frequencies[own]]),
+        phases=np.concatenate([first.phases[:SPEED_TERMS], given.phases[own]]),
+        schedule=first.schedule,
+    )
 
 
 def kernel_input(scenario: Scenario, timeline: Timeline) -> KernelInput:

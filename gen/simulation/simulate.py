@@ -1,7 +1,8 @@
 """Scenarios integrated: accelerations of the bodies, and what is true of each record."""
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ from gen.physics.kernel.batch import lay_out
 from gen.physics.kernel.layout import Batch
 from gen.scenarios import Scenario, common_settings
 from gen.simulation.batches import Group, Integration, batches, group_of, integrate_all
-from gen.simulation.inputs import kernel_inputs, without_fault
+from gen.simulation.inputs import kernel_inputs, on_shaft, without_fault
 from gen.simulation.steps import failure, step_phase, steps_per_sample
 from gen.simulation.timeline import timeline
 from gen.simulation.truth import Truth, lines_of_faults, truth_of, with_loaded_hits
@@ -28,6 +29,17 @@ class Twins:
     """Shape (record, channel, time); of a record without a fault its own [m s-2]."""
     orders: list[tuple[float, ...]]
     """Orders at which the faults of each record repeat [1]."""
+    others: "dict[int, OtherTwin]" = field(default_factory=dict)
+    """Of each record whose other bearing has a fault, by place."""
+
+
+class OtherTwin(NamedTuple):
+    """A record without the fault of the bearing at the other end of the shaft."""
+
+    acceleration: NDArray[np.float32]
+    """Shape (channel, time) [m s-2]."""
+    orders: tuple[float, ...]
+    """Orders at which that fault repeats [1]."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +59,10 @@ class Response:
     truth: list[Truth]
     twins: Twins | None
     """None with ``truth.twins: false``."""
+    others: "list[Run | None]"
+    """Bearings at the other ends of the shafts, None for a record without one."""
+    other_truth: list[Truth | None]
+    """Their truth."""
 
 
 class Run(NamedTuple):
@@ -61,6 +77,14 @@ class Run(NamedTuple):
     """None if no such machine is possible."""
     twin: Integration | None
     """Without the fault; None for a record without a fault, and with ``truth.twins: false``."""
+    other: "Run | None" = None
+    """The bearing at the other end of the shaft, if there is one."""
+
+    @property
+    def integrations(self) -> list[Integration]:
+        """All of them, also those of the other bearing."""
+        own = [one for one in (self.own, self.twin) if one is not None]
+        return own if self.other is None else own + self.other.integrations
 
     @property
     def healthy(self) -> Integration | None:
@@ -91,25 +115,54 @@ def simulate(scenarios: list[Scenario]) -> Response:
     return response_of(runs)
 
 
-def runs_of(scenarios: list[Scenario], known: Mapping[int, Integration] | None = None) -> list[Run]:
-    """Integrations that scenarios need; ``known`` are records without their faults that were integrated before, by number.
+def runs_of(scenarios: list[Scenario], known: Mapping[int, Run] | None = None) -> list[Run]:
+    """Integrations that scenarios need; ``known`` are integrated runs, by number, of the same records with another fault.
 
-    Records of a group differ in their severity alone, so they share one twin: the record before the damage, if it is among them.
+    Records of a group differ in their severity alone, so they share one twin: the record before the damage, if it is among them. They
+    share the bearing at the other end of the shaft too.
 
     Raises
     ------
     SimulationError
         If a step would be too coarse for the stiffest mode of a scenario, or for its shaft, or if settings differ.
     """
-    known, runs, settings = known or {}, [], common_settings(scenarios)
+    known, axis = known or {}, timeline(common_settings(scenarios))
+    inputs, failures = kernel_inputs(scenarios, axis)
+    runs = _runs_of_bearings(scenarios, inputs, failures, {number: run.healthy for number, run in known.items()})
+    others = {_group_of(run.scenario): run.other for run in known.values()}
+    firsts = {_group_of(one): place for place, one in reversed(list(enumerate(scenarios))) if inputs[place] is not None}
+    new = {
+        group: (of_other, inputs[place])
+        for group, place in firsts.items()
+        if group not in others and (of_other := scenarios[place].of_other) is not None
+    }
+    of_others = [of_other for of_other, _ in new.values()]
+    made, failures = kernel_inputs(of_others, axis)
+    made = [given and first and on_shaft(given, first) for given, (_, first) in zip(made, new.values(), strict=True)]
+    others |= dict(zip(new, _runs_of_bearings(of_others, made, failures, {}), strict=True))
+    return [run._replace(other=others.get(_group_of(run.scenario))) for run in runs]
+
+
+def _group_of(scenario: Scenario) -> int:
+    """Number that the records of a group have in common, negative for a record in no group."""
+    return scenario.record.pair if scenario.record.pair >= 0 else -1 - scenario.record.number
+
+
+def _runs_of_bearings(
+    scenarios: Sequence[Scenario],
+    inputs: Sequence[KernelInput | None],
+    failures: Mapping[int, str],
+    known: Mapping[int, Integration | None],
+) -> list[Run]:
+    """Integrations of one bearing each; ``known`` are records without their faults that were integrated before, by number."""
+    runs: list[Run] = []
     of_group: dict[tuple[int, int], Integration | None] = {}
-    inputs, failures = kernel_inputs(scenarios, timeline(settings))
     for place, (scenario, given) in enumerate(zip(scenarios, inputs, strict=True)):
         number = scenario.record.number
         if given is None:
             runs.append(Run(scenario, None, failures[place], None, None))
             continue
-        steps = steps_per_sample(given, number, settings)
+        steps = steps_per_sample(given, number, scenario.settings)
         own, twin = Integration(number, given, group_of(given, steps)), None
         before = known.get(number)
         if before is not None and before.group.steps != steps:
@@ -130,8 +183,7 @@ def runs_of(scenarios: list[Scenario], known: Mapping[int, Integration] | None =
 
 def open_integrations(runs: Iterable[Run]) -> list[Integration]:
     """Integrations that have not been done yet, each once."""
-    every = (one for run in runs for one in (run.own, run.twin) if one is not None and one.response is None)
-    return list(dict.fromkeys(every))
+    return list(dict.fromkeys(one for run in runs for one in run.integrations if one.response is None))
 
 
 def response_of(runs: Sequence[Run]) -> Response:
@@ -142,42 +194,68 @@ def response_of(runs: Sequence[Run]) -> Response:
     healthy = np.empty_like(acceleration) if full else acceleration
     oversampling, phases, failures = np.zeros(len(runs), np.int64), np.full(len(runs), np.nan), {}
     for place, run in enumerate(runs):
-        sentence = run.impossible
-        if run.own is not None and run.given is not None:
-            steps = oversampling[place] = run.own.group.steps
-            phases[place] = step_phase(run.given, run.own.steepest, steps, axis.fs)
-            # with its twin: if that diverged, what the fault adds is not known
-            diverged = max(one.diverged for one in (run.own, run.twin) if one is not None) / axis.fs
-            sentence = failure(run.scenario.record.number, steps, diverged, phases[place])
+        oversampling[place], phases[place], sentence = _step_of(run, axis.fs)
+        if run.other is not None:
+            sentence = sentence or _step_of(run.other, axis.fs)[2]
         if sentence:
             failures[place] = sentence
-        acceleration[place] = np.nan if sentence else motion_of(run.own)
+        acceleration[place] = np.nan if sentence else motion_of(run)
         if full:
-            healthy[place] = acceleration[place] if sentence or run.twin is None else motion_of(run.twin)
+            healthy[place] = (
+                acceleration[place] if sentence or run.twin is None else motion_of(run._replace(own=run.twin))
+            )
     truth, inputs = [truth_of(run.scenario, axis, run.given) for run in runs], [run.given for run in runs]
+    others = [run.other for run in runs]
+    other_truth = [None if run is None else truth_of(run.scenario, axis, run.given) for run in others]
     twins = None
     if full:
         truth = with_loaded_hits(truth, inputs, axis)
-        twins = Twins(
-            healthy, [lines_of_faults(run.scenario, one.orders) for run, one in zip(runs, truth, strict=True)]
-        )
-    return Response(acceleration, oversampling, phases, failures, inputs, truth, twins)
+        orders = [lines_of_faults(run.scenario, one.orders) for run, one in zip(runs, truth, strict=True)]
+        twins = Twins(healthy, orders, _other_twins(runs, other_truth, failures))
+    return Response(acceleration, oversampling, phases, failures, inputs, truth, twins, others, other_truth)
 
 
-def motion_of(of: Integration | None) -> NDArray[np.float32]:
-    """Response of a record that has been integrated, shape (channel, time) [m s-2]."""
-    assert of is not None and of.response is not None  # noqa: S101, PT018
-    return of.response
+def _step_of(run: Run, fs: float) -> tuple[int, float, str | None]:
+    """Steps per sample and step phase [rad] of one bearing, and a sentence if it cannot be used."""
+    if run.own is None or run.given is None:
+        return 0, math.nan, run.impossible
+    steps = run.own.group.steps
+    phase = step_phase(run.given, run.own.steepest, steps, fs)
+    # with its twin: if that diverged, what the fault adds is not known
+    diverged = max(one.diverged for one in (run.own, run.twin) if one is not None) / fs
+    return steps, phase, failure(run.scenario.record.number, steps, diverged, phase)
+
+
+def _other_twins(
+    runs: Sequence[Run], truths: Sequence[Truth | None], failures: Mapping[int, str]
+) -> dict[int, OtherTwin]:
+    """Records without the fault of the other bearing, by place, of those that were made and have such a fault."""
+    twins = {}
+    for place, (run, truth) in enumerate(zip(runs, truths, strict=True)):
+        other = run.other
+        if other is not None and other.twin is not None and truth is not None and place not in failures:
+            healthy = motion_of(run._replace(other=other._replace(own=other.twin)))
+            twins[place] = OtherTwin(healthy, lines_of_faults(other.scenario, truth.orders))
+    return twins
+
+
+def motion_of(run: Run) -> NDArray[np.float32]:
+    """Response of a record that has been integrated, with that of its other bearing, shape (channel, time) [m s-2]."""
+    assert run.own is not None and run.own.response is not None  # noqa: S101, PT018
+    if run.other is None or run.scenario.other is None:
+        return run.own.response
+    return np.add(run.own.response, np.float32(run.scenario.other.gain) * motion_of(run.other), dtype=np.float32)
 
 
 def integrations(scenarios: Sequence[Scenario]) -> int:
-    """Number of integrations that records need: one each, and one without the fault of a record or of all in its group."""
-    groups = [
-        scenario.record.pair if scenario.record.pair >= 0 else -1 - scenario.record.number for scenario in scenarios
-    ]
-    damaged = {group for group, scenario in zip(groups, scenarios, strict=True) if _has_twin(scenario)}
-    before = {group for group, scenario in zip(groups, scenarios, strict=True) if scenario.specimen.fault == "healthy"}
-    return len(scenarios) + len(damaged - before)
+    """Number of integrations that records need: one each, one without the fault of a record or of all in its group, and those of others.
+
+    The bearing at the other end of the shaft needs one, and one without its fault, for each record or group.
+    """
+    damaged = {_group_of(scenario) for scenario in scenarios if _has_twin(scenario)}
+    before = {_group_of(scenario) for scenario in scenarios if scenario.specimen.fault == "healthy"}
+    others = [one for one in {_group_of(scenario): scenario.of_other for scenario in scenarios}.values() if one]
+    return len(scenarios) + len(damaged - before) + (integrations(others) if others else 0)
 
 
 def _has_twin(scenario: Scenario) -> bool:
@@ -187,9 +265,7 @@ def _has_twin(scenario: Scenario) -> bool:
 def _healthy_input(scenario: Scenario, given: KernelInput) -> KernelInput:
     """Kernel input of a record as it was without its fault."""
     specimen, healthy = scenario.specimen, scenario.specimen.at_severity(0)
-    changed = {
-        field.name for field in fields(specimen) if getattr(specimen, field.name) != getattr(healthy, field.name)
-    }
+    changed = {one.name for one in fields(specimen) if getattr(specimen, one.name) != getattr(healthy, one.name)}
     if changed <= {"fault", "spalls", "axis"} and not specimen.axis.get("jumps"):
         return given._replace(spalls=())  # without spalls a tilted spin axis changes nothing, but its jumps do
     return without_fault(given, scenario, timeline(scenario.settings))

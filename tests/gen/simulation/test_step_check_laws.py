@@ -13,7 +13,7 @@ from gen.physics.rotor import highest_angular_frequency
 from gen.scenarios import draw_scenarios, fault_of_each_specimen, first_specimens, settings_of
 from gen.simulation.batches import integrate_all
 from gen.simulation.inputs import kernel_input
-from gen.simulation.simulate import simulate
+from gen.simulation.simulate import open_integrations, simulate
 from gen.simulation.steps import COARSEST_STEP, FINE_STEP
 from gen.simulation.timeline import timeline
 from gen.support.errors import RecipeError, SimulationError
@@ -34,7 +34,7 @@ ROUGH = {
 def step_errors(scenarios, recipe, response):
     """Relative rms change of some records of a part when their step is halved, NaN for the others, shape (record,)."""
     finer = step_checks(scenarios, recipe, response)
-    integrate_all(finer.values(), timeline(settings_of(recipe)))
+    integrate_all(open_integrations(finer.values()), timeline(settings_of(recipe)))
     return step_changes(finer, response, recipe)
 
 
