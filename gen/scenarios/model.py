@@ -404,6 +404,7 @@ class Scenario(Shown):
             "bearing": f"{bearing.designation}: {bearing.n_balls} {bearing.rolling_element}s of "
             f"{1e3 * bearing.ball_diameter:.4g} mm on {1e3 * bearing.pitch_diameter:.4g} mm",
             "damage": ", ".join(spalls or self.specimen.damaged_parts) or "none",
+            "other bearing": f"{self.other.bearing.designation}: {self.other.specimen.fault}" if self.other else "",
             "speed": f"{60 * conditions.shaft_rate:,.4g} rpm",
             "load": f"{conditions.load:,.4g} N",
             "record": f"{self.settings.samples / self.settings.sample_rate:g} s at {self.settings.sample_rate:,g} Hz",
