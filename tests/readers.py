@@ -1,6 +1,6 @@
 """What other people's programs read of a corpus: of a part, and of a corpus in one file.
 
-``python -m tests.readers`` prints the table of docs/copying.md, for the programs that this machine has.
+``python -m tests.readers`` prints the table of docs/sharing.md, for the programs that this machine has.
 """
 
 import re

@@ -14,7 +14,7 @@ A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 | `index.nc` | the variables and attributes of the single file, for all records, without the signal |
 | `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from |
 | `recipe.yaml` | the recipe, if all records were generated from one |
-| `README.md` | the [data card](publishing.md#the-data-card); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
+| `README.md` | the [data card](sharing.md#the-data-card); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
 | `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
 
 The data card of a single file `NAME.nc` lies in `NAME.card/`. While a single file is being generated, its parts lie in
@@ -27,7 +27,7 @@ a copy by `nccopy`, has no such line: open it with `gen.open_corpus(path, check=
 everything else too. What is checked of a corpus from strangers: [security.md](security.md).
 
 ncdump, nccopy, NCO, Octave, R's ncdf4, h5py, netCDF4 and xarray read single files and parts as a whole; CDO reads them
-without text variables. MATLAB was not tried. [copying.md](copying.md) has the versions.
+without text variables. MATLAB was not tried. [sharing.md](sharing.md) has the versions.
 
 Facts about the records are fields of `manifest.json`, and global attributes of `index.nc` and of a single file, there
 as JSON where they are not text. A fact without content is left out:
@@ -43,12 +43,12 @@ as JSON where they are not text. A fact without content is left out:
 | `importer`, `recordings` | importer, and number of the recordings |
 | `basis`, `skipped`, `warnings` | sentences on what labels and units rest on, on skipped files, and on assumptions |
 | `failures` | a sentence for each record that could not be simulated and is left out |
-| `publication` | licence, creators and other facts of [publication](publishing.md) |
+| `publication` | licence, creators and other facts of [publication](sharing.md) |
 | `recipe_text` | attribute only: the recipe as in `recipe.yaml` |
 
 Every file has the global attributes `Conventions`, `raceway_format`, `title`, `history`, `source` and `signals`;
 generated parts also have `recipe`, `recipe_sha256`, `sources_sha256`, `versions` and `failures`. `index.nc` and single
-files have all facts and the attributes of [publication](publishing.md).
+files have all facts and the attributes of [publication](sharing.md).
 
 `signals` counts the records that no analysis can use: `clipped` if more than {CLIPPED_SHARE:.0%} of the samples of
 a channel are at the ends of the converter, or in floating point at the largest and smallest value of the channel;

@@ -1,11 +1,11 @@
-"""What other people's programs read of a corpus; docs/copying.md has the table."""
+"""What other people's programs read of a corpus; docs/sharing.md has the table."""
 
 import pytest
 
 from tests.paths import ROOT
 from tests.readers import EVERYTHING, NO_TEXT, READERS, found_version, verdict, write_forms
 
-PAGE = ROOT / "docs" / "copying.md"
+PAGE = ROOT / "docs" / "sharing.md"
 TABLE = {
     cells[0]: cells[1:]
     for line in PAGE.read_text(encoding="utf-8").splitlines()

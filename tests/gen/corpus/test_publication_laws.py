@@ -222,7 +222,7 @@ def test_a_title_beyond_ascii_is_read_back_from_every_file(tmp_path, form):
 
 
 def test_the_example_of_the_page_has_every_fact_of_a_publication():
-    page = (ROOT / "docs" / "publishing.md").read_text()
+    page = (ROOT / "docs" / "sharing.md").read_text()
     example = YAML(typ="safe", pure=True).load(page.partition("```yaml\n")[2].partition("```")[0])["publication"]
     assert set(example) == set(Publication.model_fields)
     example["date"] = str(example["date"])  # Raceway reads dates as text
