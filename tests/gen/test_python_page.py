@@ -6,12 +6,13 @@ import pytest
 
 import gen
 from gen.recipe import recipe_hash
+from tests.page_examples import blocks, run_blocks
 from tests.paths import ROOT
 
 PAGE = (ROOT / "docs" / "python.md").read_text(encoding="utf-8")
-FAN_END = re.compile(r'^ +(- )?\{"?name"?: "?fan_end.*\n', re.MULTILINE)
 # one kernel of the small recipes, and seconds instead of minutes
 SMALLER = {
+    r'^ +(- )?\{"?name"?: "?fan_end.*\n': "",
     "n=40": "n=5",
     "specimens_per_rig: 10": "specimens_per_rig: 5",
     "rigs=4": "rigs=1",
@@ -20,32 +21,26 @@ SMALLER = {
     "duration_s: 1": "duration_s: 0.1",
     "n=4,": "n=1,",
     'channel="fan_end", ': "",
-    "gen.record(\n": "gen.record(\n    waviness_nm=20,",
+    r"gen\.record\(\n": "gen.record(\n    waviness_nm=20,",
 }
 
 
-def blocks(language):
-    return re.findall(rf"```{language}\n(.*?)```", PAGE, re.DOTALL)
-
-
 def smaller(text):
-    text = FAN_END.sub("", text)
     for whole, part in SMALLER.items():
-        text = text.replace(whole, part)
+        text = re.sub(whole, part, text, flags=re.MULTILINE)
     return text
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory):
     """Folder in which all examples ran, one after the other, and their variables."""
-    folder, names = tmp_path_factory.mktemp("page"), {}
+    folder = tmp_path_factory.mktemp("page")
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)
         patch.setenv("RACEWAY_CACHE", str(folder / "cache"))
         patch.setattr("features.baselines.estimators.TREES", 2)
-        for block in blocks("python"):
-            exec(smaller(block), names)  # noqa: S102 - our own page
-        (recipe,) = blocks("yaml")
+        names = run_blocks("python.md", folder, SMALLER)
+        (recipe,) = blocks("python.md", "yaml")
         (folder / "ladder.yaml").write_text(smaller(recipe), encoding="utf-8")
         gen.generate("ladder.yaml", "of_yaml")
     return folder, names
@@ -65,7 +60,7 @@ def test_the_recipe_in_yaml_is_that_of_the_calls_and_gives_the_same_parts(result
 
 
 def test_the_page_has_two_hundred_records_at_five_severities_and_two_sensors(tmp_path):
-    (text,) = blocks("yaml")
+    (text,) = blocks("python.md", "yaml")
     (tmp_path / "r.yaml").write_text(text, encoding="utf-8")
     recipe = gen.read_recipe(tmp_path / "r.yaml")
     widths = [scenario.specimen.spalls[0].width for scenario in gen.draw_scenarios(recipe)]
