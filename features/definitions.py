@@ -210,6 +210,16 @@ def define_features(groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND) -
     return tuple(feature for group in groups for feature in _OF_EVERY_BAND.get(group) or _energies(band))
 
 
+def measured_quantity(feature: str) -> str:
+    """Name of a feature without its view, since features of one quantity tell much the same.
+
+    >>> measured_quantity("bands_max_bpfi_comb"), measured_quantity("raw_kurtosis")
+    ('bpfi_comb', 'raw_kurtosis')
+    """
+    view = next((view for view in (*VIEWS, "fitted") if feature.startswith(f"{view}_")), "")
+    return feature.removeprefix(f"{view}_")
+
+
 def feature_coordinates(
     groups: Sequence[str] = GROUPS, band: Band = DEFAULT_BAND
 ) -> dict[str, tuple[str, np.ndarray, dict[str, str]]]:

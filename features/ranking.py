@@ -3,12 +3,10 @@
 ``feature table -> one row per specimen -> analysis of variance, Kruskal-Wallis, mutual information; folds -> importance``
 
 Records of one specimen are not independent, so the three measures of one feature at a time are taken from the mean of
-each specimen. Permutation importance [1]_ is the loss of balanced accuracy on specimens outside the training when the
-values of a feature are exchanged among their records. Features that tell the same have little of it each: a classifier
-can do without any one of them. The measures of series are those of [2]_.
+each specimen. Permutation importance is that of `features.baselines.importance`, on specimens outside the training. The
+measures of series are those of [1]_.
 
-.. [1] L. Breiman, "Random forests", *Machine Learning* 45 (2001) 5-32.
-.. [2] J. B. Coble, *Merging data sources to predict remaining useful life: an automated method to identify prognostic
+.. [1] J. B. Coble, *Merging data sources to predict remaining useful life: an automated method to identify prognostic
        parameters*, PhD thesis, University of Tennessee, 2010.
 """
 
@@ -23,10 +21,9 @@ from scipy.stats import kruskal, rankdata
 from sklearn.feature_selection import f_classif, mutual_info_classif
 from sklearn.impute import SimpleImputer
 
-from features.baselines.fitting import fits
+from features.baselines.importance import permutation_importance
 from features.baselines.records import (
     FloatArray,
-    IntArray,
     Records,
     all_records,
     check_classes,
@@ -52,7 +49,6 @@ SERIES_MEASURES = {
 }
 """Measures of `rank_series` and their meaning."""
 IMPORTANCE_ESTIMATOR = "extra_trees"
-PERMUTED_ROWS = 10_000  # predicted together: of few rows, a call of the classifier takes most of the time
 POINTS = 100  # that the series of a trend are compared at
 
 
@@ -87,7 +83,9 @@ def rank_features(
     records = labelled_records(table, features_of(table, held))
     check_classes(records)
     splits = track_splits(records, records.fault, "specimen", folds, seed)
-    measures = {**_of_specimens(records, seed), "importance": _importance(records, splits, seed)}
+    single = [[column] for column in range(records.features.shape[1])]
+    losses = permutation_importance(records, single, IMPORTANCE_ESTIMATOR, splits, seed)
+    measures = {**_of_specimens(records, seed), "importance": losses}
     ranked = _named(table, held, measures)
     ranked["mean_rank"] = rankdata(-ranked[list(MEASURES)[:-1]].fillna(-np.inf), axis=0).mean(axis=1)
     return ranked.sort_values("mean_rank", kind="stable")
@@ -178,28 +176,3 @@ def _of_specimens(records: Records, seed: int) -> dict[str, FloatArray]:
     found["kruskal_h"][varying] = kruskal(*(rows[fault == c] for c in np.unique(fault)), axis=0).statistic
     found["mutual_information"][varying] = mutual_info_classif(rows, fault, random_state=seed)
     return found
-
-
-def _importance(records: Records, splits: Sequence[tuple[IntArray, IntArray]], seed: int) -> FloatArray:
-    """Mean loss of balanced accuracy over the splits for each feature, shape (feature,)."""
-    rng = np.random.default_rng(seed)
-    columns = records.features.columns
-    losses = np.empty((len(splits), len(columns)))
-    fitted = fits(records.features, records.fault, IMPORTANCE_ESTIMATOR, splits, seed)
-    for fold, ((_, test), fit) in enumerate(zip(splits, fitted, strict=True)):
-        rows, truth = records.features.take(test).to_numpy(), records.fault[test]
-        whole = _balanced_accuracy(truth, fit.estimator.classes_[fit.probabilities.argmax(axis=1)])
-        together = max(1, PERMUTED_ROWS // len(rows))
-        for first in range(0, len(columns), together):
-            chosen = np.arange(first, min(first + together, len(columns)))
-            changed = np.repeat(rows[None], len(chosen), axis=0)
-            for place, column in enumerate(chosen):
-                changed[place, :, column] = rng.permutation(rows[:, column])
-            told = fit.estimator.predict(pd.DataFrame(changed.reshape(-1, len(columns)), columns=columns))
-            losses[fold, chosen] = whole - _balanced_accuracy(truth, told.reshape(len(chosen), -1))
-    return losses.mean(axis=0)
-
-
-def _balanced_accuracy(truth: IntArray, told: IntArray) -> FloatArray:
-    """Mean share of the records of each class that are told right, from classes of shape (..., record)."""
-    return np.mean([np.mean(told[..., truth == c] == c, axis=-1) for c in np.unique(truth)], axis=0)

@@ -14,10 +14,12 @@ reference_choice  records tested against a reference, without those that belong 
 colour            distance of the colour of a record from healthy recordings of its rig
 predictions       predicted classes of records and of whole recordings
 scores            figures of merit by record and by recording, with confidence intervals
+detection         detection of faults against their width, and against false alarms
 severities        fault widths that a test contains and its training does not
 tracks            splits by specimen, rig, bearing type, speed, severity and fault shape, and their checks
 fitting           fits of one classifier to several selections of records
 splits            cross-validation on a track, with its two controls
+importance        permutation importance of features
 curves            score against the number of training specimens
 cross_calibration calibration on rigs or specimens outside the training
 model_file        the only module that reads and writes archives of skops

@@ -18,6 +18,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from features.baselines.curves import CurvePoint, curve_points, curve_sizes
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, UNTRAINED
+from features.baselines.importance import permutation_importance
 from features.baselines.models import Model, record_digests, seen_records
 from features.baselines.own import Maker
 from features.baselines.records import (
@@ -31,7 +32,8 @@ from features.baselines.records import (
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import Widths, uncovered_in_splits
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
-from features.baselines.tracks import TRACKS, Track
+from features.baselines.tracks import TRACKS, Split, Track
+from features.definitions import measured_quantity
 from features.waveforms import Waveforms
 from gen.corpus import FAULTS, write_numbers
 from gen.support.errors import CorpusError
@@ -118,6 +120,9 @@ class Results(Shown):
         Reason for each track that the corpus cannot be split on, if all tracks were asked for.
     curve
         Learning curve of the leading classifier on the first track, empty unless asked for.
+    importance
+        Permutation importance of each quantity for the leading classifier on the first track, the highest first: the loss
+        of balanced accuracy when the values of its features are exchanged among tested records. Empty for waveforms.
     """
 
     corpus: Content
@@ -134,6 +139,7 @@ class Results(Shown):
     further: dict[str, TrackResults] = field(default_factory=dict)
     left_out: dict[str, str] = field(default_factory=dict)
     curve: tuple[CurvePoint, ...] = ()
+    importance: dict[str, float] = field(default_factory=dict)
 
     def _heading(self) -> str:
         return f"Results on {self.corpus.title}: {self.corpus.records:,} records, balanced accuracy over {self.folds} folds by {self.track}"
@@ -253,6 +259,7 @@ def benchmark(
             scored[track][name] = Baseline(**scores, tests=tested)
             done(1)
     led = records if isinstance(chosen[leading], str) else own
+    importance = _importance(records, names, chosen[leading], splits, seed, workers) if led is records else {}
     return replace(
         found,
         baselines=_untrained_first(scored[first]),
@@ -260,7 +267,19 @@ def benchmark(
             track: replace(one, baselines=_untrained_first(scored[track])) for track, one in found.further.items()
         },
         curve=curve_points(led, chosen[leading], splits, seed, done, workers) if curve else (),
+        importance=importance,
     )
+
+
+def _importance(
+    records: Records, names: Sequence[str], estimator: str | Maker, splits: Sequence[Split], seed: int, workers: int
+) -> dict[str, float]:
+    """Permutation importance of each quantity, the highest first; its features of all views and channels are exchanged at once."""
+    columns: dict[str, list[int]] = {}
+    for column in range(records.features.shape[1]):
+        columns.setdefault(measured_quantity(names[column % len(names)]), []).append(column)
+    losses = permutation_importance(records, list(columns.values()), estimator, splits, seed, workers)
+    return dict(sorted(zip(columns, losses.tolist(), strict=True), key=lambda item: -item[1]))
 
 
 def _kept(known: Results | None, found: Results) -> dict[str, dict[str, Baseline]]:
@@ -274,7 +293,7 @@ def _kept(known: Results | None, found: Results) -> dict[str, dict[str, Baseline
 def _setup(results: Results) -> Results:
     """Results without scores."""
     further = {track: replace(one, baselines={}) for track, one in results.further.items()}
-    return replace(results, leading="", baselines={}, further=further, curve=())
+    return replace(results, leading="", baselines={}, further=further, curve=(), importance={})
 
 
 def _untrained_first(baselines: dict[str, Baseline]) -> dict[str, Baseline]:

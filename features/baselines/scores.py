@@ -16,6 +16,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 from features.baselines.calibration import SMALLEST
+from features.baselines.detection import Detection, Roc, detection, roc
 from features.baselines.predictions import Predictions
 from features.baselines.records import FloatArray, IntArray, Records
 from features.faults import HEALTHY
@@ -72,6 +73,8 @@ class Scores(Shown):
         bins, weighted by their records.
     reliability
         Records by their largest probability, in bins of equal width.
+    detection, roc
+        Detection of faults of any class against their width, and against false alarms, by record; None where it is not known.
     coverage, answered_accuracy
         Share of the records that are answered, and the accuracy of these; None without any.
     faulty_among_healthy
@@ -99,6 +102,8 @@ class Scores(Shown):
     auc: float | None = None
     ece: float | None = None
     reliability: tuple[Bin, ...] = ()
+    detection: Detection | None = None
+    roc: Roc | None = None
     coverage: float = 1.0
     answered_accuracy: float | None = None
     faulty_among_healthy: float | None = None
@@ -150,7 +155,13 @@ def score(records: Records, predictions: Predictions, seed: int = 0) -> Scores:
         Of the bootstrap.
     """
     _, first = np.unique(predictions.recording, return_index=True)
-    by_record = _score(records.fault, records.specimen, predictions, seed)
+    faulty, healthy_column = records.fault != HEALTHY_CODE, np.array(predictions.classes) == HEALTHY
+    detected = np.array(predictions.predicted)[faulty] != HEALTHY
+    by_record = replace(
+        _score(records.fault, records.specimen, predictions, seed),
+        detection=detection(detected, records.width[faulty], records.specimen[faulty]),
+        roc=roc(faulty, -predictions.probabilities[:, healthy_column].sum(axis=1), records.specimen, seed),
+    )
     whole = predictions.by_recording
     if whole is None:
         return by_record

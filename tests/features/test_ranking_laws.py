@@ -1,10 +1,14 @@
 """Laws of rankings: a feature that tells the class, or follows a series, comes before one that does not."""
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
 from features import rank_features, rank_series
+from features.baselines.importance import permutation_importance
+from features.baselines.records import Records
+from features.baselines.tracks import track_splits
 from features.ranking import MEASURES, SERIES_MEASURES, series_measures
 from features.report.pictures import picture
 from features.report.ranking import draw_ranking
@@ -85,3 +89,15 @@ def test_series_are_those_of_specimens_in_the_order_of_their_recordings():
     np.testing.assert_allclose(ranked.loc["wear", list(SERIES_MEASURES)].astype(float), 1)
     with pytest.raises(CorpusError, match="are no series"):
         rank_series(table.isel(record=specimen == 0))
+
+
+def test_a_noise_feature_has_no_importance_and_features_exchanged_together_have_that_of_what_they_share(classes):
+    values = classes["features"].values
+    rows = pd.DataFrame(np.column_stack([values[:, 3], values[:, 3], values[:, 0]]))
+    unused = np.zeros(240)
+    fault, specimen = classes["fault"].values, classes["specimen"].values
+    records = Records("made up", rows, fault, unused, specimen, np.arange(240), unused)
+    splits = track_splits(records, fault, "specimen", 5, seed=0)
+    one, both, noise = permutation_importance(records, [[0], [0, 1], [2]], "extra_trees", splits, seed=0)
+    assert abs(noise) < 0.05
+    assert both > 0.2 > one

@@ -86,7 +86,7 @@ def test_recordings_of_one_record_score_like_records(case):
     assert whole is not None
     assert whole.log_loss == pytest.approx(found.log_loss)
     assert whole.ece == pytest.approx(found.ece)
-    same = {"log_loss": None, "ece": None, "reliability": ()}
+    same = {"log_loss": None, "ece": None, "reliability": (), "roc": None}
     assert replace(whole, **same) == replace(found, by_recording=None, **same)
 
 
