@@ -13,7 +13,7 @@ from .models import Model as Model
 from .own import EstimatorError as EstimatorError, load_maker as load_maker
 from .predictions import UNSURE as UNSURE, Predictions as Predictions
 from .records import DEFAULT_GROUPS as DEFAULT_GROUPS, count_unknown as count_unknown
-from .scores import Scores as Scores, interval_text as interval_text
+from .scores import Scores as Scores, interval_text as interval_text, percent_text as percent_text
 from .severities import severity_warning as severity_warning
 from .splits import controls as controls, cross_validate as cross_validate
 from .tracks import TRACKS as TRACKS

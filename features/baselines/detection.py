@@ -71,8 +71,10 @@ class DetectionFit:
 
 @dataclass(frozen=True)
 class Detection:
-    """Detection against width: the observed shares, and the fit; None if the widths of detected and missed records do not overlap."""
+    """Detection against width: the tested widths [m], observed shares, and the fit; None if detected and missed do not overlap."""
 
+    smallest: float
+    largest: float
     bins: tuple[WidthBin, ...]
     fit: DetectionFit | None
 
@@ -111,7 +113,7 @@ def detection(detected: np.ndarray, width: FloatArray, specimen: IntArray) -> De
         WidthBin(int(held.sum()), float(width[held].mean()), float(detected[held].mean()))
         for held in (number == k for k in np.unique(number))
     )
-    return Detection(bins, fit_detection(detected, width, specimen))
+    return Detection(float(width.min()), float(width.max()), bins, fit_detection(detected, width, specimen))
 
 
 def fit_detection(detected: FloatArray, width: FloatArray, specimen: IntArray) -> DetectionFit | None:

@@ -297,3 +297,14 @@ def interval_text(interval: Interval | None, decimals: int = 3) -> str:
     ('0.84 to 0.90', 'not known')
     """
     return "not known" if interval is None else " to ".join(f"{end:.{decimals}f}" for end in interval)
+
+
+def percent_text(share: float) -> str:
+    """Text of a share, for people: three digits, and no rounding to none or all.
+
+    >>> percent_text(0.1979), percent_text(0.9), percent_text(0.0003), percent_text(0.9999), percent_text(0.0)
+    ('19.8 %', '90 %', '< 0.1 %', '> 99.9 %', '0 %')
+    """
+    if 0 < share < 0.001:
+        return "< 0.1 %"
+    return "> 99.9 %" if 0.999 < share < 1 else f"{100 * share:.3g} %"

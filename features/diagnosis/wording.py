@@ -53,9 +53,11 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
 def probability_in_words(probability: float) -> str:
     """Probability with two digits, never 1.
 
-    >>> probability_in_words(0.912), probability_in_words(0.9999)
-    ('0.91', 'above 0.99')
+    >>> probability_in_words(0.912), probability_in_words(0.9999), probability_in_words(0.0001)
+    ('0.91', 'above 0.99', 'below 0.01')
     """
+    if probability < 0.01:
+        return "below 0.01"
     return "above 0.99" if probability > 0.99 else f"{probability:.2f}"
 
 

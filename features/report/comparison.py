@@ -16,7 +16,7 @@ from features.realism.measures import MEASURES, NAMES, Measure
 from features.realism.windows import Windows, typical_window
 from features.report.pictures import Shown, picture
 from features.report.sides import draw_distributions, draw_sides
-from features.report.templates import template
+from features.report.templates import template, three_digits
 from features.signal.rows import FloatArray
 from gen.corpus import FAULTS, make_result_folder, write_numbers, write_text_durably
 
@@ -122,7 +122,7 @@ def _row(comparison: Comparison, fault: str, measure: Measure) -> Row:
         measure,
         _two_digits(comparison.auc[fault][measure.name]),
         [_two_digits(value) for value in held],
-        *([f"{value:.3g}" for value in quantiles.get(name, [])] for name in (comparison.synthetic.name, "real")),
+        *([three_digits(value) for value in quantiles.get(name, [])] for name in (comparison.synthetic.name, "real")),
     )
 
 

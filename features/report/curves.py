@@ -1,14 +1,80 @@
-"""Drawing of a learning curve."""
+"""Drawings of curves of scores: detection against width and against false alarms, reliability, and learning."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullLocator
 
 from features.baselines import CurvePoint, Scores
+from features.baselines.detection import Detection, Roc
 from features.report.pictures import BLUE, FAINT, INK, STYLE, VERMILION, WIDTH
+
+PANEL = (2.6, 2.4)  # inches, of a figure that stands beside others
+DASHED = (0, (4, 3))
+
+
+@rc_context(STYLE)
+def draw_detection(detection: Detection, false_alarms: float | None) -> Figure:
+    """Share of detected faults against their width: observed in bins, and fitted with its band; and the share of false alarms."""
+    figure, axes = _panel()
+    observed = detection.bins
+    areas = _areas([one.records for one in observed])
+    axes.scatter([1e3 * one.width for one in observed], [one.detected for one in observed], areas, INK, linewidth=0)
+    if detection.fit is not None:
+        widths = np.geomspace(detection.smallest, detection.largest, 100)
+        low, middle, high = detection.fit.band(widths)
+        axes.fill_between(1e3 * widths, low, high, color=BLUE, alpha=0.2, linewidth=0)
+        axes.plot(1e3 * widths, middle, color=BLUE, linewidth=1.2)
+    if false_alarms is not None:
+        axes.axhline(false_alarms, color=VERMILION, linestyle=DASHED, linewidth=0.9)
+        axes.annotate(
+            "false alarms", (1, false_alarms), (-2, 2), ("axes fraction", "data"), "offset points",
+            color=INK, fontsize=8, ha="right", va="bottom",
+        )  # fmt: skip
+    axes.set_xscale("log")
+    ticks = 1e3 * np.geomspace(detection.smallest, detection.largest, 4)
+    axes.set_xticks(ticks, [f"{tick:.2g}" for tick in ticks])
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set(xlabel="width of the fault [mm]", ylabel="share detected", ylim=(-0.03, 1.05))
+    return figure
+
+
+@rc_context(STYLE)
+def draw_roc(roc: Roc) -> Figure:
+    """Share of detected faults against the share of false alarms, with its band."""
+    figure, axes = _panel()
+    if roc.interval is not None:
+        axes.fill_between(roc.false_alarms, roc.low, roc.high, color=BLUE, alpha=0.2, linewidth=0)
+    axes.plot([0, *roc.false_alarms], [0, *roc.detected], color=BLUE, linewidth=1.2)
+    axes.plot([0, 1], [0, 1], color=FAINT, linestyle=DASHED, linewidth=0.9)
+    axes.set(xlabel="share of false alarms", ylabel="share detected", xlim=(-0.03, 1.04), ylim=(-0.03, 1.05))
+    return figure
+
+
+@rc_context(STYLE)
+def draw_reliability(scores: Scores) -> Figure:
+    """Accuracy against largest probability in bins."""
+    figure, axes = _panel()
+    probability, accuracy = ([getattr(one, name) for one in scores.reliability] for name in ("probability", "accuracy"))
+    axes.plot([0, 1], [0, 1], color=FAINT, linestyle=DASHED, linewidth=0.9)
+    axes.plot(probability, accuracy, color=BLUE, linewidth=0.8)
+    areas = _areas([one.records for one in scores.reliability])
+    axes.scatter(probability, accuracy, areas, BLUE, linewidth=0, zorder=3, clip_on=False)
+    axes.set(xlabel="largest probability", ylabel="accuracy", xlim=(-0.03, 1.04), ylim=(-0.03, 1.05))
+    return figure
+
+
+def _panel() -> tuple[Figure, Axes]:
+    figure = Figure(figsize=PANEL, layout="constrained")
+    return figure, figure.subplots()
+
+
+def _areas(records: Sequence[int]) -> np.ndarray:
+    """Areas of markers, proportional to numbers of records but for the least that can be seen."""
+    return 4 + 150 * np.array(records) / sum(records)
 
 
 @rc_context(STYLE)
@@ -26,7 +92,7 @@ def draw_curve(points: Sequence[CurvePoint], chance: float, rule: Scores) -> Fig
         (chance, "chance", FAINT),
         (rule.balanced_accuracy, "envelope rule, untrained", VERMILION),
     ):
-        axes.axhline(level, color=colour, linestyle=(0, (4, 3)), linewidth=0.9)
+        axes.axhline(level, color=colour, linestyle=DASHED, linewidth=0.9)
         axes.annotate(
             name, (1, level), (-2, 2), ("axes fraction", "data"), "offset points",
             color=INK, fontsize=8, ha="right", va="bottom",

@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from features.band import DEFAULT_BAND, Band
 from features.diagnosis import FALSE_ALARM, LEAST_LEVEL, Diagnosis, Levels, Recorded
 from features.diagnosis.spectrum import BandSpectrum, band_spectra
+from features.diagnosis.wording import probability_in_words
 from features.faults import CLASSES, HEALTHY, SHAFT
 from features.report.pictures import (
     FAINT,
@@ -25,7 +26,7 @@ from features.report.pictures import (
     name_lines,
     picture,
 )
-from features.report.templates import template
+from features.report.templates import template, three_digits
 from features.signal.lines import Orders
 from features.signal.motion import VELOCITY_BAND
 from features.signal.rows import FloatArray
@@ -40,6 +41,7 @@ class Bar(NamedTuple):
 
     name: str
     probability: float
+    text: str
     colour: str
 
 
@@ -97,7 +99,10 @@ def write_diagnosis(
 
 def _bars(probabilities: Mapping[str, float]) -> list[Bar]:
     ranked = sorted(probabilities.items(), key=lambda item: -item[1])
-    return [Bar(fault, probability, CLASSES[fault].colour) for fault, probability in ranked]
+    return [
+        Bar(fault, probability, probability_in_words(probability), CLASSES[fault].colour)
+        for fault, probability in ranked
+    ]
 
 
 def _level_row(levels: Levels, *, several: bool) -> tuple[str, list[str]]:
@@ -105,17 +110,8 @@ def _level_row(levels: Levels, *, several: bool) -> tuple[str, list[str]]:
     figures = (levels.rms, levels.peak, levels.crest_factor, levels.kurtosis, levels.velocity_rms_mm_s)
     name = Path(levels.recording).name
     return f"{name}, {levels.channel}" if several else name, [
-        _three_digits(figure) if np.isfinite(figure) else "–" for figure in figures
+        three_digits(figure) if np.isfinite(figure) else "–" for figure in figures
     ]
-
-
-def _three_digits(value: float) -> str:
-    """Number without an exponent.
-
-    >>> _three_digits(1234.5), _three_digits(0.001234)
-    ('1230', '0.00123')
-    """
-    return np.format_float_positional(value, precision=3, unique=False, fractional=False, trim="-")
 
 
 @rc_context(STYLE)
@@ -123,7 +119,7 @@ def draw_diagnosis(diagnosis: Diagnosis, recording: Recorded, healthy: Recorded 
     """Waveform, power spectral density, and envelope spectrum over its floor, one above the other, over those of a healthy recording."""
     shown = _shown(diagnosis, recording)
     under = None if healthy is None else _shown(diagnosis, healthy)
-    figure = Figure(figsize=(WIDTH, 7.2), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 6.4), layout="constrained")
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(0.8, 0.8, 1.4))
     draw_waveform(waveform, shown, under)
     draw_density(density, shown, under)

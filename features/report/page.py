@@ -11,15 +11,16 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from features.baselines import Results, Scores, interval_text, severity_warning
+from features.baselines import Results, Scores, interval_text, percent_text, severity_warning
+from features.baselines.detection import Detection
 from features.baselines.estimators import UNTRAINED
 from features.baselines.results import write_results
 from features.baselines.tracks import NOVELTY
 from features.faults import HEALTHY, LOOKS
-from features.report.curves import draw_curve
+from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc
 from features.report.examples import draw_examples
 from features.report.pictures import picture
-from features.report.summaries import Quantity, draw_content, draw_reliability, draw_scores
+from features.report.summaries import Quantity, draw_content, draw_scores
 from features.report.templates import template
 from gen.corpus import (
     FAULT_NAMES,
@@ -33,6 +34,7 @@ from gen.corpus import (
 )
 
 LONGEST_TEXT = 300
+BARS, LEAST_IMPORTANCE = 15, 5e-4  # of the drawn quantities
 QUANTITIES = (
     ("shaft_rate", "shaft rate [Hz]", 1.0),
     ("load", "load [N]", 1.0),
@@ -42,6 +44,14 @@ QUANTITIES = (
     ("snr", "signal over background [dB]", 1.0),
     ("fault_snr", "fault over all else [dB]", 1.0),
 )
+
+
+class Panel(NamedTuple):
+    """A small figure beside others: its alternative text, the figure, and its caption."""
+
+    alt: str
+    image: bytes
+    caption: str
 
 
 class ClassCount(NamedTuple):
@@ -145,13 +155,64 @@ def _scores(results: Results) -> dict[str, Any]:
         "scores": picture(draw_scores(results.baselines, chance, NOVELTY[results.track]), "svg"),
         "spreads": {name: float(np.std(baseline.grouped.folds)) for name, baseline in results.baselines.items()},
         "quality": quality,
-        "reliability": picture(draw_reliability({title: rows[results.leading] for title, rows in quality}), "svg"),
+        "panels": [(title, _panels(rows[results.leading])) for title, rows in quality if "by recording" not in title],
+        "importance": _bars(results.importance),
+        "false_alarm_text": _false_alarm_text,
         "findings": _findings(results, chance),
         "test_titles": _test_titles(results),
         "untrained": UNTRAINED,
         "unfolded": results.leading,
         **_tracks(results, chance),
     }
+
+
+def _panels(scores: Scores) -> list[Panel]:
+    """Detection against width and against false alarms, and reliability, as far as they are known."""
+    panels = []
+    if scores.detection is not None:
+        drawn = draw_detection(scores.detection, scores.false_alarms)
+        panels.append(
+            Panel(
+                "Share of detected faults against their width",
+                picture(drawn, "svg"),
+                _detection_caption(scores.detection),
+            )
+        )
+    if scores.roc is not None:
+        caption = (
+            f"Share of the faulty records that are detected against that of false alarms, for all thresholds. The area "
+            f"under the curve is {scores.roc.area:.3f} (95 % interval {interval_text(scores.roc.interval)}); 1 is perfect, "
+            f"and chance, dashed, is 0.5. The band, where it is known, is the 95 % interval over specimens."
+        )
+        panels.append(
+            Panel("Share of detected faults against false alarms", picture(draw_roc(scores.roc), "svg"), caption)
+        )
+    caption = (
+        f"Share of right answers of records in bins of their largest probability. On the dashed line, probabilities are "
+        f"right; below it, they are too high. The mean distance, the calibration error, is {scores.ece:.3f}."
+    )
+    return [*panels, Panel("Accuracy against largest probability", picture(draw_reliability(scores), "svg"), caption)]
+
+
+def _detection_caption(detection: Detection) -> str:
+    """Caption of detection against width, with the widths a90 and a90/95 where they are known."""
+    shown = (
+        "Share of the faulty records that are predicted to be faulty, whatever the class, against width. Dots are observed "
+        "shares in bins"
+    )
+    fit = detection.fit
+    if fit is None:
+        return f"{shown}. There is no curve, because detected and missed faults do not overlap in width."
+    shown = f"{shown}; the curve is fitted, with its 90 % band."
+    if fit.a90 is None:
+        return f"{shown} It does not rise through 90 % within the tested widths."
+    sure = "at none of the tested widths" if fit.a90_95 is None else f"at {1e3 * fit.a90_95:.2g} mm (a90/95)"
+    return f"{shown} 90 % are detected at {1e3 * fit.a90:.2g} mm (a90), and with 95 % confidence {sure}."
+
+
+def _bars(importance: Mapping[str, float]) -> list[tuple[str, float]]:
+    """Quantities of the highest importance, without those that round to none."""
+    return [(name, loss) for name, loss in importance.items() if loss >= LEAST_IMPORTANCE][:BARS]
 
 
 def _tracks(results: Results, chance: float) -> dict[str, Any]:
@@ -216,13 +277,19 @@ def _findings(results: Results, chance: float) -> list[str]:
 def _false_alarms(scores: Scores) -> str:
     """Sentence on false alarms and on the answers of a baseline."""
     alarms = (
-        ""
-        if scores.false_alarms is None
-        else f"It predicts a fault for {scores.false_alarms:.1%} of the healthy records. "
+        "" if scores.false_alarms is None else f"It predicts a fault for {_false_alarm_text(scores)} healthy records. "
     )
     accuracy = scores.answered_accuracy
-    right = "" if accuracy is None else f", and {accuracy:.1%} of these answers are right"
-    return f"{alarms}It answers {scores.coverage:.1%} of all records{right}; for the others it is unsure."
+    right = "" if accuracy is None else f", and {percent_text(accuracy)} of these answers are right"
+    return f"{alarms}It answers {percent_text(scores.coverage)} of all records{right}; for the others it is unsure."
+
+
+def _false_alarm_text(scores: Scores) -> str:
+    """Number of healthy records with a false alarm, of all healthy records; a dash without any."""
+    if scores.false_alarms is None:
+        return "–"
+    healthy = sum(scores.confusion[scores.classes.index(HEALTHY)])
+    return f"{round(scores.false_alarms * healthy)} of {healthy}"
 
 
 def _with_interval(scores: Scores) -> str:

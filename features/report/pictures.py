@@ -132,7 +132,7 @@ def write_picture(figure: Figure, path: Path) -> None:
 @rc_context(STYLE)
 def draw_record(shown: Shown, under: Shown | None = None) -> Figure:
     """Waveform, power spectral density, and squared envelope spectrum with the fault lines, one above the other."""
-    figure = Figure(figsize=(WIDTH, 6.8), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 5.8), layout="constrained")
     figure.suptitle(shown.title, x=0.01, ha="left", fontsize=11, fontweight="bold", color=LOOKS[shown.fault].colour)
     waveform, density, envelope = figure.subplots(3, 1, height_ratios=(1, 1, 1.25))
     for draw, axes in ((draw_waveform, waveform), (draw_density, density), (draw_envelope_spectrum, envelope)):

@@ -41,7 +41,7 @@ def draw_content(fault: IntArray, rig: IntArray, quantities: Sequence[Quantity])
     """
     quantities = [quantity for quantity in quantities if _varies(quantity.values)]
     rows = -(-(1 + len(quantities)) // 2)
-    figure = Figure(figsize=(WIDTH, 0.4 + 1.9 * rows), layout="constrained")
+    figure = Figure(figsize=(WIDTH, 0.4 + 1.5 * rows), layout="constrained")
     panels = figure.subplots(rows, 2, squeeze=False).ravel()
     present = np.unique(fault)
     _draw_rigs(panels[0], fault, rig, present)
@@ -61,7 +61,7 @@ def _draw_rigs(axes: Axes, fault: IntArray, rig: IntArray, present: IntArray) ->
         count = np.bincount(number[fault == c], minlength=len(rigs))
         axes.bar(np.arange(len(rigs)), count, 0.8, bottom, color=LOOKS[FAULT_NAMES[c]].colour, label=FAULT_NAMES[c])
         bottom += count
-    step = max(1, len(rigs) // 10)
+    step = -(-len(rigs) // 10)
     axes.set_xticks(np.arange(0, len(rigs), step), [str(name) for name in rigs[::step]])
     axes.set(xlabel="rig", ylabel="records")
 
@@ -81,6 +81,7 @@ def _draw_distribution(axes: Axes, fault: IntArray, quantity: Quantity, present:
         [values[fault[finite] == c] for c in present],
         bins=edges.tolist(),
         stacked=True,
+        histtype="stepfilled",
         color=[LOOKS[FAULT_NAMES[c]].colour for c in present],
     )
     axes.set(xlabel=quantity.label, ylabel="records")
@@ -128,28 +129,3 @@ def _draw_intervals(
         if score.interval is not None:
             axes.hlines(row, *score.interval, color=colour, linewidth=1.6)
     axes.plot([score.balanced_accuracy for score in scores], rows, marker, color=colour, markersize=5.5, label=label)
-
-
-@rc_context(STYLE)
-def draw_reliability(scores: Mapping[str, "Scores"]) -> Figure:
-    """Accuracy against largest probability in bins, one panel for each of some scores by title."""
-    columns = min(max(len(scores), 2), 3)
-    rows = -(-len(scores) // columns)
-    figure = Figure(figsize=(WIDTH, 2.7 * rows), layout="constrained")
-    grid = figure.subplots(rows, columns, sharey=True, squeeze=False)
-    panels = grid.ravel()
-    for axes, (title, score) in zip(panels, scores.items(), strict=False):
-        probability, accuracy = (
-            [getattr(bin_, name) for bin_ in score.reliability] for name in ("probability", "accuracy")
-        )
-        area = 260 * np.array([bin_.records for bin_ in score.reliability]) / score.records
-        axes.plot([0, 1], [0, 1], color=FAINT, linestyle=(0, (4, 3)), linewidth=0.9)
-        axes.plot(probability, accuracy, color=BLUE, linewidth=0.8)
-        axes.scatter(probability, accuracy, area + 4, color=BLUE, linewidth=0, zorder=3)
-        axes.set(xlabel="largest probability", xlim=(0, 1.04), ylim=(-0.02, 1.06), aspect="equal")
-        axes.set_title(f"{title}\ncalibration error {score.ece:.3f}")
-    for axes in grid[:, 0]:
-        axes.set_ylabel("accuracy")
-    for axes in panels[len(scores) :]:
-        axes.remove()
-    return figure

@@ -4,6 +4,7 @@ import base64
 from importlib.resources import files
 
 import jinja2
+import numpy as np
 
 
 def template(name: str, package: str = "features.report") -> jinja2.Template:
@@ -31,3 +32,12 @@ def _address(picture: bytes) -> str:
     """Address that holds a picture in PNG or SVG."""
     kind = "png" if picture.startswith(b"\x89PNG") else "svg+xml"
     return f"data:image/{kind};base64,{base64.b64encode(picture).decode()}"
+
+
+def three_digits(value: float) -> str:
+    """Number without an exponent.
+
+    >>> three_digits(1234.5), three_digits(0.001234)
+    ('1230', '0.00123')
+    """
+    return np.format_float_positional(value, precision=3, unique=False, fractional=False, trim="-")

@@ -12,12 +12,14 @@ from hypothesis import strategies as st
 
 from features.band import DEFAULT_BAND
 from features.baselines import ESTIMATORS, Model, benchmark
+from features.baselines.detection import detection
 from features.indicators import Orders
 from features.report import examples
-from features.report.page import QUANTITIES, _findings, _of_faults, write_report
+from features.report.curves import draw_detection, draw_reliability, draw_roc
+from features.report.page import QUANTITIES, _detection_caption, _findings, _of_faults, write_report
 from features.report.pictures import Shown, draw_record, fault_lines, picture, squared_envelope, thin, write_picture
 from features.report.shown import shown_record
-from features.report.summaries import draw_reliability, draw_scores
+from features.report.summaries import draw_scores
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
 from gen.support.errors import CorpusError
@@ -123,7 +125,7 @@ class Links(HTMLParser):
 def test_the_page_refers_to_no_other_file(page):
     found = Links(page)
     assert found.open == []
-    assert len(found.addresses) == 7
+    assert len(found.addresses) == 9
     assert all(address.startswith("data:image/svg+xml;base64,") for address in found.addresses)
     assert "http" not in re.sub(r"base64,[^\"]*", "", page).replace("http-equiv", "")
 
@@ -134,11 +136,14 @@ def test_the_page_contains_the_counts_of_the_corpus_and_every_score(page, result
     for name in ESTIMATORS:
         found = results.baselines[name].grouped
         assert f"{name.replace('_', ' ')} {found.balanced_accuracy:.3f} ± {np.std(found.folds):.3f}" in text
-        expected = (found.balanced_accuracy, found.false_alarms, found.auc, found.log_loss, found.ece, found.coverage)
-        assert f"{name.replace('_', ' ')} {' '.join(f'{figure:.3f}' for figure in expected)}" in text
+        expected = (found.auc, found.log_loss, found.ece, found.coverage)
+        alarms = f"{round(6 * found.false_alarms)} of 6"
+        assert (
+            f"{name.replace('_', ' ')} {found.balanced_accuracy:.3f} {alarms} "
+            f"{' '.join(f'{figure:.3f}' for figure in expected)}"
+        ) in text
     for fault in FOUR:
         assert f"{fault} 6 2 2 6 0 0" in text
-    assert "cage" not in text
     assert "compound" not in text
 
 
@@ -154,7 +159,7 @@ def test_all_classes_are_counted_drawn_and_scored(results_of, tmp_path):
     corpus = write_corpus(tmp_path / "corpus", specimens=2 * len(FAULTS), classes=len(FAULTS))
     found = Links(write_report(corpus, results_of(corpus, estimators=SOME), tmp_path / "out").read_text())
     text = " ".join(found.text.split())
-    assert len(found.addresses) == len(FAULTS) + 3
+    assert len(found.addresses) == len(FAULTS) + 5
     for fault in FAULTS:
         assert f"{fault} 6 2 2 6 0 0" in text
     assert f"true \\ predicted {' '.join(FAULTS)} healthy" in text
@@ -202,6 +207,8 @@ def test_the_page_is_reproducible_and_written_with_the_results(corpus, results, 
     assert write_report(corpus, results, folder).read_text() == page
     held = json.loads((folder / "results.json").read_text())
     assert sorted(path.name for path in folder.iterdir()) == ["report.html", "results.json"]
+    assert held["importance"] == results.importance
+    assert held["baselines"]["ensemble"]["grouped"]["roc"]["area"] == results.baselines["ensemble"].grouped.roc.area
     assert held["baselines"]["ensemble"]["null"]["accuracy"] == results.baselines["ensemble"].null.accuracy
 
 
@@ -232,7 +239,7 @@ def test_an_unknown_interval_is_reported_as_such_and_not_drawn(results):
         found, grouped=replace(found.grouped, interval=None), null=replace(found.null, interval=None), tests=()
     )
     sentences = _findings(replace(results, baselines=results.baselines | {"ensemble": alone}), 0.25)
-    assert sentences[1].startswith(f"It predicts a fault for {found.grouped.false_alarms:.1%} of the healthy records.")
+    assert sentences[1].startswith("It predicts a fault for 0 of 6 healthy records.")
     assert "(95 % interval not known); chance is" in sentences[0]
     assert sentences[3].endswith("(95 % interval not known).")
     known, unknown = (draw_scores({"one": one}, 0.25, "specimen").axes[0] for one in (found, alone))
@@ -252,7 +259,7 @@ def test_the_page_says_if_no_record_of_a_class_can_be_drawn(results, tmp_path):
     )
     page = write_report(unknown, results, tmp_path / "out").read_text()
     assert "No record of this class has a signal, a shaft rate and fault orders to draw." in page
-    assert len(Links(page).addresses) == 6
+    assert len(Links(page).addresses) == 8
 
 
 @pytest.mark.parametrize(
@@ -336,7 +343,32 @@ def test_a_thinned_waveform_keeps_its_highest_peak(length, place, seed):
 
 def test_the_reliability_diagram_has_a_point_for_each_bin(results):
     found = results.baselines["ensemble"].grouped
-    (panel,) = draw_reliability({"made up": found}).axes
+    (panel,) = draw_reliability(found).axes
     drawn = panel.collections[0].get_offsets()
     np.testing.assert_allclose(drawn, [(one.probability, one.accuracy) for one in found.reliability])
-    assert f"calibration error {found.ece:.3f}" in panel.get_title("left")
+
+
+def test_detection_is_drawn_with_its_bins_fit_and_false_alarms_and_told_with_its_widths():
+    width = np.repeat(np.geomspace(0.2e-3, 2e-3, 20), 5)
+    specimen = np.arange(100)
+    detected = specimen % 5 < np.repeat(np.arange(20), 5) / 2
+    found = detection(detected, width, specimen)
+    (panel,) = draw_detection(found, 0.2).axes
+    shares, band = panel.collections
+    np.testing.assert_allclose(shares.get_offsets(), [(1e3 * one.width, one.detected) for one in found.bins])
+    curve, alarms = panel.lines
+    np.testing.assert_allclose(curve.get_ydata(), found.fit.band(curve.get_xdata() / 1e3)[1])
+    assert band.get_paths()[0].get_extents().x0 == pytest.approx(0.2)
+    assert list(alarms.get_ydata()) == [0.2, 0.2]
+    told = _detection_caption(found)
+    assert f"90 % are detected at {1e3 * found.fit.a90:.2g} mm (a90)" in told
+    assert f"95 % confidence at {1e3 * found.fit.a90_95:.2g} mm (a90/95)" in told
+    flat = replace(found, fit=replace(found.fit, a90=None, a90_95=None))
+    assert "does not rise through 90 %" in _detection_caption(flat)
+    assert "There is no curve" in _detection_caption(replace(found, fit=None))
+
+
+def test_the_curve_of_false_alarms_has_the_points_of_the_results(results):
+    found = results.baselines["ensemble"].grouped.roc
+    (panel,) = draw_roc(found).axes
+    np.testing.assert_allclose(panel.lines[0].get_ydata()[1:], found.detected)
