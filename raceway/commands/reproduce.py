@@ -15,7 +15,7 @@ from raceway.console.progress import notice_compilation
 def reproduce() -> None:
     """Run the seed paper again, or draw a gallery of signals.
 
-    Both write pages and pictures into a folder; docs/errata.md and docs/model.md explain them.
+    Both write pages and pictures into a folder; docs/model.md explains them.
 
       raceway reproduce ophel2025 -o ophel
       raceway reproduce gallery -o gallery
@@ -41,7 +41,7 @@ def ophel2025(
     with three parameter sets: paper was fitted freely; paper-hertz has the contact stiffness of the geometry, and a
     load close to the weight of the rotor; paper-refit has that stiffness and exactly that weight. For each statement
     that does not hold, the page has the reason and the one constant with which it holds; --change repeats that
-    experiment, and docs/errata.md explains it.
+    experiment, and docs/model.md explains it.
 
       raceway reproduce ophel2025 -o ophel
       raceway reproduce ophel2025 --preset paper --change support_damping_y=4500 -o damped
