@@ -1,6 +1,6 @@
 """Run benchmarks, print a table of ratios, and keep the rows in the file of this processor, ``benchmarks/results-....json``.
 
-``python -m benchmarks [NAME...]`` runs all or some benchmarks, ``python -m benchmarks --pages`` makes the tables of docs/performance.md
+``python -m benchmarks [NAME...]`` runs all or some benchmarks, ``python -m benchmarks --pages`` makes the tables of docs/running.md
 from the files, and ``python -m benchmarks against CHECKOUT`` compares with another checkout (:mod:`benchmarks.against`). Each row
 compares a value with that of a named alternative: medians over interleaved pairs, and the median of the ratios. Small values in s, ms,
 MB, GB or core hours are good, large rates are good. All benchmarks take about five minutes.
@@ -64,7 +64,7 @@ def main(arguments: list[str]) -> None:
         return
     parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__.partition("\n")[0])
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"any of {', '.join(SUBJECTS)}; by default all")
-    parser.add_argument("--pages", action="store_true", help="only make the tables of docs/performance.md again")
+    parser.add_argument("--pages", action="store_true", help="only make the tables of docs/running.md again")
     given = parser.parse_args(arguments)
     if unknown := set(given.names) - set(SUBJECTS):
         parser.error(f"{', '.join(sorted(unknown))}: no such benchmark; choose from {', '.join(SUBJECTS)}, against.")

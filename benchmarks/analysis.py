@@ -1,6 +1,6 @@
 """CPU time of the functions of ``features.signal`` that an analyst calls, compared with lines of SciPy for the same result.
 
-The recording has 3 s at 20 kHz in single precision. docs/performance.md says which lines of SciPy do less.
+The recording has 3 s at 20 kHz in single precision. docs/running.md says which lines of SciPy do less.
 """
 
 import time

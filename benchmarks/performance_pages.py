@@ -1,4 +1,4 @@
-"""Tables of docs/performance.md, made from the results of every processor.
+"""Tables of docs/running.md, made from the results of every processor.
 
 A table stands between ``<!-- table: NAME -->`` and ``<!-- end of table -->``. A test compares the page with the files.
 """
@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from benchmarks.results import FOLDER, Rows, every_result
 
-PAGE = FOLDER.parent / "docs" / "performance.md"
+PAGE = FOLDER.parent / "docs" / "running.md"
 _TABLE = re.compile(r"(<!-- table: (\S+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 Results = Mapping[str, Rows]

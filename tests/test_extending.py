@@ -1,4 +1,4 @@
-"""``docs/extending.md`` lists files that exist, for the tasks it promises."""
+"""``docs/developing.md`` lists files that exist, for the tasks it promises."""
 
 import re
 
@@ -21,14 +21,14 @@ TASKS = (
     "label",
     "quantity for shares",
 )
-PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
+PAGE = (ROOT / "docs" / "developing.md").read_text(encoding="utf-8")
 FILE = re.compile(r"^(\d+)\. `([\w/.-]+)`: (.+(?:\n   .+)*)", re.MULTILINE)
 
 
 def steps(task):
     """Number, file and sentence of each step of a task."""
-    _, _, section = PAGE.partition(f"\n## A{'n' if task[0] in 'aeiou' else ''} {task}\n")
-    return FILE.findall(section.partition("\n## ")[0])
+    _, _, section = PAGE.partition(f"\n### A{'n' if task[0] in 'aeiou' else ''} {task}\n")
+    return FILE.findall(section.partition("\n### ")[0])
 
 
 @pytest.mark.parametrize("task", TASKS)

@@ -1,4 +1,4 @@
-"""The tables of docs/performance.md are those of the files of results."""
+"""The tables of docs/running.md are those of the files of results."""
 
 import json
 

@@ -57,5 +57,5 @@ def test_a_slow_machine_is_told_so_and_an_unknown_one_gets_no_verdict(monkeypatc
 
 def test_the_pages_publish_the_speed_that_doctor_compares_with():
     (published,) = doctor.PUBLISHED.values()
-    for page in ("README.md", "docs/performance.md"):
+    for page in ("README.md", "docs/running.md"):
         assert f"{published / 1e6:.0f} million record-steps/s" in " ".join((ROOT / page).read_text().split())
