@@ -15,12 +15,13 @@ def blocks(page: str, language: str = "python") -> list[str]:
     return re.findall(rf"```{language}\n(.*?)```", text, re.DOTALL)
 
 
-def run_blocks(page: str, folder: Path, replacements: Mapping[str, str] | None = None) -> dict[str, Any]:
+def run_blocks(page: str, folder: Path, replacements: Mapping[str, str] | None = None, **names: Any) -> dict[str, Any]:
     """Variables of all Python blocks, run in one name space; one that begins with ``# NAME.py`` is written into that file.
 
-    ``folder`` is the current one. ``replacements`` are made in the text, for fewer and shorter records than those of the page.
+    ``folder`` is the current one. ``replacements`` are made in the text, for fewer and shorter records than those of the page;
+    ``names`` are variables that the page does not define.
     """
-    names: dict[str, Any] = {"__name__": "example"}
+    names |= {"__name__": "example"}
     for block in blocks(page):
         for whole, part in (replacements or {}).items():
             block = re.sub(whole, part, block, flags=re.MULTILINE)

@@ -11,15 +11,10 @@ TASKS = (
     "feature group",
     "channel",
     "importer",
-    "codec",
-    "file of a corpus",
-    "fact of publication",
-    "section of the data card",
     "form of copy",
     "baseline",
     "bearing",
     "label",
-    "quantity for shares",
 )
 PAGE = (ROOT / "docs" / "developing.md").read_text(encoding="utf-8")
 FILE = re.compile(r"^(\d+)\. `([\w/.-]+)`: (.+(?:\n   .+)*)", re.MULTILINE)

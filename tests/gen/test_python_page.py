@@ -20,7 +20,6 @@ SMALLER = {
     "duration_s=1": "duration_s=0.1",
     "duration_s: 1": "duration_s: 0.1",
     "n=4,": "n=1,",
-    'channel="fan_end", ': "",
     r"gen\.record\(\n": "gen.record(\n    waviness_nm=20,",
 }
 

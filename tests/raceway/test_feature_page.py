@@ -8,6 +8,7 @@ import pytest
 from features.definitions import GROUPS, VIEWS, define_features
 from raceway.cli import cli
 from raceway.studies.feature_page import TABLES, draw_features, with_tables
+from tests.page_examples import run_blocks
 from tests.paths import ROOT
 from tests.tone_corpora import write_corpus
 
@@ -27,9 +28,7 @@ def test_the_tables_have_every_feature_in_its_group():
 def test_the_examples_run_one_after_the_other(tmp_path, monkeypatch, capsys):
     write_corpus(tmp_path / "corpus")
     monkeypatch.chdir(tmp_path)
-    names = {}
-    for block in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL):
-        exec(compile(block, "docs/features.md", "exec"), names)  # noqa: S102 - our own page
+    names = run_blocks("features.md", tmp_path)
     assert names["values"].shape == (4, len(define_features()))
     assert "time_rms m s-2 >= 0 root mean square" in capsys.readouterr().out
 
