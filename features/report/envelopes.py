@@ -12,14 +12,12 @@ from matplotlib.figure import Figure
 
 from features.faults import LOOKS
 from features.report.pictures import (
-    FAINT,
     INK,
     STYLE,
-    TOLERANCE,
     VERMILION,
     WIDTH,
     Shown,
-    fault_lines,
+    mark_lines,
     squared_envelope,
 )
 from features.signal.demodulation import analytic_band, envelope_spectrum
@@ -33,15 +31,10 @@ HIGHEST_ORDER = 17.0  # end of the axis
 
 
 def draw_envelope(axes: Axes, shown: Shown) -> None:
-    """Squared envelope spectrum of one record over orders: lines of its fault shaded, the other fundamentals dashed."""
+    """Squared envelope spectrum of one record over orders, with its lines marked."""
     order, spectrum = squared_envelope(shown)
     visible = (order > 0) & (order <= HIGHEST_ORDER)
-    own, others = fault_lines(shown.orders, shown.fault)
-    for line in own.values():
-        span = line * (1 - TOLERANCE), line * (1 + TOLERANCE)
-        axes.axvspan(*span, color=LOOKS[shown.fault].colour, alpha=0.25, linewidth=0)
-    for line in others.values():
-        axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
+    mark_lines(axes, shown)
     axes.plot(order[visible], spectrum[visible], color=INK, linewidth=0.7)
     axes.set(xlim=(0, HIGHEST_ORDER), ylim=(0, None))
 

@@ -194,9 +194,17 @@ def draw_envelope_spectrum(axes: Axes, shown: Shown, under: Shown | None = None)
 
 
 def draw_cursors(axes: Axes, shown: Shown) -> float:
-    """Lines of the fault over orders, shaded, with their sidebands dotted, and those of other faults dashed; the last order drawn."""
-    own, others = fault_lines(shown.orders, shown.fault)
+    """Lines of the fault and of others over orders as `mark_lines`, with their names; the last order drawn."""
+    own, others = mark_lines(axes, shown)
     top = highest_drawn_order(own, others)
+    axes.set(xlabel="order of the shaft", xlim=(0, top))
+    name_lines(axes, own, others, LOOKS[shown.fault].colour, top)
+    return top
+
+
+def mark_lines(axes: Axes, shown: Shown) -> tuple[dict[str, float], dict[str, float]]:
+    """Lines of the fault over orders, shaded, with their sidebands dotted, and those of others dashed; both as `fault_lines`."""
+    own, others = fault_lines(shown.orders, shown.fault)
     look = LOOKS[shown.fault]
     side = 1.0 if look.side == SHAFT.base else float(getattr(shown.orders, look.side))
     for line in own.values():
@@ -205,9 +213,7 @@ def draw_cursors(axes: Axes, shown: Shown) -> float:
             axes.axvline(beside, color=look.colour, linewidth=0.6, linestyle=(0, (1, 2)))
     for line in others.values():
         axes.axvline(line, color=FAINT, linewidth=0.7, linestyle=(0, (2, 2)))
-    axes.set(xlabel="order of the shaft", xlim=(0, top))
-    name_lines(axes, own, others, look.colour, top)
-    return top
+    return own, others
 
 
 def highest_drawn_order(own: Mapping[str, float], others: Mapping[str, float]) -> float:

@@ -23,6 +23,7 @@ from features.report.summaries import draw_scores
 from features.table import feature_table
 from gen.corpus import FAULTS, SCHEMA, make_dataset, new_corpus, open_corpus
 from gen.support.errors import CorpusError
+from tests.browser import CHROMIUM, browser
 
 FS = 10_000.0
 ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
@@ -372,3 +373,22 @@ def test_the_curve_of_false_alarms_has_the_points_of_the_results(results):
     found = results.baselines["ensemble"].grouped.roc
     (panel,) = draw_roc(found).axes
     np.testing.assert_allclose(panel.lines[0].get_ydata()[1:], found.detected)
+
+
+@pytest.mark.usefixtures("page")
+@pytest.mark.skipif(CHROMIUM is None, reason="no Chromium")
+def test_on_a_narrow_window_text_of_figures_stays_legible_and_what_is_wide_scrolls_by_keys(folder, tmp_path):
+    """Only these regions are wider than the page, and figures keep nine tenths of their size or more."""
+    with browser(tmp_path / "profile") as opened:
+        for dark in (False, True):
+            opened.look(500, dark=dark)
+            opened.open(folder / "report.html")
+            assert opened.value("document.documentElement.scrollWidth <= document.documentElement.clientWidth")
+            scales = opened.value("[...document.images].map(image => image.clientWidth / image.naturalWidth)")
+            assert min(scales) > 0.9
+            wide = opened.value(
+                "[...document.querySelectorAll('div.scroll')].filter(d => d.scrollWidth > d.clientWidth)"
+                ".map(d => d.tabIndex + (d.ariaLabel ? ' told' : ''))"
+            )
+            assert set(wide) == {"0 told"}
+        assert opened.errors == []
