@@ -50,7 +50,7 @@ generated: $(VENV)/installed
 reference: $(VENV)/installed
 	$(BIN)/python -m raceway.studies.reference_model
 
-# the site under out/docs; index.html opens it, without a server
+# the site under out/docs; index.html opens it, without a server. The tutorials run, which takes three minutes
 docs: $(VENV)/installed
 	$(BIN)/python -m pip install --quiet --editable '.[docs]'
 	$(BIN)/sphinx-build --quiet --fail-on-warning --keep-going -c docs/site -b html . out/docs
