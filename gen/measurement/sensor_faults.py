@@ -22,7 +22,7 @@ from scipy.fft import irfft, next_fast_len, rfft
 from gen.measurement.rattle import rattling
 from gen.measurement.rig import base_transmissibility
 from gen.scenarios import Mode, Purpose, Scenario
-from gen.scenarios.model import Drawn
+from gen.scenarios.sensing import Drawn
 from gen.support.units import decibel_to_ratio
 
 FloatArray = NDArray[np.floating]

@@ -3,6 +3,7 @@
 ============= =================================================================
 module        responsibility
 ============= =================================================================
+sensing       dataclasses of channels, transfer paths, background and sensor faults
 model         dataclasses of rig, specimen and record; random streams
 points        quasi-random points
 draws         draw values from the distributions of a recipe section
@@ -23,28 +24,30 @@ from gen.scenarios.checks import check_scenario, simulation_errors
 from gen.scenarios.classes import fault_of_each_specimen, first_records, first_specimens
 from gen.scenarios.draw import draw_scenarios
 from gen.scenarios.model import (
-    Background,
     Gains,
-    Gear,
-    Mode,
     Operation,
     OtherBearing,
-    Path,
-    Pickup,
     Purpose,
-    RecordSensorFaults,
     Rig,
-    RigSensorFaults,
     Scenario,
     Settings,
-    ShaftModulation,
     Spall,
     Specimen,
-    Tone,
     Wear,
     stream,
 )
 from gen.scenarios.records import with_level
+from gen.scenarios.sensing import (
+    Background,
+    Gear,
+    Mode,
+    Path,
+    Pickup,
+    RecordSensorFaults,
+    RigSensorFaults,
+    ShaftModulation,
+    Tone,
+)
 from gen.scenarios.settings import common_settings, settings_of
 from gen.scenarios.stored import read_scenario, read_scenarios, scenario_texts
 

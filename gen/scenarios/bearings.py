@@ -16,7 +16,8 @@ from gen.recipe.distributions import weighted_index
 from gen.recipe.machine import named_bearing
 from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import draw_damage
-from gen.scenarios.model import OTHER_STREAMS, Drawn, OtherBearing, Purpose, Rig, Specimen, stream
+from gen.scenarios.model import OTHER_STREAMS, OtherBearing, Purpose, Rig, Specimen, stream
+from gen.scenarios.sensing import Drawn
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio
 

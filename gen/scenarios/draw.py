@@ -27,22 +27,11 @@ from gen.scenarios.bearings import draw_as_built, draw_bearing, draw_other_beari
 from gen.scenarios.classes import fault_of_each_specimen, possible_entries
 from gen.scenarios.draws import Draws, Known, known_of, known_of_rig
 from gen.scenarios.faults import draw_damage
-from gen.scenarios.model import (
-    Background,
-    Mode,
-    Path,
-    Pickup,
-    Purpose,
-    Rig,
-    Scenario,
-    ShaftModulation,
-    Specimen,
-    Tone,
-    stream,
-)
+from gen.scenarios.model import Purpose, Rig, Scenario, Specimen, stream
 from gen.scenarios.operating import Operating, operating_of
 from gen.scenarios.points import points_of
 from gen.scenarios.records import Source, draw_record, record_points, source_of
+from gen.scenarios.sensing import Background, Mode, Path, Pickup, ShaftModulation, Tone
 from gen.scenarios.sensor_faults import draw_gear, draw_rig_sensor_faults
 from gen.support.errors import RecipeError
 from gen.support.units import decibel_to_ratio, percent_to_share

@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 
 from gen.recipe import Recipe, Section, quantities
 from gen.recipe.distributions import Grid, interval, is_within
-from gen.scenarios.model import Drawn, Rig
+from gen.scenarios.model import Rig
+from gen.scenarios.sensing import Drawn
 from gen.support.errors import RecipeError
 from gen.support.units import split_unit
 

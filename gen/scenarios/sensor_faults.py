@@ -10,7 +10,8 @@ import numpy as np
 
 from gen.recipe import Recipe, Section
 from gen.scenarios.draws import Draws
-from gen.scenarios.model import Drawn, Gear, Purpose, RecordSensorFaults, RigSensorFaults, stream
+from gen.scenarios.model import Purpose, stream
+from gen.scenarios.sensing import Drawn, Gear, RecordSensorFaults, RigSensorFaults
 from gen.support.units import decibel_to_ratio, to_si
 
 
