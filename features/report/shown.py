@@ -8,9 +8,9 @@ import xarray as xr
 
 from features.band import LEAST_WIDTH, Band
 from features.channels import channel_number
-from features.faults import UNKNOWN
+from features.faults import FUNDAMENTALS, UNKNOWN
 from features.indicators import Orders
-from features.report.pictures import Shown
+from features.report.pictures import Shown, fault_lines
 from features.signal.orders import angles_from_speed
 from features.signal.rows import FloatArray
 from features.signal.tracking import track_speed
@@ -64,11 +64,24 @@ def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = Fal
         signal=record[SIGNAL].isel(channel=channel).values.astype(float),
         fs=float(record["sample_rate"]),
         shaft_rate=float(record["shaft_rate"]),
-        orders=Orders(*(np.asarray(record[name].values, dtype=float) for name in Orders._fields)),
+        orders=_orders(record),
         fault=fault,
+        of_other=_lines_of_other(record),
     )
     ends = [float(record[name]) for name in ("first_shaft_rate", "last_shaft_rate") if name in record]
     return _turning(shown, *(sorted(ends) if len(ends) == 2 else [shown.shaft_rate] * 2))
+
+
+def _orders(record: xr.Dataset, prefix: str = "") -> Orders:
+    return Orders(*(np.asarray(record[f"{prefix}{name}"].values, dtype=float) for name in Orders._fields))
+
+
+def _lines_of_other(record: xr.Dataset) -> dict[str, float]:
+    """Fundamental lines of the fault of the other bearing on the shaft, if the record has one."""
+    if "other_fault" not in record:
+        return {}
+    lines, _ = fault_lines(_orders(record, "other_"), FAULT_NAMES[int(record["other_fault"])])
+    return {line.label: lines[line.label] for line in FUNDAMENTALS if line.label in lines}
 
 
 def can_be_drawn(shown: Shown) -> bool:
