@@ -31,6 +31,11 @@ class Band(NamedTuple):
         return tuple(pairwise((*inner, self.high))) if inner else ((self.low, self.high),)
 
     @property
+    def lowest_rate(self) -> float:
+        """Sample rate below which not even its lowest narrow band is recorded, and no line is read in it [Hz]."""
+        return 2 * self.narrow[0][1]
+
+    @property
     def energy_edges(self) -> tuple[float, ...]:
         """Edges of the bands whose energies are features."""
         return (*(edge for edge in ENERGY_EDGES if edge < self.high), self.high)

@@ -35,7 +35,7 @@ WHITENING_WIDTH = 50.0  # Hz
 FLOOR_WIDTH = (3.0, 30.0)  # window of the floor: orders of the shaft, and its least width [Hz]
 
 SHORTEST = (2.0, 0.05)  # shaft revolutions and seconds below which a record shows no line
-LOWEST_RATE = 2.0 * DEFAULT_BAND.narrow[0][1]  # Hz, lowest sample rate for lines in the default band
+LOWEST_RATE = DEFAULT_BAND.lowest_rate  # Hz
 
 FAINTEST_ENERGY = 1e-12  # of the total energy, 120 dB below it
 
@@ -128,7 +128,7 @@ def _lines_and_shape(
     shape = np.full((len(x), len(feature_names(("shape",)))), np.nan)
     long_enough = np.flatnonzero(duration * shaft_rate >= SHORTEST[0])
     features = {"lines": lines, "shape": shape}
-    if fs < 2 * band.narrow[0][1] or duration < SHORTEST[1] or not long_enough.size:
+    if fs < band.lowest_rate or duration < SHORTEST[1] or not long_enough.size:
         return features
     shaft_rate, orders = shaft_rate[long_enough], Orders(*(order[long_enough] for order in orders))
     coefficients = fourier_coefficients(x[long_enough], fs, band.high)

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 import xarray as xr
 
-from features.band import DEFAULT_BAND, Band, band_attributes, checked_band
+from features.band import DEFAULT_BAND, Band, band_attributes, band_of, checked_band
 from features.channels import channel_number, joined_channels
 from features.definitions import GROUPS, feature_coordinates
 from features.indicators import Orders, indicators
@@ -124,6 +124,17 @@ def feature_table(
     features = ("record", "feature"), values, {"long_name": "features of the signal"}
     read |= {"records_with_missing_features": missing}
     return table.assign(features=features).assign_coords(coordinates).assign_attrs(read)
+
+
+def band_warnings(table: xr.Dataset) -> list[str]:
+    """A sentence if the records are sampled too slowly for lines in the band of a feature table."""
+    band, rate = band_of(table.attrs), float(table["sample_rate"][0])
+    if rate >= band.lowest_rate:
+        return []
+    needed, hz = f"need {band.lowest_rate:,.0f} Hz", f"{band.low:g}-{band.high:g} Hz"
+    return [
+        f"no record has lines and shape: in the band {hz} they {needed}, and the sample rate is {rate:,.0f} Hz; give a lower --band."
+    ]
 
 
 def block_features(

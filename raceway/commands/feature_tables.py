@@ -142,11 +142,12 @@ def table_of(
     """Feature table of a corpus, with progress, and warnings of labelled speeds that differ from the lines."""
     from features import feature_table
     from features.recording_speeds import speed_warnings
+    from features.table import band_warnings
     from gen.corpus import read_manifest
 
     options = team.options(read_manifest(corpus).records) | analysis.options()
     with progress("computing features", "parts") as report:
         table = feature_table(corpus, speed=speed, **options, progress=report)
-    for sentence in speed_warnings(table):
+    for sentence in (*band_warnings(table), *speed_warnings(table)):
         notice(f"warning: {sentence}")
     return table

@@ -10,10 +10,10 @@ import xarray as xr
 from distributed import Client
 
 from features import feature_table
-from features.band import Band, band_of
+from features.band import Band, band_attributes, band_of
 from features.definitions import GROUPS
-from features.indicators import feature_names
-from features.table import block_features
+from features.indicators import Orders, feature_names, indicators
+from features.table import band_warnings, block_features
 from features.table_files import read_table, write_table
 from gen.corpus import (
     MISSING_COUNT,
@@ -352,3 +352,15 @@ def test_a_table_names_the_band_of_its_features(corpus, tmp_path):
     table = read_table(tmp_path / "table.nc")
     assert band_of(table.attrs) == (300.0, 6000.0)
     assert tuple(table["feature"].values) == feature_names(("bands",), Band(300.0, 6000.0))
+
+
+@pytest.mark.parametrize(
+    ("rate", "band"), [(2999.0, (300.0, 5000.0)), (2560.0, (100.0, 1300.0)), (2560.0, (100.0, 1200.0))]
+)
+def test_a_sample_rate_too_low_for_lines_is_told_exactly_where_all_are_missing(rate, band):
+    time = np.arange(int(4 * rate)) / rate
+    x = np.random.default_rng(0).standard_normal((1, time.size)) * (1 + np.cos(2 * np.pi * 36 * time))
+    orders = Orders(*(np.array([order]) for order in (0.4, 3.6, 5.4, 2.3)))
+    values, _ = indicators(x, rate, np.array([10.0]), orders, ("lines", "shape"), Band(*band))
+    table = xr.Dataset({"sample_rate": ("record", [rate])}, attrs=band_attributes(Band(*band)))
+    assert bool(band_warnings(table)) == np.isnan(values).all()
