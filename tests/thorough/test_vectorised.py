@@ -7,6 +7,7 @@ import pytest
 from numba import njit
 
 from gen.physics.catalogue import CATALOGUE
+from gen.physics.extent import MAX_BALLS
 from gen.physics.kernel.compiling import LANES
 from gen.physics.kernel.layout import STATE_ROWS, make_shape, param_rows
 from gen.physics.kernel.step import advance
@@ -41,7 +42,7 @@ def assembly(shape):
     return advance_once.inspect_asm(advance_once.signatures[-1])
 
 
-@pytest.mark.parametrize("n_balls", [BALL_COUNTS[0], BALL_COUNTS[len(BALL_COUNTS) // 2], BALL_COUNTS[-1]])
+@pytest.mark.parametrize("n_balls", [BALL_COUNTS[0], BALL_COUNTS[len(BALL_COUNTS) // 2], BALL_COUNTS[-1], MAX_BALLS])
 def test_the_force_of_every_ball_is_computed_for_several_records_at_once(n_balls):
     code = assembly(make_shape(n_balls, 1, resonator=True, wavy=True, spalled=True, jittered=True, damped=True))
     assert len(PACKED_ROOT.findall(code)) >= STAGES * n_balls

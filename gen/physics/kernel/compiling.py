@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from llvmlite import ir
+from llvmlite import binding, ir
 from numba import njit, types
 from numba.core.compiler import Compiler
 from numba.extending import intrinsic, register_jitable
@@ -18,6 +18,11 @@ from numba.extending import intrinsic, register_jitable
 # Records advanced side by side. With 32 the kernel is as fast, but more lanes stay free (domain_randomised: 36 % of all instead of 19 %);
 # with 8 LLVM unrolls the loop over lanes and leaves it scalar.
 LANES = 16
+
+
+# By default LLVM compares at most 100 addresses to see that rows of an array do not overlap, and leaves longer loops scalar: the force of
+# 26 rollers took six times as long.
+binding.set_option("", "--memory-check-merge-threshold=1000000")
 
 
 class _NoAlias(Compiler):

@@ -57,9 +57,3 @@ def drop(profile: int, offset: float, half: float, arc: float, ball: float, race
     else:
         value = depth
     return value if from_edge > 0.0 else 0.0
-
-
-def largest_drop(width: float, arc: float, ball: float, race: float, depth: float) -> float:
-    """Deepest point of the geometric path over a spall of ``width`` [m]."""
-    half = min(0.5 * width / arc, FAR_INSIDE)
-    return float(drop(GEOMETRIC, 0.0, half, arc, ball, race, depth))
