@@ -192,7 +192,7 @@ def test_the_recipes_that_ship_keep_their_hashes():
         "every_fault": "2d7d00a6cdca5637",
         "fan": "de85976f70c769c2",
         "gearbox": "b8bb21235eda2240",
-        "main_shaft": "2e3bc13c25f69cc0",
+        "main_shaft": "e088453b606aeddf",
         "ophel2025": "6dde46564610c042",
         "pump": "11622f31b47c74a2",
         "quickstart": "4e3882da0bf554d7",
