@@ -5,7 +5,7 @@ import json
 import pytest
 
 from gen.physics.catalogue import CATALOGUE
-from gen.physics.kernel.drop import largest_drop
+from gen.physics.kernel.drop import GEOMETRIC, drop
 from tests.paths import GOLDEN
 
 DROPS = json.loads((GOLDEN / "model.json").read_text())["largest_drops_6205_um"]
@@ -15,5 +15,6 @@ DROPS = json.loads((GOLDEN / "model.json").read_text())["largest_drops_6205_um"]
 def test_the_largest_drop_is_the_one_of_the_model_study(row):
     bearing = CATALOGUE["6205"]
     for site, race in (("inner", bearing.inner_radius), ("outer", -bearing.outer_radius)):
-        found = largest_drop(row["width_mm"] * 1e-3, abs(race), bearing.ball_diameter / 2, race, 5e-3)
+        arc = abs(race)
+        found = drop(GEOMETRIC, 0.0, row["width_mm"] * 1e-3 / 2 / arc, arc, bearing.ball_diameter / 2, race, 5e-3)
         assert found * 1e6 == pytest.approx(row[site], rel=5e-3)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.extent import TABLE_POINTS
-from gen.physics.kernel.drop import GEOMETRIC, PROFILES, RECTANGULAR, TABLE, drop, largest_drop
+from gen.physics.kernel.drop import GEOMETRIC, PROFILES, RECTANGULAR, TABLE, drop
 from gen.physics.kernel.spalls import tabulated
 from gen.simulation.damage import cached_drop
 from tests.reference import rigid_path
@@ -99,10 +99,10 @@ def test_a_wider_spall_lets_a_ball_drop_deeper(half, race, wider):
 
 @law
 @given(st.floats(1e-4, 2e-3), races, depths)
-def test_the_largest_drop_is_the_largest_of_all_drops(width, race, depth):
+def test_the_drop_is_largest_in_the_middle(width, race, depth):
     half = width / 2 / abs(race)
     path = [fall(GEOMETRIC, offset, half, race, depth) for offset in np.linspace(-half, half, 101)]
-    assert largest_drop(width, abs(race), BALL, race, depth) == pytest.approx(max(path), rel=1e-12)
+    assert fall(GEOMETRIC, 0.0, half, race, depth) >= max(path)
 
 
 @every_profile
@@ -111,15 +111,6 @@ def test_the_largest_drop_is_the_largest_of_all_drops(width, race, depth):
 def test_the_drop_in_the_cache_has_the_bits_of_that_in_the_kernel(profile, share, half, race, depth):
     given = profile, share * half, half, abs(race), BALL, race, depth
     assert cached_drop(*given) == drop(*given)
-
-
-@law
-@given(st.floats(1e-4, 0.1), races, depths)
-def test_the_drop_in_the_middle_is_the_largest_drop_bit_for_bit(width, race, depth):
-    arc = abs(race)
-    assert cached_drop(GEOMETRIC, 0.0, 0.5 * width / arc, arc, BALL, race, depth) == largest_drop(
-        width, arc, BALL, race, depth
-    )
 
 
 @law
