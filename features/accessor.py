@@ -34,7 +34,8 @@ class CorpusAccessor(Shown):
         self._records = records
 
     def _heading(self) -> str:
-        return f"{self._records.attrs.get('title', 'Corpus')}: {np.size(self._records['fault_name']):,} of its records"
+        count = np.size(self._records["fault_name"])
+        return f"{count:,} record{'s' * (count != 1)} of {self._records.attrs.get('title', 'a corpus')}"
 
     def _facts(self) -> Mapping[str, object]:
         records = self._records
