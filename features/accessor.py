@@ -28,9 +28,17 @@ Compute = Callable[[FloatArray], tuple[FloatArray, FloatArray]]
 
 @xr.register_dataset_accessor("raceway")
 class CorpusAccessor(Shown):
-    """Classes and signals of records, and the next steps."""
+    """Classes and signals of records, and the next steps.
+
+    Raises
+    ------
+    ValueError
+        If these are not the records of a corpus.
+    """
 
     def __init__(self, records: xr.Dataset) -> None:
+        if not {"fault_name", TIME} <= set(records.coords):
+            raise ValueError("raceway: needs the records of a corpus, such as gen.open_corpus gives.")
         self._records = records
 
     def _heading(self) -> str:
