@@ -24,7 +24,7 @@ BINS = 8  # of width
 DETECTED = 0.9  # share of the widths a90 and a90/95
 CONFIDENCE = 0.95  # of one edge of the band
 RESAMPLES = 200
-INTERVAL = (0.025, 0.975)
+INTERVAL = (0.025, 0.975)  # quantiles of a 95 % interval
 FALSE_ALARMS = np.array([0, 0.005, 0.01, 0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1])
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.stats import rankdata
 
 from features.baselines.calibration import SMALLEST
-from features.baselines.detection import Detection, Roc, detection, roc
+from features.baselines.detection import INTERVAL, Detection, Roc, detection, roc
 from features.baselines.predictions import Predictions
 from features.baselines.records import FloatArray, IntArray, Records
 from features.faults import HEALTHY
@@ -26,7 +26,6 @@ from gen.support.shown import Shown
 HEALTHY_CODE = FAULTS.index(HEALTHY)
 BINS = 10  # of the reliability diagram
 RESAMPLES = 1000
-INTERVAL = (0.025, 0.975)  # quantiles of a 95 % interval
 Interval = tuple[float, float]
 
 
