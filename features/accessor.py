@@ -16,7 +16,7 @@ from features.signal.envelopes import band_envelope_spectrum
 from features.signal.impulsive import kurtogram, spectral_kurtosis
 from features.signal.motion import HIGH_PASS, displacement, velocity
 from features.signal.orders import order_spectrum, resample_to_angle
-from features.signal.rows import FloatArray, as_records
+from features.signal.rows import FloatArray
 from features.signal.separation import cepstrum, prediction_residual, separate_random
 from features.signal.spectra import psd
 from gen.support.shown import Shown
@@ -151,7 +151,7 @@ class SignalAccessor:
             Samples per turn of the shaft.
         """
         signals, angles = xr.broadcast(self._signals, angle)
-        rows = as_records(np.reshape(signals.values, (-1, signals.sizes[TIME])))
+        rows = np.reshape(signals.values, (-1, signals.sizes[TIME]))
         orders, found = order_spectrum(
             resample_to_angle(rows, np.reshape(angles.values, rows.shape), per_turn), per_turn
         )
@@ -168,7 +168,7 @@ class SignalAccessor:
         along, probed = compute(self._probe())
 
         def flat(x: FloatArray) -> FloatArray:
-            return compute(as_records(x.reshape(-1, x.shape[-1])))[1].reshape(*x.shape[:-1], -1)
+            return compute(x.reshape(-1, x.shape[-1]))[1].reshape(*x.shape[:-1], -1)
 
         made = xr.apply_ufunc(
             flat,

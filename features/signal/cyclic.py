@@ -28,6 +28,7 @@ from scipy.fft import fft, ifft, next_fast_len, rfft
 from scipy.special import gammainccinv
 
 from features.signal.demodulation import ZERO_PADDING
+from features.signal.door import Band, Positive, Rows, Share, checked
 from features.signal.rows import ComplexArray, FloatArray, hann_window, squared_modulus
 
 WINDOW_LOSS = 1.5  # coefficients per independent coefficient under a sine window
@@ -52,19 +53,21 @@ class Coherence(NamedTuple):
 
     cyclic: FloatArray
     spectral: FloatArray
-    squared: FloatArray
+    squared: Rows
     independent: float
 
-    def threshold(self, probability: float) -> float:
+    @checked
+    def threshold(self, probability: Share) -> float:
         """Squared modulus that one value of stationary noise exceeds with a probability."""
         return 1 - probability ** (1 / (self.independent - 1))
 
-    def envelope_threshold(self, probability: float, band: tuple[float, float] | None = None) -> float:
+    @checked
+    def envelope_threshold(self, probability: Share, band: Band | None = None) -> float:
         """Height that one bin of `enhanced_envelope_spectrum` exceeds in stationary noise with a probability."""
         bands = np.count_nonzero(self.inside(band))
         return float(gammainccinv(bands, probability) / (bands * self.independent))
 
-    def inside(self, band: tuple[float, float] | None) -> np.ndarray:
+    def inside(self, band: Band | None) -> np.ndarray:
         """Whether each spectral frequency lies in a band [Hz]; None for all, shape (spectral,)."""
         low, high = (0.0, np.inf) if band is None else band
         chosen = (self.spectral >= low) & (self.spectral <= high)
@@ -73,7 +76,8 @@ class Coherence(NamedTuple):
         return chosen
 
 
-def spectral_coherence(x: FloatArray, fs: float, highest: float, *, resolution: float = 200.0) -> Coherence:
+@checked
+def spectral_coherence(x: Rows, fs: Positive, highest: Positive, *, resolution: Positive = 200.0) -> Coherence:
     """Squared spectral coherence at all cyclic frequencies up to ``highest`` [Hz].
 
     Halfway between two cyclic frequencies of the grid, a line is 2 % lower. Tones of the machine are coherent, too:
@@ -122,6 +126,7 @@ def _coherence(coefficients: ComplexArray, width: int, lags: int) -> FloatArray:
     return product / np.maximum(within * within[:, :1], least).astype(product.dtype)
 
 
-def enhanced_envelope_spectrum(coherence: Coherence, band: tuple[float, float] | None = None) -> FloatArray:
+@checked
+def enhanced_envelope_spectrum(coherence: Coherence, band: Band | None = None) -> FloatArray:
     """Mean squared coherence over all spectral frequencies, or over those in a band [Hz], shape (record, cyclic)."""
-    return coherence.squared[:, coherence.inside(band)].mean(axis=1)
+    return coherence.squared[..., coherence.inside(band), :].mean(axis=-2)

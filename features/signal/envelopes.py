@@ -1,13 +1,13 @@
 """Envelope spectrum of a band of records in one call: Fourier coefficients, analytic signal of the band, spectrum of its envelope."""
 
 from features.signal.demodulation import analytic_band, envelope_spectrum, squared_envelope_spectrum
-from features.signal.rows import FloatArray, as_records
+from features.signal.door import Band, Positive, Rows, checked
+from features.signal.rows import FloatArray
 from features.signal.spectra import fourier_coefficients
 
 
-def band_envelope_spectrum(
-    x: FloatArray, fs: float, band: tuple[float, float], *, squared: bool = False
-) -> tuple[FloatArray, FloatArray]:
+@checked
+def band_envelope_spectrum(x: Rows, fs: Positive, band: Band, *, squared: bool = False) -> tuple[FloatArray, Rows]:
     """Frequencies [Hz], shape (frequency,), and amplitude spectrum of the envelope of a band, shape (record, frequency).
 
     Parameters
@@ -26,7 +26,6 @@ def band_envelope_spectrum(
     ValueError
         If no frequency lies in the band.
     """
-    x = as_records(x)
     duration, (low, high) = x.shape[1] / fs, band
     if not 0 <= low < min(high, fs / 2) or round(low * duration) >= round(min(high, fs / 2) * duration):
         raise ValueError(

@@ -26,6 +26,7 @@ from scipy.fft import rfft
 from scipy.special import gammainccinv
 
 from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_amplitudes, log_level, weight_by_hann
+from features.signal.door import NotNegative, OfEach, Positive, Rows, Share, checked
 from features.signal.lines import COMB_HARMONICS, combs
 from features.signal.rows import ComplexArray, FloatArray, IntArray, squared_modulus
 from features.signal.spectra import fourier_coefficients, hann_segments
@@ -51,14 +52,15 @@ class BandTree(NamedTuple):
 
     levels: IntArray
     edges: FloatArray
-    score: FloatArray
+    score: Rows
 
     def best(self) -> FloatArray:
         """Edges of the band of highest score of each record [Hz], shape (record, 2)."""
         return self.edges[np.argmax(self.score, axis=-1)]
 
 
-def kurtogram(x: FloatArray, fs: float, *, narrowest: float = 0.0) -> BandTree:
+@checked
+def kurtogram(x: Rows, fs: Positive, *, narrowest: NotNegative = 0.0) -> BandTree:
     """Kurtosis ``E|z|^4 / (E|z|^2)^2 - 2`` of the analytic signal z of each band: 0 for noise, -1 for a tone, above for impulses.
 
     Parameters
@@ -76,7 +78,8 @@ def kurtogram(x: FloatArray, fs: float, *, narrowest: float = 0.0) -> BandTree:
     return BandTree(levels, edges, band_kurtosis(coefficients, bands, OVERLAP))
 
 
-def comb_bands(x: FloatArray, fs: float, rate: FloatArray) -> BandTree:
+@checked
+def comb_bands(x: Rows, fs: Positive, rate: OfEach) -> BandTree:
     """Level of a fault line and two harmonics over the floor of the squared envelope spectrum of each band [nepers].
 
     The bands are those of `kurtogram` with a width of at least four fault rates; narrower ones have the score ``-inf``.
@@ -90,7 +93,6 @@ def comb_bands(x: FloatArray, fs: float, rate: FloatArray) -> BandTree:
     rate
         Rate of the fault [Hz], shape (record,), right within 2 %.
     """
-    rate = np.asarray(rate, dtype=float)
     coefficients = fourier_coefficients(x, fs, fs / 2)
     levels, bands, edges = _tree(coefficients, fs / x.shape[-1], COMB_WIDTH * float(rate.min()))
     score = np.stack(
@@ -113,10 +115,11 @@ class SpectralKurtosis(NamedTuple):
     """
 
     frequencies: FloatArray
-    kurtosis: FloatArray
+    kurtosis: Rows
     segments: int
 
-    def threshold(self, probability: float) -> float:
+    @checked
+    def threshold(self, probability: Share) -> float:
         """Kurtosis that a bin of stationary Gaussian noise exceeds with a probability.
 
         The gamma distribution with the exact variance and skewness [4]_; for many segments, the normal one with variance
@@ -129,7 +132,8 @@ class SpectralKurtosis(NamedTuple):
         return float(np.sqrt(variance / shape) * (gammainccinv(shape, probability) - shape))
 
 
-def spectral_kurtosis(x: FloatArray, fs: float, *, segment: float = 0.005) -> SpectralKurtosis:
+@checked
+def spectral_kurtosis(x: Rows, fs: Positive, *, segment: Positive = 0.005) -> SpectralKurtosis:
     """Kurtosis of the coefficients of Hann-windowed segments that overlap by half, without bias in stationary noise.
 
     The two lowest and the two highest frequencies are left out, where a coefficient overlaps with its mirror image.

@@ -13,10 +13,11 @@ from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from features.signal.rows import FloatArray, as_records
+from features.signal.door import Positive, Rows, Values, checked
+from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 
 HIGH_PASS = 10.0  # Hz, lower end of the band of ISO 20816
@@ -33,7 +34,8 @@ ZONE_LIMITS: Mapping[tuple[int, str], tuple[float, float, float]] = {
 """Highest rms velocity of zones A, B and C [mm/s] by group of machines and support [2]_."""
 
 
-def velocity(x: FloatArray, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
+@checked
+def velocity(x: Rows, fs: Positive, high_pass: Positive = HIGH_PASS) -> Rows:
     """Velocity, from accelerations of shape (record, time), in their unit times seconds and of the same shape.
 
     The gain of the high-pass is 1 from ``high_pass`` on, 0 up to half of it, and rises as half a cosine in between. The
@@ -57,7 +59,8 @@ def velocity(x: FloatArray, fs: float, high_pass: float = HIGH_PASS) -> FloatArr
     return _integrate(x, fs, high_pass, 1)
 
 
-def displacement(x: FloatArray, fs: float, high_pass: float = HIGH_PASS) -> FloatArray:
+@checked
+def displacement(x: Rows, fs: Positive, high_pass: Positive = HIGH_PASS) -> Rows:
     """Displacement, from accelerations of shape (record, time), in their unit times s²; as `velocity`."""
     return _integrate(x, fs, high_pass, 2)
 
@@ -65,7 +68,6 @@ def displacement(x: FloatArray, fs: float, high_pass: float = HIGH_PASS) -> Floa
 def _integrate(x: FloatArray, fs: float, high_pass: float, times: int) -> FloatArray:
     if not 0 < high_pass < fs / 2:
         raise ValueError(f"high_pass: {high_pass:g} Hz is not between 0 and half the sample rate, {fs / 2:g} Hz.")
-    x = as_records(x)
     count = next_fast_len(x.shape[1] + round(fs / high_pass), real=True)  # zeros part the end from the start
     coefficients = np.asarray(rfft(x - x.mean(axis=1, keepdims=True), count, axis=1))
     frequency = np.arange(count // 2 + 1) * (fs / count)
@@ -75,12 +77,12 @@ def _integrate(x: FloatArray, fs: float, high_pass: float, times: int) -> FloatA
     return np.asarray(irfft(coefficients, count, axis=1, overwrite_x=True))[:, : x.shape[1]]
 
 
-def velocity_rms(x: FloatArray, fs: float) -> FloatArray:
+@checked
+def velocity_rms(x: Rows, fs: Positive) -> Rows:
     """Root mean square of the velocity in 10-1000 Hz [m/s] of accelerations [m/s²], shape (record, time) to (record,).
 
     NaN for signals shorter than 1 s, or a sample rate of 2000 Hz or less.
     """
-    x = as_records(x)
     low, high = VELOCITY_BAND
     if x.shape[1] < VELOCITY_SECONDS * fs or fs <= 2 * high:
         return np.full(len(x), np.nan)
@@ -90,10 +92,11 @@ def velocity_rms(x: FloatArray, fs: float) -> FloatArray:
     return np.sqrt(np.trapezoid(power, frequencies[band], axis=1))
 
 
+@checked
 def iso_zone(
-    velocity_rms_mm_s: ArrayLike, group: Literal[1, 2], support: Literal["rigid", "flexible"] = "rigid"
+    velocity_rms_mm_s: Values, group: Literal[1, 2], support: Literal["rigid", "flexible"] = "rigid"
 ) -> NDArray[np.str_]:
-    """Zone of ISO 20816-3, ``A`` (as new) to ``D`` (may cause damage), of the shape of the argument; empty for NaN.
+    """Zone of ISO 20816-3, ``A`` (as new) to ``D`` (may cause damage), of the shape of the argument.
 
     The velocity is that of a bearing housing; its zone is of the highest of the directions and bearings of a machine.
 
@@ -112,10 +115,10 @@ def iso_zone(
     Raises
     ------
     ValueError
-        For a group or support that the standard does not have.
+        For a group or support that the standard does not have, or a velocity that is negative or missing.
     """
     if (group, support) not in ZONE_LIMITS:
         raise ValueError(f"group {group!r}, support {support!r}: give group 1 or 2, and support rigid or flexible.")
-    level = np.asarray(velocity_rms_mm_s, dtype=float)
-    zone = np.searchsorted(ZONE_LIMITS[group, support], level, side="left")
-    return np.where(np.isnan(level), "", np.array(list(ZONES))[zone])
+    if (velocity_rms_mm_s < 0).any():
+        raise ValueError(f"velocity_rms_mm_s: {velocity_rms_mm_s.min():g} is negative; give the rms of a velocity.")
+    return np.array(list(ZONES))[np.searchsorted(ZONE_LIMITS[group, support], velocity_rms_mm_s, side="left")]

@@ -20,7 +20,8 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from features.signal.demodulation import amplitude_spectrum
-from features.signal.rows import FloatArray, as_records, row_kernel
+from features.signal.door import Count, Number, Positive, Rows, checked
+from features.signal.rows import FloatArray, row_kernel
 
 CROSSINGS = 32  # zero crossings of the sinc function to each side
 BETA = 8.0  # of the Kaiser window: orders above half the samples per turn are 80 dB down
@@ -32,9 +33,9 @@ REARMED = 0.1  # of the range of a tacho, by which it must fall below the thresh
 class SynchronousAverage(NamedTuple):
     """Part of resampled signals that repeats with the shaft, and the rest, in the unit of the signals."""
 
-    average: FloatArray
+    average: Rows
     """Mean over all whole periods, shape (record, angle), one period long."""
-    residual: FloatArray
+    residual: Rows
     """Signals without the periodic repetition of their average, shape (record, angle)."""
 
 
@@ -45,7 +46,7 @@ class OrderMap(NamedTuple):
     """Middle of each window [turns after the first sample], shape (window,)."""
     orders: FloatArray
     """Shape (order,)."""
-    amplitude: FloatArray
+    amplitude: Rows
     """Amplitudes in the unit of the signals, shape (record, window, order)."""
 
 
@@ -75,7 +76,8 @@ def resample_to_orders(
     return _interpolate(x, np.arange(count) * intervals, intervals, _kernel_table())
 
 
-def resample_to_angle(x: FloatArray, angle: FloatArray, per_turn: int) -> FloatArray:
+@checked
+def resample_to_angle(x: Rows, angle: Rows, per_turn: Count) -> Rows:
     """Samples at equal angles of a shaft of any speed, shape (record, time) to (record, turns * ``per_turn``).
 
     The first sample is at the first angle of the record that is a whole number of turns. All records have as many whole
@@ -96,8 +98,7 @@ def resample_to_angle(x: FloatArray, angle: FloatArray, per_turn: int) -> FloatA
     ValueError
         If an angle does not ascend or is not finite, or a record has no whole turn.
     """
-    x = as_records(x)
-    turns = np.broadcast_to(np.asarray(angle, dtype=float) / (2 * np.pi), x.shape)
+    turns = np.broadcast_to(angle.astype(float) / (2 * np.pi), x.shape)
     wrong = np.flatnonzero(~(np.diff(turns, axis=1) > 0).all(axis=1))
     if len(wrong):
         raise ValueError(
@@ -112,15 +113,17 @@ def resample_to_angle(x: FloatArray, angle: FloatArray, per_turn: int) -> FloatA
     return _interpolate(x, place, np.gradient(place, axis=1), _kernel_table())
 
 
-def angles_from_speed(shaft_rate: FloatArray, fs: float) -> FloatArray:
+@checked
+def angles_from_speed(shaft_rate: Rows, fs: Positive) -> Rows:
     """Angle of the shaft at each sample [rad], 0 at the first, from its rate at each sample [Hz]; both (record, time)."""
-    rate = as_records(shaft_rate).astype(float, copy=False)
+    rate = shaft_rate.astype(float, copy=False)
     angle = np.zeros(rate.shape)
     np.cumsum((rate[:, 1:] + rate[:, :-1]) * (np.pi / fs), axis=1, out=angle[:, 1:])
     return angle
 
 
-def angles_from_tacho(tacho: FloatArray, pulses_per_turn: int = 1, threshold: float | None = None) -> FloatArray:
+@checked
+def angles_from_tacho(tacho: Rows, pulses_per_turn: Count = 1, threshold: Number | None = None) -> Rows:
     """Angle of the shaft at each sample [rad], 0 at the first pulse, shape (record, time).
 
     A pulse is where the tacho rises through the threshold, interpolated linearly between two samples. A cubic spline
@@ -141,7 +144,7 @@ def angles_from_tacho(tacho: FloatArray, pulses_per_turn: int = 1, threshold: fl
     ValueError
         If a record has fewer than two pulses.
     """
-    tacho = as_records(tacho).astype(float, copy=False)
+    tacho = tacho.astype(float, copy=False)
     low, high = tacho.min(axis=1), tacho.max(axis=1)
     level = 0.5 * (low + high) if threshold is None else np.full(len(tacho), float(threshold))
     time, angle = np.arange(tacho.shape[1], dtype=float), np.empty(tacho.shape)
@@ -174,7 +177,8 @@ def _pulses(signal: FloatArray, threshold: float, rearmed: float) -> FloatArray:
     return places[:count]
 
 
-def order_spectrum(y: FloatArray, per_turn: int) -> tuple[FloatArray, FloatArray]:
+@checked
+def order_spectrum(y: Rows, per_turn: Count) -> tuple[FloatArray, Rows]:
     """Orders, shape (order,), and amplitude spectrum of resampled signals, shape (record, order).
 
     As `features.signal.demodulation.envelope_spectrum`: a sine of amplitude a gives a line of height a, and the grid is
@@ -187,10 +191,11 @@ def order_spectrum(y: FloatArray, per_turn: int) -> tuple[FloatArray, FloatArray
     per_turn
         Samples per turn.
     """
-    return amplitude_spectrum(as_records(y), per_turn)
+    return amplitude_spectrum(y, per_turn)
 
 
-def synchronous_average(y: FloatArray, per_turn: int, turns: int = 1) -> SynchronousAverage:
+@checked
+def synchronous_average(y: Rows, per_turn: Count, turns: Count = 1) -> SynchronousAverage:
     """Mean of resampled signals over periods of ``turns`` turns, and the signals without it.
 
     Noise is weaker in the average by the root of the number of periods. A part that does not repeat with the period is
@@ -210,7 +215,6 @@ def synchronous_average(y: FloatArray, per_turn: int, turns: int = 1) -> Synchro
     ValueError
         If the signals are shorter than a period.
     """
-    y = as_records(y)
     length = per_turn * turns
     periods = y.shape[1] // length
     if periods < 1:
@@ -222,7 +226,8 @@ def synchronous_average(y: FloatArray, per_turn: int, turns: int = 1) -> Synchro
     return SynchronousAverage(average, y - repeated)
 
 
-def order_map(y: FloatArray, per_turn: int, turns: int = 16) -> OrderMap:
+@checked
+def order_map(y: Rows, per_turn: Count, turns: Count = 16) -> OrderMap:
     """Order spectra of windows of some turns, which overlap by half: a waterfall in which lines of the shaft stand still.
 
     Parameters
@@ -239,7 +244,6 @@ def order_map(y: FloatArray, per_turn: int, turns: int = 16) -> OrderMap:
     ValueError
         If the signals are shorter than a window.
     """
-    y = as_records(y)
     length = per_turn * turns
     if y.shape[1] < length:
         raise ValueError(f"y: {y.shape[1] / per_turn:.3g} turns are less than a window of {turns}; give fewer turns.")

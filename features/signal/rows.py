@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 from numba import njit
-from numpy.typing import ArrayLike, DTypeLike, NDArray
+from numpy.typing import DTypeLike, NDArray
 
 FloatArray = NDArray[np.floating[Any]]
 IntArray = NDArray[np.integer[Any]]
@@ -21,22 +21,6 @@ Without "reassoc", with which cached and freshly compiled code differed in the l
 """
 
 PARTIAL_SUMS = 16
-
-
-def as_records(x: ArrayLike) -> FloatArray:
-    """Records as floating-point numbers of their own precision, at least single, shape (record, time).
-
-    Raises
-    ------
-    ValueError
-        If the array has not two axes.
-    """
-    x = np.asarray(x)
-    if x.ndim != 2:
-        raise ValueError(
-            f"an array of shape {x.shape} is given in place of (record, time); give x[None] for one signal."
-        )
-    return np.ascontiguousarray(x, dtype=np.result_type(x.dtype, np.float32))
 
 
 @row_kernel

@@ -20,13 +20,13 @@ Cepstral pre-whitening, which sets the whole cepstrum to zero, is `features.sign
        vibration fault detection", *Mech. Syst. Signal Process.* 82 (2017) 461-477.
 """
 
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
 from scipy.linalg import cho_factor, cho_solve, solve_toeplitz
 
+from features.signal.door import Bands, Count, OfEach, Positive, Rows, checked
 from features.signal.rows import ComplexArray, FloatArray, squared_modulus
 from features.signal.spectra import hann_segments
 
@@ -38,16 +38,18 @@ LOADING = 1e-9  # of the power, added as white noise: it keeps the equations of 
 class Separation(NamedTuple):
     """Two parts of records that add up to them without their mean, shapes (record, time)."""
 
-    deterministic: FloatArray
-    random: FloatArray
+    deterministic: Rows
+    random: Rows
 
 
-def cepstrum(x: FloatArray) -> FloatArray:
+@checked
+def cepstrum(x: Rows) -> Rows:
     """Real cepstrum, shape (record, time): value k belongs to the quefrency of k samples, and to the same from the end."""
     return np.asarray(irfft(_log_modulus(np.asarray(rfft(x, axis=-1))), n=x.shape[-1], axis=-1))
 
 
-def lifter(x: FloatArray, fs: float, removed: Sequence[tuple[float, float]]) -> FloatArray:
+@checked
+def lifter(x: Rows, fs: Positive, removed: Bands) -> Rows:
     """Records with ranges of their cepstrum set to zero and with their phases unchanged, shape (record, time).
 
     Parameters
@@ -74,7 +76,8 @@ def _log_modulus(coefficients: ComplexArray) -> FloatArray:
     return np.log(np.maximum(modulus, np.finfo(modulus.dtype).tiny))
 
 
-def separate_random(x: FloatArray, fs: float, *, segment: float = 0.1, delay: float = 0.1) -> Separation:
+@checked
+def separate_random(x: Rows, fs: Positive, *, segment: Positive = 0.1, delay: Positive = 0.1) -> Separation:
     """Tones, and the rest of each record, by the correlation of segments with later ones.
 
     The modulus of the coherence of segments with those ``delay`` later is near 1 at a tone and, in noise, as low as the
@@ -118,7 +121,8 @@ def _filter(x: FloatArray, gain: FloatArray, length: int) -> FloatArray:
     return np.asarray(irfft(np.asarray(rfft(x, n=n, axis=-1)) * fine, n=n, axis=-1))[:, : x.shape[-1]]
 
 
-def prediction_residual(x: FloatArray, order: int) -> FloatArray:
+@checked
+def prediction_residual(x: Rows, order: Count) -> Rows:
     """Records less their linear prediction from ``order`` samples before, shape (record, time).
 
     The coefficients solve the equations of Yule and Walker; the residual of an autoregressive process is its innovation.
@@ -136,7 +140,8 @@ def prediction_residual(x: FloatArray, order: int) -> FloatArray:
     return np.asarray(irfft(coefficients * rfft(filters, n=length, axis=-1), n=length, axis=-1))[:, :n]
 
 
-def sharpen(x: FloatArray, fs: float, rate: FloatArray, length: int) -> FloatArray:
+@checked
+def sharpen(x: Rows, fs: Positive, rate: OfEach, length: Count) -> Rows:
     """Records through the filter whose output is closest to a train of unit impulses, shape (record, time - length + 1).
 
     The filter is the solution of one least-squares system for the phase of the train that fits best. It uses only complete
@@ -157,8 +162,7 @@ def sharpen(x: FloatArray, fs: float, rate: FloatArray, length: int) -> FloatArr
     count = x.shape[-1] - length + 1
     if length < 1 or count < 2 * length:
         raise ValueError(f"{length} coefficients are too many for {x.shape[-1]} samples: take at most a third of them.")
-    periods = fs / np.broadcast_to(np.asarray(rate, dtype=float), len(x))
-    rows = zip(np.asarray(x - x.mean(axis=-1, keepdims=True), dtype=float), periods, strict=True)
+    rows = zip(np.asarray(x - x.mean(axis=-1, keepdims=True), dtype=float), fs / rate, strict=True)
     return np.stack([_sharpen(row, period, length, count) for row, period in rows]).astype(x.dtype)
 
 

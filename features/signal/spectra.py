@@ -13,13 +13,15 @@ import numpy as np
 from numpy.typing import ArrayLike, DTypeLike
 from scipy.fft import rfft
 
+from features.signal.door import Positive, Rows, Spectra, checked
 from features.signal.rows import ComplexArray, FloatArray, hann_window, row_kernel, squared_modulus, total
 
 TAPERED = 0.02  # fraction of a record that is tapered, half of it at each end
 FAINTEST = 1e-6  # of the rms coefficient: a smaller coefficient is rounding error and must not be raised to one
 
 
-def psd(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:
+@checked
+def psd(x: Rows, fs: Positive, segment: Positive = 0.25) -> tuple[FloatArray, Rows]:
     """Frequencies [Hz] and one-sided power spectral density [unit of x squared per Hz] by Welch's method.
 
     Segments of ``segment`` seconds overlap by half; each has its mean subtracted and a Hann window applied.
@@ -159,7 +161,8 @@ def _taper(n: int, dtype: DTypeLike) -> FloatArray:
     return (taper / n).astype(dtype)
 
 
-def whiten_cepstrally(coefficients: ComplexArray) -> ComplexArray:
+@checked
+def whiten_cepstrally(coefficients: Spectra) -> Spectra:
     """Coefficients of modulus one with unchanged phases, shape (record, frequency)."""
     return _divide(coefficients, squared_modulus(coefficients))
 

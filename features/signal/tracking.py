@@ -24,8 +24,9 @@ import numpy as np
 from scipy.fft import ifft, rfft
 
 from features.signal.demodulation import ZERO_PADDING, fine_amplitudes, log_level, weight_by_hann
+from features.signal.door import Positive, Rows, checked
 from features.signal.orders import angles_from_speed, resample_to_angle
-from features.signal.rows import ComplexArray, FloatArray, IntArray, as_records, row_kernel
+from features.signal.rows import ComplexArray, FloatArray, IntArray, row_kernel
 from features.signal.speed import levels_at
 
 HARMONICS = 5
@@ -39,7 +40,8 @@ HIGHEST = 3.0  # natural logarithm of the ratio to the floor that a line may cou
 PENALTY = 0.5  # of a step as large as the steepest change of speed allows
 
 
-def track_speed(x: FloatArray, fs: float, slowest: float, fastest: float, steepest: float | None = None) -> FloatArray:
+@checked
+def track_speed(x: Rows, fs: Positive, slowest: Positive, fastest: Positive, steepest: Positive | None = None) -> Rows:
     """Shaft rate at each sample [Hz], shape (record, time), estimated from the harmonics of the shaft.
 
     Parameters
@@ -58,7 +60,6 @@ def track_speed(x: FloatArray, fs: float, slowest: float, fastest: float, steepe
     ValueError
         For a range that is not ascending or reaches beyond the sample rate, or a signal that is too short.
     """
-    x = as_records(x)
     top = (HARMONICS + 0.5) * fastest
     if not 0 < slowest < fastest or top > fs / 2:
         raise ValueError(

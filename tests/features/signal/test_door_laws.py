@@ -1,0 +1,223 @@
+"""All public functions of `features.signal` take the same arrays, and refuse the same ones in one sentence."""
+
+import inspect
+import re
+from typing import Any, cast, get_type_hints
+
+import numpy as np
+import pytest
+import xarray as xr
+
+from features import signal
+from features.signal import door
+
+FS, PER_TURN = 12_000.0, 32
+SAMPLES = 12_000
+TIME = np.arange(SAMPLES) / FS
+
+
+def _records() -> np.ndarray:
+    """Two records of shaft harmonics and noise, whole numbers within the range of all types that are tried."""
+    rng = np.random.default_rng(3)
+    shaft = sum(np.cos(2 * np.pi * 20 * k * TIME + k) for k in range(1, 6))
+    return np.round(20 * shaft + 15 * rng.standard_normal((2, SAMPLES)))
+
+
+X = _records()
+RATES = np.array([87.0, 93.5])
+
+CALLS: dict[str, tuple[np.ndarray, Any]] = {
+    "angles_from_speed": (20 + X[:, :2000] % 5, lambda x: signal.angles_from_speed(x, FS)),
+    "angles_from_tacho": (np.where(TIME % 0.05 < 0.01, 5.0, 0.0) * np.ones((2, 1)), signal.angles_from_tacho),
+    "band_envelope_spectrum": (X, lambda x: signal.band_envelope_spectrum(x, FS, (300, 5000))),
+    "cepstrum": (X, signal.cepstrum),
+    "comb_bands": (X, lambda x: signal.comb_bands(x, FS, RATES[:1])),
+    "displacement": (X, lambda x: signal.displacement(x, FS)),
+    "iso_zone": (np.abs(X[:, :9]) % 10, lambda x: signal.iso_zone(x, 1)),
+    "kurtogram": (X, lambda x: signal.kurtogram(x, FS)),
+    "lifter": (X, lambda x: signal.lifter(x, FS, [(0.0, 0.002)])),
+    "order_map": (X, lambda y: signal.order_map(y, PER_TURN)),
+    "order_spectrum": (X, lambda y: signal.order_spectrum(y, PER_TURN)),
+    "prediction_residual": (X, lambda x: signal.prediction_residual(x, 30)),
+    "psd": (X, lambda x: signal.psd(x, FS)),
+    "resample_to_angle": (X, lambda x: signal.resample_to_angle(x, 2 * np.pi * 20 * TIME, PER_TURN)),
+    "separate_random": (X, lambda x: signal.separate_random(x, FS)),
+    "sharpen": (X[:, :3000], lambda x: signal.sharpen(x, FS, RATES[:1], 20)),
+    "spectral_coherence": (X, lambda x: signal.spectral_coherence(x, FS, 200.0)),
+    "spectral_kurtosis": (X, lambda x: signal.spectral_kurtosis(x, FS)),
+    "synchronous_average": (X, lambda y: signal.synchronous_average(y, PER_TURN)),
+    "track_speed": (X, lambda x: signal.track_speed(x, FS, 16.0, 25.0)),
+    "velocity": (X, lambda x: signal.velocity(x, FS)),
+    "velocity_rms": (X, lambda x: signal.velocity_rms(x, FS)),
+}
+"""An array of each function, and a call of it."""
+
+NO_SIGNALS = {"enhanced_envelope_spectrum", "whiten_cepstrally"}  # take a coherence and coefficients, tested below
+
+FORMS = {
+    "int16": lambda x: x.astype(np.int16),
+    "int32": lambda x: x.astype(np.int32),
+    "float16": lambda x: x.astype(np.float16),
+    "float32": lambda x: x.astype(np.float32),
+    "big-endian": lambda x: x.astype(">f8"),
+    "Fortran order": np.asfortranarray,
+    "read-only": lambda x: _read_only(x),
+    "every other sample": lambda x: np.repeat(x, 2, axis=-1)[..., ::2],
+    "list": lambda x: x.tolist(),
+    "DataArray": lambda x: xr.DataArray(x),
+    "masked array without masked values": np.ma.masked_array,
+}
+
+
+SINGLE = {"int16", "float16", "float32"}
+
+
+def _read_only(x: np.ndarray) -> np.ndarray:
+    x = x.copy()
+    x.flags.writeable = False
+    return x
+
+
+def _arrays(result: Any) -> list[np.ndarray]:
+    return [part for one in result for part in _arrays(one)] if isinstance(result, tuple) else [np.asarray(result)]
+
+
+def _assert_equal(result: Any, expected: Any, *, single: bool = False) -> None:
+    """Equal results, in single precision within its rounding."""
+    for found, wanted in zip(_arrays(result), _arrays(expected), strict=True):
+        if single and wanted.dtype.kind == "f":
+            largest = np.abs(wanted).max(initial=0.0, where=np.isfinite(wanted))
+            np.testing.assert_allclose(found, wanted, rtol=2e-3, atol=2e-4 * largest)
+        else:
+            np.testing.assert_array_equal(found, wanted)
+
+
+def test_every_public_function_is_tried_here():
+    functions = {name for name in dir(signal) if inspect.isfunction(getattr(signal, name))}
+    assert functions == {*CALLS, *NO_SIGNALS}
+    assert all(hasattr(getattr(signal, name), "__wrapped__") for name in functions)
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_all_types_and_layouts_of_an_array_give_the_same_result(name):
+    x, call = CALLS[name]
+    expected = call(x)
+    for form, make in FORMS.items():
+        _assert_equal(call(make(x)), expected, single=form in SINGLE)
+
+
+@pytest.mark.parametrize("name", [name for name in CALLS if name != "iso_zone"])
+def test_one_record_gives_its_row_of_the_results(name):
+    x, call = CALLS[name]
+    _assert_equal(call(x[0]), _first_row(call(x[:1]), call(x)))
+
+
+def _first_row(single: Any, both: Any) -> Any:
+    """Result of one row without the axis of records, which is the axis along which two rows are more."""
+    if isinstance(single, tuple):
+        return tuple(map(_first_row, single, both))
+    return single[0] if np.shape(single) != np.shape(both) else single
+
+
+REFUSED = {
+    "masked": (lambda x: np.ma.masked_array(x, x == x[0, 0]), "values are masked"),
+    "complex": (lambda x: x + 1j, "in place of real numbers"),
+    "NaN": (lambda x: np.where(np.arange(x.shape[-1]) == 5, np.nan, x), "not finite, the first at [0, 5]"),
+    "infinite": (lambda x: np.where(np.arange(x.shape[-1]) == 5, np.inf, x), "not finite, the first at [0, 5]"),
+    "text": (lambda x: x.astype(str), "in place of real numbers"),
+    "objects": (lambda x: x.astype(object), "in place of real numbers"),
+    "ragged": (lambda _: [[1.0, 2.0], [1.0]], "no array of real numbers"),
+    "nothing": (lambda _: None, "in place of real numbers"),
+}
+SHAPES_REFUSED = {
+    "three axes": lambda x: x[:, None],
+    "a number": lambda _: 1.0,
+    "no record": lambda x: x[:0],
+    "no sample": lambda x: x[:, :0],
+    "time before channels": lambda x: x.T,
+}
+
+
+@pytest.mark.parametrize("name", CALLS)
+def test_arrays_without_meaning_are_refused_in_one_sentence(name):
+    x, call = CALLS[name]
+    cases = dict(REFUSED)
+    if name != "iso_zone":
+        cases |= {what: (make, "in place of (record, time)") for what, make in SHAPES_REFUSED.items()}
+    for make, told in cases.values():
+        with pytest.raises(ValueError, match=re.escape(told)) as refusal:
+            call(make(x))
+        assert "\n" not in str(refusal.value)
+
+
+WRONG = {
+    door.positive: (0, -1.0, np.nan, np.inf, "12000", None, [1.0, 2.0], 1 + 0j),
+    door.not_negative: (-1.0, np.nan, np.inf, "0", None),
+    door.number: (np.nan, "1", [1.0, 2.0]),
+    door.count: (0, -3, 1.5, np.nan, "3", None, [3, 4]),
+    door.band: (None, 300, (300,), (5000, 300), (-1, 300), (np.nan, 300), ("a", "b"), (300, 300)),
+    door.bands: (None, [], (0.0, 0.002), [(0.002, 0.0)], [(0.0, np.nan)], 0.002),
+    door.of_each: (0.0, [87.0, -1.0], [87.0, 88.0, 89.0], np.nan, None, "87", [[87.0, 88.0]]),
+    door.share: (0, 1, -0.1, np.nan, "0.1"),
+}
+GIVEN = {
+    "segment": 0.1, "fs": FS, "order": 30, "length": 20, "rate": 90.0, "removed": [(0.0, 0.002)], "high_pass": 10.0,
+    "highest": 200.0, "resolution": 200.0, "per_turn": PER_TURN, "turns": 2, "pulses_per_turn": 1, "threshold": 2.0,
+    "slowest": 16.0, "fastest": 25.0, "steepest": 9.0, "narrowest": 0.0, "band": (300.0, 5000.0), "delay": 0.1,
+    "x": X, "y": X, "tacho": X, "angle": 2 * np.pi * 20 * TIME, "shaft_rate": 20 + 0 * X,
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", [name for name in CALLS if name != "iso_zone"])
+def test_parameters_without_meaning_are_refused_by_name(name):
+    function = getattr(signal, name)
+    rules = door._rules(function)
+    needed = {
+        parameter.name: GIVEN[parameter.name]
+        for parameter in inspect.signature(function).parameters.values()
+        if parameter.name in rules
+    }
+    for parameter, (rule, optional) in rules.items():
+        for wrong in WRONG.get(rule, ()):
+            if wrong is None and optional:
+                continue
+            with pytest.raises(ValueError, match=rf"^{parameter}\b"):
+                function(**{**needed, parameter: wrong})
+
+
+def test_every_number_has_a_rule():
+    for name in CALLS:
+        function = getattr(signal, name)
+        unruled = set(inspect.signature(function).parameters) - set(door._rules(function))
+        hints = get_type_hints(function)
+        assert all(hints[parameter] is bool or name == "iso_zone" for parameter in unruled)
+
+
+def test_results_of_one_record_serve_the_functions_that_take_them():
+    coherence = signal.spectral_coherence(X[0], FS, 200.0)
+    both = signal.spectral_coherence(X, FS, 200.0)
+    one = signal.enhanced_envelope_spectrum(coherence, (300, 5000))
+    np.testing.assert_array_equal(one, signal.enhanced_envelope_spectrum(both, (300, 5000))[0])
+    assert signal.kurtogram(X[0], FS).best().shape == (2,)
+    with pytest.raises(TypeError, match="in place of a Coherence"):
+        signal.enhanced_envelope_spectrum(cast("Any", X))
+    for wrong in WRONG[door.share]:
+        with pytest.raises(ValueError, match=r"^probability"):
+            coherence.threshold(wrong)
+
+
+def test_coefficients_are_complex():
+    coefficients = np.fft.rfft(X, axis=-1)
+    np.testing.assert_array_equal(signal.whiten_cepstrally(coefficients[0]), signal.whiten_cepstrally(coefficients)[0])
+    with pytest.raises(ValueError, match=r"^coefficients: .* in place of complex numbers"):
+        signal.whiten_cepstrally(X)
+
+
+def test_angles_suit_the_records():
+    angle = 2 * np.pi * 20 * TIME
+    together = signal.resample_to_angle(X, angle[None], PER_TURN)
+    np.testing.assert_array_equal(signal.resample_to_angle(X, np.stack([angle, angle]), PER_TURN), together)
+    with pytest.raises(ValueError, match=r"^angle: an array of shape"):
+        signal.resample_to_angle(X, angle[:-1], PER_TURN)
+    with pytest.raises(ValueError, match=r"^angle: an array of shape"):
+        signal.resample_to_angle(X, np.stack([angle, angle, angle]), PER_TURN)
