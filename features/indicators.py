@@ -27,7 +27,7 @@ from features.signal.demodulation import ZERO_PADDING, analytic_band, fine_ampli
 from features.signal.lines import FAMILIES, Orders, families, fitted_combs, highest_order, read_lines
 from features.signal.rows import ComplexArray, FloatArray, centre, squared_modulus
 from features.signal.shape import envelope_shape, moments, peaks, time_statistics
-from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd, whiten_cepstrally
+from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd, whiten_cepstrally
 
 __all__ = ["Orders", "feature_names", "indicators"]
 
@@ -221,7 +221,7 @@ def _time(x: FloatArray, *_: object) -> dict[str, FloatArray]:
 
 def _log_energies(x: FloatArray, fs: float, shaft_rate: FloatArray, _: Orders, band: Band) -> dict[str, FloatArray]:
     """Natural logarithm of energies [unit of x squared] in bands of frequency, then in bands of order."""
-    frequencies, density = psd(x, fs)
+    frequencies, density = power_density(x, fs)
     density[:, frequencies > band.high] = 0.0
     in_hz = band_energies(density, frequencies, band.energy_edges)
     in_orders = band_energies(density, frequencies, np.multiply.outer(shaft_rate, ENERGY_ORDERS))

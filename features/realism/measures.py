@@ -21,7 +21,7 @@ from features.signal.lines import single_lines
 from features.signal.modulation import cyclostationarity, highest_place, phase_wander, sideband_ratio
 from features.signal.rows import FloatArray, squared_modulus
 from features.signal.shape import envelope_shape, time_statistics
-from features.signal.spectra import band_energies, fourier_coefficients, psd, whiten_by_psd
+from features.signal.spectra import band_energies, fourier_coefficients, power_density, whiten_by_psd
 
 LOWEST = 20.0  # Hz, lower edge of the compared band: below it sensors and their amplifiers differ
 UPPER_BAND = 3500.0  # Hz
@@ -124,9 +124,9 @@ def compute_measures(
 
 
 def _colour(x: FloatArray, fs: float, top: float) -> dict[str, FloatArray]:
-    frequencies, density = psd(x, fs)
+    frequencies, density = power_density(x, fs)
     density[:, (frequencies < LOWEST) | (frequencies > top)] = 0.0
-    _, fine = psd(x, fs, x.shape[-1] / fs)
+    _, fine = power_density(x, fs, x.shape[-1] / fs)
     step = fs / x.shape[-1]
     inside = slice(round(LOWEST / step), round(top / step))
     by_name = {

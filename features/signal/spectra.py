@@ -39,6 +39,11 @@ def psd(x: Rows, fs: Positive, segment: Positive = 0.25) -> tuple[FloatArray, Ro
     -------
     Shapes (frequency,) and (record, frequency).
     """
+    return power_density(x, fs, segment)
+
+
+def power_density(x: FloatArray, fs: float, segment: float = 0.25) -> tuple[FloatArray, FloatArray]:
+    """`psd` of records that are known to be such arrays."""
     n = x.shape[-1]
     length = min(n, max(2, round(segment * fs)))
     transforms = np.asarray(rfft(hann_segments(x, length), axis=-1))
