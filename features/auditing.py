@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy import fft
 
 from features.signal.rows import FloatArray
-from gen.corpus import FAULT_NAMES, SIGNAL, UNKNOWN_CODE, open_corpus
+from gen.corpus import FAULT_NAMES, SIGNAL, UNKNOWN_CODE, corpus_name, open_corpus
 
 COPY = 0.25  # phase correlation; no two recordings of different bearings in CWRU, MFPT or UESTC reach 0.11
 _LONGEST = 32_768  # samples of a recording that are compared
@@ -38,7 +38,7 @@ class _Recording(NamedTuple):
     levels: FloatArray
 
 
-def audit_splits(corpus: Path | str) -> list[str]:
+def audit_splits(corpus: Path | str | xr.Dataset) -> list[str]:
     """Signs that a split of a corpus of real recordings by specimen can leak, or cannot test a class; a sentence for each kind.
 
     Only the first channel is compared, and of each recording the first 32,768 samples; of more than 20,000 pairs of recordings those with
@@ -58,7 +58,7 @@ def audit_splits(corpus: Path | str) -> list[str]:
         *_lonely_classes(recordings, counts),
         *_one_per_file(recordings),
     ]
-    return [f"{corpus}: {sentence}" for sentence in signs]
+    return [f"{corpus_name(corpus)}: {sentence}" for sentence in signs]
 
 
 def _recordings(corpus: xr.Dataset) -> Iterator[_Recording]:
@@ -82,7 +82,7 @@ def _signature(signal: FloatArray) -> tuple[NDArray[np.complexfloating], FloatAr
     magnitude = np.abs(spectrum)
     phases = np.divide(spectrum, magnitude, out=np.zeros_like(spectrum), where=magnitude > 0)
     power = [np.mean(band**2) for band in np.array_split(magnitude, _BANDS)]
-    levels = 10 * np.log10(np.maximum(power, 1e-30))
+    levels = 10 * np.log10(np.maximum(np.array(power), 1e-30))
     return phases.astype(np.complex64), levels - levels.mean()
 
 

@@ -27,6 +27,7 @@ from features.baselines.records import (
     Records,
     all_records,
     check_classes,
+    check_table,
     features_of,
     labelled_records,
 )
@@ -152,6 +153,7 @@ def series_measures(series: Sequence[FloatArray]) -> dict[str, FloatArray]:
 
 
 def _held(table: xr.Dataset, groups: Sequence[str] | None) -> Sequence[str]:
+    check_table(table)
     return [group for group in GROUPS if group in table["group"].values] if groups is None else groups
 
 

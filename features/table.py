@@ -32,7 +32,7 @@ from features.recording_speeds import (
     with_speeds,
 )
 from features.signal.rows import FloatArray
-from gen.corpus import DRAWS, RecordBlock, open_corpus, read_channel, record_blocks
+from gen.corpus import DRAWS, RecordBlock, corpus_name, open_corpus, read_channel, record_blocks
 from gen.support.progress import Progress, counter
 from gen.support.workers import run
 
@@ -44,7 +44,7 @@ Result = TypeVar("Result")
 
 
 def feature_table(
-    corpus: Path | str,
+    corpus: Path | str | xr.Dataset,
     groups: Sequence[str] = GROUPS,
     *,
     speed: Speed = "off",
@@ -59,7 +59,7 @@ def feature_table(
     Parameters
     ----------
     corpus
-        Folder or file of the corpus.
+        Folder or file of the corpus, or records in memory, of `gen.records` or chosen from `gen.open_corpus`.
     groups
         Some of ``features.definitions.GROUPS``; ``lines`` and ``shape`` transfer to other machines.
     speed
@@ -98,12 +98,12 @@ def feature_table(
         return joined_channels({name: each(channel=name, progress=progress) for name in channel})
     coordinates = feature_coordinates(groups, band)
     with open_corpus(corpus) as opened:
-        number = channel_number(opened, channel, corpus)
+        number = channel_number(opened, channel, corpus_name(corpus))
+        blocks = record_blocks(opened if isinstance(corpus, xr.Dataset) else corpus, check="size")
         read = {"channel": str(opened["channel"].values[number]), **band_attributes(band)}
         described = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore")
         table = described.load().drop_encoding()
     treatment = checked_speed(speed, table)
-    blocks = record_blocks(Path(corpus).absolute(), check="size")
     starts = np.cumsum([0, *(block.stop - block.first for block in blocks)])
     work = partial(_run, workers=min(workers, len(blocks)), scheduler=scheduler)
     report = counter(progress, len(blocks) * (1 if treatment == "off" else 2))

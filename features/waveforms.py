@@ -17,7 +17,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from features.channels import channel_number
 from features.signal.orders import resample_to_orders
-from gen.corpus import DRAWS, SIGNAL, open_corpus, operating_variables
+from gen.corpus import DRAWS, SIGNAL, corpus_name, open_corpus, operating_variables
 from gen.support.errors import CorpusError
 
 BLOCK = 256  # records that are decoded at a time
@@ -103,7 +103,7 @@ class Waveforms:
 
 
 def open_waveforms(
-    corpus: Path | str,
+    corpus: Path | str | xr.Dataset,
     *,
     channel: int | str = 0,
     normalise: bool = False,
@@ -116,7 +116,7 @@ def open_waveforms(
     Parameters
     ----------
     corpus
-        Folder or file of the corpus.
+        Folder or file of the corpus, or records in memory.
     channel
         Name of the channel, or its number from 0.
     normalise
@@ -135,7 +135,8 @@ def open_waveforms(
         If the corpus is unfinished, altered or has no such channel, or the shaft rate of a record is not known.
     """
     opened = open_corpus(corpus)
-    number = channel_number(opened, channel, corpus)
+    where = corpus_name(corpus)
+    number = channel_number(opened, channel, where)
     labels = opened.drop_dims(["channel", "elapsed_time"]).drop_vars(DRAWS, errors="ignore").load()
     if shaft_rate is not None:
         labels = labels.assign(shaft_rate=labels["shaft_rate"].copy(data=shaft_rate))
@@ -143,7 +144,7 @@ def open_waveforms(
     signal = signal.assign_coords({name: labels[name].variable for name in ("sample_rate", "shaft_rate")})
     samples = opened.sizes["elapsed_time"]
     if per_turn is not None:
-        samples = _samples_in_turns(f"{corpus}", labels, samples, per_turn, turns)
+        samples = _samples_in_turns(where, labels, samples, per_turn, turns)
     return Waveforms(labels, signal, np.arange(opened.sizes["record"]), normalise, per_turn, samples)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Self, cast
+from typing import Any, Self, TypeGuard, cast
 
 import numpy as np
 import xarray as xr
@@ -46,13 +46,10 @@ from features.baselines.severities import Covered, covered_widths, uncovered_wid
 from features.channels import channels_of
 from features.definitions import GROUPS
 from features.waveforms import Waveforms
-from gen.corpus import UNKNOWN_CODE, check_result
+from gen.corpus import UNKNOWN_CODE, check_result, corpus_name
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
-
-if TYPE_CHECKING:
-    pass
 
 FORMAT = 5
 _LIBRARIES = ("raceway", "scikit-learn", "skops", "numpy")
@@ -61,7 +58,7 @@ _STORED = ("estimator", "name", "classes", "features", "groups", "band", *_TRAIN
 """Fields in a model file."""
 
 Data = xr.Dataset | Waveforms | Path | str
-"""A feature table, or the folder or file of a corpus; for classifiers of the user also its waveforms."""
+"""A feature table, the folder or file of a corpus, or records in memory; for classifiers of the user also waveforms."""
 
 
 @dataclass(eq=False, repr=False)
@@ -158,7 +155,7 @@ class Model(Shown):
         ValueError
             For an unknown baseline.
         """
-        table = _feature_table(data, GROUPS) if isinstance(data, Path | str) else data
+        table = _feature_table(data, GROUPS) if _holds_signals(data) else cast("xr.Dataset | Waveforms", data)
         if isinstance(table, xr.Dataset) and len(channels_of(table)) > 1:
             raise CorpusError(f"{title_of(table)}: a model is trained on one channel; give the feature table of one.")
         if isinstance(table, Waveforms) and isinstance(self.classifier, str):
@@ -226,11 +223,11 @@ class Model(Shown):
     def _tables(self, data: Data, reference: Data | None) -> tuple[Any, xr.Dataset | None]:
         """Feature tables of the data and of its reference, with ``bands`` if there is one; waveforms as they are."""
         self._check_fitted()
-        if isinstance(data, Path | str) and isinstance(reference, Path | str):
+        if _holds_signals(data) and reference is not None and _holds_signals(reference):
             check_durations(data, reference)
         groups = self.groups if reference is None else with_energies(tuple(self.groups))
         table, healthy = (
-            _feature_table(one, groups, Band(*self.band)) if isinstance(one, Path | str) else one
+            _feature_table(one, groups, Band(*self.band)) if one is not None and _holds_signals(one) else one
             for one in (data, reference)
         )
         return table, cast("xr.Dataset | None", healthy)
@@ -312,12 +309,23 @@ def _content(model: Model) -> dict[str, Any]:
     return {name: getattr(model, name) for name in _STORED} | {"calibration": model.calibration.model_dump()}
 
 
-def _feature_table(corpus: Path | str, groups: Sequence[str], band: tuple[float, float] = DEFAULT_BAND) -> xr.Dataset:
+def _holds_signals(data: Data) -> TypeGuard[Path | str | xr.Dataset]:
+    """Whether features are computed of data first; CorpusError if this is nothing that a model takes."""
+    if isinstance(data, Waveforms) or (isinstance(data, xr.Dataset) and "features" in data):
+        return False
+    if isinstance(data, Path | str | xr.Dataset):
+        return True
+    raise CorpusError(f"{type(data).__name__} given in place of data; give a feature table, a corpus or waveforms.")
+
+
+def _feature_table(
+    corpus: Path | str | xr.Dataset, groups: Sequence[str], band: tuple[float, float] = DEFAULT_BAND
+) -> xr.Dataset:
     """Feature table of a corpus."""
     unknown = [group for group in groups if group not in GROUPS]
     if unknown:
         message = (
-            f"{corpus}: the model takes features of the group {unknown[0]!r}, and the groups are "
+            f"{corpus_name(corpus)}: the model takes features of the group {unknown[0]!r}, and the groups are "
             f"{', '.join(GROUPS)}; train the model again."
         )
         raise CorpusError(message)

@@ -15,13 +15,12 @@ from numpy.typing import NDArray
 
 from features.recording_speeds import recording_numbers
 from features.signal.rows import FloatArray, IntArray
+from features.waveforms import Waveforms
 from gen.corpus import FAULT_NAMES, FAULTS, UNKNOWN, UNKNOWN_CODE
 from gen.support.errors import CorpusError
 
 if TYPE_CHECKING:
     from pandas import DataFrame
-
-    from features.waveforms import Waveforms
 
 DEFAULT_GROUPS = ("lines", "shape")  # independent of gain and spectral colour
 
@@ -109,7 +108,7 @@ def all_records(table: xr.Dataset, features: Sequence[str]) -> Records:
     )
 
 
-def records_of(data: "xr.Dataset | Waveforms", groups: Sequence[str]) -> Records:
+def records_of(data: xr.Dataset | Waveforms, groups: Sequence[str]) -> Records:
     """Rows of a feature table with the features of some groups, or waveforms with their labels.
 
     Raises
@@ -117,7 +116,7 @@ def records_of(data: "xr.Dataset | Waveforms", groups: Sequence[str]) -> Records
     CorpusError
         As `labelled_records`, or if the table has no feature of one of the groups.
     """
-    if isinstance(data, xr.Dataset):
+    if not isinstance(data, Waveforms):
         return labelled_records(data, features_of(data, groups))
     none = data.labels.assign(features=(("record", "feature"), np.empty((len(data), 0))))
     records = labelled_records(none.assign_coords(feature=[], record=np.arange(len(data))), ())
@@ -171,7 +170,7 @@ def _shape(table: xr.Dataset) -> IntArray:
     return np.select(cases, [SHAPES.index(name) for name in ("several", "extended", "pit", "worn")], -1)
 
 
-def record_digests(features: "FloatArray | Waveforms") -> NDArray[np.uint64]:
+def record_digests(features: FloatArray | Waveforms) -> NDArray[np.uint64]:
     """Digest each row of features or waveforms to 64 bits, shape (record,)."""
     rows = (np.ascontiguousarray(row, dtype="<f8").tobytes() for row in features)
     digests = (int.from_bytes(hashlib.blake2b(row, digest_size=8).digest(), "little") for row in rows)
@@ -211,10 +210,18 @@ def features_of(table: xr.Dataset, groups: Sequence[str]) -> tuple[str, ...]:
     CorpusError
         If the table has no feature of one of the groups.
     """
-    _require(title_of(table), ("feature", "group"), table.variables)
+    check_table(table)
     held = table["group"].values
     _require(title_of(table), groups, held)
     return tuple(str(name) for name in table["feature"].values[np.isin(held, groups)])
+
+
+def check_table(table: object) -> None:
+    """Refuse anything but a feature table with a CorpusError."""
+    if not isinstance(table, xr.Dataset) or not {"feature", "group"} <= set(table.variables):
+        raise CorpusError(
+            f"{type(table).__name__} given in place of a feature table; make one with features.feature_table."
+        )
 
 
 def title_of(table: xr.Dataset) -> str:

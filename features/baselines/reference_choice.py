@@ -16,7 +16,7 @@ from features.baselines.references import by_rig, healthy_records
 from features.indicators import Orders
 from features.recording_speeds import recording_numbers
 from features.recording_table import recording_table
-from gen.corpus import UNKNOWN_CODE, open_corpus
+from gen.corpus import UNKNOWN_CODE, corpus_name, open_corpus
 from gen.support.errors import CorpusError
 
 FILE = "recording_file"  # attribute of the table of a reference recording
@@ -157,7 +157,7 @@ def recording_reference(
     return table.assign_attrs({"title": str(file), FILE: str(file.absolute())})
 
 
-def check_durations(corpus: Path | str, reference: Path | str) -> None:
+def check_durations(corpus: Path | str | xr.Dataset, reference: Path | str | xr.Dataset) -> None:
     """Refuse a reference corpus with records of another duration: lines rise higher above the floor in longer records.
 
     Raises
@@ -169,7 +169,7 @@ def check_durations(corpus: Path | str, reference: Path | str) -> None:
         tested, its = _duration(opened), _duration(other)
     if abs(its - tested) > 0.01 * tested:
         message = (
-            f"{reference}: the records of the reference last {its:g} s and those of {corpus} {tested:g} s; "
+            f"{corpus_name(reference)}: the records of the reference last {its:g} s and those of {corpus_name(corpus)} {tested:g} s; "
             "import the reference with records of the same duration."
         )
         raise CorpusError(message)

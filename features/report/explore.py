@@ -47,6 +47,7 @@ from gen.corpus import (
     SIGNAL,
     check_result,
     class_names,
+    corpus_name,
     open_corpus,
     write_text_durably,
 )
@@ -99,7 +100,7 @@ class Quantity(NamedTuple):
 
 
 def write_explorer(
-    corpus: Path | str,
+    corpus: Path | str | xr.Dataset,
     output: Path | str,
     *,
     table: Path | str | None = None,
@@ -116,7 +117,7 @@ def write_explorer(
     Parameters
     ----------
     corpus
-        Folder or file of the corpus.
+        Folder or file of the corpus, or records in memory.
     output
         The page, a file.
     table
@@ -139,8 +140,8 @@ def write_explorer(
     band, output = checked_band(*band), Path(output)
     check_result(output, "page")
     with open_corpus(corpus) as opened:
-        number, count = channel_number(opened, channel, corpus), opened.sizes["record"]
-        check_band(band, float(opened["sample_rate"][0]), str(corpus))
+        number, count = channel_number(opened, channel, corpus_name(corpus)), opened.sizes["record"]
+        check_band(band, float(opened["sample_rate"][0]), corpus_name(corpus))
         places = np.linspace(0, count - 1, min(count, records)).round().astype(int)
         known = [*_labels(opened, places), *_features(table, opened, places, str(opened["channel"].values[number]))]
         kept = opened[[SIGNAL, *(name for name in READ if name in opened)]].isel(record=places, channel=[number])

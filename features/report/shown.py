@@ -14,14 +14,14 @@ from features.report.pictures import Shown, fault_lines
 from features.signal.orders import angles_from_speed
 from features.signal.rows import FloatArray
 from features.signal.tracking import track_speed
-from gen.corpus import FAULT_NAMES, SIGNAL, open_corpus
+from gen.corpus import FAULT_NAMES, SIGNAL, corpus_name, open_corpus
 from gen.support.errors import CorpusError
 
 CONSTANT = 1.02  # largest ratio of two speeds that count as one
 MARGIN = 1.05  # by which a tracked speed may leave the labelled range
 
 
-def shown_record(corpus: Path | str, record: int, channel: int | str, band: Band) -> Shown:
+def shown_record(corpus: Path | str | xr.Dataset, record: int, channel: int | str, band: Band) -> Shown:
     """A record of a corpus.
 
     Raises
@@ -30,13 +30,14 @@ def shown_record(corpus: Path | str, record: int, channel: int | str, band: Band
         If the corpus cannot be read or has no such record or channel, the band lies above half the sample rate, or the
         signal, shaft rate or orders of the record are not positive finite numbers.
     """
+    where = corpus_name(corpus)
     with open_corpus(corpus) as opened:
         if not 0 <= record < opened.sizes["record"]:
-            raise CorpusError(f"{corpus}: no record {record}; give one of 0 to {opened.sizes['record'] - 1}.")
-        number = channel_number(opened, channel, corpus)
+            raise CorpusError(f"{where}: no record {record}; give one of 0 to {opened.sizes['record'] - 1}.")
+        number = channel_number(opened, channel, where)
         several = opened.sizes["channel"] > 1
         shown = shown_of(opened.isel(record=record), record, number, named=several)._replace(band=band)
-    return _checked(shown, f"{corpus}: record {record}")
+    return _checked(shown, f"{where}: record {record}")
 
 
 def shown_recording(

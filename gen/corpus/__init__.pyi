@@ -39,7 +39,7 @@ from .finishing import (
     remove_temporary_files as remove_temporary_files,
 )
 from .hdf5 import LIBRARY_LOCK as LIBRARY_LOCK
-from .index import open_corpus as open_corpus
+from .index import corpus_name as corpus_name, open_corpus as open_corpus
 from .layout import stored_signal as stored_signal
 from .locking import lock as lock
 from .manifest import (

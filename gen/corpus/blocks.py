@@ -4,7 +4,7 @@ import math
 import zlib
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -17,14 +17,17 @@ from gen.corpus.schema import SIGNAL, SIGNAL_DIMS, operating_problems
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
 
+if TYPE_CHECKING:
+    import xarray as xr
+
 _BLOCK_SAMPLES = 10_000_000
 _BLOCK_RECORDS = 256
 
 
 class RecordBlock(NamedTuple):
-    """Consecutive records of a file."""
+    """Consecutive records of a file, or of a Dataset in memory."""
 
-    file: Path
+    file: "Path | xr.Dataset"
     first: int
     stop: int
 
@@ -35,6 +38,13 @@ def blocks_of(path: Path, records: int) -> list[RecordBlock]:
     return [RecordBlock(path, first, min(first + _BLOCK_RECORDS, records)) for first in starts]
 
 
+def blocks_in_memory(records: "xr.Dataset") -> list[RecordBlock]:
+    """Records in memory in blocks, each of which goes to its task alone."""
+    count = records.sizes["record"]
+    cuts = [slice(first, min(first + _BLOCK_RECORDS, count)) for first in range(0, count, _BLOCK_RECORDS)]
+    return [RecordBlock(records.isel(record=cut), 0, cut.stop - cut.start) for cut in cuts]
+
+
 def read_channel(
     block: RecordBlock, channel: int, names: Sequence[str]
 ) -> tuple[NDArray[np.float32], list[NDArray[Any]]]:
@@ -42,6 +52,9 @@ def read_channel(
 
     Features use it: it reads the columns without xarray. Chunks are inflated without the lock, so that threads run in parallel.
     """
+    if not isinstance(block.file, Path):
+        signal = block.file[SIGNAL].values[:, channel].astype(np.float32, copy=False)
+        return signal, [block.file[name].values for name in names]
     source, rows = source_of(block.file), range(block.first, block.stop)
     with open_source(source) as file:
         stored, (records, _, samples), packing, deflated = file.signal()

@@ -29,7 +29,14 @@ from gen.corpus.manifest import (
 )
 from gen.corpus.part import PartRow
 from gen.corpus.reading import open_part, open_records
-from gen.corpus.schema import RECIPE_TEXT, SIGNAL, add_class_names, schema_problems
+from gen.corpus.schema import (
+    RECIPE_TEXT,
+    SIGNAL,
+    add_class_names,
+    operating_problems,
+    records_in_memory,
+    schema_problems,
+)
 from gen.corpus.simulated import OTHER_BEARING, SIMULATED
 from gen.corpus.unicode_text import set_attributes, write_unicode
 from gen.support.errors import CorpusError
@@ -39,13 +46,14 @@ _CHUNK_RECORDS = 256  # records whose text forms one chunk
 _COPIED_BYTES = 16_000_000  # of the variables of some parts, in memory at a time
 
 
-def open_corpus(path: Path | str, check: Check = "sha256") -> xr.Dataset:
+def open_corpus(path: Path | str | xr.Dataset, check: Check = "sha256") -> xr.Dataset:
     """Open a corpus as one dataset, which is read lazily.
 
     Parameters
     ----------
     path : path
-        Folder of a corpus, or a corpus in a single file.
+        Folder of a corpus, or a corpus in a single file. Records in memory, of :func:`gen.records` or chosen from an open corpus, are
+        returned as they are.
     check : {"sha256", "size"}
         Comparison of each file with its hash, or with its size only, before anything is read.
 
@@ -61,6 +69,12 @@ def open_corpus(path: Path | str, check: Check = "sha256") -> xr.Dataset:
     CorpusError
         If the corpus is unfinished, one of its files is missing, altered or outside its folder, or a variable is not in the format.
     """
+    if not isinstance(path, Path | str):
+        records = records_in_memory(path)
+        for problem in operating_problems({name: records[name].values for name in ("sample_rate", "shaft_rate")}):
+            raise CorpusError(f"{corpus_name(path)}: {problem}")
+        add_class_names(records)
+        return records
     path = Path(path)
     files = corpus_files(path, check)
     opened = open_part(path) if path.is_file() else _open_folder(path, files)
@@ -69,6 +83,11 @@ def open_corpus(path: Path | str, check: Check = "sha256") -> xr.Dataset:
         raise CorpusError(f"{path}: {problem}")
     add_class_names(opened)
     return opened
+
+
+def corpus_name(corpus: Path | str | xr.Dataset) -> str:
+    """Path of a corpus, or the title of records in memory, with which a sentence begins."""
+    return f"{corpus.attrs.get('title', 'records')}" if isinstance(corpus, xr.Dataset) else f"{corpus}"
 
 
 def _open_folder(path: Path, files: Sequence[Path]) -> xr.Dataset:

@@ -12,11 +12,11 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
-from typing import Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, model_validator
 
-from gen.corpus.blocks import RecordBlock, blocks_of
+from gen.corpus.blocks import RecordBlock, blocks_in_memory, blocks_of
 from gen.corpus.files import (
     INDEX_NAME,
     MANIFEST_NAME,
@@ -34,6 +34,9 @@ from gen.corpus.schema import FORMAT, RECIPE_TEXT
 from gen.corpus.signals import Count, SignalCounts, sum_counts
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 Check = Literal["sha256", "size"]
 
@@ -323,9 +326,14 @@ def corpus_files(path: Path | str, check: Check = "sha256") -> list[Path]:
     return [path] if path.is_file() else [path / "parts" / row.name for row in manifest.parts]
 
 
-def record_blocks(path: Path | str, check: Check = "sha256") -> list[RecordBlock]:
-    """All records of a finished corpus in blocks that fit the memory of a task; it raises the errors of :func:`corpus_files`."""
-    path = Path(path)
+def record_blocks(corpus: "Path | str | xr.Dataset", check: Check = "sha256") -> list[RecordBlock]:
+    """All records of a finished corpus, or of a Dataset in memory, in blocks that fit the memory of a task.
+
+    It raises the errors of :func:`corpus_files`.
+    """
+    if not isinstance(corpus, Path | str):
+        return blocks_in_memory(corpus)
+    path = Path(corpus).absolute()
     files, manifest = corpus_files(path, check), read_manifest(path, check)
     counts = [row.records for row in manifest.parts] or [manifest.records]
     return [block for file, records in zip(files, counts, strict=True) for block in blocks_of(file, records)]

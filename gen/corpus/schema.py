@@ -254,6 +254,32 @@ def schema_problems(dataset: "xr.Dataset", further: tuple[Variable, ...] = ()) -
     return problems or operating_problems({name: dataset[name].values for name in ("sample_rate", *_RATES)})
 
 
+def records_in_memory(records: Any) -> "xr.Dataset":
+    """One or several records that a user has, with the axes of the signal in the order of the format.
+
+    Raises
+    ------
+    CorpusError
+        If this is no Dataset, or one without a variable of the format or without a sample.
+    """
+    import xarray as xr
+
+    if not isinstance(records, xr.Dataset):
+        raise CorpusError(
+            f"{type(records).__name__} given in place of a Dataset; give the folder or file of a corpus, or records of "
+            "gen.records or gen.open_corpus."
+        )
+    missing = _missing(records)
+    if missing:
+        raise CorpusError(f"the Dataset has no variable {', '.join(missing)}; the format of corpora needs it.")
+    rows = records if "record" in records.dims else records.reset_coords().expand_dims("record")
+    if set(rows[SIGNAL].dims) != set(SIGNAL_DIMS) or not rows[SIGNAL].size:
+        raise CorpusError(
+            f"{SIGNAL} has the axes {dict(rows[SIGNAL].sizes)}; give at least one record with a channel and a sample."
+        )
+    return rows.transpose(*SIGNAL_DIMS)
+
+
 def _missing(dataset: "xr.Dataset") -> list[str]:
     required = [SIGNAL, "channel", "elapsed_time", *(variable.name for variable in SCHEMA)]
     return [name for name in required if name not in dataset.variables]

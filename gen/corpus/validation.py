@@ -67,7 +67,7 @@ def _records_problems(path: Path, manifest: Manifest) -> list[str]:
     first, problems = 0, list[str]()
     if path.is_file():
         for block in blocks_of(path, manifest.records):
-            problems += _text_problems(path, stored_columns(*block))
+            problems += _text_problems(path, stored_columns(path, block.first, block.stop))
         return problems + _signal_problems(path, manifest.signals)
     for row in manifest.parts:
         file = path / "parts" / row.name

@@ -25,7 +25,7 @@ from gen.corpus import (
     new_corpus,
 )
 from gen.corpus.joining import new_numbers
-from gen.corpus.schema import NAMED, SIGNAL_DIMS, schema_problems
+from gen.corpus.schema import NAMED, records_in_memory, schema_problems
 from gen.generation.corpus import facts_of
 from gen.generation.parts import part_attributes
 from gen.measurement.measure import LARGEST_COUNT
@@ -62,7 +62,7 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
     """
     target = Path(target).absolute()
     check_new(target)
-    rows = _rows(dataset)
+    rows = records_in_memory(dataset)
     draws = rows[DRAWS].values if DRAWS in rows else np.full(rows.sizes["record"], "")
     settings = [read_scenario(str(text)).settings if text else None for text in draws]
     signal, full_scale, replayable = _signal(rows[SIGNAL].values, settings)
@@ -86,21 +86,6 @@ def write_corpus(dataset: xr.Dataset, target: Path | str) -> Path:
         for first in range(0, stored.sizes["record"], size):
             corpus.write(stored.isel(record=slice(first, first + size)))
     return target
-
-
-def _rows(dataset: xr.Dataset) -> xr.Dataset:
-    """Records with the axes of the signal in the order of the format."""
-    if not isinstance(dataset, xr.Dataset):
-        raise CorpusError(f"{type(dataset).__name__} given in place of a Dataset; give one from gen.records.")
-    missing = [name for name in (SIGNAL, *(variable.name for variable in SCHEMA)) if name not in dataset.variables]
-    if missing:
-        raise CorpusError(f"the Dataset has no variable {', '.join(missing)}; the format of corpora needs it.")
-    rows = dataset if "record" in dataset.dims else dataset.reset_coords().expand_dims("record")
-    if set(rows[SIGNAL].dims) != set(SIGNAL_DIMS) or not rows[SIGNAL].size:
-        raise CorpusError(
-            f"{SIGNAL} has the axes {dict(rows[SIGNAL].sizes)}; give at least one record with a channel and a sample."
-        )
-    return rows.transpose(*SIGNAL_DIMS)
 
 
 def _signal(

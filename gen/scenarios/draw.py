@@ -48,11 +48,13 @@ def draw_scenarios(
     Raises
     ------
     RecipeError
-        If a drawn bearing cannot exist or a drawn spall does not fit it.
+        If the recipe does not have all these records, a drawn bearing cannot exist, or a drawn spall does not fit it.
     """
-    numbers = range(max(first, 0), min(recipe.n_records if stop is None else stop, recipe.n_records))
-    if not numbers:
-        return []
+    numbers = range(first, recipe.n_records if stop is None else stop)
+    if not 0 <= numbers.start < numbers.stop <= recipe.n_records:
+        raise RecipeError(
+            f"{recipe.name}: has no records {first} to {numbers.stop} (exclusive); it has {recipe.n_records}, numbered from 0."
+        )
     tries = fault_tries or {}
     first_specimen, last_specimen = recipe.specimen_of(numbers[0]), recipe.specimen_of(numbers[-1])
     first_rig, last_rig = recipe.rig_of(first_specimen), recipe.rig_of(last_specimen)
