@@ -93,6 +93,7 @@ from .schema import (
 )
 from .signals import (
     SignalCounts as SignalCounts,
+    clipped_records as clipped_records,
     complaint as complaint,
     counts_in_words as counts_in_words,
     sum_counts as sum_counts,

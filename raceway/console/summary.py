@@ -18,6 +18,7 @@ from gen.corpus import (
     SPLITS,
     Manifest,
     SignalCounts,
+    clipped_records,
     counts_in_words,
     fault_counts,
     file_facts,
@@ -85,7 +86,7 @@ def describe(directory: Path) -> dict[str, Any]:
 
 def _labels(files: Mapping[Path, int]) -> Columns:
     """Numbers that ``info`` shows; ``files`` are those that hold them, with their numbers of records."""
-    known = (*_SEVERITIES.keys() - {*_SHOWN}, *VARIABLES, "step_error", "oversampling")
+    known = (*_SEVERITIES.keys() - {*_SHOWN}, *VARIABLES, "clipped", "step_error", "oversampling")
     parts = [read_columns(file, records, _SHOWN, known) for file, records in files.items()]
     labels = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
     for problem in operating_problems(labels):
@@ -119,6 +120,7 @@ def _content(directory: Path, manifest: Manifest) -> dict[str, Any]:
         "load": _range(labels["load"]),
         "severities": _severities(labels),
         "warnings": [*manifest.warnings, *filter(None, [step_complaint(labels)])],
+        "clipped": clipped_records(labels),
         "faults": None if (counts := fault_counts(labels)) is None else counts._asdict(),
     }
 
@@ -164,6 +166,8 @@ def show_facts(facts: dict[str, Any]) -> None:
     if "classes" in facts:
         known |= _shown_content(facts)
     known["not usable"] = counts_in_words(SignalCounts(**facts["signals"]))
+    if (clipped := facts.get("clipped")) is not None:
+        known["clipped"] = f"at least once: {show.counts(clipped)}" if clipped else "none"
     known |= {"parts": f"{facts['parts']:,}", "size": show.size(facts["bytes"])}
     known["versions"] = ", ".join(f"{name} {number}" for name, number in facts.get("versions", {}).items())
     show.facts(known)

@@ -1,8 +1,9 @@
 """Messages of the commands about records that cannot be used."""
 
+import numpy as np
 import pytest
 
-from gen.corpus import validate_corpus
+from gen.corpus import FAULT_NAMES, open_corpus, validate_corpus
 from raceway.console.ending import DONE, FOUND_WANTING
 
 SENTENCE = (
@@ -43,3 +44,27 @@ def test_info_shows_how_many_records_cannot_be_used(run, loud_recipe, tiny_corpu
     shown = " ".join(run("info", tmp_path / "c").stdout.split())
     assert "not usable 48 clipped" in shown
     assert "not usable none" in " ".join(run("info", tiny_corpus).stdout.split())
+
+
+def test_info_and_card_count_the_records_of_each_class_with_a_clipped_sample(run, told, tiny_recipe, tmp_path):
+    """At 100 m/s2 some impacts of the faults are clipped, which leaves their records usable."""
+    text = tiny_recipe.read_text()
+    loud = tmp_path / "loud.yaml"
+    loud.write_text(text.replace("settle_s: 0.05}", "settle_s: 0.05, converter: {full_scale_m_s2: 100, kind: adc}}"))
+    run("generate", loud, "-o", tmp_path / "c", "--workers", 1)
+    with open_corpus(tmp_path / "c") as corpus:
+        clipped = (np.abs(corpus.acceleration) == np.abs(corpus.acceleration).max()).any(("channel", "elapsed_time"))
+        classes = [str(name) for name in corpus.fault_name.values[clipped]]
+    counts = {name: classes.count(name) for name in FAULT_NAMES.values() if name in classes}
+    assert 0 < sum(counts.values()) < 48
+    found = told("info", tmp_path / "c")
+    assert (found["clipped"], found["signals"]) == (counts, NONE)
+    words = ", ".join(f"{name} {number}" for name, number in counts.items())
+    assert f"clipped at least once: {words} " in " ".join(run("info", tmp_path / "c").stdout.split())
+    assert f"Records with a clipped sample: {words}." in (tmp_path / "c" / "README.md").read_text()
+
+
+def test_a_corpus_without_a_clipped_sample_says_so(run, told, tiny_corpus):
+    assert told("info", tiny_corpus)["clipped"] == {}
+    assert "clipped none" in " ".join(run("info", tiny_corpus).stdout.split())
+    assert "Records with a clipped sample: none." in (tiny_corpus / "README.md").read_text()

@@ -5,7 +5,7 @@ import xarray as xr
 
 from gen.corpus.card.markdown import plain_text, table
 from gen.corpus.schema import FAULT_NAMES, SPLITS
-from gen.corpus.signals import SignalCounts, counts_in_words
+from gen.corpus.signals import SignalCounts, clipped_records, counts_in_words
 
 MOST_NAMES = 12  # bearings named on the card; the others are counted
 
@@ -19,6 +19,7 @@ def contents(corpus: xr.Dataset, signals: SignalCounts) -> list[str]:
     return [
         f"{records} {'record' if records == 1 else 'records'} of {samples / fs:g} s at {fs:g} Hz, {channels} {names}, in m/s^2.",
         f"Records that cannot be used: {counts_in_words(signals)}.",
+        *_clipped(corpus),
         "",
         f"Bearings: {_bearings(corpus)}.",
         *_classes(corpus),
@@ -26,6 +27,13 @@ def contents(corpus: xr.Dataset, signals: SignalCounts) -> list[str]:
         *_splits(corpus),
         *_pairs(corpus),
     ]
+
+
+def _clipped(corpus: xr.Dataset) -> list[str]:
+    counts = clipped_records(corpus)
+    if counts is None:
+        return []
+    return [f"Records with a clipped sample: {', '.join(f'{name} {n}' for name, n in counts.items()) or 'none'}."]
 
 
 def _bearings(corpus: xr.Dataset) -> str:
