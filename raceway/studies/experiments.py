@@ -33,9 +33,15 @@ class Experiment(NamedTuple):
 
 
 CLUSTERS = ("C10", "C16.y1", "C16.x2")
-PEAKS = ("C12.y1", "C12.y2")
+PEAKS = ("C11.y2", "C12.y1", "C12.y2")
 
 EXPERIMENTS = (
+    Experiment(
+        "paper",
+        ("H3.decay",),
+        {"support_damping_x": 1600},
+        "the support damps x so much that x1 is at rest when the start is over",
+    ),
     Experiment(
         "paper",
         ("H8",),

@@ -7,6 +7,8 @@ from scipy.signal import find_peaks, hilbert
 FloatArray = NDArray[np.floating]
 Line = tuple[float, float, float]
 
+_PLACES = 64  # in a turn of the shaft, at which the envelope is averaged
+
 
 def decay(time: FloatArray, x: FloatArray) -> float:
     """Largest distance from the settled mean at 0.05 to 0.1 s, over the largest before 0.05 s."""
@@ -19,10 +21,22 @@ def unrest(settled: FloatArray) -> float:
     return float(settled.std() / abs(settled.mean()))
 
 
-def envelope_variation(x: FloatArray) -> float:
-    """Coefficient of variation of the envelope, which is zero for a steady sine."""
+def oscillations(time: FloatArray, x: FloatArray) -> float:
+    """Number of oscillations around the settled mean before 0.05 s."""
+    above = (x > x[time > 0.5].mean())[time < 0.05]
+    return float(np.count_nonzero(above[1:] != above[:-1]) / 2)
+
+
+def modulation(x: FloatArray, turn: float) -> float:
+    """Standard deviation over the mean of the envelope averaged over all turns of ``turn`` samples.
+
+    Only a modulation that repeats in every turn remains: m sin gives m / sqrt(2). The envelope of Gaussian noise, which itself varies by
+    0.52, gives 0.11 at most over the 42 turns of a run.
+    """
     envelope = np.abs(hilbert(x - x.mean()))
-    return float(envelope.std() / envelope.mean())
+    place = (np.arange(len(x)) / turn % 1 * _PLACES).astype(int)
+    averaged = np.bincount(place, envelope) / np.bincount(place)
+    return float(averaged.std() / averaged.mean())
 
 
 def asymmetry(x: FloatArray) -> float:

@@ -34,6 +34,7 @@ def write_paper_page(folder: Path, presets: Mapping[str, Preset] = PRESETS) -> t
     runs = dict(zip(presets, run_many(list(presets.values())), strict=True))
     measured = {name: findings(name, made) for name, made in runs.items()}
     page = template("ophel2025.html.jinja", "raceway.studies").render(
+        amended=sum(bool(one.amended) for one in STATEMENTS.values()),
         counts={name: _counts(found) for name, found in measured.items()},
         constants={name: [f"{constant(one, name):.4g}" for one in presets.values()] for name in UNITS},
         units=UNITS,
@@ -102,15 +103,14 @@ def draw_figure(name: str, made: Run) -> Figure:
 def _draw_printed(axes: Axes, figure: str, channel: str, spectral: bool) -> None:
     """Values and bands that the paper prints for a channel."""
     about = [one for one in STATEMENTS.values() if (one.figure, one.channel) == (figure, channel) and one.printed]
-    printed = {one.printed: ":" if one.amended else "--" for one in about}
-    for row, (values, dashes) in enumerate(printed.items()):
+    for row, values in enumerate(dict.fromkeys(one.printed for one in about)):
         text = "–".join(f"{value:g}" for value in values)
         if not spectral:
-            axes.axhline(values[0], color=BLUE, linestyle=dashes, linewidth=1)
+            axes.axhline(values[0], color=BLUE, linestyle="--", linewidth=1)
             axes.text(1.01, values[0], text, color=BLUE, va="center", transform=axes.get_yaxis_transform())
             continue
         if len(values) > 1:
             axes.axvspan(*values, color=BLUE, alpha=0.15, linewidth=0)
         else:
-            axes.axvline(max(values), color=BLUE, linestyle=dashes, linewidth=1)
+            axes.axvline(max(values), color=BLUE, linestyle="--", linewidth=1)
         axes.text(max(values) + 8, 0.96 - 0.13 * row, text, color=BLUE, va="top", transform=axes.get_xaxis_transform())

@@ -7,16 +7,17 @@ import pytest
 
 from gen.physics.catalogue import CATALOGUE
 from gen.physics.hertz import load_deflection_factor
+from raceway.studies.measures import modulation, oscillations
 from raceway.studies.paper import CHANNELS, FIGURES, FS, PRESETS, power_spectrum, run
 from raceway.studies.paper_page import draw_figure
-from raceway.studies.statements import STATEMENTS, findings
+from raceway.studies.statements import LATE, STATEMENTS, findings
 
 # values of the model study, in thousandths of a millimetre, Hz or 1, that the runs must meet within 2 %
 PAPER = {
     "H1": 5.61, "H2": 9.74, "H4": 8.30, "H5": 4.53, "H6": 1.83, "H7": 1.44, "H10": 0.87, "H11": 0.843, "H12": 0.891, "H14": 226, "H15": 226,
-    "C3": 11.5, "C5": 4.22, "C6": -5.95, "C7": 4.53, "C9": 0.40, "C10": 3, "C12.y1": 771.6, "C12.y2": 771.6,
+    "C3": 11.5, "C5": 4.22, "C6": -5.95, "C7": 4.53, "C10": 3, "C12.y1": 771.6, "C12.y2": 771.6,
 }  # fmt: skip
-PAPER_HERTZ = {"H1": 4.63, "H2": 8.63, "H4": 8.31, "H7": 0.93, "C3": 7.9, "C7": 4.33, "C9": 0.48, "C12.y1": 773.7}
+PAPER_HERTZ = {"H1": 4.63, "H2": 8.63, "H4": 8.31, "H7": 0.93, "C3": 7.9, "C7": 4.33, "C12.y1": 773.7}
 
 
 @pytest.fixture(scope="module")
@@ -31,31 +32,83 @@ def test_the_statements_have_the_values_they_had(runs, preset, values):
 
 
 @pytest.mark.parametrize(
-    ("preset", "fitted", "all_of_them"), [("paper", 33, 48), ("paper-hertz", 29, 45), ("paper-refit", 35, 51)]
+    ("preset", "fitted", "all_of_them"), [("paper", 30, 41), ("paper-hertz", 27, 39), ("paper-refit", 33, 45)]
 )
 def test_at_least_as_many_statements_hold_as_did(runs, preset, fitted, all_of_them):
     found = findings(preset, runs[preset])
-    assert len(found) == len({finding.id for finding in found}) == 57
-    assert sum(finding.fitted for finding in found) == 38
+    assert len(found) == len({finding.id for finding in found}) == 52
+    assert sum(finding.fitted for finding in found) == 37
     assert sum(finding.holds for finding in found if finding.fitted) >= fitted
     assert sum(finding.holds for finding in found) >= all_of_them
 
 
-def test_every_channel_is_judged_where_the_paper_speaks_of_all():
-    """Growth, decay, steadiness and modulation: one statement for each of the four displacements."""
-    for key, first in (("C1", "x1"), ("H3", "x1"), ("H9", "x1"), ("C9", "y1")):
-        assert {key, *(f"{key}.{name}" for name in CHANNELS if name != first)} <= set(STATEMENTS)
-    assert {"H12", "H12.y", "C16.y1", "C16.x2", "C17.x", "C18"} <= set(STATEMENTS)
+def test_every_statement_is_about_the_channels_that_the_paper_names():
+    """Growth is said of the system, modulation of each channel in its own words; decay of x1, steadiness of y2 and the system."""
+    about = {
+        key: {one.channel for name, one in STATEMENTS.items() if name.split(".")[0] == key} for key in ("C1", "C9")
+    }
+    assert about == {"C1": set(CHANNELS), "C9": set(CHANNELS)}
+    channels = {key: STATEMENTS[key].channel for key in ("H3.rapid", "H3.decay", "H9", "C2", "C9", "C18")}
+    assert channels == {"H3.rapid": "x1", "H3.decay": "x1", "H9": "y2", "C2": "y1", "C9": "y1", "C18": "x2"}
+    assert [key for key, one in STATEMENTS.items() if "beat" in one.finding] == ["C9"]
+
+
+def test_the_bands_of_the_crack_are_those_of_each_channel():
+    bands = {name: STATEMENTS[f"C11.{name}"].printed for name in CHANNELS}
+    assert bands == {"x1": (600, 800), "y1": (650, 800), "x2": (650, 800), "y2": (740,)}
+
+
+def test_every_statement_has_its_place_in_the_paper():
+    places = {key: STATEMENTS[key].place for key in ("H1", "H7", "H13.y1", "H15", "C2", "C11.x1", "C12.y2", "C15.y1")}
+    assert places == {
+        "H1": "V, Fig. 3(a)",
+        "H7": "V, on Fig. 3(b) for 3(d)",
+        "H13.y1": "abstract, VII",
+        "H15": "VI, Fig. 5(d)",
+        "C2": "V, Fig. 4(b)",
+        "C11.x1": "abstract; VI, Fig. 6(a)",
+        "C12.y2": "VI, Fig. 6(d)",
+        "C15.y1": "V, Fig. 3(b) and 4(b)",
+    }
 
 
 def test_what_the_paper_does_not_claim_is_no_statement():
-    assert not {"C17.y", "C16.x1", "C16.y2", "C15.x2"} & set(STATEMENTS)
+    assert not {"C17.y", "C16.x1", "C16.y2", "C15.x2", "H3.y1", "H3.x2", "H3.y2", "H9.x1", "H9.x2"} & set(STATEMENTS)
 
 
-def test_the_first_peak_of_x1_is_marked_as_amended():
-    """The paper prints 1e-3 for x1 and 10e-3 for x2."""
+def test_every_displacement_is_marked_as_amended_because_it_is_read_in_millimetres():
+    """The paper prints 1e-3 m for the first peak of x1, and 10e-3 m for that of x2."""
     assert (STATEMENTS["H2"].printed, STATEMENTS["H4"].printed) == ((1,), (10,))
-    assert {key for key, one in STATEMENTS.items() if one.amended} == {"H2", "H6", "H7", "H8", "C8"}
+    amended = {key for key, one in STATEMENTS.items() if one.amended}
+    assert amended == {key for key, one in STATEMENTS.items() if one.printed and one.figure in ("figure3", "figure4")}
+    assert len(amended) == 13
+    assert all("(E15)" in STATEMENTS[key].amended for key in amended)
+
+
+def test_noise_of_the_colour_of_the_crack_is_not_modulated(runs):
+    """The envelope of Gaussian noise varies by sqrt(4 / pi - 1) = 0.52, but not in step with the shaft."""
+    rng = np.random.default_rng(0)
+    accepted = STATEMENTS["C9"].accept[0]
+    for made in runs.values():
+        for x in made.cracked[:, round(LATE * FS) :]:
+            power = np.convolve(
+                np.abs(np.fft.rfft(x - x.mean())) ** 2, np.ones(48), "same"
+            )  # lines become bands of 50 Hz
+            shaped = np.sqrt(power) * (rng.normal(size=(10, power.size)) + 1j * rng.normal(size=(10, power.size)))
+            noise = np.fft.irfft(shaped, x.size)
+            assert max(modulation(one, FS / made.shaft_rate) for one in noise) < accepted
+
+
+def test_the_depth_of_a_modulation_in_step_with_the_shaft_is_measured():
+    time = np.arange(38_000) / FS
+    x = (1 + 0.4 * np.sin(2 * np.pi * 45 * time)) * np.sin(2 * np.pi * 740 * time)
+    assert modulation(x, FS / 45) == pytest.approx(0.4 / math.sqrt(2), rel=0.01)
+    assert modulation(x, FS / 41) < 0.05
+
+
+def test_oscillations_before_005_s_are_counted():
+    time = np.arange(FS) / FS
+    assert oscillations(time, 5 + np.exp(-60 * time) * np.cos(2 * np.pi * 201 * time)) == 10
 
 
 def test_the_energy_of_x2_is_looked_for_up_to_230_hz():
