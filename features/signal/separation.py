@@ -24,15 +24,14 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import irfft, next_fast_len, rfft
-from scipy.linalg import cho_factor, cho_solve, solve_toeplitz
+from scipy.linalg import cho_factor, cho_solve
 
 from features.signal.door import Bands, Count, OfEach, Positive, Rows, checked
-from features.signal.rows import ComplexArray, FloatArray, squared_modulus
-from features.signal.spectra import hann_segments
+from features.signal.rows import ComplexArray, FloatArray, hann_window, squared_modulus
+from features.signal.spectra import LOADING, hann_segments, prediction_filters, sine_windowed
 
 OVERLAP_LOSS = 1.056  # segments per independent segment, Hann window and half overlap
 CHANCE = 0.01  # that a coherence of noise counts as that of a tone
-LOADING = 1e-9  # of the power, added as white noise: it keeps the equations of pure tones solvable
 
 
 class Separation(NamedTuple):
@@ -81,8 +80,10 @@ def separate_random(x: Rows, fs: Positive, *, segment: Positive = 0.1, delay: Po
     """Tones, and the rest of each record, by the correlation of segments with later ones.
 
     The modulus of the coherence of segments with those ``delay`` later is near 1 at a tone and, in noise, as low as the
-    number of segments allows. Less this bias it is the gain of a zero-phase filter, that of the tones; where noise would
-    reach it in one of a hundred bins, the gain is 0. Within one segment of both ends less of the tones is removed.
+    number of segments allows. Less this bias it is the gain of a filter, that of the tones; where noise would reach it in
+    one of a hundred bins, the gain is 0. With the phase of the correlation, the filter predicts the tones from samples
+    that are the delay away, later ones in the first half of a record and earlier ones in the second. So it needs nothing
+    beyond the ends, and the noise in the bins of the tones is equally strong over the whole record.
 
     Parameters
     ----------
@@ -91,53 +92,79 @@ def separate_random(x: Rows, fs: Positive, *, segment: Positive = 0.1, delay: Po
     fs
         Sample rate [Hz].
     segment
-        Length of a segment [s]. Two tones closer than ``4 / segment`` are one; half of the record is the most.
+        Length of a segment [s]. Two tones closer than ``4 / segment`` are one.
     delay
         Time in which the random part forgets its phase [s]: several periods of the fault, and at least a segment.
+        Twice the segment and the delay must fit the records.
+
+    Raises
+    ------
+    ValueError
+        If the records or the segments are too short, or the delay is shorter than a segment, with which noise that both
+        segments share would count as a tone.
     """
     n, length, shift = x.shape[-1], round(segment * fs), round(delay * fs)
-    if length < 4 or n < 2 * length + shift:
+    if not 4 <= length <= shift:
         raise ValueError(
-            f"records of {n / fs:.3g} s are too short: two segments of {segment:g} s and the delay must fit."
+            f"segment {segment:g} s and delay {delay:g} s at {fs:g} Hz: a segment has at least 4 samples, and the delay is at "
+            "least a segment."
+        )
+    if n < 2 * (length + shift):
+        raise ValueError(
+            f"records of {n / fs:.3g} s are too short: twice the segment of {segment:g} s and the delay of {delay:g} s must fit."
         )
     centred = x - x.mean(axis=-1, keepdims=True)
     early = np.asarray(rfft(hann_segments(centred[:, : n - shift], length), axis=-1))
     late = np.asarray(rfft(hann_segments(centred[:, shift:], length), axis=-1))
-    cross = np.abs(np.sum(late * early.conj(), axis=1)) ** 2
+    # a temporary on the left: NumPy multiplies into a large one on the right in swapped order, and rounds differently
+    cross = np.sum(early.conj() * late, axis=1)
     power = np.sum(np.abs(early) ** 2, axis=1) * np.sum(np.abs(late) ** 2, axis=1)
     count = max(early.shape[1] / OVERLAP_LOSS, 1.01)
-    ratio = cross / np.maximum(power, np.finfo(power.dtype).tiny)
+    modulus, tiny = np.abs(cross), np.finfo(power.dtype).tiny
+    ratio = modulus**2 / np.maximum(power, tiny)
     significant = ratio > 1 - CHANCE ** (1 / (count - 1))
     gain = np.where(significant, np.sqrt(np.clip((count * ratio - 1) / (count - 1), 0, 1)), 0.0)
-    deterministic = _filter(centred, gain, length)
+    advance = gain * (cross / np.maximum(modulus, tiny))
+    deterministic = _predict(centred, advance, length, shift)
     return Separation(deterministic, centred - deterministic)
 
 
-def _filter(x: FloatArray, gain: FloatArray, length: int) -> FloatArray:
-    """Records through zero-phase filters of given gain at the frequencies of segments of ``length``, shape (record, time)."""
-    n = next_fast_len(x.shape[-1] + length, real=True)
-    place = np.arange(n // 2 + 1) * (length / n)
-    fine = np.stack([np.interp(place, np.arange(len(row)), row) for row in gain]).astype(x.dtype)
-    return np.asarray(irfft(np.asarray(rfft(x, n=n, axis=-1)) * fine, n=n, axis=-1))[:, : x.shape[-1]]
+def _predict(x: FloatArray, advance: ComplexArray, length: int, distance: int) -> FloatArray:
+    """Tones of records from samples ``distance`` away, shape (record, time).
+
+    Parameters
+    ----------
+    x
+        Records, shape (record, time).
+    advance
+        Change of a tone over the distance at the frequencies of segments of ``length``, shape (record, frequency).
+    """
+    n, half = next_fast_len(x.shape[-1] + 2 * length, real=True), x.shape[-1] // 2
+    kernel = np.tile(irfft(advance, n=length, axis=-1), 2) * hann_window(2 * length, x.dtype)  # a segment to each side
+    response, coefficients = np.asarray(rfft(kernel, n=n, axis=-1)), np.asarray(rfft(x, n=n, axis=-1))
+    first, last = distance - length, half + length - distance
+    later = np.asarray(irfft(response.conj() * coefficients, n=n, axis=-1))[:, first : first + half]
+    earlier = np.asarray(irfft(response * coefficients, n=n, axis=-1))[:, last : last + x.shape[-1] - half]
+    return np.concatenate([later, earlier], axis=-1)
 
 
 @checked
 def prediction_residual(x: Rows, order: Count) -> Rows:
     """Records less their linear prediction from ``order`` samples before, shape (record, time).
 
-    The coefficients solve the equations of Yule and Walker; the residual of an autoregressive process is its innovation.
+    The residual of an autoregressive process is its innovation. The first ``order`` samples, which have too few before
+    them, are predicted from those after them: backwards, the same filter leaves as much of a stationary record.
     """
     n = x.shape[-1]
-    if not 0 < order < n:
-        raise ValueError(f"order {order} is not in 1 to {n - 1}, the length of the records less one.")
+    if not 0 < order <= n // 2:
+        raise ValueError(f"order {order} is not in 1 to {n // 2}, half the length of the records.")
     centred = x - x.mean(axis=-1, keepdims=True)
     length = next_fast_len(n + order, real=True)
-    coefficients = np.asarray(rfft(centred, n=length, axis=-1))
-    correlation = np.asarray(irfft(squared_modulus(coefficients).astype(float), n=length, axis=-1))[:, : order + 1]
-    correlation[:, 0] += LOADING * correlation[:, 0] + np.finfo(float).tiny
-    weights = np.stack([solve_toeplitz(row[:-1], row[1:]) for row in correlation])
-    filters = np.concatenate([np.ones((len(x), 1)), -weights], axis=-1).astype(x.dtype)
-    return np.asarray(irfft(coefficients * rfft(filters, n=length, axis=-1), n=length, axis=-1))[:, :n]
+    filters = prediction_filters(sine_windowed(x, length), length, order)
+    residual = np.asarray(irfft(rfft(centred, n=length) * rfft(filters, n=length), n=length, axis=-1))[:, :n]
+    ahead = np.lib.stride_tricks.sliding_window_view(centred[:, : 2 * order], order + 1, axis=-1)
+    residual[:, :order] = np.einsum("rkj,rj->rk", ahead, filters)
+    return residual
 
 
 @checked
