@@ -10,8 +10,11 @@ frequency-smoothed cyclic periodogram, exact at every cyclic frequency. Estimate
 time and are attenuated towards half the rate of their segments. The record is under a sine window, so that the products
 are under a Hann window: a line in alpha is two resolutions wide on each side, and a coefficient is independent of those
 1.5 resolutions away. In stationary noise ``|gamma|^2`` of K independent coefficients exceeds c with the probability
-``(1 - c)**(K - 1)`` [4]_. Its mean over the spectral frequencies is the enhanced envelope spectrum, over a band the
-improved one [3]_; they average the modulus, we its square, whose distribution is known.
+``(1 - c)**(K - 1)`` [4]_. Inside a resonance, few coefficients would carry the sum: of values that exceed c with a nominal
+probability of 0.001, there were 0.05 at a damping of 0.2 %. So the record is first whitened by linear prediction from the
+time ``1 / B`` before [5]_, which takes resonances away. The mean of the coherence over the spectral frequencies is the
+enhanced envelope spectrum, over a band the improved one [3]_; they average the modulus, we its square, whose distribution
+is known.
 
 .. [1] W. A. Gardner, "Measurement of spectral correlation", *IEEE Trans. Acoust. Speech Signal Process.* 34 (1986)
        1111-1123.
@@ -19,6 +22,7 @@ improved one [3]_; they average the modulus, we its square, whose distribution i
 .. [3] J. Antoni, G. Xin, N. Hamzaoui, "Fast computation of the spectral correlation", *Mech. Syst. Signal Process.* 92
        (2017) 248-277.
 .. [4] G. C. Carter, "Coherence and time delay estimation", *Proc. IEEE* 75 (1987) 236-255.
+.. [5] J. Makhoul, "Linear prediction: a tutorial review", *Proc. IEEE* 63 (1975) 561-580.
 """
 
 from typing import NamedTuple
@@ -29,7 +33,8 @@ from scipy.special import gammainccinv
 
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.door import Band, Positive, Rows, Share, checked
-from features.signal.rows import ComplexArray, FloatArray, hann_window, squared_modulus
+from features.signal.rows import ComplexArray, FloatArray, squared_modulus
+from features.signal.spectra import prediction_filters, sine_windowed
 
 WINDOW_LOSS = 1.5  # coefficients per independent coefficient under a sine window
 FEWEST = 20.0  # independent coefficients in a band
@@ -93,7 +98,7 @@ def spectral_coherence(x: Rows, fs: Positive, highest: Positive, *, resolution: 
         Highest cyclic frequency [Hz]. Spectral frequencies end this much below ``fs / 2``.
     resolution
         Width of the bands of the spectral frequency [Hz]. Each has ``resolution / 1.5`` independent coefficients per
-        second of the record.
+        second of the record. Impacts without slip that follow each other faster than this are predicted, and lower.
     """
     n = x.shape[-1]
     length = next_fast_len(ZERO_PADDING * n, real=True)
@@ -106,8 +111,8 @@ def spectral_coherence(x: Rows, fs: Positive, highest: Positive, *, resolution: 
             f"bands of {resolution:g} Hz and cyclic frequencies up to {highest:g} Hz do not fit a record of {n / fs:.3g} s "
             f"at {fs:g} Hz: a band has at least {FEWEST * WINDOW_LOSS:g} cycles in the record, and ends below fs / 2."
         )
-    window = np.sqrt(hann_window(n, x.dtype))
-    coefficients = np.asarray(rfft((x - x.mean(axis=-1, keepdims=True)) * window, n=length, axis=-1))
+    coefficients = sine_windowed(x, length)
+    coefficients *= rfft(prediction_filters(coefficients, length, round(fs / resolution)), n=length, axis=-1)
     squared = np.stack([_coherence(coefficients[:, b * width :], width, lags) for b in range(count)], axis=1)
     return Coherence(np.arange(lags) * bin_width, (np.arange(count) + 0.5) * width * bin_width, squared, independent)
 
