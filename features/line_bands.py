@@ -26,10 +26,11 @@ if TYPE_CHECKING:
     from pandas import DataFrame
 
 HANN_BANDWIDTH = 1.5  # noise bandwidth of the Hann window, in resolutions
+HALF_LINE = 2 * ZERO_PADDING  # points from the middle of a line to its end under a Hann window
 METRICS = {
     "peak": "highest amplitude in the band",
     "peak_at": "frequency or order of the peak",
-    "power": "mean square of what lies in the band",
+    "power": "mean square of the lines in the band",
     "level": "peak over the floor [dB]",
 }
 
@@ -110,9 +111,10 @@ def fault_metrics(
 ) -> "DataFrame | xr.Dataset":
     """What an amplitude spectrum has in each band of `fault_bands`.
 
-    ``peak`` is the highest amplitude, ``peak_at`` its place, ``power`` the mean square of what lies in the band (half the
-    square of the amplitude of a line), and ``level`` the peak over the running median of the spectrum around it [dB]. A
-    band that reaches beyond the spectrum has NaN.
+    ``peak`` is the highest amplitude, ``peak_at`` its place, ``power`` the mean square of the lines in the band (half the
+    square of the amplitude of each), and ``level`` the peak over the running median of the spectrum around it [dB]. A line
+    reaches two resolutions, which are two over the length of the record, to each side of its middle, so ``power`` is of the
+    band and as much to each side. A band that reaches beyond the spectrum with them has NaN.
 
     Parameters
     ----------
@@ -148,8 +150,8 @@ def fault_metrics(
     found = np.full((len(METRICS), len(values), len(bands)), np.nan)
     for band, place in enumerate(middle):
         first, last = min(int(np.ceil(low[band])), round(place)), max(int(high[band]), round(place))
-        if last < bins:
-            found[:, :, band] = _metrics(values[:, first : last + 1], floor[:, first : last + 1], first, step)
+        if first >= HALF_LINE and last + HALF_LINE < values.shape[1]:
+            found[:, :, band] = _metrics(values, floor, first, last, step)
     names = {name: bands[name].to_numpy() for name in ("fault", "line", "harmonic", "sideband")}
     if np.ndim(spectrum) == 1:
         return bands[list(names)].assign(**dict(zip(METRICS, found[:, 0], strict=True)))
@@ -162,11 +164,12 @@ def fault_metrics(
     )
 
 
-def _metrics(within: FloatArray, floor: FloatArray, first: int, step: float) -> FloatArray:
+def _metrics(values: FloatArray, floor: FloatArray, first: int, last: int, step: float) -> FloatArray:
     """Values of `METRICS` of one band from its bins, shape (metric, record)."""
-    highest = within.argmax(axis=1)
-    rows = np.arange(len(within))
-    peak, least = within[rows, highest], np.finfo(within.dtype).tiny
-    power = np.sum(np.square(within, dtype=float), axis=1) / (2 * HANN_BANDWIDTH * ZERO_PADDING)
+    highest = first + values[:, first : last + 1].argmax(axis=1)
+    rows = np.arange(len(values))
+    peak, least = values[rows, highest], np.finfo(values.dtype).tiny
+    lines = np.square(values[:, first - HALF_LINE : last + HALF_LINE + 1], dtype=float)
+    power = np.sum(lines, axis=1) / (2 * HANN_BANDWIDTH * ZERO_PADDING)
     level = 20 * np.log10(np.maximum(peak, least) / np.maximum(floor[rows, highest], least))
-    return np.stack([peak, (first + highest) * step, power, level])
+    return np.stack([peak, highest * step, power, level])

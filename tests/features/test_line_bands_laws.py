@@ -1,7 +1,9 @@
 """Bands lie around the lines of a bearing, and metrics tell the lines of a spectrum as they were made."""
 
+import hypothesis.strategies as st
 import numpy as np
 import pytest
+from hypothesis import given, settings
 
 import gen
 from features.line_bands import fault_bands, fault_metrics
@@ -58,6 +60,31 @@ def test_metrics_of_several_records_are_a_dataset_with_those_of_each_and_orders_
     again = fault_metrics(orders, by_order[2], bands, unit="order")
     np.testing.assert_allclose(again.peak, alone.peak)
     np.testing.assert_allclose(again.peak_at * RATE, alone.peak_at)
+
+
+@settings(deadline=None)
+@given(
+    seconds=st.floats(0.5, 10),
+    place=st.floats(-1, 1),
+    amplitude=st.sampled_from([1e-3, 2.0, 50.0]),
+    tolerance=st.sampled_from([0.001, 0.02]),
+)
+def test_the_power_of_a_line_is_half_its_squared_amplitude_whatever_the_length_of_the_record(
+    seconds, place, amplitude, tolerance
+):
+    t = np.arange(round(seconds * FS)) / FS
+    bands = fault_bands(ORDERS, RATE, tolerance=tolerance)
+    frequency = ORDERS.bpfo * RATE * (1 + place * tolerance)
+    frequencies, spectrum = amplitude_spectrum(amplitude * np.sin(2 * np.pi * frequency * t + 1)[None], FS)
+    metrics = fault_metrics(frequencies, spectrum[0], bands).set_index("line")
+    assert metrics.power["BPFO"] == pytest.approx(amplitude**2 / 2, rel=0.01)
+
+
+def test_a_band_within_two_resolutions_of_zero_or_below_it_tells_nothing():
+    frequencies, spectrum = amplitude_spectrum(envelope()[:, :2000], FS)
+    metrics = fault_metrics(frequencies, spectrum[0], fault_bands(ORDERS, 8.0, sidebands=4)).set_index("line")
+    assert metrics.power[["FTF", "BPFO - 4 shaft"]].isna().all()  # at 3.2 and -3.3 Hz, with a resolution of 2 Hz
+    assert metrics.power["BPFO - 3 shaft"] > 0  # at 4.7 Hz
 
 
 def test_a_band_beyond_the_spectrum_tells_nothing_and_one_narrower_than_a_bin_tells_that_bin():
