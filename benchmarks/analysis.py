@@ -18,7 +18,7 @@ from features import signal
 
 Array = np.ndarray
 Work = Callable[[Array], Any]
-FS, FAULT_RATE, HIGHEST = 20_000.0, 90.0, 500.0  # Hz
+FS, SHAFT_RATE, FAULT_RATE, HIGHEST = 20_000.0, 25.0, 90.0, 500.0  # Hz
 PER_TURN, ORDER, LENGTH = 256, 100, 300
 
 
@@ -82,7 +82,7 @@ def cases(samples: int) -> dict[str, tuple[tuple, str, Work]]:
         "resample_to_angle": (turned, "CubicSpline", lambda x: interpolate.CubicSpline(angle, x)(places)),
         "order_spectrum": ((PER_TURN,), "rfft, four times padded", lambda x: abs(rfft(x * hann, 4 * samples))),
         "velocity": ((FS,), "butter, sosfiltfilt, cumulative_trapezoid", velocity),
-        "velocity_rms": ((FS,), "welch", velocity_rms),
+        "velocity_rms": ((FS, SHAFT_RATE), "welch", velocity_rms),
         "separate_random": ((FS,), "coherence, stft, istft", random_part),
         "prediction_residual": ((ORDER,), "correlate, solve_toeplitz, lfilter", residual),
         "cepstrum": ((), "irfft(log(abs(rfft(x))))", lambda x: irfft(np.log(abs(rfft(x))), samples)),

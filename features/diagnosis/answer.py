@@ -172,13 +172,9 @@ def diagnose_recording(
     ):
         raise CorpusError(f"{model.name}: the model takes features that this version does not make; train it again.")
     used, quality = _usable(recording, given)
-    levels = tuple(
-        levels_of(signal, one.fs, one.name, channel, one.unit)
-        for one in (recording.used, *(each.used for each in healthy))
-        for channel, signal in one.signals.items()
-    )
+    shown = (recording.used, *(each.used for each in healthy))
     if quality.useless:
-        return replace(_useless(given, model, quality), levels=levels)
+        return _with_levels(_useless(given, model, quality), shown)
     references = [_reference(one, used, given) for one in healthy]
     spectra = mean_spectra(list(used.signals.values()), used.fs, given)
     found = find_pairs(spectra, given)
@@ -186,7 +182,17 @@ def diagnose_recording(
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
     diagnosis = _conclude(judged, found, given, strange)
     advice = diagnosis.advice + (_advice(used, bool(healthy)) if diagnosis.verdict == UNSURE else ())
-    return replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings), levels=levels)
+    diagnosis = replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings))
+    return _with_levels(diagnosis, shown)
+
+
+def _with_levels(diagnosis: Diagnosis, recordings: Sequence[Recorded]) -> Diagnosis:
+    levels = tuple(
+        levels_of(signal, one.fs, one.name, channel, one.unit, diagnosis.shaft_rate)
+        for one in recordings
+        for channel, signal in one.signals.items()
+    )
+    return replace(diagnosis, levels=levels)
 
 
 def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:

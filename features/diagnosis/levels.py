@@ -29,7 +29,7 @@ class Levels(NamedTuple):
     kurtosis
         Fourth moment over the square of the second: 3 for Gaussian noise, NaN for a constant signal.
     velocity_rms_mm_s
-        In 10-1000 Hz [mm/s]; NaN if the unit is not m/s², the signal shorter than 1 s, or the sample rate 2000 Hz or less.
+        In the band of `velocity_rms` [mm/s]; NaN where it has none, or if the unit is not m/s².
     """
 
     recording: str
@@ -43,13 +43,13 @@ class Levels(NamedTuple):
     velocity_rms_mm_s: float
 
 
-def levels_of(x: FloatArray, fs: float, recording: str, channel: str, unit: str) -> Levels:
-    """Levels of a signal, shape (time,)."""
+def levels_of(x: FloatArray, fs: float, recording: str, channel: str, unit: str, shaft_rate: float) -> Levels:
+    """Levels of a signal, shape (time,), of a machine whose shaft turns at a rate [Hz]."""
     mean = float(np.mean(x, dtype=float))
     centred = np.asarray(x, dtype=float) - mean
     rms, peak = float(np.std(centred)), float(np.abs(centred).max())
     constant = rms == 0
     crest = np.nan if constant else peak / rms
     kurtosis = np.nan if constant else float(np.mean((centred / rms) ** 4))
-    velocity = 1e3 * float(velocity_rms(centred[None], fs)[0]) if unit == ACCELERATION else np.nan
+    velocity = 1e3 * float(velocity_rms(centred[None], fs, shaft_rate)[0]) if unit == ACCELERATION else np.nan
     return Levels(recording, channel, unit, mean, rms, peak, crest, kurtosis, velocity)

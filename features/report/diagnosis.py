@@ -28,7 +28,7 @@ from features.report.pictures import (
 )
 from features.report.templates import template, three_digits
 from features.signal.lines import Orders
-from features.signal.motion import VELOCITY_BAND
+from features.signal.motion import velocity_band
 from features.signal.rows import FloatArray
 from gen.corpus import check_result, write_text_durably
 
@@ -84,7 +84,7 @@ def write_diagnosis(
         healthy=len(healthy),
         levels=[_level_row(one, several=len(recording.signals) > 1) for one in diagnosis.levels],
         unit=recording.unit,
-        band=VELOCITY_BAND,
+        band=velocity_band(diagnosis.shaft_rate),
         colours={fault: row.colour for fault, row in CLASSES.items()},
         least=LEAST_LEVEL,
         false_alarm=FALSE_ALARM,

@@ -2,11 +2,14 @@
 
 A signal is integrated in the frequency domain: its Fourier coefficients are divided by ``2 pi i frequency``, once for
 each integration [1]_. Division raises slow drift without limit, so a high-pass is part of the operation. The rms of the
-velocity in the band of ISO 20816 is taken from the power spectral density, and compared with the zones of [2]_.
+velocity that ISO 20816 judges is taken from the power spectral density through the filter of [3]_, and compared with the
+zones of [2]_.
 
 .. [1] R. B. Randall, *Vibration-based Condition Monitoring*, 2nd ed., Wiley, 2021, section 3.2.
 .. [2] ISO 20816-3, *Mechanical vibration - Measurement and evaluation of machine vibration - Part 3: Industrial machinery
        with a power rating above 15 kW and operating speeds between 120 r/min and 30 000 r/min*, 2022.
+.. [3] ISO 2954, *Mechanical vibration of rotating and reciprocating machinery - Requirements for instruments for measuring
+       vibration severity*, 2012: Butterworth filters of third order, 3 dB down at the ends of the band.
 """
 
 from collections.abc import Mapping
@@ -16,13 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.fft import irfft, next_fast_len, rfft
 
-from features.signal.door import Positive, Rows, Values, checked
+from features.signal.door import OfEach, Positive, Rows, Values, checked
 from features.signal.rows import FloatArray
 from features.signal.spectra import psd
 
-HIGH_PASS = 10.0  # Hz, lower end of the band of ISO 20816
-VELOCITY_BAND = (HIGH_PASS, 1000.0)  # Hz
-VELOCITY_SECONDS = 1.0  # window of its spectrum, and the shortest signal
+HIGH_PASS = 10.0  # Hz
+SLOWEST, SLOW, FASTEST = 2.0, 10.0, 500.0  # Hz: 120, 600 and 30,000 r/min
+VELOCITY_BAND, SLOW_VELOCITY_BAND = (10.0, 1000.0), (2.0, 1000.0)  # Hz, the second below 600 r/min
+VELOCITY_PERIODS = 10.0  # of the lower end of the band, in a window of its spectrum and in the shortest signal
 
 ZONES = "ABCD"
 ZONE_LIMITS: Mapping[tuple[int, str], tuple[float, float, float]] = {
@@ -77,19 +81,45 @@ def _integrate(x: FloatArray, fs: float, high_pass: float, times: int) -> FloatA
     return np.asarray(irfft(coefficients, count, axis=1, overwrite_x=True))[:, : x.shape[1]]
 
 
-@checked
-def velocity_rms(x: Rows, fs: Positive) -> Rows:
-    """Root mean square of the velocity in 10-1000 Hz [m/s] of accelerations [m/s²], shape (record, time) to (record,).
+def velocity_band(shaft_rate: float) -> tuple[float, float]:
+    """Ends of the band of the velocity that ISO 20816-3 judges [Hz], from the rate of the slowest shaft [Hz]."""
+    return SLOW_VELOCITY_BAND if shaft_rate < SLOW else VELOCITY_BAND
 
-    NaN for signals shorter than 1 s, or a sample rate of 2000 Hz or less.
+
+@checked
+def velocity_rms(x: Rows, fs: Positive, shaft_rate: OfEach) -> Rows:
+    """Root mean square of the velocity [m/s] in the band of ISO 20816-3, shape (record,).
+
+    The band is 10-1000 Hz, and 2-1000 Hz below 600 r/min [2]_. A sine at one of its ends reads 0.71 of its value, one an
+    octave beyond 0.12 [3]_.
+
+    Parameters
+    ----------
+    x
+        Accelerations [m/s²], shape (record, time).
+    fs
+        Sample rate [Hz].
+    shaft_rate
+        Rate of the slowest shaft of the machine [Hz], one for all records or of shape (record,).
+
+    Returns
+    -------
+    NaN for signals shorter than 1 s, or 5 s below 600 r/min, for a sample rate of 2000 Hz or less, and for a shaft outside 120
+    to 30,000 r/min, which the standard does not cover.
     """
-    low, high = VELOCITY_BAND
-    if x.shape[1] < VELOCITY_SECONDS * fs or fs <= 2 * high:
-        return np.full(len(x), np.nan)
-    frequencies, density = psd(x, fs, VELOCITY_SECONDS)
-    band = (frequencies >= low) & (frequencies <= high)
-    power = density[:, band] / (2 * np.pi * frequencies[band]) ** 2
-    return np.sqrt(np.trapezoid(power, frequencies[band], axis=1))
+    covered, slow = (shaft_rate >= SLOWEST) & (shaft_rate <= FASTEST), shaft_rate < SLOW
+    out = np.full(len(x), np.nan)
+    for rows, (low, high) in ((covered & slow, SLOW_VELOCITY_BAND), (covered & ~slow, VELOCITY_BAND)):
+        if rows.any() and fs > 2 * high and x.shape[1] * low >= VELOCITY_PERIODS * fs:
+            out[rows] = _velocity_rms(x[rows], fs, low, high)
+    return out
+
+
+def _velocity_rms(x: FloatArray, fs: float, low: float, high: float) -> FloatArray:
+    frequencies, density = psd(x, fs, VELOCITY_PERIODS / low)
+    above = frequencies[1:]
+    gain = 1 / ((1 + (low / above) ** 6) * (1 + (above / high) ** 6) * (2 * np.pi * above) ** 2)
+    return np.sqrt(np.sum(density[:, 1:] * gain, axis=1) * frequencies[1])
 
 
 @checked
@@ -98,7 +128,8 @@ def iso_zone(
 ) -> NDArray[np.str_]:
     """Zone of ISO 20816-3, ``A`` (as new) to ``D`` (may cause damage), of the shape of the argument.
 
-    The velocity is that of a bearing housing; its zone is of the highest of the directions and bearings of a machine.
+    The velocity is that of a bearing housing in steady operation; the zone of a machine is that of its highest bearing and
+    direction. docs/features.md says what the zones do not cover.
 
     >>> iso_zone([1.0, 2.3, 5.0, 9.0], group=1).tolist()
     ['A', 'A', 'C', 'D']
@@ -106,11 +137,13 @@ def iso_zone(
     Parameters
     ----------
     velocity_rms_mm_s
-        Rms of the velocity in 10-1000 Hz [mm/s], as ``1e3 * velocity_rms(x, fs)``.
+        Rms of the velocity in the band of the standard [mm/s], as ``1e3 * velocity_rms(x, fs, shaft_rate)``.
     group
-        1 for machines of 300 kW to 50 MW, 2 for those of 15 to 300 kW.
+        1 for machines above 300 kW, and motors with a shaft height of 315 mm or more; 2 for those of 15 to 300 kW, and
+        motors of 160 to 315 mm.
     support
-        Of the machine in the direction of the measurement.
+        Of the machine in the direction of the measurement, ``rigid`` if its lowest natural frequency is at least a quarter
+        above the shaft rate.
 
     Raises
     ------

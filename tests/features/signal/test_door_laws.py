@@ -48,7 +48,7 @@ CALLS: dict[str, tuple[np.ndarray, Any]] = {
     "synchronous_average": (X, lambda y: signal.synchronous_average(y, PER_TURN)),
     "track_speed": (X, lambda x: signal.track_speed(x, FS, 16.0, 25.0)),
     "velocity": (X, lambda x: signal.velocity(x, FS)),
-    "velocity_rms": (X, lambda x: signal.velocity_rms(x, FS)),
+    "velocity_rms": (X, lambda x: signal.velocity_rms(x, FS, RATES[:1])),
 }
 """An array of each function, and a call of it."""
 
