@@ -51,5 +51,7 @@ def levels_of(x: FloatArray, fs: float, recording: str, channel: str, unit: str,
     constant = rms == 0
     crest = np.nan if constant else peak / rms
     kurtosis = np.nan if constant else float(np.mean((centred / rms) ** 4))
-    velocity = 1e3 * float(velocity_rms(centred[None], fs, shaft_rate)[0]) if unit == ACCELERATION else np.nan
+    velocity = (
+        1e3 * float(velocity_rms(centred[None], fs, np.array([shaft_rate]))[0]) if unit == ACCELERATION else np.nan
+    )
     return Levels(recording, channel, unit, mean, rms, peak, crest, kurtosis, velocity)

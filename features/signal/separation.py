@@ -156,7 +156,7 @@ def prediction_residual(x: Rows, order: Count) -> Rows:
     them, are predicted from those after them: backwards, the same filter leaves as much of a stationary record.
     """
     n = x.shape[-1]
-    if not 0 < order <= n // 2:
+    if order > n // 2:
         raise ValueError(f"order {order} is not in 1 to {n // 2}, half the length of the records.")
     centred = x - x.mean(axis=-1, keepdims=True)
     length = next_fast_len(n + order, real=True)
