@@ -1,12 +1,11 @@
 """The lane kernel run over some knots with every state kept, to compare it with its twin in :mod:`tests.reference`."""
 
 import numpy as np
-from numba import njit
 
 from gen.physics.inputs import KernelInput, at_rest
 from gen.physics.kernel.batch import input_shape, lay_out
-from gen.physics.kernel.compiling import KERNEL, LANES
-from gen.physics.kernel.integrate import kernel_sources, prepare, to_next_knot
+from gen.physics.kernel.compiling import LANES, compiled_to_disk
+from gen.physics.kernel.integrate import prepare, to_next_knot
 from gen.physics.kernel.layout import (
     AXES,
     N_DYNAMIC,
@@ -64,22 +63,13 @@ def with_room(shape: Shape, batch: Batch, n_steps: int) -> Batch:
     return Batch(**own | {"params": params, "slow": np.zeros(2 * slow_rows(shape) * LANES)})
 
 
-def _cached(sources: str):
-    """Compile and cache: the kernel under test is part of the key, as a variable that the function closes over."""
-
-    @njit(**KERNEL)
-    def march(shape, batch, dt, n_steps, states, angles, history):
-        _ = sources
-        work = prepare(shape, batch, n_steps)
-        for knot in range(len(states)):
-            states[knot] = batch.state.reshape(STATE_ROWS, LANES)
-            angles[knot] = batch.angles.reshape(N_ANGLES, LANES)
-            if knot + 1 < len(states):
-                to_next_knot(shape, batch, knot, n_steps, dt, work)
-                since = 2.0 * n_steps * (knot % STRIDE)
-                advance(shape, batch.state, batch.params, dt, n_steps, since, history, knot * n_steps * AXES)
-
-    return march
-
-
-_march = _cached(kernel_sources())
+@compiled_to_disk
+def _march(shape, batch, dt, n_steps, states, angles, history):
+    work = prepare(shape, batch, n_steps)
+    for knot in range(len(states)):
+        states[knot] = batch.state.reshape(STATE_ROWS, LANES)
+        angles[knot] = batch.angles.reshape(N_ANGLES, LANES)
+        if knot + 1 < len(states):
+            to_next_knot(shape, batch, knot, n_steps, dt, work)
+            since = 2.0 * n_steps * (knot % STRIDE)
+            advance(shape, batch.state, batch.params, dt, n_steps, since, history, knot * n_steps * AXES)

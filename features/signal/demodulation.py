@@ -22,7 +22,7 @@ from numba import njit
 from numpy.typing import DTypeLike
 from scipy.fft import ifft, next_fast_len, rfft
 
-from features.signal.rows import ComplexArray, FloatArray, hann_window, row_kernel, squared_modulus, total
+from features.signal.rows import ComplexArray, FloatArray, hann_window, on_disk, row_kernel, squared_modulus, total
 
 ZERO_PADDING = 4
 INTERPOLATED = 1.125  # length of the transform that is interpolated, in lengths of the signal
@@ -146,7 +146,8 @@ def _interpolation(n: int, bins: int, dtype: DTypeLike) -> tuple[FloatArray, np.
     return window.astype(dtype), first, weights.astype(dtype)
 
 
-@njit(cache=True, nogil=True)  # without fastmath: vectorised over records, each sum in the order written
+@on_disk
+@njit(nogil=True)  # without fastmath: vectorised over records, each sum in the order written
 def _interpolate(transform: ComplexArray, n: int, first: np.ndarray, weights: FloatArray) -> FloatArray:
     """Moduli between the coefficients of real signals of length n, shape (record, bin)."""
     records, reach = len(transform), first[-1] - first[0] + NEIGHBOURS

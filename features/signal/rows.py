@@ -3,6 +3,7 @@
 Records are rows. Every function takes all rows at once and keeps their precision; no row depends on the others.
 """
 
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any
 
@@ -10,17 +11,27 @@ import numpy as np
 from numba import njit
 from numpy.typing import DTypeLike, NDArray
 
+from gen.support.kernels import keep_on_disk
+from gen.support.sources import hash_sources
+
 FloatArray = NDArray[np.floating[Any]]
 IntArray = NDArray[np.integer[Any]]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
 
-row_kernel = njit(cache=True, nogil=True, error_model="numpy", fastmath={"nnan", "nsz"})
-"""Compile a loop over records, which runs without the interpreter lock.
-
-Without "reassoc", with which cached and freshly compiled code differed in the last bit.
-"""
-
 PARTIAL_SUMS = 16
+
+
+def on_disk(kernel: Any) -> Any:
+    """Keep a compiled loop over records on disk, as long as its file and this package are the same."""
+    return keep_on_disk(kernel, hash_sources("features", "signal"))
+
+
+def row_kernel(function: Callable[..., Any]) -> Any:
+    """Compile a loop over records, which runs without the interpreter lock, and keep it on disk.
+
+    Without "reassoc", with which cached and freshly compiled code differed in the last bit.
+    """
+    return on_disk(njit(nogil=True, error_model="numpy", fastmath={"nnan", "nsz"})(function))
 
 
 @row_kernel

@@ -15,9 +15,10 @@ _HDF5: Any = h5py  # its low-level interface has no types
 LIBRARY_LOCK = threading.RLock()
 """Held during every call to HDF5 or netCDF. ``fork`` waits for it, so a child process starts with the lock free."""
 
-os.register_at_fork(
-    before=LIBRARY_LOCK.acquire, after_in_parent=LIBRARY_LOCK.release, after_in_child=LIBRARY_LOCK.release
-)
+if hasattr(os, "register_at_fork"):  # Windows has no fork
+    os.register_at_fork(
+        before=LIBRARY_LOCK.acquire, after_in_parent=LIBRARY_LOCK.release, after_in_child=LIBRARY_LOCK.release
+    )
 
 
 class ForeignStorageError(ValueError):

@@ -6,7 +6,6 @@ A folder has it as ``manifest.json``; a single file has the same facts as global
 
 import hashlib
 import json
-import os
 import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
@@ -34,6 +33,7 @@ from gen.corpus.schema import FORMAT, RECIPE_TEXT
 from gen.corpus.signals import Count, SignalCounts, sum_counts
 from gen.support.errors import CorpusError
 from gen.support.limits import check_limit
+from gen.support.workers import cores
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -264,7 +264,7 @@ def file_problems(path: Path, manifest: Manifest, check: Check) -> list[str]:
     if check == "size":
         each = [_file_problem(path, row, check) for row in rows]
     else:
-        with ThreadPoolExecutor(min(8, len(os.sched_getaffinity(0)))) as pool:  # hashing releases the interpreter lock
+        with ThreadPoolExecutor(min(8, cores())) as pool:  # hashing releases the interpreter lock
             each = list(pool.map(lambda row: _file_problem(path, row, check), rows, chunksize=16))
     return sorted(problem for problem in each if problem is not None)
 

@@ -23,6 +23,7 @@ from gen.simulation.kernels import is_compiled, load_kernel
 from gen.simulation.outline import outlined_inputs
 from gen.simulation.timeline import timeline
 from gen.support.garbage import keep_garbage
+from gen.support.workers import cores
 
 SAMPLE = 48
 """Number of records from the first on, and of others spread over the corpus, whose kernels are compiled."""
@@ -46,13 +47,13 @@ def compile_kernels(recipe: Recipe, report: Callable[[str], None] = lambda _: No
         if recipe.sensor_faults.loose_mount is not None:
             compile_rattle()
         missing = [shape for shape in needed_shapes(recipe) if not is_compiled(shape)]
-    cores = min(len(os.sched_getaffinity(0)), MOST_AT_ONCE)
+    at_once = min(cores(), MOST_AT_ONCE)
     sentences = (
         f"compiling kernel {number} of {len(missing)} ({shape_in_words(shape)}) for this machine"
         for number, shape in enumerate(missing, 1)
     )
-    if len(missing) > 1 and cores > 1:
-        _compile_in_processes(missing, cores, lambda: report(next(sentences)))
+    if len(missing) > 1 and at_once > 1:
+        _compile_in_processes(missing, at_once, lambda: report(next(sentences)))
         return
     for shape in missing:
         report(next(sentences))

@@ -2,7 +2,6 @@
 
 import functools
 import math
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,7 +14,6 @@ from gen.physics.impact import edge_strikes, path_strikes
 from gen.physics.inputs import ROUND, SpallInput, Strike, Waviness
 from gen.physics.kernel.compiling import compiled_to_disk
 from gen.physics.kernel.drop import GEOMETRIC, PROFILES, drop
-from gen.physics.kernel.integrate import kernel_sources
 from gen.physics.trace import ball_path, contact_mean, spall_positions, with_roughness
 from gen.scenarios import Purpose, Scenario, Spall, Wear, stream
 
@@ -116,20 +114,10 @@ def largest_drop_over(scenario: Scenario, number: int) -> float:
     return cached_drop(GEOMETRIC, 0.0, 0.5 * spall.width / arc, arc, bearing.radius("ball"), race, spall.depth)
 
 
-def _cached(sources: str) -> Callable[..., float]:
-    """:func:`drop` for calls from Python, in numba's cache on disk as long as ``sources`` is the same; compiling it takes 0.5 s."""
-
-    @compiled_to_disk
-    def drop_on_disk(
-        profile: int, offset: float, half: float, arc: float, ball: float, race: float, depth: float
-    ) -> float:
-        _ = sources
-        return drop(profile, offset, half, arc, ball, race, depth)
-
-    return drop_on_disk
-
-
-cached_drop = _cached(kernel_sources())
+@compiled_to_disk
+def cached_drop(profile: int, offset: float, half: float, arc: float, ball: float, race: float, depth: float) -> float:
+    """:func:`drop` for calls from Python; compiling it takes 0.5 s."""
+    return drop(profile, offset, half, arc, ball, race, depth)
 
 
 @functools.lru_cache(maxsize=256)

@@ -6,6 +6,7 @@ some threads. A task may run in any of them, so it holds :data:`gen.corpus.LIBRA
 """
 
 import ctypes
+import os
 import threading
 from collections.abc import Callable, Generator, Iterable
 from contextlib import nullcontext, suppress
@@ -99,6 +100,11 @@ def _publishing(task: Callable[..., Iterable[Any]], topic: str, item: Any) -> It
     from gen.support.cluster import publisher
 
     return task(publisher(topic), item)
+
+
+def cores() -> int:
+    """Number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def threads_of(workers: int) -> int:

@@ -11,7 +11,6 @@ import click
 from raceway.console import show
 from raceway.console.ending import DONE, FOUND_WANTING
 from raceway.console.options import (
-    cores,
     corpus_argument,
     file_option,
     json_option,
@@ -242,7 +241,7 @@ def _kept(corpus: Path, recipe: "Recipe") -> str:
 
 
 def _default_workers(recipe: "Recipe") -> int:
-    from gen.support.workers import MOST_THREADS
+    from gen.support.workers import MOST_THREADS, cores
 
     if recipe.n_parts < 2 or recipe.n_records <= WORTH_WORKERS:
         return min(cores(), MOST_THREADS)

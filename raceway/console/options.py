@@ -1,6 +1,5 @@
 """Arguments and options that several commands share; the place for the result is checked before any work is done."""
 
-import os
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -55,18 +54,13 @@ class Team(NamedTuple):
 
     def options(self, records: int = FEW_RECORDS) -> dict[str, Any]:
         """Arguments ``workers`` and ``scheduler`` of a function that works on parts of so many records in all."""
-        from gen.support.workers import MOST_THREADS  # not at the top: help needs nothing of gen
+        from gen.support.workers import MOST_THREADS, cores  # not at the top: help needs nothing of gen
 
         usual = cores() if records > FEW_RECORDS else min(cores(), MOST_THREADS)
         return {"workers": self.workers or usual, "scheduler": self.scheduler}
 
 
 USUAL = Team()
-
-
-def cores() -> int:
-    """Number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def worker_options(command: Any) -> Any:

@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 
 from packaging.requirements import Requirement
 
-from raceway.console.options import cores
+from gen.support.workers import cores
 
 State = Literal["fine", "note", "problem"]
 

@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from gen.support.errors import CorpusError
-from raceway.console.options import USUAL, Team, cores
+from raceway.console.options import USUAL, Team
 from raceway.console.progress import notice, notice_compilation, progress
 
 if TYPE_CHECKING:
@@ -102,6 +102,7 @@ def make_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
     from features import feature_table
     from gen import generate
     from gen.corpus import temporary_folder
+    from gen.support.workers import cores
 
     workers = team.workers or cores()
     with temporary_folder() as folder:

@@ -8,7 +8,7 @@ import pytest
 
 from features.band import DEFAULT_BAND
 from gen.support.errors import CorpusError
-from raceway.console.options import cores
+from gen.support.workers import cores
 
 
 @pytest.fixture

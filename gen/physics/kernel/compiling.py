@@ -15,6 +15,9 @@ from numba import njit, types
 from numba.core.compiler import Compiler
 from numba.extending import intrinsic, register_jitable
 
+from gen.support.kernels import keep_on_disk
+from gen.support.sources import hash_sources
+
 # Records advanced side by side. With 32 the kernel is as fast, but more lanes stay free (domain_randomised: 36 % of all instead of 19 %);
 # with 8 LLVM unrolls the loop over lanes and leaves it scalar.
 LANES = 16
@@ -52,7 +55,7 @@ INLINE: dict[str, Any] = {
 ALLOCATING: dict[str, Any] = {**INLINE, "_nrt": True}
 # Every other function is inlined into the kernel: a helper compiled on its own is optimised separately in the process that compiles the
 # kernel, and rounds differently there from the cached kernel in other processes.
-KERNEL: dict[str, Any] = {"error_model": "numpy", "nogil": True, "cache": True}
+KERNEL: dict[str, Any] = {"error_model": "numpy", "nogil": True}
 
 
 def in_both(function: Function) -> Function:
@@ -61,11 +64,8 @@ def in_both(function: Function) -> Function:
 
 
 def compiled_to_disk(function: Callable[..., Any]) -> Any:
-    """Compile a kernel and keep it in numba's cache on disk; only in memory where no folder can be written."""
-    try:
-        return njit(**KERNEL)(function)
-    except RuntimeError:  # numba found no folder
-        return njit(error_model="numpy", nogil=True)(function)
+    """Compile a kernel and keep it on disk, as long as its file and this physics are the same."""
+    return keep_on_disk(njit(**KERNEL)(function), hash_sources("gen", "physics"))
 
 
 def _make_wide(context: Any) -> Any:  # noqa: ARG001

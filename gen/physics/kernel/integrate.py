@@ -3,17 +3,12 @@
 Only the decimated output is returned; the history at the rate of the steps is kept for a few knots.
 """
 
-from collections.abc import Callable
-from hashlib import sha256
-from importlib.resources import files
-from inspect import getsource
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from gen.physics import extent
 from gen.physics.kernel.compiling import ALLOCATING, INLINE, LANES, compiled_to_disk, copied, lane_count, zeros
 from gen.physics.kernel.decimate import Decimation, Single, filter_rows
 from gen.physics.kernel.layout import (
@@ -153,66 +148,44 @@ def largest_stiffness(shape: Shape, batch: Batch) -> FloatArray:
     return steepest
 
 
-def _cached(sources: str) -> Callable[..., Columns]:
-    """Kernel of :func:`integrate`, kept in numba's cache on disk as long as ``sources`` is the same.
-
-    Numba itself looks for changes in this file alone, but the variables that a function closes over are part of its key. The kernel
-    returns a plain tuple: numba builds a named tuple in Python, where a signal could interrupt it half way.
-    """
-
-    @compiled_to_disk
-    def integrate_lanes(
-        shape: Shape, batch: Batch, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
-    ) -> Columns:
-        _ = sources
-        batch = set_out(shape, batch, n_steps)
-        n_channels, width = len(shape.channels), len(shape.channels) * LANES
-        two_stages = len(filters.first.taps) > 0
-        first_stage = filters.first if two_stages else filters.last
-        kept, half_kept = first_stage.kept, filters.last.kept
-        history = zeros((kept + BLOCK * n_steps + 4) * width, np.float32)
-        halfway = zeros((half_kept + 2 * BLOCK * ROOM + 4) * width, np.float32)
-        lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
-        response = np.empty((n_out + 2 * BLOCK) * width, np.float32)
-        totals = zeros(2 * BLOCK * width, np.float32)
-        diverged = np.full(LANES, -1)
-        work = prepare(shape, batch, n_steps)
-        for first in range(0, lead + n_settle + n_out, BLOCK):
-            for knot in range(first, first + BLOCK):
-                to_next_knot(shape, batch, knot, n_steps, dt, work)
-                since = 2.0 * n_steps * (knot % STRIDE)
-                at = (kept + (knot - first) * n_steps) * n_channels
-                advance(shape, batch.state, batch.params, dt, n_steps, since, history, at)
-                watch(batch.state, knot, diverged)
-            start = 2 * BLOCK * (first // BLOCK % ROOM) if two_stages else 0
-            if two_stages:
-                filter_rows(
-                    shape.channels, first_stage, 2 * BLOCK, history, 0, halfway, half_kept + start, totals,
-                )  # fmt: skip
-            out = first - lead - n_settle + BLOCK  # one block later, so that earlier outputs have room before the first
-            if out >= 0:
-                source = halfway if two_stages else history
-                filter_rows(shape.channels, filters.last, BLOCK, source, start, response, out, totals)
-            keep(history, kept * width, BLOCK * n_steps * width)
-            if start == 2 * BLOCK * (ROOM - 1):
-                keep(halfway, half_kept * width, 2 * BLOCK * ROOM * width)
-        steepest = largest_stiffness(shape, batch)
-        return response.reshape((n_out + 2 * BLOCK, n_channels, LANES))[BLOCK : BLOCK + n_out], diverged, steepest
-
-    return integrate_lanes
-
-
-def kernel_sources() -> str:
-    """Hash of every source file of this folder, and of the numbers that it shares with the recipe."""
-    folder = sorted(
-        (file for file in files("gen.physics.kernel").iterdir() if file.name.endswith(".py")),
-        key=lambda file: file.name,
-    )
-    texts = [getsource(extent), *(file.read_text(encoding="utf-8") for file in folder)]
-    return sha256("".join(texts).encode()).hexdigest()
-
-
-integrate_lanes = _cached(kernel_sources())
+@compiled_to_disk
+def integrate_lanes(
+    shape: Shape, batch: Batch, dt: float, n_steps: int, filters: Decimation, n_settle: int, n_out: int
+) -> Columns:
+    """Kernel of :func:`integrate`; a plain tuple, since numba builds a named tuple in Python, where a signal could interrupt it."""
+    batch = set_out(shape, batch, n_steps)
+    n_channels, width = len(shape.channels), len(shape.channels) * LANES
+    two_stages = len(filters.first.taps) > 0
+    first_stage = filters.first if two_stages else filters.last
+    kept, half_kept = first_stage.kept, filters.last.kept
+    history = zeros((kept + BLOCK * n_steps + 4) * width, np.float32)
+    halfway = zeros((half_kept + 2 * BLOCK * ROOM + 4) * width, np.float32)
+    lead = (kept + (half_kept * first_stage.factor if two_stages else 0)) // (2 * n_steps)
+    response = np.empty((n_out + 2 * BLOCK) * width, np.float32)
+    totals = zeros(2 * BLOCK * width, np.float32)
+    diverged = np.full(LANES, -1)
+    work = prepare(shape, batch, n_steps)
+    for first in range(0, lead + n_settle + n_out, BLOCK):
+        for knot in range(first, first + BLOCK):
+            to_next_knot(shape, batch, knot, n_steps, dt, work)
+            since = 2.0 * n_steps * (knot % STRIDE)
+            at = (kept + (knot - first) * n_steps) * n_channels
+            advance(shape, batch.state, batch.params, dt, n_steps, since, history, at)
+            watch(batch.state, knot, diverged)
+        start = 2 * BLOCK * (first // BLOCK % ROOM) if two_stages else 0
+        if two_stages:
+            filter_rows(
+                shape.channels, first_stage, 2 * BLOCK, history, 0, halfway, half_kept + start, totals,
+            )  # fmt: skip
+        out = first - lead - n_settle + BLOCK  # one block later, so that earlier outputs have room before the first
+        if out >= 0:
+            source = halfway if two_stages else history
+            filter_rows(shape.channels, filters.last, BLOCK, source, start, response, out, totals)
+        keep(history, kept * width, BLOCK * n_steps * width)
+        if start == 2 * BLOCK * (ROOM - 1):
+            keep(halfway, half_kept * width, 2 * BLOCK * ROOM * width)
+    steepest = largest_stiffness(shape, batch)
+    return response.reshape((n_out + 2 * BLOCK, n_channels, LANES))[BLOCK : BLOCK + n_out], diverged, steepest
 
 
 def integrate(

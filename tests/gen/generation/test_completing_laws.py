@@ -15,10 +15,12 @@ from gen.corpus import (
     read_manifest,
     validate_corpus,
 )
-from gen.generation import sources
+from gen.generation import sources as sources_of_records
 from gen.generation.corpus import generate
 from gen.generation.scheduling import Crew
+from gen.generation.sources import sources_sha256
 from gen.recipe import read_recipe
+from gen.support import sources
 from gen.support.errors import ClusterError, CorpusError
 from tests.paths import ROOT
 from tests.same_corpora import assert_the_same_corpus, files
@@ -218,9 +220,10 @@ def test_a_worker_with_other_sources_is_refused_by_name_and_writes_nothing(recip
 
 def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_path, monkeypatch):
     package = shutil.copytree(ROOT / "gen", tmp_path / "gen", ignore=shutil.ignore_patterns("__pycache__"))
-    monkeypatch.setattr(sources, "__file__", str(package / "generation" / "sources.py"))
-    found = {sources.sources_sha256.__wrapped__()}
-    assert found == {sources.sources_sha256()}
+    found = {sources_sha256()}
+    monkeypatch.setattr(sources, "files", lambda _: package)
+    monkeypatch.setattr(sources_of_records, "hash_sources", sources.hash_sources.__wrapped__)
+    assert found == {sources_sha256()}
     for name in (
         "physics/bearing.py",
         "physics/kernel/compiling.py",
@@ -229,10 +232,10 @@ def test_the_hash_of_the_sources_changes_with_every_file_that_makes_records(tmp_
         "generation/labels.py",
     ):
         (package / name).write_text((package / name).read_text() + "\n# changed\n")
-        found.add(sources.sources_sha256.__wrapped__())
+        found.add(sources_sha256())
     assert len(found) == 6
     (package / "corpus" / "card" / "page.py").write_text("")
-    assert sources.sources_sha256.__wrapped__() in found
+    assert sources_sha256() in found
 
 
 def test_a_second_call_in_the_same_folder_is_told_so(recipe_file, copied):
