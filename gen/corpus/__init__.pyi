@@ -67,6 +67,7 @@ from .outputs import (
     check_result as check_result,
     check_result_folder as check_result_folder,
     make_result_folder as make_result_folder,
+    result_folder as result_folder,
     write_numbers as write_numbers,
 )
 from .part import PartRow as PartRow, part_name as part_name, write_part as write_part

@@ -21,6 +21,8 @@ from pathlib import Path
 from gen.support.errors import CorpusError
 
 INDEX_NAME, MANIFEST_NAME, RECIPE_NAME = "index.nc", "manifest.json", "recipe.yaml"
+CARD_SUFFIX = ".card"
+"""Suffix of the folder of the data card beside a corpus in a single file."""
 Stamp = tuple[int, int]
 """Size and time of the last change [ns]; a file with a different stamp has changed."""
 
@@ -125,6 +127,21 @@ def plain_file(directory: Path, name: str) -> Path:
     return path
 
 
+def corpus_around(folder: Path) -> Path | None:
+    """Corpus that a folder is, or lies in; None without."""
+    real = folder.resolve()
+    around = (real, *real.parents)
+    return next((it for it in around if (it / MANIFEST_NAME).is_file() and (it / "parts").is_dir()), None)
+
+
+def place_of(path: Path) -> Path:
+    """Place that is written: the target of a link, but the link itself in a corpus or a data card, which may come from a stranger."""
+    folder = path.parent.resolve()
+    if not path.is_symlink() or CARD_SUFFIX in (it.suffix for it in (folder, *folder.parents)) or corpus_around(folder):
+        return path
+    return Path(os.path.realpath(path))  # of a circle of links, one of them
+
+
 def check_name(path: Path) -> None:
     """Refuse a name that netCDF cannot open."""
     try:
@@ -137,6 +154,8 @@ def check_name(path: Path) -> None:
 def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     """Temporary path to write to: it is flushed to disk and then replaces ``path`` in one step, or is removed if anything fails.
 
+    What killed writers of the same file have left is removed. The file is that of :func:`place_of`.
+
     Raises
     ------
     CorpusError
@@ -145,12 +164,14 @@ def whole_or_not_at_all(path: Path) -> Iterator[Path]:
     check_name(path)
     if path.exists() and not path.is_file():
         raise CorpusError(f"{path}: exists and is not a plain file, so it cannot be replaced; choose another name.")
-    with temporary_beside(path) as temporary, writing(path, temporary):
+    place = place_of(path)
+    with temporary_beside(place) as temporary, writing(path, temporary):
+        remove_left_behind_of(place)
         yield temporary
         with temporary.open("rb+") as stream:
             os.fsync(stream.fileno())
-        temporary.replace(path)
-        _flush(path.parent)
+        temporary.replace(place)
+        _flush(place.parent)
 
 
 @contextmanager
@@ -185,7 +206,7 @@ def writing(path: Path, temporary: Path | None = None) -> Iterator[None]:
             raise
         raise CorpusError(str(error).replace(hidden, str(path))) from error
     except (OSError, RuntimeError) as error:
-        code = _error_number(error, path.parent)
+        code = _error_number(error, (temporary or path).parent)
         text = os.strerror(code) if code else str(getattr(error, "strerror", None) or error).replace(hidden, str(path))
         advice = _ADVICE.get(code, "choose another folder")
         raise CorpusError(f"{path}: could not be written ({' '.join(text.split())}); {advice}.") from error

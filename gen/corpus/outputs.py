@@ -2,11 +2,13 @@
 
 import json
 import zipfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from gen.corpus.files import INDEX_NAME, check_name, write_text_durably, writing
+from gen.corpus.files import INDEX_NAME, check_name, corpus_around, place_of, write_text_durably, writing
+from gen.corpus.locking import lock
 from gen.support.errors import CorpusError
 
 GENERATOR = "Raceway"
@@ -59,7 +61,7 @@ def check_result(path: Path, kind: str | None) -> None:
     CorpusError
         With the path, and what to do.
     """
-    _check_outside(path, path.parent)
+    _check_outside(path, place_of(path).parent)
     if path.is_file() and path.stat().st_size and (kind is None or not _is_of_kind(path, kind)):
         is_none = "" if kind is None else f" and is no {kind} of raceway"
         raise CorpusError(f"{path}: exists{is_none}; give another name, or remove it first.")
@@ -80,17 +82,29 @@ def make_result_folder(path: Path) -> None:
         path.mkdir(parents=True, exist_ok=True)
 
 
+@contextmanager
+def result_folder(path: Path) -> Iterator[None]:
+    """Create the folder of a page and lock it against other calls; a new one in which nothing is written is removed again.
+
+    Raises
+    ------
+    CorpusError
+        If it is refused, cannot be written, or another call holds its lock.
+    """
+    is_new = not path.exists()
+    make_result_folder(path)
+    with lock(path):
+        try:
+            yield
+        finally:
+            if is_new and not any(path.iterdir()):
+                path.rmdir()
+
+
 def write_numbers(content: Mapping[str, Any], path: Path) -> None:
     """Write results as JSON, whole or not at all."""
     text = json.dumps({"generator": GENERATOR, **content}, indent=1, allow_nan=False)
     write_text_durably(f"{text}\n", path)
-
-
-def corpus_around(folder: Path) -> Path | None:
-    """Corpus that a folder is, or lies in; None without."""
-    real = folder.resolve()
-    around = (real, *real.parents)
-    return next((it for it in around if (it / "manifest.json").is_file() and (it / "parts").is_dir()), None)
 
 
 def _check_outside(path: Path, folder: Path) -> None:

@@ -1,6 +1,8 @@
 """No command writes over its input, into a corpus, or over a file that it did not make; an earlier result is replaced."""
 
 import shutil
+import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -17,7 +19,8 @@ from features.report.shown import shown_record
 from features.table import feature_table
 from features.table_files import write_table
 from gen import copy, generate, write_corpus
-from gen.corpus import corpus_files, read_manifest
+from gen.corpus import card_folder, corpus_files, read_manifest, result_folder
+from gen.corpus.files import _HOST
 from gen.support.errors import CorpusError
 from raceway.cli import cli
 
@@ -184,3 +187,68 @@ def test_no_corpus_has_a_place_in_another_nor_the_name_of_an_index(places, tmp_p
         with pytest.raises(CorpusError, match=r"choose a place outside it|is the name of the index in a corpus"):
             write()
     assert contents(tmp_path) == before
+
+
+FILES = [line for line, name in RESULTS.items() if "." in name and "replay" not in line]
+
+
+@pytest.mark.parametrize("line", FILES)
+def test_a_result_is_written_to_the_target_of_a_link_and_what_a_killed_command_left_is_removed(
+    run, places, line, tmp_path
+):
+    name, ended = RESULTS[line], subprocess.Popen([sys.executable, "-c", ""])
+    ended.wait()
+    (tmp_path / "far").mkdir()
+    target, link = tmp_path / "far" / name, tmp_path / f"link{Path(name).suffix}"
+    link.symlink_to(target)
+    (tmp_path / "far" / f".{name}.{_HOST}.{ended.pid}.1.tmp").write_bytes(b"half")
+    for _ in range(2):
+        result = run(*line.format(**places).split(), "-o", link)
+        assert result.exit_code == 0, result.output
+        assert link.is_symlink()
+        assert [path.name for path in (tmp_path / "far").iterdir()] == [name]
+    (tmp_path / "far" / name).unlink()
+    (tmp_path / "far" / name).write_text("mine")
+    assert run(*line.format(**places).split(), "-o", link).exit_code == 2
+    assert target.read_text() == "mine"
+
+
+@pytest.mark.parametrize("line", FILES)
+def test_a_link_into_a_corpus_is_refused(run, places, line, tmp_path):
+    link = tmp_path / f"link{Path(RESULTS[line]).suffix}"
+    link.symlink_to(places["corpus"] / f"new{link.suffix}")
+    result = run(*line.format(**places).split(), "-o", link)
+    assert result.exit_code == 2
+    assert f"{link}: is in the corpus" in result.stderr
+
+
+def test_a_circle_of_links_is_replaced_or_refused_in_one_sentence(run, places, tmp_path):
+    link, other = tmp_path / "a.nc", tmp_path / "b.nc"
+    link.symlink_to(other)
+    other.symlink_to(link)
+    result = run("features", places["corpus"], "-o", link)
+    assert result.exit_code in (0, 2), result.output
+
+
+@pytest.mark.parametrize("form", ["folder", "file"])
+def test_links_in_a_corpus_of_a_stranger_lead_no_command_out_of_it(run, places, form, tmp_path):
+    corpus = places["corpus"]
+    if form == "file":
+        copy([corpus], tmp_path / "c.nc")
+        corpus = tmp_path / "c.nc"
+    assert run("card", corpus, "--license", "CC-BY-4.0").exit_code == 0
+    folder = card_folder(corpus)
+    (tmp_path / "mine").write_text("mine")
+    for name in ("README.md", "croissant.json", "pictures/contents.png"):
+        (folder / name).unlink(missing_ok=True)
+        (folder / name).symlink_to(tmp_path / "mine")
+    result = run("card", corpus, "--license", "CC0-1.0")
+    assert (tmp_path / "mine").read_text() == "mine", result.output
+
+
+def test_of_two_benchmarks_into_one_folder_the_second_is_refused(run, places, tmp_path):
+    with result_folder(tmp_path / "report"):
+        result = run("benchmark", places["corpus"], "-o", tmp_path / "report", "--estimator", "majority")
+        assert result.exit_code == 2
+        assert "report: another raceway command is writing into it; wait until it ends" in result.stderr
+    assert not (tmp_path / "report").exists()

@@ -8,16 +8,15 @@ from gen.corpus.card.markdown import plain_text
 from gen.corpus.card.opening import opening
 from gen.corpus.card.ranges import ranges
 from gen.corpus.card.terms import citation, terms
-from gen.corpus.files import write_text_durably
+from gen.corpus.files import CARD_SUFFIX, corpus_around, place_of, write_text_durably
 from gen.corpus.index import open_corpus
 from gen.corpus.manifest import RECIPE_NAME, corpus_files, read_manifest, recipe_text
-from gen.corpus.outputs import corpus_around
 from gen.support.errors import CorpusError
 
 
 def card_folder(path: Path) -> Path:
     """Folder of the data card of a corpus: its own, or for a single file ``NAME.nc`` the folder ``NAME.card`` beside it."""
-    return path.with_suffix(".card") if path.is_file() else path
+    return path.with_suffix(CARD_SUFFIX) if path.is_file() else path
 
 
 def check_card(path: Path) -> None:
@@ -25,7 +24,7 @@ def check_card(path: Path) -> None:
     folder = card_folder(path)
     if folder == path:
         return
-    if (corpus := corpus_around(path.parent)) is not None:
+    if (corpus := corpus_around(place_of(path).parent)) is not None:
         raise CorpusError(f"{path}: is a file of the corpus {corpus}; give that corpus.")
     is_card = (folder / additions.CARD_NAME).exists() and corpus_around(folder) is None
     if not is_card and any(folder.glob("[!.]*")):  # hidden files are those of a killed call
