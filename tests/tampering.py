@@ -10,6 +10,7 @@ import h5py
 
 from gen.corpus.files import append_checksum, remove_checksum
 from gen.corpus.index import corpus_attributes
+from gen.corpus.manifest import write_manifest
 from gen.corpus.unicode_text import write_unicode
 from gen.support.errors import CorpusError
 
@@ -25,20 +26,27 @@ def edited(path: Path) -> Iterator[h5py.File]:
 
 def edit_manifest(folder, parts=(), **changes):
     """Change facts of ``manifest.json``, and those of some parts by their number."""
-    content = json.loads((folder / "manifest.json").read_text()) | changes
+    content = manifest_content(folder) | changes
     for number, change in dict(parts).items():
         content["parts"][number] |= change
-    (folder / "manifest.json").write_text(json.dumps(content))
+    write_manifest(folder, content)
+
+
+def manifest_content(folder):
+    """Contents of ``manifest.json`` without its hash."""
+    content = json.loads((folder / "manifest.json").read_text())
+    del content["sha256"]
+    return content
 
 
 def seal(folder):
     """Let manifest and index of a folder name the parts as they are now."""
-    content = json.loads((folder / "manifest.json").read_text())
+    content = manifest_content(folder)
     for row in content["parts"]:
         data = (folder / "parts" / row["name"]).read_bytes()
         row |= {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
     content["parts_sha256"] = hashlib.sha256("\n".join(row["sha256"] for row in content["parts"]).encode()).hexdigest()
-    (folder / "manifest.json").write_text(json.dumps(content))
+    write_manifest(folder, content)
     with suppress(CorpusError), edited(folder / "index.nc") as index:
         attributes = corpus_attributes(content, None, folder)
         for name in attributes.keys() & index.attrs.keys():

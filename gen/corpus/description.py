@@ -12,7 +12,7 @@ A corpus is one netCDF-4 file, `NAME.nc`, or a folder of such files:
 |---|---|
 | `parts/part-00000.nc` ... | some hundred records each; every part has the layout of a single file and can be opened as a corpus |
 | `index.nc` | the variables and attributes of the single file, for all records, without the signal |
-| `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from |
+| `manifest.json` | records, bytes and SHA-256 of each part; whether the corpus is complete; where the records come from; its own hash |
 | `recipe.yaml` | the recipe, if all records were generated from one |
 | `README.md` | the [data card](sharing.md#the-data-card); `raceway card` adds `pictures/`, and `card.json` with captions and scores |
 | `croissant.json` | files with SHA-256, variables, licence and citation in the format Croissant 1.1, for catalogues of data sets |
@@ -23,8 +23,9 @@ The data card of a single file `NAME.nc` lies in `NAME.card/`. While a single fi
 **Checksum.** Every netCDF file of a corpus ends with a line `sha256:` and the SHA-256 of all bytes before that line.
 HDF5 ignores bytes behind its own, so all readers open the file. `gen.open_corpus` compares files with their hashes
 before any library opens them, and refuses a missing or altered file. A file that another program has rewritten, such as
-a copy by `nccopy`, has no such line: open it with `gen.open_corpus(path, check="size")`. `raceway validate` checks
-everything else too. What is checked of a corpus from strangers: [security.md](security.md).
+a copy by `nccopy`, has no such line: open it with `gen.open_corpus(path, check="size")`. `sha256` in `manifest.json` is
+that of its other keys, as `json.dumps(..., sort_keys=True)` writes them; an edited manifest is refused too. `raceway
+validate` checks everything else. What is checked of a corpus from strangers: [security.md](security.md).
 
 ncdump, nccopy, NCO, Octave, R's ncdf4, h5py, netCDF4 and xarray read single files and parts as a whole; CDO reads them
 without text variables. MATLAB was not tried. [sharing.md](sharing.md) has the versions.

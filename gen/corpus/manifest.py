@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
 Check = Literal["sha256", "size"]
 
+_HASH = "sha256"
+"""Key of ``manifest.json`` with the hash of all else in it."""
 _PART_NAME = re.compile(r"part-\d{5,9}\.nc")
 _TEXTS = ("title", "recipe", "recipe_sha256", "sources_sha256", "parts_sha256", "importer")
 """Facts that are text; the others are stored as JSON in global attributes."""
@@ -131,14 +133,31 @@ def facts_of_parts(rows: Iterable[PartRow], facts: Mapping[str, Any], *, complet
 
 def write_manifest(directory: Path, content: Mapping[str, Any]) -> None:
     """Write ``manifest.json`` with the given contents."""
-    write_text_durably(json.dumps(content, indent=1) + "\n", directory / MANIFEST_NAME)
+    write_text_durably(manifest_text(content), directory / MANIFEST_NAME)
+
+
+def manifest_text(content: Mapping[str, Any]) -> str:
+    """Contents of a manifest as JSON, with their hash."""
+    return json.dumps({**content, _HASH: _hash_of(content)}, indent=1) + "\n"
+
+
+def _hash_of(content: Mapping[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def manifest_of(content: Mapping[str, Any] | bytes, place: Path) -> Manifest:
-    """Manifest from its contents or its JSON; CorpusError, which names ``place``, if it is of another format or its counts disagree."""
+    """Manifest from its contents, or from its JSON with the hash of these.
+
+    Raises
+    ------
+    CorpusError
+        With the name of ``place``, if it is altered or of another format, or its counts disagree.
+    """
     try:
-        values: Mapping[str, Any] = json.loads(content) if isinstance(content, bytes) else content
+        values: dict[str, Any] = json.loads(content) if isinstance(content, bytes) else dict(content)
         _check_format(values["raceway_format"], place)
+        if isinstance(content, bytes) and values.pop(_HASH, None) != _hash_of(values):
+            raise CorpusError(_altered(place))
         manifest = Manifest.model_validate_json(json.dumps(values))
     except ValidationError as error:
         reason = first_problem(error)

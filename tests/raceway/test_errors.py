@@ -11,7 +11,7 @@ from features.baselines import Model
 from features.table import feature_table
 from features.table_files import write_table
 from raceway.console import ending, show
-from tests.tampering import edited, seal
+from tests.tampering import edit_manifest, edited, seal
 
 
 @pytest.fixture(scope="module")
@@ -37,11 +37,6 @@ def places(tiny_recipe, tiny_corpus, tmp_path_factory):
     return names | absent | {"recipe": tiny_recipe, "corpus": tiny_corpus}
 
 
-def change_manifest(folder, **facts):
-    manifest = json.loads((folder / "manifest.json").read_text())
-    (folder / "manifest.json").write_text(json.dumps(manifest | facts))
-
-
 def alter_a_part(folder):
     path = folder / "parts" / "part-00002.nc"
     content = bytearray(path.read_bytes())
@@ -50,8 +45,7 @@ def alter_a_part(folder):
 
 
 def lead_out(folder):
-    rows = json.loads((folder / "manifest.json").read_text())["parts"]
-    change_manifest(folder, parts=[rows[0] | {"name": "../../secret.nc"}])
+    edit_manifest(folder, {0: {"name": "../../secret.nc"}})
 
 
 def point_elsewhere(folder):
@@ -66,9 +60,9 @@ def point_elsewhere(folder):
 DAMAGES = {
     "no_json": lambda folder: (folder / "manifest.json").write_text("{"),
     "a_list": lambda folder: (folder / "manifest.json").write_text("[1, 2]"),
-    "vague": lambda folder: change_manifest(folder, complete="yes"),
-    "later_format": lambda folder: change_manifest(folder, raceway_format=99),
-    "unfinished": lambda folder: change_manifest(folder, complete=False),
+    "vague": lambda folder: edit_manifest(folder, complete="yes"),
+    "later_format": lambda folder: edit_manifest(folder, raceway_format=99),
+    "unfinished": lambda folder: edit_manifest(folder, complete=False),
     "leading_out": lead_out,
     "missing_part": lambda folder: (folder / "parts" / "part-00001.nc").unlink(),
     "altered_part": alter_a_part,

@@ -25,7 +25,7 @@ from gen.corpus import (
 from gen.support.errors import CorpusError
 from tests.corpora import SIZES, dataset, write_corpus, write_parts
 from tests.disks import full_disk
-from tests.tampering import edit_manifest, edited, seal
+from tests.tampering import edit_manifest, edited, manifest_content, seal
 
 FORMS = ("c", "c.nc")
 
@@ -116,7 +116,14 @@ REFUSED = {
     "the manifest is no JSON": (lambda c: (c / "manifest.json").write_text("{"), NO_MANIFEST),
     "the manifest is empty": (lambda c: (c / "manifest.json").write_text("{}"), NO_MANIFEST),
     "the manifest lists no parts": (
-        lambda c: (c / "manifest.json").write_text('{"raceway_format": 3, "records": 0}'), "is marked complete and lists no parts",
+        lambda c: write_manifest(c, {"raceway_format": 3, "records": 0}), "is marked complete and lists no parts",
+    ),
+    "the title of the manifest is altered": (
+        lambda c: (c / "manifest.json").write_text((c / "manifest.json").read_text().replace('"title": "', '"title": "My ')),
+        r"manifest\.json: is altered, cut off or rewritten by another program",
+    ),
+    "the manifest has lost its hash": (
+        lambda c: (c / "manifest.json").write_text(json.dumps(manifest_content(c))), r"manifest\.json: is altered",
     ),
     "a part name leads out": (lambda c: edit_manifest(c, {1: {"name": "../x"}}), NO_MANIFEST + r" \(parts\.1\.name"),
     "a part name is a path": (lambda c: edit_manifest(c, {1: {"name": "/etc/passwd"}}), NO_MANIFEST + r" \(parts\.1\.name"),

@@ -2,7 +2,6 @@
 
 import fcntl
 import importlib
-import json
 import os
 import shutil
 
@@ -14,6 +13,7 @@ from gen.corpus import (
     part_name,
     read_manifest,
     validate_corpus,
+    write_manifest,
 )
 from gen.generation import sources as sources_of_records
 from gen.generation.corpus import generate
@@ -24,7 +24,7 @@ from gen.support import sources
 from gen.support.errors import ClusterError, CorpusError
 from tests.paths import ROOT
 from tests.same_corpora import assert_the_same_corpus, files
-from tests.tampering import edit_manifest, edited
+from tests.tampering import edit_manifest, edited, manifest_content
 
 GENERATE = importlib.import_module("gen.generation.corpus")
 
@@ -45,11 +45,10 @@ def set_facts(path, **facts):
 
 def unfinished(folder):
     """The corpus as a killed call leaves it before its last steps."""
-    edit_manifest(folder, complete=False, records=0, parts_sha256="0" * 64)
+    content = manifest_content(folder) | {"complete": False, "records": 0, "parts_sha256": "0" * 64, "parts": []}
+    write_manifest(folder, content)
     for name in ("index.nc", "README.md", "croissant.json"):
         (folder / name).unlink()
-    manifest = json.loads((folder / "manifest.json").read_text())
-    (folder / "manifest.json").write_text(json.dumps(manifest | {"parts": []}))
     return folder
 
 

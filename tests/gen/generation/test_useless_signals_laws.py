@@ -13,6 +13,7 @@ from gen.importers.recordings import Candidate, Recording
 from gen.physics.catalogue import CATALOGUE
 from gen.support.errors import CorpusError
 from raceway.console.summary import describe
+from tests.tampering import edit_manifest
 
 CLIPPED = {"recording.converter": {"kind": "adc", "full_scale_m_s2": 1e-3}}
 SILENT = {
@@ -78,9 +79,7 @@ def test_counts_survive_an_interruption(loud, tmp_path):
 def test_counts_that_are_none_are_refused(loud, tmp_path, counts):
     _, made = loud
     shutil.copytree(made.path, tmp_path / "c")
-    manifest = json.loads((tmp_path / "c" / "manifest.json").read_text())
-    manifest["parts"][0]["signals"] = counts
-    (tmp_path / "c" / "manifest.json").write_text(json.dumps(manifest))
+    edit_manifest(tmp_path / "c", {0: {"signals": counts}})
     with pytest.raises(CorpusError, match="not the manifest of a corpus"):
         read_manifest(tmp_path / "c")
 

@@ -17,6 +17,7 @@ import numpy as np
 
 from features.table import feature_table
 from gen.corpus import SIGNAL, data_card, open_corpus, validate_corpus
+from gen.corpus.manifest import manifest_text
 from gen.support.errors import RacewayError
 from raceway.console.summary import describe
 from tests.corpora import write_corpus
@@ -221,7 +222,8 @@ def _seal(files):
             row |= {"bytes": len(data), "sha256": hashlib.sha256(data).hexdigest()}
         hashes = "\n".join(row["sha256"] for row in manifest["parts"])
         manifest["parts_sha256"] = hashlib.sha256(hashes.encode()).hexdigest()
-        files[MANIFEST] = json.dumps(manifest).encode()
+        manifest.pop("sha256", None)
+        files[MANIFEST] = manifest_text(manifest).encode()
         stream = io.BytesIO(files[INDEX][:-LINE_BYTES])
         with h5py.File(stream, "r+") as index:
             index.attrs["parts_sha256"] = manifest["parts_sha256"]
