@@ -27,7 +27,9 @@ plain             an ensemble as arrays, which predict without scikit-learn
 classifying       predictions of a fitted model for feature tables and waveforms
 models            training, evaluation, saving, loading
 unlabelled        answers for recordings whose class is not known
+sources           hash of the sources that make features and scores
 results           scores of every baseline with controls, and on other corpora
+results_file      results as JSON, of which later results take over the rows that are not altered
 ================= ==================================================================================
 """
 

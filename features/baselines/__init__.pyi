@@ -3,8 +3,8 @@ from .results import (
     Results as Results,
     TrackResults as TrackResults,
     benchmark as benchmark,
-    read_results as read_results,
 )
+from .results_file import read_results as read_results
 from .calibration import Calibration as Calibration
 from .curves import CurvePoint as CurvePoint, learning_curve as learning_curve
 from .estimators import DEFAULT_ESTIMATOR as DEFAULT_ESTIMATOR, ESTIMATORS as ESTIMATORS

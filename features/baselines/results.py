@@ -6,15 +6,13 @@ at chance; and the scores on other corpora. Results that are kept in a file can 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import dataclass, field, replace
 from hashlib import blake2b
 from importlib.metadata import version
-from pathlib import Path
 from typing import Literal
 
 import numpy as np
 import xarray as xr
-from pydantic import TypeAdapter, ValidationError
 
 from features.baselines.curves import CurvePoint, curve_points, curve_sizes
 from features.baselines.estimators import DEFAULT_ESTIMATOR, ESTIMATORS, UNTRAINED
@@ -31,11 +29,12 @@ from features.baselines.records import (
 )
 from features.baselines.scores import Scores, interval_text
 from features.baselines.severities import Widths, uncovered_in_splits
+from features.baselines.sources import score_sources
 from features.baselines.splits import Case, control_cases, grouped_case, score_splits
 from features.baselines.tracks import TRACKS, Split, Track
 from features.definitions import measured_quantity
 from features.waveforms import Waveforms
-from gen.corpus import FAULTS, write_numbers
+from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
 from gen.support.shown import Shown
@@ -105,8 +104,8 @@ class Results(Shown):
         Of splits, estimators, permutation and bootstrap.
     groups, features
         Groups and number of the features.
-    versions
-        Of the libraries.
+    versions, sources_sha256
+        Of the libraries, and hash of the sources that make features and scores.
     leading
         Name of the classifier that the findings and the learning curve are about.
     baselines
@@ -133,6 +132,7 @@ class Results(Shown):
     groups: tuple[str, ...]
     features: int
     versions: dict[str, str]
+    sources_sha256: str
     leading: str
     baselines: dict[str, Baseline]
     uncovered_widths: Widths
@@ -191,7 +191,8 @@ def benchmark(
     waveforms
         Waveforms of the corpus and of each of the others, in this order, for the classifiers of the user in place of the features.
     known
-        Results of an earlier call. If it had the same corpora and settings, its rows are kept, and its baselines are not scored again.
+        Results of an earlier call. If it had the same corpora, settings, libraries and sources, its rows are kept, and its baselines are
+        not scored again.
     curve
         Also compute the learning curve of the leading classifier.
     folds
@@ -230,7 +231,8 @@ def benchmark(
         seed=seed,
         groups=tuple(groups),
         features=len(names),
-        versions={library: version(library) for library in ("raceway", "scikit-learn", "numpy", "scipy")},
+        versions={library: version(library) for library in ("raceway", "scikit-learn", "numpy", "scipy", "numba")},
+        sources_sha256=score_sources(),
         leading=leading,
         baselines={},
         uncovered_widths=uncovered_in_splits(records, splits),
@@ -283,15 +285,17 @@ def _importance(
 
 
 def _kept(known: Results | None, found: Results) -> dict[str, dict[str, Baseline]]:
-    """Rows of earlier results by track, if these had the same corpora and settings."""
+    """Rows that earlier results have on every track, by track, if all else of these is the same."""
     tracks = (found.track, *found.further)
-    if known is None or _setup(known) != _setup(found):
+    if known is None or setup(known) != setup(found):
         return {track: {} for track in tracks}
-    return {found.track: dict(known.baselines)} | {track: dict(one.baselines) for track, one in known.further.items()}
+    of_tracks = {found.track: known.baselines} | {track: one.baselines for track, one in known.further.items()}
+    whole = set.intersection(*map(set, of_tracks.values()))
+    return {track: {name: rows[name] for name in rows if name in whole} for track, rows in of_tracks.items()}
 
 
-def _setup(results: Results) -> Results:
-    """Results without scores."""
+def setup(results: Results) -> Results:
+    """Results without scores: the corpora, and all that the rows of one file have in common."""
     further = {track: replace(one, baselines={}) for track, one in results.further.items()}
     return replace(results, leading="", baselines={}, further=further, curve=(), importance={})
 
@@ -352,16 +356,3 @@ def _content(records: Records, unknown: int) -> Content:
         classes={fault: int(count) for fault, count in zip(FAULTS, counts, strict=True) if count},
         unknown=unknown,
     )
-
-
-def write_results(results: Results, path: Path) -> None:
-    """Write results as JSON, whole or not at all."""
-    write_numbers(asdict(results), path)
-
-
-def read_results(path: Path) -> Results | None:
-    """Results in a file of `write_results`; None if there is no such file, or none of this version."""
-    try:
-        return TypeAdapter(Results).validate_json(path.read_bytes())
-    except (OSError, ValidationError):
-        return None

@@ -14,7 +14,7 @@ import xarray as xr
 from features.baselines import Results, Scores, interval_text, percent_text, severity_warning
 from features.baselines.detection import Detection
 from features.baselines.estimators import UNTRAINED
-from features.baselines.results import write_results
+from features.baselines.results_file import write_results
 from features.baselines.tracks import NOVELTY
 from features.faults import HEALTHY, LOOKS
 from features.report.curves import draw_curve, draw_detection, draw_reliability, draw_roc

@@ -23,7 +23,7 @@ PARTIAL_SUMS = 16
 
 def on_disk(kernel: Any) -> Any:
     """Keep a compiled loop over records on disk, as long as its file and this package are the same."""
-    return keep_on_disk(kernel, hash_sources("features", "signal"))
+    return keep_on_disk(kernel, hash_sources("features/signal"))
 
 
 def row_kernel(function: Callable[..., Any]) -> Any:
@@ -81,6 +81,14 @@ def squared_modulus(z: ComplexArray) -> FloatArray:
 def hann_window(n: int, dtype: DTypeLike) -> FloatArray:
     """Periodic Hann window, shape (time,)."""
     return (0.5 + 0.5 * np.cos(np.linspace(-np.pi, np.pi, n + 1)))[:-1].astype(dtype)
+
+
+def by_row(transform: Callable[..., Any], z: ComplexArray, n: int, norm: str | None = None) -> ComplexArray:
+    """Complex transform to ``n`` points, row by row: SciPy from 1.18 on rounds several rows in single precision otherwise than one."""
+    out = np.empty((len(z), n), z.dtype)
+    for row, values in enumerate(z):
+        out[row] = transform(values, n, norm=norm)
+    return out
 
 
 def group_means(values: FloatArray, group: IntArray) -> FloatArray:

@@ -3,20 +3,20 @@
 from gen.support.sources import hash_sources
 
 _MAKES_RECORDS = (
-    "physics",
-    "recipe",
-    "scenarios",
-    "simulation",
-    "measurement",
-    "generation/step_checks.py",
-    "generation/undetected.py",
-    "generation/labels.py",
-    "generation/scheduling.py",
-    "support/units.py",
+    "gen/physics",
+    "gen/recipe",
+    "gen/scenarios",
+    "gen/simulation",
+    "gen/measurement",
+    "gen/generation/step_checks.py",
+    "gen/generation/undetected.py",
+    "gen/generation/labels.py",
+    "gen/generation/scheduling.py",
+    "gen/support/units.py",
 )
-"""Folders and files of this package by which a recipe becomes records."""
+"""Folders and files by which a recipe becomes records."""
 
 
 def sources_sha256() -> str:
     """SHA-256 over the sources of kernel, random draws, simulation, measurement and labels, in hexadecimal."""
-    return hash_sources("gen", *_MAKES_RECORDS)
+    return hash_sources(*_MAKES_RECORDS)

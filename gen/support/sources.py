@@ -8,15 +8,16 @@ from importlib.resources.abc import Traversable
 
 
 @functools.cache
-def hash_sources(package: str, *places: str) -> str:
-    """SHA-256 over the Python files in folders of a package, and over single files of it, in hexadecimal.
+def hash_sources(*places: str) -> str:
+    """SHA-256 over the Python files in folders, and over single files, in hexadecimal; each place begins with its package.
 
-    >>> len(hash_sources("gen", "support", "physics/hertz.py"))
+    >>> len(hash_sources("gen/support", "gen/physics/hertz.py"))
     64
     """
     digest = hashlib.sha256()
     for place in places:
-        for name, content in _python_files(files(package).joinpath(place), place):
+        package, _, inside = place.partition("/")
+        for name, content in _python_files(files(package).joinpath(inside), place):
             digest.update(f"{name}\n".encode() + content)
     return digest.hexdigest()
 

@@ -140,25 +140,29 @@ def benchmark(
     from features.baselines import benchmark as run
     from features.baselines import read_results
     from features.report.page import write_report
+    from gen.corpus import result_folder
 
     team = Team(workers, scheduler)
-    table = table_of(corpus, "off", team, Analysis(channel, band))
-    others = [table_of(test, speed, team, Analysis(None, band)) for test in tests]
-    signals = _waveforms(corpus, channel, list(zip(tests, others, strict=True)), per_turn) if waveforms else []
-    options = {
-        "tracks": "all" if "all" in tracks else tracks,
-        "estimators": chosen,
-        "waveforms": signals,
-        "curve": learning_curve,
-    }
-    trainers = team.options(table.sizes["record"])["workers"]
-    known = read_results(output / "results.json")
-    with progress("scoring", "scores") as report:
-        results = run(table, others, **options, known=known, folds=folds, seed=seed, workers=trainers, progress=report)
-    for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
-        notice_of_unknown(path, content.unknown)
-    warn_of_severities(results, *next(iter(results.baselines.values())).tests)
-    page = write_report(corpus, results, output)
+    with result_folder(output):
+        table = table_of(corpus, "off", team, Analysis(channel, band))
+        others = [table_of(test, speed, team, Analysis(None, band)) for test in tests]
+        signals = _waveforms(corpus, channel, list(zip(tests, others, strict=True)), per_turn) if waveforms else []
+        options = {
+            "tracks": "all" if "all" in tracks else tracks,
+            "estimators": chosen,
+            "waveforms": signals,
+            "curve": learning_curve,
+        }
+        trainers = team.options(table.sizes["record"])["workers"]
+        known = read_results(output / "results.json")
+        with progress("scoring", "scores") as report:
+            results = run(
+                table, others, **options, known=known, folds=folds, seed=seed, workers=trainers, progress=report
+            )
+        for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
+            notice_of_unknown(path, content.unknown)
+        warn_of_severities(results, *next(iter(results.baselines.values())).tests)
+        page = write_report(corpus, results, output)
     if as_json:
         show.as_json({"report": page, "results": output / "results.json", **show.plain(results)})
         return

@@ -65,7 +65,7 @@ def in_both(function: Function) -> Function:
 
 def compiled_to_disk(function: Callable[..., Any]) -> Any:
     """Compile a kernel and keep it on disk, as long as its file and this physics are the same."""
-    return keep_on_disk(njit(**KERNEL)(function), hash_sources("gen", "physics"))
+    return keep_on_disk(njit(**KERNEL)(function), hash_sources("gen/physics"))
 
 
 def _make_wide(context: Any) -> Any:  # noqa: ARG001

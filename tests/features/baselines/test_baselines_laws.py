@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from features.baselines import ESTIMATORS, Model, benchmark, cross_validate, splits
 from features.baselines.estimators import class_probabilities
 from features.baselines.records import features_of, labelled_records
-from features.baselines.results import write_results
+from features.baselines.results_file import write_results
 from features.baselines.splits import control_cases, grouped_case, permuted_labels, score_splits
 from features.baselines.tracks import check_disjoint, check_taught, grouped_splits
 from features.faults import CLASSES, COMBS, EVIDENCE

@@ -14,7 +14,7 @@ from features import feature_table, open_waveforms
 from features.baselines import EstimatorError, Model, benchmark, cross_validate, load_maker, read_results
 from features.baselines.estimators import class_probabilities, make_estimator
 from features.baselines.own import OwnClassifier
-from features.baselines.results import write_results
+from features.baselines.results_file import write_results
 from gen.corpus import FAULTS
 from gen.support.errors import CorpusError
 from tests.features.baselines.test_baselines_laws import make_table, records_of
@@ -145,11 +145,6 @@ def test_a_row_is_added_to_results_with_the_same_corpora_and_settings(tmp_path, 
     for changed in ({"folds": 4}, {"seed": 1, "folds": 3}, {"tests": (), "folds": 3}):
         other = benchmark(tables[0], **{"tests": tables[1], **changed}, estimators={"bayes": GaussianNB()}, known=known)
         assert list(other.baselines) == ["majority", "envelope_rule", "bayes"]
-
-
-def test_a_file_that_holds_no_results_adds_no_rows(tmp_path):
-    (tmp_path / "other.json").write_text('{"corpus": {"title": "x"}}')
-    assert read_results(tmp_path / "other.json") is read_results(tmp_path / "none.json") is None
 
 
 def test_an_own_model_is_evaluated_and_not_saved(tmp_path):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from features.baselines import Model, benchmark, cross_validate
 from features.baselines.records import Records
-from features.baselines.results import write_results
+from features.baselines.results_file import write_results
 from features.baselines.severities import covered_widths, severity_warning, uncovered_in_splits, uncovered_widths
 from tests.model_files import make_table
 

@@ -1,0 +1,26 @@
+"""Hash of the source files that make features, models and scores: what is kept from an earlier run counts only with the same one."""
+
+from gen.support.sources import hash_sources
+
+_MAKES_SCORES = (
+    "gen/corpus",
+    "gen/support",
+    "features/signal",
+    "features/baselines",
+    "features/band.py",
+    "features/channels.py",
+    "features/definitions.py",
+    "features/faults.py",
+    "features/indicators.py",
+    "features/recording_speeds.py",
+    "features/recording_table.py",
+    "features/speed.py",
+    "features/table.py",
+    "features/waveforms.py",
+)
+"""Folders and files by which a corpus becomes scores; a test looks for others."""
+
+
+def score_sources() -> str:
+    """SHA-256 over the sources of features, models and scores, in hexadecimal."""
+    return hash_sources(*_MAKES_SCORES)
