@@ -124,7 +124,7 @@ def _memory() -> Finding:
 
 def _folders() -> Iterator[Finding]:
     from gen.simulation.kernels import cache_folder as kernel_folder
-    from raceway.studies.reference_model import CACHE_VARIABLE, ESTIMATOR, REFERENCE, cache_folder, kept_path
+    from raceway.studies.reference_model import CACHE_VARIABLE, ESTIMATOR, REFERENCE, cache_folder, is_kept, kept_path
 
     folder = kernel_folder()
     if folder is None:
@@ -143,7 +143,7 @@ def _folders() -> Iterator[Finding]:
         yield Finding(
             "kept models", f"{models}", "problem", f"it cannot be written; set {CACHE_VARIABLE} to another folder."
         )
-    elif kept_path(REFERENCE, ESTIMATOR).is_file():
+    elif is_kept(kept_path(REFERENCE, ESTIMATOR)):
         yield Finding("kept models", f"{models}, with the reference model of raceway diagnose")
     else:
         advice = f"raceway train {REFERENCE} trains the reference model of raceway diagnose (minutes, once)."

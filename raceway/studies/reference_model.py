@@ -5,22 +5,25 @@
 The feature table of the reference model ships with Raceway, so that its first use takes seconds. ``make reference`` writes it; unlike a
 model file it depends on no version of scikit-learn.
 
-A kept model is named after the recipe, the hash of its file, the estimator and the versions of Raceway and
-scikit-learn, so that another recipe or version makes another file. It is written whole or not at all, and a lock keeps
-two processes from making it at once. A file that is damaged is made again.
+A kept model is named after the recipe, the estimator, the versions of Raceway and scikit-learn, and a hash of all that it was made from:
+the file of the recipe, sources and libraries. The file beside it with its SHA-256 and name tells whether it is the one that was made
+under this name; else it is made again. A lock keeps two processes from making it at once.
 """
 
-import fcntl
 import hashlib
 import os
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from gen.corpus import write_durably
 from gen.support.errors import CorpusError
+from gen.support.locking import hold_lock
+from gen.support.sources import hash_sources
 from raceway.console.options import USUAL, Team
 from raceway.console.progress import notice, notice_compilation, progress
 
@@ -35,6 +38,8 @@ ESTIMATOR = "ensemble"
 CACHE_VARIABLE = "RACEWAY_CACHE"
 HASH_LETTERS = 16
 SHIPPED_TABLE = Path(__file__).with_name(f"{REFERENCE}.nc")
+_OWN_SOURCES = ("raceway/studies/reference_model.py", f"raceway/studies/{SHIPPED_TABLE.name}")
+_LIBRARIES = ("scikit-learn", "skops", "numpy", "scipy", "numba")  # whose versions make other models or files
 _LABELS = ("fault", "width", "rig", "specimen", "recording", "split", "shaft_rate")  # what a training needs
 _FACTS = ("title", "recipe_sha256", "channel", "band_low_hz", "band_high_hz")
 
@@ -114,7 +119,7 @@ def make_table(recipe: Path | str, team: Team = USUAL) -> "xr.Dataset":
 
 
 def load_reference_model() -> tuple["Model", Path]:
-    """Reference model of this user and its file; it is made if there is none, or if the file is damaged.
+    """Reference model of this user and its file; it is made if there is none as it was made.
 
     Raises
     ------
@@ -134,10 +139,12 @@ def load_plain_reference_model() -> tuple["PlainModel", Path]:
     from gen.recipe import shipped_recipes
 
     path = kept_path(shipped_recipes()[REFERENCE])
-    kept = PlainModel.read(path.with_suffix(".npz"))
+    plain = path.with_suffix(".npz")
+    kept = PlainModel.read(plain) if is_kept(plain) else None
     if kept is None:
         kept = PlainModel.of(load_reference_model()[0])
-        kept.save(path.with_suffix(".npz"))
+        kept.save(plain)
+        _seal(plain)
     return kept, path
 
 
@@ -149,7 +156,7 @@ def reference_model() -> "Model":
 def kept_model(
     recipe: Path | str, estimator: str = ESTIMATOR, *, team: Team = USUAL
 ) -> tuple["Model", Path, "Scores | None"]:
-    """Kept model of a recipe, its file, and its scores if it was trained now: if there was none, or the file was damaged.
+    """Kept model of a recipe, its file, and its scores if it was trained now.
 
     Raises
     ------
@@ -158,21 +165,12 @@ def kept_model(
     """
     from features.baselines.models import Model
 
-    path, damaged = kept_path(recipe, estimator), False
-    if path.is_file():
-        try:
-            return Model.load(path), path, None
-        except CorpusError as error:
-            notice(f"{error} It is made again.")
-            damaged = True
-    _, scores = keep_model(recipe, estimator, damaged=damaged, team=team)
+    path, scores = keep_model(recipe, estimator, team=team)
     return Model.load(path), path, scores
 
 
-def keep_model(
-    recipe: Path | str, estimator: str = ESTIMATOR, *, damaged: bool = False, team: Team = USUAL
-) -> tuple[Path, "Scores | None"]:
-    """Train a model on a recipe and keep it in the cache of this user, unless it is there.
+def keep_model(recipe: Path | str, estimator: str = ESTIMATOR, *, team: Team = USUAL) -> tuple[Path, "Scores | None"]:
+    """Train a model on a recipe and keep it in the cache of this user, unless it is there as it was made.
 
     Parameters
     ----------
@@ -180,8 +178,6 @@ def keep_model(
         File, or name of a recipe that ships with Raceway.
     estimator
         Name of a baseline.
-    damaged
-        Whether the file that is there is damaged, so that it is made again.
     team
         Number of workers on this machine.
 
@@ -197,22 +193,52 @@ def keep_model(
         If the cache cannot be written.
     """
     path = kept_path(recipe, estimator)
-    before = _stamp(path)
+    if is_kept(path):
+        return path, None
     with _lock(path):
-        if path.is_file() and not (damaged and _stamp(path) == before):
-            return path, None  # it was there, or another process has made it meanwhile
+        if is_kept(path):  # another process has made it meanwhile
+            return path, None
+        if path.is_file():
+            notice(f"{path}: is altered, or was not made here. It is made again.")
+            path.unlink()  # it may be no model, and nothing else is replaced
         notice(f"training a model on the recipe {recipe_name(recipe)}; it is kept as {path}.")
         model, scores = train_and_score(recipe_table(recipe, team), estimator, team)
-        path.unlink(missing_ok=True)  # what is damaged may be no model, and nothing else is replaced
         model.save(path)
+        _seal(path)
     return path, scores
+
+
+def is_kept(path: Path) -> bool:
+    """Whether a file in the cache is the one that was made under its name."""
+    try:
+        return _seal_of(path).read_bytes() == _seal_text(path)
+    except OSError:
+        return False
+
+
+def _seal(path: Path) -> None:
+    write_durably(_seal_text(path), _seal_of(path))
+
+
+def _seal_of(path: Path) -> Path:
+    return path.with_name(f"{path.name}.sha256")
+
+
+def _seal_text(path: Path) -> bytes:
+    """SHA-256 and name of a file, as ``sha256sum`` writes and checks them."""
+    return f"{hashlib.sha256(path.read_bytes()).hexdigest()}  {path.name}\n".encode()
 
 
 def kept_path(recipe: Path | str, estimator: str = ESTIMATOR) -> Path:
     """File of the kept model of a recipe, whether it exists or not."""
+    from features.baselines.sources import score_sources
+    from gen.generation.sources import sources_sha256
     from gen.recipe import find_recipe
 
-    digest = hashlib.sha256(find_recipe(recipe).read_bytes()).hexdigest()[:HASH_LETTERS]  # reading it takes 0.3 s
+    made_from = [hashlib.sha256(find_recipe(recipe).read_bytes()).hexdigest()]  # reading it takes 0.3 s
+    made_from += [sources_sha256(), score_sources(), hash_sources(*_OWN_SOURCES)]
+    made_from += [version(library) for library in _LIBRARIES]
+    digest = hashlib.sha256("\n".join(made_from).encode()).hexdigest()[:HASH_LETTERS]
     versions = f"raceway-{version('raceway')}-scikit-learn-{version('scikit-learn')}"
     return cache_folder() / f"{recipe_name(recipe)}-{digest}-{estimator}-{versions}.skops"
 
@@ -234,35 +260,21 @@ def cache_folder() -> Path:
     return usual / "raceway"
 
 
-def _stamp(path: Path) -> tuple[int, int] | None:
-    try:
-        status = path.stat()
-    except OSError:
-        return None
-    return status.st_mtime_ns, status.st_ino
-
-
 @contextmanager
 def _lock(path: Path) -> Iterator[None]:
     """Hold the lock of a file in the cache, whose folder is created."""
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        descriptor = os.open(path.with_suffix(".lock"), os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o644)
-    except OSError as error:
-        message = (
-            f"{path.parent}: this cache folder cannot be written ({error.strerror}); set {CACHE_VARIABLE} to another folder, or write the "
-            f"model elsewhere with raceway train {REFERENCE} -o MODEL."
-        )
-        raise CorpusError(message) from error
-    try:
+    with ExitStack() as held:
         try:
-            fcntl.flock(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            notice("waiting for another process that trains this model.")
-            fcntl.flock(descriptor, fcntl.LOCK_EX)
+            path.parent.mkdir(parents=True, exist_ok=True)
+            waiting = partial(notice, "waiting for another process that trains this model.")
+            held.enter_context(hold_lock(path.with_suffix(".lock"), waiting))
+        except OSError as error:
+            message = (
+                f"{path.parent}: this cache folder cannot be written ({error.strerror}); set {CACHE_VARIABLE} to another folder, or write "
+                f"the model elsewhere with raceway train {REFERENCE} -o MODEL."
+            )
+            raise CorpusError(message) from error
         yield
-    finally:
-        os.close(descriptor)
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 """A model trained on a recipe is kept per user: made once, under a name that tells recipe and versions, made again if damaged."""
 
-import hashlib
+import io
 import json
+import re
 import threading
+import zipfile
 from importlib.metadata import version
 
 import numpy as np
@@ -39,10 +41,24 @@ def test_the_name_tells_the_recipe_as_shipped_and_the_versions(tmp_path, monkeyp
     monkeypatch.chdir(tmp_path)
     (tmp_path / "domain_randomised").write_text("not the shipped recipe", encoding="utf-8")
     name = reference_model.kept_path(shipped_recipes()["domain_randomised"]).name
-    digest = hashlib.sha256(shipped_recipes()["domain_randomised"].read_bytes()).hexdigest()
-    assert name.startswith(f"domain_randomised-{digest[:16]}-ensemble-")
+    assert re.fullmatch(r"domain_randomised-[0-9a-f]{16}-ensemble-raceway-.*-scikit-learn-.*\.skops", name)
     assert f"raceway-{version('raceway')}" in name
     assert name.endswith(f"scikit-learn-{version('scikit-learn')}.skops")
+
+
+def test_another_recipe_other_sources_or_another_library_make_another_model(tiny_recipe, tmp_path, monkeypatch):
+    (tmp_path / "tiny.yaml").write_text(tiny_recipe.read_text() + "\n# changed\n")
+    names = {reference_model.kept_path(tiny_recipe).name, reference_model.kept_path(tmp_path / "tiny.yaml").name}
+    for place, changed in (
+        ("features.baselines.sources.score_sources", lambda: "other"),
+        ("gen.generation.sources.sources_sha256", lambda: "other"),
+        ("raceway.studies.reference_model.hash_sources", lambda *_: "other"),
+        ("raceway.studies.reference_model.version", lambda name: "0.0" if name == "scipy" else version(name)),
+    ):
+        with monkeypatch.context() as patch:
+            patch.setattr(place, changed)
+            names.add(reference_model.kept_path(tiny_recipe).name)
+    assert len(names) == 6
 
 
 def test_the_reference_model_is_made_once_and_loaded_afterwards(trainings, tmp_path):
@@ -55,7 +71,20 @@ def test_the_reference_model_is_made_once_and_loaded_afterwards(trainings, tmp_p
     assert [found.name for found in path.parent.glob("*.skops")] == [path.name]
 
 
-@pytest.mark.parametrize("damage", [lambda content: content[: len(content) // 2], lambda _: b"", lambda _: b"x" * 100])
+def renamed(content):
+    """The same model under another name, as a whole file of skops."""
+    with zipfile.ZipFile(io.BytesIO(content)) as archive:
+        members = {name: archive.read(name) for name in archive.namelist()}
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as archive:
+        for name, held in members.items():
+            archive.writestr(name, held.replace(b"ensemble", b"assembly"))
+    return out.getvalue()
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda content: content[: len(content) // 2], lambda _: b"", lambda _: b"x" * 100, renamed]
+)
 def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
     _, path = reference_model.load_reference_model()
     path.write_bytes(damage(path.read_bytes()))
@@ -67,6 +96,15 @@ def test_a_damaged_file_is_made_again_with_a_notice(damage, trainings, capfd):
     assert call("train", "domain_randomised").exit_code == 0
     assert len(trainings) == 3
     Model.load(path)
+
+
+def test_a_model_of_another_name_is_not_believed(trainings):
+    path, _ = reference_model.keep_model("quickstart", "logistic_regression")
+    other, _ = reference_model.keep_model("quickstart", "majority")
+    path.write_bytes(other.read_bytes())
+    path.with_name(f"{path.name}.sha256").write_bytes(other.with_name(f"{other.name}.sha256").read_bytes())
+    model, _, _ = reference_model.kept_model("quickstart", "logistic_regression")
+    assert (model.name, len(trainings)) == ("logistic_regression", 3)
 
 
 def test_its_arrays_are_kept_beside_it_and_made_again_if_they_are_damaged(trainings):
