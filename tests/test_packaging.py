@@ -1,10 +1,14 @@
 """What pyproject.toml and the links of the pages state is true of the project."""
 
+import ast
 import re
+import sys
 import tomllib
-from importlib.metadata import version
+from importlib.metadata import packages_distributions, version
 
+from packaging.requirements import Requirement
 from packaging.specifiers import SpecifierSet
+from packaging.utils import canonicalize_name
 from packaging.version import Version
 
 from tests.floors import floors
@@ -25,6 +29,33 @@ def test_no_package_is_missing_from_the_list_in_pyproject():
     assert {".".join(path.parts) for path in found} | {"raceway_recipes"} == set(
         PROJECT["tool"]["setuptools"]["packages"]
     )
+
+
+def imports(path):
+    """Distributions of the packages that a file imports, also inside functions; not the standard library nor Raceway."""
+    named = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            named |= {alias.name.partition(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom) and not node.level:
+            named.add(str(node.module).partition(".")[0])
+    return named - sys.stdlib_module_names - {*IMPORTED, "raceway_recipes"}
+
+
+def test_every_imported_package_is_declared():
+    stated = [Requirement(line) for line in all_requirements()]
+    declared = {canonicalize_name(name) for one in stated for name in (one.name, *one.extras)}
+    named = set().union(*(imports(path) for name in IMPORTED for path in (ROOT / name).rglob("*.py")))
+    owners = {name: {canonicalize_name(owner) for owner in packages_distributions()[name]} for name in named}
+    assert {name for name, of in owners.items() if not of & declared} == set()
+
+
+def all_requirements():
+    """Requirements of Raceway and of what users can add."""
+    optional = PROJECT["project"]["optional-dependencies"]
+    return PROJECT["project"]["dependencies"] + [
+        line for name in ("parquet", "excel", "zarr") for line in optional[name]
+    ]
 
 
 def test_every_package_is_marked_as_typed():

@@ -33,7 +33,7 @@ from scipy.special import gammainccinv
 
 from features.signal.demodulation import ZERO_PADDING
 from features.signal.door import Band, Positive, Rows, Share, checked
-from features.signal.rows import ComplexArray, FloatArray, squared_modulus
+from features.signal.rows import ComplexArray, FloatArray, by_row, squared_modulus
 from features.signal.spectra import prediction_filters, sine_windowed
 
 WINDOW_LOSS = 1.5  # coefficients per independent coefficient under a sine window
@@ -122,8 +122,8 @@ def _coherence(coefficients: ComplexArray, width: int, lags: int) -> FloatArray:
     reach = width + lags - 1
     length = next_fast_len(reach)
     upper = coefficients[:, :reach]
-    transform = np.asarray(fft(upper, n=length, axis=-1)) * np.conj(fft(upper[:, :width], n=length, axis=-1))
-    product = squared_modulus(np.asarray(ifft(transform, axis=-1))[:, :lags])
+    transform = by_row(fft, upper, length) * np.conj(by_row(fft, upper[:, :width], length))
+    product = squared_modulus(by_row(ifft, transform, length)[:, :lags])
     power = np.zeros((len(upper), reach + 1))
     np.cumsum(squared_modulus(upper), axis=-1, dtype=float, out=power[:, 1:])
     within = power[:, width:] - power[:, :lags]

@@ -22,7 +22,16 @@ from numba import njit
 from numpy.typing import DTypeLike
 from scipy.fft import ifft, next_fast_len, rfft
 
-from features.signal.rows import ComplexArray, FloatArray, hann_window, on_disk, row_kernel, squared_modulus, total
+from features.signal.rows import (
+    ComplexArray,
+    FloatArray,
+    by_row,
+    hann_window,
+    on_disk,
+    row_kernel,
+    squared_modulus,
+    total,
+)
 
 ZERO_PADDING = 4
 INTERPOLATED = 1.125  # length of the transform that is interpolated, in lengths of the signal
@@ -49,7 +58,7 @@ def analytic_band(coefficients: ComplexArray, low: int, high: int) -> ComplexArr
     Shape (record, time), in the unit of the record; its modulus is the envelope of the band.
     """
     band = coefficients[:, low:high]
-    return np.asarray(ifft(2 * band, n=next_fast_len(2 * max(1, band.shape[-1])), axis=-1, norm="forward"))
+    return by_row(ifft, 2 * band, next_fast_len(2 * max(1, band.shape[-1])), norm="forward")
 
 
 def envelope_spectrum(z: ComplexArray, rate: float) -> tuple[FloatArray, FloatArray]:
