@@ -53,6 +53,7 @@ from gen.corpus import (
 )
 from gen.support.errors import CorpusError
 from gen.support.progress import Progress, counter
+from gen.support.shown import visible
 from gen.support.workers import run
 
 if TYPE_CHECKING:
@@ -294,7 +295,7 @@ def _unit(attributes: Mapping[Any, Any]) -> str:
 
 def _text(value: object) -> str:
     """Text of a corpus, shortened."""
-    return str(value)[:LONGEST_TEXT]
+    return visible(str(value))[:LONGEST_TEXT]
 
 
 def _axes(known: Sequence[Quantity]) -> list[str]:

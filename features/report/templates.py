@@ -6,9 +6,13 @@ from importlib.resources import files
 import jinja2
 import numpy as np
 
+from gen.support.shown import visible
+
 
 def template(name: str, package: str = "features.report") -> jinja2.Template:
     """Template of a package; filter ``image`` makes an address of a picture, ``figure`` three decimals or a dash.
+
+    Texts are escaped, and without control and format characters.
 
     What a template includes, such as the style of all pages, is of this package.
     """
@@ -20,6 +24,7 @@ def template(name: str, package: str = "features.report") -> jinja2.Template:
         loader=jinja2.FunctionLoader(read),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
+        finalize=lambda value: visible(value) if isinstance(value, str) else value,
         trim_blocks=True,
         lstrip_blocks=True,
     )

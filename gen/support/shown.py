@@ -2,6 +2,28 @@
 
 from collections.abc import Mapping
 from html import escape
+from unicodedata import category
+
+
+class _Visible(dict[int, int | None]):
+    """Translation of characters, looked up once: control and format characters are left out, line breaks and tabs stay."""
+
+    def __missing__(self, code: int) -> int | None:
+        hidden = category(chr(code)) in ("Cc", "Cf") and chr(code) not in "\n\t"
+        self[code] = None if hidden else code
+        return self[code]
+
+
+_VISIBLE = _Visible()
+
+
+def visible(text: str) -> str:
+    r"""Text without characters that are not seen, such as marks of the direction of writing, which could make a title read otherwise.
+
+    >>> visible("ball\u202e and\x1b outer\n")
+    'ball and outer\n'
+    """
+    return text.translate(_VISIBLE)
 
 
 class Shown:
@@ -23,10 +45,10 @@ class Shown:
 
     def _repr_html_(self) -> str:
         rows = "".join(
-            f'<tr><th style="text-align:left">{escape(name)}</th><td style="text-align:left">{escape(value)}</td></tr>'
+            f'<tr><th style="text-align:left">{escape(name)}</th><td style="text-align:left">{escape(visible(value))}</td></tr>'
             for name, value in _stated(self._facts()).items()
         )
-        return f"<b>{escape(self._heading())}</b><table>{rows}</table>"
+        return f"<b>{escape(visible(self._heading()))}</b><table>{rows}</table>"
 
 
 def lines(facts: Mapping[str, object]) -> list[str]:

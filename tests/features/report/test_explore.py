@@ -4,6 +4,7 @@ import base64
 import json
 import re
 import zlib
+from unicodedata import category
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from tests.features.report.test_report import write_corpus
 from tests.pulses import ORDERS, pulse_train, write_pulses
 
 FS = 12_000.0
-HOSTILE = "</script><script>alert(1)</script>'\"{{ 7 * 7 }}"
+HOSTILE = "\u202e\u200f\x9b</script><script>alert(1)</script>'\"{{ 7 * 7 }}"
 RECORDS = 80  # more than a block
 
 
@@ -84,6 +85,8 @@ def test_text_of_a_corpus_cannot_become_markup_and_only_the_script_of_the_page_m
         assert len(re.findall(r"<script>", text)) == 1
         assert not re.search(r"""(src|href)=|https?://(?!www\.w3\.org/2000/svg)""", text)
     assert "&lt;script&gt;alert(1)" in made.page.read_text()
+    held = made.page.read_text() + json.dumps(json.loads(parts(made.page)["about"]), ensure_ascii=False)
+    assert not [letter for letter in held if category(letter) in ("Cc", "Cf") and letter != "\n"]
 
 
 def test_equal_corpora_give_equal_pages_and_a_record_takes_two_kilobytes(corpus, tmp_path):

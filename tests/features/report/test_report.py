@@ -4,6 +4,7 @@ import json
 import re
 from dataclasses import replace
 from html.parser import HTMLParser
+from unicodedata import category
 
 import numpy as np
 import pytest
@@ -30,7 +31,7 @@ ORDERS = {"ftf": 0.4, "bpfo": 3.6, "bpfi": 5.4, "bsf": 2.35}
 LINES = {"compound": (5.4, 3.6)}  # of other classes their fundamental line
 FOUR = FAULTS[:4]  # the classes of corpora made before there were six
 SOME = {name: name for name in ("logistic_regression", "envelope_rule", "majority")}
-HOSTILE = "<script>alert(1)</script>'\"{{ 7 * 7 }}$\\frac"
+HOSTILE = "\u202e\u200f\x9b<script>alert(1)</script>'\"{{ 7 * 7 }}$\\frac"
 
 
 def signal_of(fault, shaft_rate, rng):
@@ -222,6 +223,7 @@ def test_text_of_a_corpus_is_escaped_and_cut_short(results_of, tmp_path):
     assert 400 * "x" not in page
     assert "{{ 7 * 7 }}" in page
     assert "other corpus" in page
+    assert not [letter for letter in page if category(letter) in ("Cc", "Cf") and letter != "\n"]
 
 
 def test_a_score_above_chance_with_permuted_labels_is_reported_as_a_leak(results):
