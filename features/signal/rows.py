@@ -8,8 +8,10 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
+import scipy
 from numba import njit
 from numpy.typing import DTypeLike, NDArray
+from packaging.version import Version
 
 from gen.support.kernels import keep_on_disk
 from gen.support.sources import hash_sources
@@ -19,6 +21,7 @@ IntArray = NDArray[np.integer[Any]]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]
 
 PARTIAL_SUMS = 16
+ROWS_TOGETHER = Version(scipy.__version__) < Version("1.18")
 
 
 def on_disk(kernel: Any) -> Any:
@@ -84,7 +87,9 @@ def hann_window(n: int, dtype: DTypeLike) -> FloatArray:
 
 
 def by_row(transform: Callable[..., Any], z: ComplexArray, n: int, norm: str | None = None) -> ComplexArray:
-    """Complex transform to ``n`` points, row by row: SciPy from 1.18 on rounds several rows in single precision otherwise than one."""
+    """Complex transform to ``n`` points, row by row if SciPy rounds several rows in single precision otherwise than one."""
+    if ROWS_TOGETHER:
+        return np.asarray(transform(z, n, axis=-1, norm=norm))
     out = np.empty((len(z), n), z.dtype)
     for row, values in enumerate(z):
         out[row] = transform(values, n, norm=norm)
