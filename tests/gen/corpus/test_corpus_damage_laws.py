@@ -327,9 +327,10 @@ def test_counts_of_useless_records_are_those_of_the_signals(tmp_path, form):
 
 
 def test_a_corpus_made_before_manifests_had_a_hash_opens(copied):
-    (copied / "manifest.json").write_text(json.dumps(manifest_content(copied)))
+    content = manifest_content(copied)
+    (copied / "manifest.json").write_text(json.dumps(content))
     with open_corpus(copied) as corpus:
-        assert corpus.sizes["record"] == manifest_content(copied)["records"]
+        assert corpus.sizes["record"] == content["records"]
 
 
 def test_sizes_alone_do_not_see_what_hashes_see(copied, file):
