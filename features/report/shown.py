@@ -48,12 +48,20 @@ def shown_recording(
     Raises
     ------
     CorpusError
-        If the band lies above half the sample rate, or a sample is not a finite number.
+        If the band lies above half the sample rate, a sample is not a finite number, or the speed varies and cannot be
+        tracked in the signal.
     """
     signal = np.asarray(signal, dtype=float)
     nominal = Orders(*(np.asarray(order, dtype=float) for order in orders))
     shown = Shown(name, signal, fs, float(np.mean(shaft_rates)), nominal, UNKNOWN, band)
-    return _turning(_checked(shown, name), *shaft_rates)
+    turning = _turning(_checked(shown, name), *shaft_rates)
+    if turning.angle is None and _varies(*shaft_rates):
+        low, high = (60 * rate for rate in shaft_rates)
+        raise CorpusError(
+            f"{name}: the speed between {low:.0f} and {high:.0f} rpm cannot be tracked in the signal, in which harmonics of the "
+            f"shaft do not stand above the noise all the time, or which is too short; give one --rpm for a part of constant speed."
+        )
+    return turning
 
 
 def shown_of(record: xr.Dataset, number: int, channel: int, *, named: bool = False) -> Shown:
@@ -100,17 +108,22 @@ def check_band(band: Band, fs: float, where: str) -> None:
         )
 
 
+def _varies(slowest: float, fastest: float) -> bool:
+    return fastest > CONSTANT * slowest
+
+
 def _turning(shown: Shown, slowest: float, fastest: float) -> Shown:
-    """The same with its speed in the title, and with the angle of the shaft if the speed varies: it is tracked in the signal."""
-    if not (can_be_drawn(shown) and fastest > CONSTANT * slowest):
+    """The same with its speed in the title, and with the angle of the shaft if the speed varies and can be tracked in the signal."""
+    if not (can_be_drawn(shown) and _varies(slowest, fastest)):
         return shown._replace(title=f"{shown.title}, {60 * shown.shaft_rate:.0f} rpm")
     title = f"{shown.title}, {60 * slowest:.0f}-{60 * fastest:.0f} rpm"
     try:
-        rates = track_speed(shown.signal[None], shown.fs, slowest / MARGIN, fastest * MARGIN)
+        rate = track_speed(shown.signal, shown.fs, slowest / MARGIN, fastest * MARGIN).rate
     except ValueError:  # too short, or sampled too slowly, for a course
+        rate = np.full(1, np.nan)
+    if not np.isfinite(rate).all():
         return shown._replace(title=f"{title} (taken as constant)")
-    angle = angles_from_speed(rates, shown.fs)[0]
-    return shown._replace(title=title, angle=angle, shaft_rate=float(rates.mean()))
+    return shown._replace(title=title, angle=angles_from_speed(rate, shown.fs), shaft_rate=float(rate.mean()))
 
 
 def _checked(shown: Shown, where: str) -> Shown:

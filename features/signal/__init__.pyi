@@ -12,7 +12,7 @@ from .orders import (
     resample_to_angle as resample_to_angle,
     synchronous_average as synchronous_average,
 )
-from .tracking import track_speed as track_speed
+from .tracking import SpeedCourse as SpeedCourse, track_speed as track_speed
 from .cyclic import (
     Coherence as Coherence,
     enhanced_envelope_spectrum as enhanced_envelope_spectrum,

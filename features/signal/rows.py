@@ -16,6 +16,7 @@ from packaging.version import Version
 from gen.support.kernels import keep_on_disk
 from gen.support.sources import hash_sources
 
+BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.floating[Any]]
 IntArray = NDArray[np.integer[Any]]
 ComplexArray = NDArray[np.complexfloating[Any, Any]]

@@ -7,6 +7,7 @@ from features.band import DEFAULT_BAND
 from features.report.pictures import draw_record, picture, squared_envelope
 from features.report.shown import shown_recording
 from features.report.views import MAPS, VIEWS, band_by, draw_view
+from gen.support.errors import CorpusError
 from raceway.commands import plotting
 from tests.pulses import pulse_train
 
@@ -67,9 +68,13 @@ def test_the_title_of_a_run_up_has_its_range_and_the_waveform_counts_its_revolut
     assert draw_record(run_up).axes[0].get_title(loc="left").startswith("Waveform: first 0.5")  # 8 turns at 15 to 16 Hz
 
 
-def test_too_short_a_record_for_a_course_of_the_speed_says_that_its_speed_is_taken_as_constant():
-    x = np.random.default_rng(2).standard_normal(6000)
-    assert shown_recording("short", x, FS, (10.0, 30.0), ORDERS, DEFAULT_BAND).title.endswith("rpm (taken as constant)")
+@pytest.mark.parametrize("seconds", [0.5, 6.0])
+def test_a_recording_whose_varying_speed_cannot_be_tracked_is_refused_with_the_option_that_settles_it(seconds):
+    noise = np.random.default_rng(2).standard_normal(round(seconds * FS))
+    with pytest.raises(
+        CorpusError, match=r"noise: the speed between 600 and 1800 rpm cannot be tracked .* give one --rpm"
+    ):
+        shown_recording("noise", noise, FS, (10.0, 30.0), ORDERS, DEFAULT_BAND)
 
 
 @pytest.mark.parametrize("choice", ["kurtogram", "line"])

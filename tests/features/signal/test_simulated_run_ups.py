@@ -28,7 +28,7 @@ def run_up():
 def angle(request, run_up):
     if request.param == "true":
         return gen.shaft_angles(run_up).values[None]
-    return angles_from_speed(track_speed(run_up.acceleration.values, 12_000, 7, 45), 12_000)
+    return angles_from_speed(track_speed(run_up.acceleration.values, 12_000, 7, 45).rate, 12_000)
 
 
 def test_harmonics_of_the_shaft_and_the_line_of_the_fault_stand_within_half_a_bin(run_up, angle):
