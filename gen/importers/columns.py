@@ -1,6 +1,7 @@
 """Choice of a column in a table, and the sample rate that a column of times tells."""
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -8,103 +9,149 @@ from numpy.typing import NDArray
 
 from gen.importers.conversion import Unit
 from gen.importers.files import FloatArray, UnusableError
-from gen.importers.header import LEAST_RATE, OTHERS, SECONDS, UNITS, Head, key_of, unit_in
+from gen.importers.header import SECONDS, Header, key_of, known_unit
 
+SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
 _SAME_RATE = 0.01  # relative
+_COARSE = 1e-3  # of the rate, relative
+_JITTER = 0.05  # of a step
 _MOST_NAMED = 12
-_SIX_DIGITS = 1e-5  # resolution of times, relative to the last one
+_MOST_COLUMNS, LEAST_LENGTH = 64, 8  # of a table without names, whose longer axis is time
 
 
 class Values(NamedTuple):
     """Values of a signal in the unit of its file, shape (time,), with what the file states of them.
 
-    ``fs`` is the sample rate [Hz] or None; ``rate_source`` tells where it is stated, and is empty for a rate of playback, in whose place
-    another one can be given; ``named`` is the column whose name or header states ``unit``; ``absolute`` is False for shares of the full
-    scale of a converter.
+    ``rates`` are sample rates [Hz] and where they are stated, ``playback`` one in whose place another can be given; ``unit`` is as the
+    file writes it, and ``named`` tells where; ``absolute`` is False for shares of the full scale of a converter; ``notes`` are sentences
+    without their end.
     """
 
     values: FloatArray
-    fs: float | None = None
-    rate_source: str = ""
-    unit: Unit | None = None
+    rates: tuple[tuple[float, str], ...] = ()
+    playback: float | None = None
+    unit: str = ""
     named: str = ""
     absolute: bool = True
+    notes: tuple[str, ...] = ()
 
     def rate(self, given: float | None, key: str) -> tuple[float | None, list[str]]:
-        """Sample rate to be used, and a sentence without its end if another one is stated; UnusableError if they contradict each other."""
-        if given is None or self.fs is None or math.isclose(given, self.fs, rel_tol=1e-3):
-            return given or self.fs, []
-        if self.rate_source and not math.isclose(given, self.fs, rel_tol=_SAME_RATE):
-            message = (
-                f"is at {self.fs:g} Hz by its {self.rate_source}, and {given:g} Hz are given; correct what is given"
-            )
+        """Sample rate to be used, or None; and a sentence without its end if another one is stated.
+
+        Raises
+        ------
+        UnusableError
+            If statements contradict each other or what is given, or the rate is beyond 500 Hz to 1 MHz and is not given.
+        """
+        stated = self.rates or (() if self.playback is None else ((self.playback, "header"),))
+        told = " and ".join(f"{rate:g} Hz by its {source}" for rate, source in stated)
+        fitting = [rate for rate, _ in stated if given is not None and math.isclose(given, rate, rel_tol=_SAME_RATE)]
+        if given is not None:
+            if fitting or not stated:
+                return given, []
+            if self.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
+                message = f"is at {told}, and {given:g} Hz are given; correct what is given"
+                raise UnusableError(message, key)
+            return given, [f"is at {told}; the given {given:g} Hz are used"]
+        if not stated:
+            return None, []
+        rates = [rate for rate, _ in stated]
+        if max(rates) > (1 + _SAME_RATE) * min(rates) or not SLOWEST <= rates[0] <= FASTEST:
+            beyond = "" if SLOWEST <= min(rates) <= max(rates) <= FASTEST else f", beyond {SLOWEST:g} Hz to 1 MHz"
+            message = f"is at {told}{beyond}; give the sample rate"
             raise UnusableError(message, key)
-        return given, [f"states a sample rate of {self.fs:g} Hz; the given {given:g} Hz are used"]
+        return rates[0], []
 
     def stated_unit(self, given: Unit | None) -> tuple[Unit, list[str]]:
-        """Unit to be used, and a sentence without its end if it is that of the header; UnusableError if they contradict each other."""
-        if self.unit is None or given == self.unit:
-            return given or "m/s2", []
-        if given is not None:
+        """Unit to be used, and a sentence without its end if it is not given or another one is stated.
+
+        Raises
+        ------
+        UnusableError
+            If the file states another known unit than the given one, or a unit that is not known and none is given.
+        """
+        known = known_unit(self.unit)
+        if given is None and self.unit and known is None:
+            message = f"states {self.named} in its header, which is no unit that is read; give the unit of the values"
+            raise UnusableError(message, "unit")
+        if given is not None and known not in (None, given):
             message = f"states {self.named} in its header, and the unit {given} is given; correct what is given"
             raise UnusableError(message, "unit")
-        return self.unit, [f"its unit is taken as {self.unit}, from {self.named} in its header"]
+        if given is not None:
+            said = self.unit and known is None
+            return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []
+        if known is not None:
+            return known, [f"its unit is taken as {known}, from {self.named} in its header"]
+        return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.absolute else []
 
 
-def columns_to_read(head: Head, column: int | str | None) -> tuple[int | None, int]:
-    """Column that may hold times, if there is one beside the signal, and column of the signal.
+def columns_to_load(
+    header: Header, column: int | str | None, numeric: Sequence[int], even: Sequence[int]
+) -> list[int]:
+    """Columns that may hold the signal or times.
+
+    ``numeric`` columns hold numbers, which in ``even`` ones rise evenly at first, as times and counters do.
 
     Raises
     ------
     UnusableError
         If there is no such column, or several and none is chosen.
     """
-    times = next((n for n in head.numbers if _unit_in(head, n) in SECONDS), head.numbers[0])
     if column is None:
-        others = [n for n in head.numbers if n != times]
-        if len(others) > 1:
-            raise _none_chosen(head)
-        return (times, others[0]) if others else (None, times)
-    chosen = _number(head, column)
-    if chosen not in head.numbers:
-        message = f"has the columns {_listed(head)}, and no numbers in {column}; choose one"
+        if sum(n not in even and not header.is_of_time(n) for n in numeric) > 1:
+            raise _none_chosen(header, numeric)
+        return [*numeric]
+    places = header.places(column)
+    if len(places) > 1:
+        message = f"has several columns {column} ({_listed(header, places)}); choose one by its number"
         raise UnusableError(message, "column")
-    return (times if len(head.numbers) > 1 else None), chosen
+    if not places or places[0] not in numeric:
+        message = f"has the columns {_listed(header, numeric)}, and no numbers in {column}; choose one"
+        raise UnusableError(message, "column")
+    return [places[0], *(n for n in numeric if n != places[0] and (n in even or header.is_of_time(n)))]
 
 
-def signal_of(head: Head, column: int | str | None, times: FloatArray | None, values: FloatArray) -> Values:
-    """Values of the chosen column with sample rate and unit, if its table tells them; ``times`` is the column that may hold them.
+def signal_of(header: Header, column: int | str | None, loaded: Mapping[int, FloatArray]) -> Values:
+    """Values of the chosen column, the first of those that are loaded, or of the only one that holds no times.
 
     Raises
     ------
     UnusableError
-        If times and header contradict each other, the chosen column holds the times, or the unit is not of an acceleration.
+        If there is none or several, or if times are not evenly spaced, or frequencies.
     """
-    of_times, chosen = columns_to_read(head, column)
-    unit, named = _unit_of(head, chosen)
-    if times is None or of_times is None or not _are_times(head, of_times, times):
-        if times is not None and column is None:
-            raise _none_chosen(head)
-        return Values(values, head.fs, "header" if head.fs else "", unit, named)
-    if chosen == of_times:
-        message = f"has times in column {head.name(of_times)}, not a signal; choose another"
+    times = [n for n, values in loaded.items() if is_even(values) or header.is_of_time(n)]
+    signals = [n for n in loaded if n not in times] if column is None else [*loaded][:1]
+    if len(signals) > 1:
+        raise _none_chosen(header, [*loaded])
+    if not signals or signals[0] in times:
+        message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
         raise UnusableError(message, "column")
-    told = _rate_of(times, SECONDS.get(_unit_in(head, of_times)))
-    source = f"times in column {head.name(of_times)}" if told else "header" if head.fs else ""
-    if head.fs is not None and told is not None and not math.isclose(head.fs, told, rel_tol=_SAME_RATE):
-        message = f"states {head.fs:g} Hz in its header, and its {source} are at {told:g} Hz; correct the file"
-        raise UnusableError(message)
-    return Values(values, told or head.fs, source, unit, named)
+    rates = [(rate, "header") for rate in header.rates]
+    for place in times:
+        name = header.name(place)
+        if header.is_of_spectrum(place):
+            raise UnusableError(f"has frequencies in column {name}; export the waveform, not its spectrum")
+        if not is_even(loaded[place]):
+            raise UnusableError(f"has times in column {name} that are not evenly spaced; export it at one sample rate")
+        unit = SECONDS.get(key_of(header.unit_of(place)))
+        rate = unit and _rate_of(loaded[place] * unit)
+        rates += [(rate, f"times in column {name}")] if rate else []
+    own = header.unit_of(signals[0])
+    named = header.name(signals[0]) if own else header.unit
+    return Values(loaded[signals[0]], tuple(rates), unit=own or header.unit, named=named)
+
+
+def _none_chosen(header: Header, columns: Sequence[int]) -> UnusableError:
+    return UnusableError(
+        f"has {len(columns)} columns ({_listed(header, columns)}) and none is chosen; choose one", "column"
+    )
 
 
 def table_signal(table: NDArray[Any], column: int | str | None) -> Values:
     """Signal in a table without names, whose longer axis is time."""
     columns = as_columns(table)
-    head = Head(0, (True,) * len(columns), ())
-    times, chosen = columns_to_read(head, column)
-    picked = [None if n is None else columns[n].astype(np.float64, copy=False) for n in (times, chosen)]
-    assert picked[1] is not None  # noqa: S101
-    return signal_of(head, column, picked[0], picked[1])
+    places = columns_to_load(Header(), column, range(len(columns)), range(len(columns)))
+    return signal_of(Header(), column, {n: columns[n].astype(np.float64, copy=False) for n in places})
 
 
 def as_columns(values: NDArray[Any]) -> NDArray[Any]:
@@ -113,85 +160,56 @@ def as_columns(values: NDArray[Any]) -> NDArray[Any]:
     Raises
     ------
     UnusableError
-        If the values are not real numbers, or not a table.
+        If the values are not real numbers, or not a table of which one axis is plainly that of time.
     """
-    if values.dtype.kind not in "iuf" or values.size == 0 or values.ndim > 2:
-        message = f"holds {values.dtype} of shape {values.shape}, not one column of real numbers"
+    shorter, longer = (1, values.size) if values.ndim == 1 else sorted(values.shape) if values.ndim == 2 else (0, 0)
+    plain = shorter == 1 or shorter <= _MOST_COLUMNS and longer >= LEAST_LENGTH * shorter
+    if values.dtype.kind not in "iuf" or values.size == 0 or not plain:
+        message = f"holds {values.dtype} of shape {values.shape}, not one or a few long columns of real numbers"
         raise UnusableError(message)
     columns = np.atleast_2d(values)
     return columns.T if columns.shape[0] > columns.shape[1] else columns
 
 
-def _are_times(head: Head, column: int, values: FloatArray) -> bool:
-    """Whether a column holds times or counts; UnusableError if it holds uneven times, or frequencies."""
-    name, unit, even = head.name(column), _unit_in(head, column), is_even(values)
-    if unit in SECONDS and not even:
-        raise UnusableError(f"has times in column {name} that are not evenly spaced; export it at one sample rate")
-    if even and (unit == "hz" or name.partition(" ")[2].casefold().startswith("freq")):
-        raise UnusableError(f"has frequencies in column {name}; export the waveform, not its spectrum")
-    return even
-
-
 def is_even(values: FloatArray) -> bool:
     """Whether values rise by a constant step within their rounding, as times and counters do.
 
-    >>> is_even(np.round(np.arange(1000) / 12800, 4)), is_even(np.array([0.0, 0.1, 0.2, 0.9, 1.0]))
+    >>> is_even(np.round(np.arange(1000) / 12800, 4)), is_even(np.array([0.0, 0.1, 0.3, 0.4, 0.5]))
     (True, False)
     """
-    steps = np.diff(values)
-    if values.size < 3 or not np.all(steps >= 0) or values[-1] <= values[0]:  # NaN fails the comparison
+    if values.size < 3 or not values[-1] > values[0] or not np.all(np.diff(values) >= 0):  # NaN fails the comparison
         return False
     line = np.linspace(values[0], values[-1], values.size)
-    usual = np.quantile(steps[steps > 0], 0.99, method="lower")  # the rounding of most steps, without a gap
-    resolution = max(float(usual), _SIX_DIGITS * float(values[-1] - values[0]))
-    return float(np.abs(values - line).max()) <= resolution
+    return float(np.abs(values - line).max()) <= max(_resolution(values), _JITTER * (line[1] - line[0]))
 
 
-def _rate_of(times: FloatArray, unit: float | None) -> float | None:
-    """Sample rate [Hz] that times tell, the roundest number that their rounding allows; None for a counter.
+def _resolution(values: FloatArray) -> float:
+    """Place of the last decimal of the last values; 0 if they are not decimals.
 
-    >>> _rate_of(np.round(np.arange(1000) / 12800, 6), None), _rate_of(np.arange(1000) / 12.8, 1e-3), _rate_of(np.arange(9.0), None)
-    (12800.0, 12800.0, None)
+    >>> _resolution(np.array([0.1, 0.23, 0.35])), _resolution(np.arange(9.0) / 7)
+    (0.01, 0.0)
     """
-    span, steps = times[-1] - times[0], np.diff(times)
-    rate = (times.size - 1) / span / (unit or 1.0)
-    if unit is None and rate <= LEAST_RATE:
+    last = np.abs(values[-max(values.size // 10, 2) :])
+    units = (10.0**-place for place in range(-2, 12))
+    return next((unit for unit in units if np.all(np.abs(last / unit - np.round(last / unit)) < 1e-3)), 0.0)
+
+
+def _rate_of(times: FloatArray) -> float | None:
+    """Sample rate [Hz] of times [s], with as few digits as their rounding allows; None if they are too coarse.
+
+    >>> _rate_of(np.round(np.arange(1000) / 12800, 6)), _rate_of(np.arange(1000) / 97656.25)
+    (12800.0, 97656.25)
+    """
+    span = float(times[-1] - times[0])
+    rate, doubt = (times.size - 1) / span, max(_resolution(times) / span, 1e-9)
+    if doubt > _COARSE:
         return None
-    resolution = max(float(np.ptp(steps)), _SIX_DIGITS * 0.1 * span)
-    round_ones = (step * round(rate / step) for step in (1000.0, 100.0, 10.0, 1.0))
-    return next((one for one in round_ones if abs(one / rate - 1) <= resolution / span), rate)
+    shorter = (float(f"{rate:.{digits}g}") for digits in range(2, 12))
+    return next((one for one in shorter if math.isclose(one, rate, rel_tol=doubt)), rate)
 
 
-def _number(head: Head, column: int | str) -> int | None:
-    """Number of a column that is named in full, or without its unit."""
-    if isinstance(column, int):
-        return column
-    for names in (head.names, [name.rpartition(" ")[0] if unit_in(name) else name for name in head.names]):
-        if column in names:
-            return names.index(column)
-    return None
-
-
-def _none_chosen(head: Head) -> UnusableError:
-    return UnusableError(f"has {len(head.numbers)} columns ({_listed(head)}) and none is chosen; choose one", "column")
-
-
-def _listed(head: Head) -> str:
-    """Numbers and names of the columns that hold numbers."""
-    shown = [head.name(n)[:60] for n in head.numbers[:_MOST_NAMED]]
-    more = len(head.numbers) - len(shown)
+def _listed(header: Header, columns: Sequence[int]) -> str:
+    """Numbers and names of columns."""
+    shown = [header.name(n)[:60] for n in columns[:_MOST_NAMED]]
+    more = len(columns) - len(shown)
     return ", ".join(shown) + (f" and {more} more" if more else "")
-
-
-def _unit_in(head: Head, column: int) -> str:
-    return unit_in(head.names[column]) if head.names else ""
-
-
-def _unit_of(head: Head, column: int) -> tuple[Unit | None, str]:
-    """Unit of a column, and where the head states it."""
-    own, common = _unit_in(head, column), key_of(head.unit)
-    unit, named = (own, head.names[column]) if own else (common, f"unit {head.unit}")
-    if unit in OTHERS:
-        message = f"states {named} in its header, {OTHERS[unit]}; export the acceleration in m/s2 or g, or choose another column"
-        raise UnusableError(message, "column")
-    return (UNITS.get(unit), named) if unit in UNITS else (None, "")

@@ -3,17 +3,20 @@
 A sensor with a voltage output has a sensitivity; in data sheets it is given in mV per g or in mV per m/s^2.
 """
 
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, get_args
 
 import numpy as np
 
 from gen.importers.files import FloatArray
 from gen.support.units import STANDARD_GRAVITY
 
-Unit = Literal["g", "m/s2", "V", "mV"]
+Unit = Literal["g", "mg", "m/s2", "mm/s2", "V", "mV"]
+UNITS: dict[str, Unit] = {unit: unit for unit in get_args(Unit)} | {"ms-2": "m/s2", "m/s/s": "m/s2"}
+"""Units as headers write them, without blanks, ``^`` and ``*``."""
 VOLTAGES = ("V", "mV")
 QUIETEST, LOUDEST = 1e-3, 1e4  # m s-2, rms: noise of good accelerometers, and far above any bearing
 _MILLIVOLTS = {"V": 1000.0, "mV": 1.0}
+_ACCELERATIONS = {"m/s2": 1.0, "mm/s2": 1e-3, "g": STANDARD_GRAVITY, "mg": 1e-3 * STANDARD_GRAVITY}
 
 
 class Scale(NamedTuple):
@@ -27,8 +30,10 @@ class Scale(NamedTuple):
         match self.unit:
             case "m/s2":
                 return "m/s^2"
-            case "g":
-                return f"g, 1 g = {STANDARD_GRAVITY} m/s^2"
+            case "mm/s2":
+                return "mm/s^2"
+            case "g" | "mg":
+                return f"{self.unit}, 1 g = {STANDARD_GRAVITY} m/s^2"
             case _:
                 return f"{self.unit}, {1000 * (self.sensitivity or np.nan):g} mV per m/s^2"
 
@@ -59,8 +64,8 @@ def accelerations(values: FloatArray, scale: Scale) -> FloatArray:
     """Values of a file in m s-2, of the same shape."""
     if scale.unit == "m/s2":
         return values
-    if scale.unit == "g" or scale.sensitivity is None:
-        return values * STANDARD_GRAVITY
+    if scale.sensitivity is None:
+        return values * _ACCELERATIONS[scale.unit]
     return values / (scale.sensitivity * 1000 / _MILLIVOLTS[scale.unit])
 
 

@@ -184,9 +184,9 @@ def _join(files: tuple[File, ...]) -> _Joined:
     for file, facts in zip(files, every, strict=True):
         sensors = [*file.section.sensors(file.groups)]
         columns = [read_values(file.path, sensor.place) for sensor in sensors]
-        for column, sensor in zip(columns, sensors, strict=True):
-            column.stated_unit(sensor.scale.unit)
         rate, doubt = columns[0].rate(facts.sample_rate_hz, "sample_rate_hz")
+        for column, sensor in zip(columns, sensors, strict=True):
+            doubt += [*column.notes, *column.stated_unit(sensor.scale.unit)[1]]
         if rate is None:
             raise UnusableError("states no sample rate; give it", "sample_rate_hz")
         notes += [sentence for sentence in doubt if sentence not in notes]

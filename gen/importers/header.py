@@ -1,147 +1,180 @@
-"""Names of columns, units and sample rate that the rows before the numbers of a table state."""
+"""Names, units and sample rate that the lines before the numbers of a table state, in the forms that docs/importing.md lists.
+
+A unit in another form, or another unit, is kept as it is written: it is then no unit of ``UNITS``, and has to be given.
+"""
 
 import re
 import unicodedata
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
-from gen.importers.conversion import Unit
+from gen.importers.conversion import UNITS, Unit
+from gen.importers.numerals import is_number, number_in
 
-LEAST_RATE = 100.0  # Hz; vibrations of machines are sampled faster, so that a smaller number is not a sample rate
-UNITS: dict[str, Unit] = {
-    "g": "g", "m/s2": "m/s2", "ms-2": "m/s2", "m/s/s": "m/s2", "m/sec2": "m/s2", "v": "V", "volt": "V", "volts": "V", "mv": "mV",
-}  # fmt: skip
-SECONDS = {"s": 1.0, "sec": 1.0, "seconds": 1.0, "ms": 1e-3, "msec": 1e-3, "us": 1e-6, "μs": 1e-6}
-OTHERS = {
-    **dict.fromkeys(("mm/s", "m/s", "cm/s", "in/s", "ips", "mm/sec"), "a velocity"),
-    **dict.fromkeys(("um", "μm", "mm", "mil", "mils"), "a displacement"),
-    **dict.fromkeys(("mm/s2", "cm/s2", "in/s2", "ft/s2"), "an acceleration in another unit"),
-    **dict.fromkeys(("rpm", "1/min", "u/min", "hz", "°c", "bar", "pa"), "another quantity"),
-}
-"""Units that people write in headers, without blanks, ``^`` and ``*``, in lower case."""
-
-_FACTORS = {"hz": 1.0, "khz": 1e3, "s/s": 1.0, "": 1.0, **SECONDS}
-_UNIT_OF_RATE = "|".join(unit for unit in sorted(_FACTORS, key=len, reverse=True) if unit)
-_NUMBER = r"((?:\d+(?:,\d{3})*(?:[.,]\d+)?|\.\d+)(?:e[-+]?\d{1,2})?)(?!\d)"
-_VALUE = rf"(?![a-z])[\W_]*?(?:({_UNIT_OF_RATE})(?![a-z])[\W_]*?)?{_NUMBER}(?:[\W_]*({_UNIT_OF_RATE})(?![a-z]))?"
+SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "μs": 1e-6, "min": 60.0, "h": 3600.0}
+_OTHERS = re.compile(
+    r"counts?|lsb|adc|raw|db|gal|ips|volts?|[mc]?m/s|in/s|[uμ]m|mm|mils?|rpm|k?hz|°c|k?pa|bar|k?n|%", re.IGNORECASE
+)  # as last word of a name
+_LONGEST_UNIT = 12
+_UNIT_ROWS = 3  # last lines in which a row of units is searched: names, units, comments
+_COMMENT = re.compile(r"^(?:#|%|//)\s*")
+_IN_BRACKETS = re.compile(r"\[([^\]]*)\][^\[\]()]*$|\(((?:[^()]|\([^()]*\))*)\)[^\[\]()]*$")
+_CHANNEL = re.compile(r"[a-z]+_?\d+", re.IGNORECASE)  # cDAQ1Mod1/ai0
+_TIMES = re.compile(r"(?i:(?:x_value|time(?:stamp)?|zeit|temps|tiempo|tempo)(?![a-z]))|t\b")
+_SPECTRUM = re.compile(r"(?:fr[eé][qc]|order|ordnung)", re.IGNORECASE)
+_COMMON = re.compile(r"(?:y_unit_label|units?)\b[\s:=]*(.+)", re.IGNORECASE)
+_HERTZ = r"([kK]?[hH][zZ]|MHz|[kKM]?S/s|[kKM]?Sa/s|[kKM]?SPS)"
 _RATE = re.compile(
-    r"(?<![a-z])(?:sampl\w*?[ _-]*(?:rate|freq\w*?)|scan[ _-]*rate|abtast(?:rate|frequenz)|fs|f_s)" + _VALUE
+    rf"(?:(?i:sampl(?:e|ing)[ _-]rate|sampling[ _-]frequency)|[fF]s)\s*(?:[\[(]\s*{_HERTZ}\s*[\])])?[\s:=]*([\d.,eE+-]+)\s*{_HERTZ}?"
 )
-_STEP = re.compile(
-    r"(?<![a-z])(?:dt|delta[ _-]*[tx]|sampl\w*?[ _-]*(?:interval|period)|(?:time|x)[ _-]*(?:step|interval|increment))"
-    + _VALUE
-)
-_UNIT = re.compile(r"(?<![a-z])(?:units?|einheit)[\W_]+(\S.*?)[\W_]*$")
-_IN_BRACKETS = re.compile(r"[\[(]([^\])]*)[\])]\s*$")
-_THOUSANDS = re.compile(r"[1-9]\d{0,2}(,\d{3})+(\.\d+)?")
+_STEP = re.compile(r"Delta_X((?: [\d.,eE+-]+)+)")
 
 
-class Head(NamedTuple):
-    """What is known of a table before its numbers are read.
+class Header(NamedTuple):
+    """What the lines before the numbers state.
 
-    ``first`` is the number of the first row of numbers, from 0; ``mask`` tells which columns hold numbers; ``names`` are those of all
-    columns, empty if there are none; ``fs`` [Hz] and ``unit`` are what the rows before state.
+    ``names`` are those of all columns, and ``units`` their units as written, empty if they are not stated; both are empty without names.
+    ``unit`` is that of all columns; ``rates`` are sample rates [Hz].
     """
 
-    first: int
-    mask: tuple[bool, ...]
-    names: tuple[str, ...]
-    fs: float | None = None
+    names: tuple[str, ...] = ()
+    units: tuple[str, ...] = ()
     unit: str = ""
-
-    @property
-    def numbers(self) -> tuple[int, ...]:
-        """Columns that hold numbers."""
-        return tuple(number for number, is_one in enumerate(self.mask) if is_one)
+    rates: tuple[float, ...] = ()
 
     def name(self, column: int) -> str:
         """Number and name of a column."""
         return f"{column} {self.names[column]}".rstrip() if self.names else f"{column}"
 
+    def unit_of(self, column: int) -> str:
+        """Unit of a column as it is written."""
+        return self.units[column] if self.units else ""
 
-def head_of(lines: Sequence[str], rows: Sequence[Sequence[str]], mask: tuple[bool, ...]) -> Head:
-    """Head of a table by its first lines, their fields, and the columns that hold numbers in most of them."""
-    first = next(number for number, fields in enumerate(rows) if numbers_in(fields) == mask)
-    stated = [_plain(line) for line in lines[:first]]
-    unit = next((found[1] for line in stated if (found := _UNIT.search(line))), "")
-    return Head(first, mask, _names([fields for fields in rows[:first] if any(fields)], len(mask)), _rate(stated), unit)
+    def is_of_time(self, column: int) -> bool:
+        """Whether name or unit of a column are those of times."""
+        named = self.names and _TIMES.match(self.names[column]) is not None
+        return bool(named) or key_of(self.unit_of(column)) in SECONDS
 
+    def is_of_spectrum(self, column: int) -> bool:
+        """Whether name or unit of a column are those of frequencies or orders."""
+        named = self.names and _SPECTRUM.match(self.names[column]) is not None
+        return bool(named) or key_of(self.unit_of(column)).casefold() in ("hz", "khz")
 
-def pattern_of(rows: Iterable[Sequence[str]]) -> tuple[int, tuple[bool, ...]]:
-    """Columns that hold numbers in the rows of a table, and in how many rows: rows of numbers alone count ten times."""
-    seen = Counter(mask for fields in rows if any(mask := numbers_in(fields)))
-    weights = {mask: count * (10 if all(mask) else 1) for mask, count in seen.items()}
-    best = max(weights, key=lambda mask: weights[mask], default=())
-    return weights.get(best, 0), best
-
-
-def numbers_in(fields: Sequence[str]) -> tuple[bool, ...]:
-    """Whether each field is a number, with a decimal point or comma; empty fields at the end do not count.
-
-    >>> numbers_in(["a", "0,5", "-1e3", ""])
-    (False, True, True)
-    """
-    found = [is_number(field) for field in fields]
-    while found and not fields[len(found) - 1]:
-        found.pop()
-    return tuple(found)
+    def places(self, column: int | str) -> list[int]:
+        """Numbers of the columns that a number or a name means; the unit of a name can be left out."""
+        if isinstance(column, int):
+            return [column]
+        plain = [_IN_BRACKETS.sub("", name.partition("/")[0] if "/" in name else name).strip() for name in self.names]
+        exact = [n for n, name in enumerate(self.names) if name == column]
+        return exact or [n for n, name in enumerate(plain) if name == column]
 
 
-def is_number(field: str) -> bool:
-    """Whether a field is a number, with a decimal point or comma."""
-    try:
-        float(field.replace(",", ".", 1))
-    except ValueError:
-        return False
-    return True
+def header_of(rows: Sequence[Sequence[str]], least: int, most: int) -> Header:
+    """Header in rows of texts before rows of ``least`` to ``most`` fields."""
+    lines = [*filter(None, map(_uncommented, rows))]
+    names, units = _names(lines, least, most)
+    rates = dict.fromkeys(rate for fields in lines for rate in _rates(fields, lines))
+    return Header(names, units, _common_unit(lines, names), tuple(rates))
 
 
-def unit_in(name: str) -> str:
-    """Unit in brackets or after a stroke at the end of the name of a column, or its last word; empty if it is not known.
+def _uncommented(fields: Sequence[str]) -> list[str]:
+    """Fields without the mark of a comment, and without empty ones at the end."""
+    first = _COMMENT.sub("", fields[0])
+    kept = [*([first] if first or not fields[0] else []), *fields[1:]]
+    return kept[: max((n for n, field in enumerate(kept, 1) if field), default=0)]
 
-    >>> unit_in("DE [g]"), unit_in("Beschl. m/s²"), unit_in("acc/g"), unit_in("Time"), unit_in("sensor g")
-    ('g', 'm/s2', 'g', '', '')
+
+def _names(lines: Sequence[list[str]], least: int, most: int) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Names and units of the columns: of a row of units and the row above it, or else of the last row."""
+
+    def fits(fields: Sequence[str]) -> bool:
+        commented = fields[-1:] == ["Comment"] and len(fields) == least + 1
+        return (least <= len(fields) <= most or commented) and not any(map(is_number, fields))
+
+    for number in range(len(lines) - 1, max(len(lines) - 1 - _UNIT_ROWS, 0), -1):
+        units = [field.strip("[]()") for field in lines[number]]
+        above = lines[number - 1]
+        if fits(above) and len(units) <= len(above) and _are_units(units) and not any(map(unit_said, above)):
+            more = [""] * (len(above) - len(units))
+            return tuple(above), (*units, *more)
+    if not lines or not fits(lines[-1]) or (len(lines[-1]) == 1 and re.search("[:=]", lines[-1][0])):
+        return (), ()
+    return tuple(lines[-1]), tuple(map(unit_said, lines[-1]))
+
+
+def _are_units(fields: Sequence[str]) -> bool:
+    known = any(key_of(field) in UNITS or field in SECONDS for field in fields)
+    return known and all(len(field) <= _LONGEST_UNIT for field in fields)
+
+
+def unit_said(name: str) -> str:
+    """Unit that the name of a column states, or the name if it states one in another form; empty if it states none.
+
+    >>> unit_said("DE [g]"), unit_said("a/(m/s²)"), unit_said("a/g"), unit_said("V"), unit_said("Dev1/ai0")
+    ('g', 'm/s²', 'g', 'V', '')
+    >>> unit_said("DE (counts)"), unit_said("accel_g"), unit_said("Acceleration")
+    ('counts', 'accel_g', '')
     """
     bracketed = _IN_BRACKETS.search(name)
-    word = name.rpartition(" ")[2]
-    found = [bracketed[1]] if bracketed else [word if len(word) > 1 or word == name else "", word.partition("/")[2]]
-    return next((unit for unit in map(key_of, found) if unit in UNITS or unit in OTHERS or unit in SECONDS), "")
+    if bracketed:
+        return (bracketed[1] or bracketed[2] or "").strip() or name
+    if _is_unit(name):
+        return name
+    before, slash, after = name.partition("/")
+    if slash and _is_unit(after.strip()) and not _is_unit(re.split(r"[\s_,;]+", before.strip())[-1]):
+        return after.strip()
+    if slash and not _CHANNEL.fullmatch(after):
+        return name
+    return name if _ends_in_unit(name) else ""
 
 
 def key_of(unit: str) -> str:
-    """Unit as the tables above have it."""
-    return re.sub(r"[\s^*·]", "", _plain(unit))
+    """Unit as the tables have it, without blanks, ``^`` and ``*``."""
+    return re.sub(r"[\s^*·⋅]", "", unicodedata.normalize("NFKC", unit)).replace("\u2212", "-")
 
 
-def _plain(text: str) -> str:
-    return unicodedata.normalize("NFKC", text).casefold()
+def known_unit(unit: str) -> Unit | None:
+    """Unit that values can be converted from."""
+    return UNITS.get(key_of(unit))
 
 
-def _names(rows: Sequence[Sequence[str]], count: int) -> tuple[str, ...]:
-    """Names in the last row before the numbers; a row of units stands below that of the names."""
-    suited = [len(fields) >= count and not any(map(is_number, fields)) for fields in rows[-2:]]
-    if not suited or not suited[-1]:
-        return ()
-    names, above = rows[-1][:count], rows[-2][:count] if len(rows) > 1 and suited[0] else ()
-    if above and all(not name or unit_in(f"({name.strip('[]()')})") for name in names):
-        return tuple(
-            f"{name} [{unit.strip('[]()')}]" if unit else name for name, unit in zip(above, names, strict=True)
-        )
-    return tuple(names)
+def _is_unit(text: str) -> bool:
+    return key_of(text) in UNITS or key_of(text) in SECONDS or _OTHERS.fullmatch(key_of(text)) is not None
 
 
-def _rate(lines: Sequence[str]) -> float | None:
-    """Sample rate [Hz] that a line before the numbers states, directly or as a step of time."""
-    for pattern in (_RATE, _STEP):
-        for line in lines:
-            found = pattern.search(line)
-            if found is None:
-                continue
-            before, number, after = found.groups()
-            value = float(number.replace(",", "" if _THOUSANDS.fullmatch(number) else "."))
-            value *= _FACTORS[before or after or ""]
-            rate = value if pattern is _RATE else 1 / value if value else 0.0
-            if rate >= LEAST_RATE:
-                return rate
-    return None
+def _ends_in_unit(text: str) -> bool:
+    """Whether the last of several words is a unit."""
+    *before, last = re.split(r"[\s_,;]+", text.strip())
+    return bool(before) and _is_unit(last)
+
+
+def _common_unit(lines: Sequence[list[str]], names: tuple[str, ...]) -> str:
+    """Unit of all columns, or the line that states it in another form."""
+    said: dict[str, str] = {}
+    for fields in lines:
+        line = " ".join(fields)
+        found = _COMMON.fullmatch(line)
+        units = found[1].split() if found else [line] if any(map(_says_unit, fields)) else []
+        if tuple(fields) != names:
+            said |= {key_of(unit): unit for unit in units if key_of(unit) not in SECONDS}
+    return next(iter(said.values()), "") if len(said) < 2 else " and ".join(said.values())
+
+
+def _says_unit(text: str) -> bool:
+    """Whether a field names a unit of acceleration or voltage in any way."""
+    return any(map(known_unit, re.split(r"[\s\[\]():=,;]+|(?<![ms])/", text)))
+
+
+def _rates(fields: Sequence[str], lines: Sequence[Sequence[str]]) -> Iterator[float]:
+    """Sample rates [Hz] that a line states; the step of time only of files of LabVIEW."""
+    line = " ".join(fields)
+    found, step = _RATE.fullmatch(line), _STEP.fullmatch(line)
+    if found:
+        before, number, after = found.groups()
+        value, unit = number_in(number), before or after
+        if value is not None and unit and (before or after) == (after or before):
+            yield value * {"k": 1e3, "K": 1e3, "M": 1e6}.get(unit[0], 1.0)
+    elif step and lines[0][0].startswith("LabVIEW Measurement") and ["X_Dimension", "Time"] in [one[:2] for one in lines]:
+        for value in map(number_in, step[1].split()):
+            if value:
+                yield 1 / value

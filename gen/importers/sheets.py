@@ -1,23 +1,31 @@
-"""Sheets of Excel files, read with python-calamine, which is an extra."""
+"""Sheets of Excel files, read with python-calamine, which is an extra: ``size -> sheet -> lines of fields -> table``."""
 
+import re
+import zipfile
+from collections.abc import Iterator
+from datetime import date, datetime
 from pathlib import Path
+from typing import Any
 
-import numpy as np
-
-from gen.importers.columns import Values, columns_to_read, signal_of
+from gen.importers.columns import Values
 from gen.importers.files import UnusableError, guarded
-from gen.importers.header import head_of, pattern_of
+from gen.importers.numerals import POINT, is_number
+from gen.importers.table import Line, read_table
+from gen.support.limits import check_limit
 
-_HEAD_ROWS = 200
+_CELL = re.compile(rb"\br\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
+_CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
+_CHUNK, _OVERLAP = 4_000_000, 20  # bytes
 
 
 def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Values:
-    """Signal in a sheet of an Excel file, by default the first one; rows and columns as in :func:`~gen.importers.text.read_text`.
+    """Signal in a sheet of an Excel file, by default the visible one that is active, or else the first visible one.
 
     Raises
     ------
     UnusableError
-        If python-calamine is missing, the file is no such file, or it does not have the sheet or the column.
+        If python-calamine is missing, the file is no such file or asks for too much memory, it does not have the sheet, or as in
+        :func:`~gen.importers.table.read_table`.
     """
     try:
         from python_calamine import CalamineWorkbook
@@ -26,24 +34,75 @@ def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Value
             "is an Excel file, which needs python-calamine; install it with pip install raceway[excel]"
         ) from None
     with guarded(path, "spreadsheet"):
+        active = _check_size(path)
         with CalamineWorkbook.from_path(str(path)) as book:
-            if sheet is not None and sheet not in book.sheet_names:
-                message = f"holds the sheets {', '.join(book.sheet_names)}, not {sheet}; name one"
-                raise UnusableError(message, "variable")
-            rows = book.get_sheet_by_name(sheet or book.sheet_names[0]).to_python(skip_empty_area=False)
-        top = [[str(cell).strip() for cell in row] for row in rows[:_HEAD_ROWS]]
-        weight, mask = pattern_of(top)
-        if not weight:
-            message = f"has no row of numbers among its first {len(top)}; name another sheet"
-            raise UnusableError(message, "variable")
-        head = head_of([" ".join(row) for row in top], top, mask)
-        places = [n for n in columns_to_read(head, column) if n is not None]
-        kept = [[row[n] for n in places] for row in rows[head.first :]]
-        while kept and not all(isinstance(cell, int | float) for cell in kept[-1]):  # empty rows and a note
-            kept.pop()
-        for number, row in enumerate(kept, start=head.first + 1):
-            if not all(isinstance(cell, int | float) for cell in row):
-                message = f"has text or a gap among its numbers, in row {number} ({row!r:.60}); correct the file"
-                raise UnusableError(message)
-        values = np.array(kept, dtype=np.float64)
-        return signal_of(head, column, values[:, 0] if len(places) > 1 else None, values[:, -1].copy())
+            name, notes = _chosen(book.sheets_metadata, active, sheet)
+            rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
+        found = read_table(_lines(rows), column, _place, POINT)
+        return found._replace(notes=(*notes, *found.notes))
+
+
+def _check_size(path: Path) -> int:
+    """Number of the active sheet, after a check of the memory that cells take: one cell far away asks for a large rectangle."""
+    with zipfile.ZipFile(path) as archive:
+        check_limit("file_bytes", sum(part.file_size for part in archive.infolist()), "is unpacked", UnusableError)
+        for part in archive.infolist():
+            columns, rows, rest = 0, 0, b""
+            with archive.open(part) as stream:
+                while block := stream.read(_CHUNK):
+                    for letters, row in _CELL.findall(rest + block):
+                        columns, rows = max(columns, _number(letters.upper())), max(rows, int(row))
+                    rest = block[-_OVERLAP:]
+            what = f"has a sheet of {columns} columns and {rows} rows, which takes"
+            check_limit("file_bytes", columns * rows * _CELL_BYTES, what, UnusableError)
+        found = re.search(rb"\bactiveTab\s*=\s*[\"'](\d{1,5})[\"']", archive.read("xl/workbook.xml"))
+        return int(found[1]) if found else 0
+
+
+def _number(letters: bytes) -> int:
+    """Number of the column with these letters, from 1."""
+    number = 0
+    for letter in letters:
+        number = 26 * number + letter - ord("A") + 1
+    return number
+
+
+def _chosen(sheets: list[Any], active: int, wanted: str | None) -> tuple[str, tuple[str, ...]]:
+    """Name of the sheet to be read, and a sentence if it was chosen of several."""
+    names = [sheet.name for sheet in sheets]
+    visible = [sheet.name for sheet in sheets if sheet.visible.name == "Visible" and sheet.typ.name == "WorkSheet"]
+    if wanted is not None and wanted in names:
+        return wanted, ()
+    if wanted is not None or not visible:
+        what = f"not {wanted}" if wanted is not None else "none of which is visible"
+        message = f"holds the sheets {', '.join(names)}, {what}; name one"
+        raise UnusableError(message, "variable")
+    name = names[active] if active < len(names) and names[active] in visible else visible[0]
+    others = [other for other in visible if other != name]
+    return name, (f"sheet {name} is read, and not {', '.join(others)}",) if others else ()
+
+
+def _lines(rows: list[list[Any]]) -> Iterator[Line]:
+    for number, row in enumerate(rows, 1):
+        yield Line(number, [_text(cell) for cell in row])
+
+
+def _text(cell: Any) -> str:
+    """Text of a cell; a number that is stored as text begins with an apostrophe, as it does when it is typed."""
+    if isinstance(cell, bool):
+        return str(cell)
+    if isinstance(cell, int | float):
+        return repr(cell)
+    if isinstance(cell, datetime | date):
+        return cell.isoformat(" ") if isinstance(cell, datetime) else cell.isoformat()
+    text = str(cell).strip()
+    return f"'{text}" if is_number(text) else text
+
+
+def _place(number: int, column: int) -> str:
+    letters = ""
+    column += 1
+    while column:
+        column, letter = divmod(column - 1, 26)
+        letters = chr(ord("A") + letter) + letters
+    return f"cell {letters}{number}"

@@ -1,9 +1,12 @@
 """One recording of the user: a column of a text, Excel, MATLAB, NumPy or WAV file, in m/s^2."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from types import MappingProxyType
 from typing import NamedTuple
+
+import numpy as np
 
 from gen.importers.columns import Values, table_signal
 from gen.importers.conversion import Scale, Unit, accelerations, doubts, unit_problem, volts_per_acceleration
@@ -24,7 +27,7 @@ class Place(NamedTuple):
     """Place of a signal in a file.
 
     ``variable`` is the name in a MATLAB file, by default that of the only signal in it, or the sheet of an Excel file, by default the
-    first; ``column`` the name in the header of a text or sheet, or a number from 0; ``delimiter`` that of a text, detected by default.
+    active one; ``column`` the name in the header of a text or sheet, or a number from 0; ``delimiter`` that of a text, detected by default.
     """
 
     variable: str | None = None
@@ -63,19 +66,19 @@ def read_signal(
         A ``.csv``, ``.txt``, ``.tsv``, ``.dat``, ``.xlsx``, ``.mat``, ``.npy`` or ``.wav`` file.
     variable : str, optional
         Name of the variable in a MATLAB file; ``run.x`` is a field of a structure. By default the only signal in the file. Of an Excel
-        file the sheet, by default the first.
+        file the sheet, by default the visible one that is active, or else the first visible one.
     column : int or str, optional
         Column of a table, from 0, or its name in the header; also the channel of a WAV file. Needed if there are several beside times.
     delimiter : str, optional
         Of a text; detected by default.
-    unit : {"m/s2", "g", "V", "mV"}
+    unit : {"m/s2", "mm/s2", "g", "mg", "V", "mV"}
         Unit of the values; by default that in the header, or else m/s2.
     sensitivity : float, optional
         Of the sensor [mV/g], for a voltage.
     rate : float, optional
         Sample rate [Hz]; by default that of the times or the header. It is used even if a WAV file states another.
     options : mapping, optional
-        Names of the options that give ``variable``, ``column``, ``unit`` and ``rate``, for error messages.
+        Names of the options that give ``variable``, ``column``, ``delimiter``, ``unit`` and ``rate``, for error messages.
 
     Returns
     -------
@@ -88,20 +91,35 @@ def read_signal(
         If the file cannot be read or holds no such signal, unit and sensitivity do not belong together, or unit or rate contradict the
         file.
     """
-    try:
+    with _as_sentences(path, options):
         content = read_values(path, Place(variable, column, delimiter))
         fs, notes = content.rate(rate, "rate")
         used, of_unit = content.stated_unit(unit)
         scale = _scale(used, sensitivity)
         signal = accelerations(content.values, scale)
-        notes += of_unit + doubts(content.values, signal, scale, absolute=content.absolute)
+        notes = [*content.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=content.absolute)]
+    return Signal(signal, fs, tuple(f"{path.name}: {note}." for note in notes), used)
+
+
+def read_shape(path: Path, place: Place, rate: float | None, options: Mapping[str, str] = _AS_HERE) -> Signal:
+    """Recording in the unit of its file, for uses in which the unit does not matter; otherwise as :func:`read_signal`."""
+    with _as_sentences(path, options):
+        content = read_values(path, place)
+        fs, notes = content.rate(rate, "rate")
+    return Signal(content.values, fs, tuple(f"{path.name}: {note}." for note in (*content.notes, *notes)), "m/s2")
+
+
+@contextmanager
+def _as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
+    """Turn the reason why a file cannot be used into a sentence."""
+    try:
+        yield
     except UnusableError as reason:
         message = f"{path}: {reason.told(options)}."
         raise CorpusError(message) from None
     except (OSError, MemoryError) as error:
         message = f"{path}: {reason_of(error)}."
         raise CorpusError(message) from None
-    return Signal(signal, fs, tuple(f"{path.name}: {note}." for note in notes), used)
 
 
 def _scale(unit: Unit, sensitivity: float | None) -> Scale:
@@ -121,6 +139,15 @@ def read_values(path: Path, place: Place) -> Values:
     OSError
         If the file cannot be opened.
     """
+    found = _read(path, place)
+    wrong = np.flatnonzero(~np.isfinite(found.values))
+    if wrong.size:
+        message = f"has {wrong.size} samples of {found.values.size} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
+        raise UnusableError(message)
+    return found
+
+
+def _read(path: Path, place: Place) -> Values:
     suffix = path.suffix.lower()
     if suffix in TEXT:
         return read_text(path, place.column, place.delimiter)
@@ -139,4 +166,4 @@ def read_values(path: Path, place: Place) -> Values:
         return table_signal(read_matlab(path, place.variable), column)
     samples, full_scale, fs = read_wav(path)
     found = table_signal(samples, column)
-    return found._replace(values=found.values / full_scale, fs=fs or None, rate_source="", absolute=full_scale == 1)
+    return found._replace(values=found.values / full_scale, playback=fs or None, absolute=full_scale == 1)

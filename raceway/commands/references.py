@@ -79,12 +79,13 @@ def reference_table(
 ) -> "xr.Dataset":
     """Feature table of a reference of the corpus whose own feature table is ``table``; the speed of a recording is believed."""
     from features.baselines.reference_choice import check_durations, recording_reference
-    from gen.importers.signals import read_signal
+    from gen.importers.signals import Place, read_shape
     from gen.support.units import rpm_to_hertz
 
     if path.is_file():
-        place = {"variable": reference_variable, "column": reference_column}
-        signal = read_signal(path, **place, rate=reference_rate, options=_OPTIONS)  # type: ignore[arg-type]
+        signal = read_shape(path, Place(reference_variable, reference_column), reference_rate, _OPTIONS)
+        for note in signal.warnings:
+            notice(f"warning: {note}")
         fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
         if signal.fs is None:
             notice(f"{path}: does not state its sample rate; {fs:g} Hz is used, as in {corpus} (--reference-rate).")
