@@ -190,7 +190,7 @@ def _resolution(values: FloatArray) -> float:
     (0.01, 0.0)
     """
     last = np.abs(values[-max(values.size // 10, 2) :])
-    units = (10.0**-place for place in range(-2, 12))
+    units = (10.0**-place for place in range(-2, 12) if 10.0**-place <= last.max())
     return next((unit for unit in units if np.all(np.abs(last / unit - np.round(last / unit)) < 1e-3)), 0.0)
 
 

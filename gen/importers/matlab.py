@@ -5,6 +5,7 @@ in the file.
 """
 
 import math
+import struct
 from collections.abc import Mapping
 from fnmatch import fnmatchcase
 from itertools import islice
@@ -21,6 +22,7 @@ from gen.importers.files import UnusableError, guarded
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
+_BYTES_OF_LEVEL_4 = (8, 4, 4, 2, 2, 1)  # of a value, by the type of the numbers
 
 
 def read_matlab(path: Path, variable: str | None) -> NDArray[Any]:
@@ -59,7 +61,10 @@ def read_number(path: Path, variable: str | None) -> float:
 def _content(path: Path, only: str | None = None) -> dict[str, Any]:
     """Variables, or one of them, and in place of structures their fields, as ``"bearing.gs"``."""
     from scipy.io import loadmat  # loads scipy.sparse
+    from scipy.io.matlab import matfile_version
 
+    if matfile_version(path)[0] == 0:
+        _check_level_4(path)
     variables: dict[str, Any] = {}
 
     def add(name: str, value: Any) -> None:
@@ -73,6 +78,18 @@ def _content(path: Path, only: str | None = None) -> dict[str, Any]:
         if not name.startswith("__"):
             add(name, value)
     return variables
+
+
+def _check_level_4(path: Path) -> None:
+    """Refuse variables without a name: SciPy takes 20 zero bytes for one, and hours for a file that ends in many."""
+    with path.open("rb") as stream:
+        while head := stream.read(20):
+            order = "<" if 0 <= int.from_bytes(head[:4], "little", signed=True) <= 9999 else ">"
+            kind, rows, columns, imaginary, length = struct.unpack(f"{order}5i", head)
+            if length < 2 or min(rows, columns) < 0:
+                raise ValueError("a variable has no name or no size")
+            size = rows * columns * _BYTES_OF_LEVEL_4[kind // 10 % 10] * (2 if imaginary else 1)
+            stream.seek(length + size, 1)
 
 
 def _read(path: Path, variable: str | None) -> NDArray[Any]:

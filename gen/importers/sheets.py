@@ -13,7 +13,7 @@ from gen.importers.numerals import POINT, is_number
 from gen.importers.table import Line, read_table
 from gen.support.limits import check_limit
 
-_CELL = re.compile(rb"\br\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
+_CELL = re.compile(rb"r\s*=\s*[\"']([A-Za-z]{1,3})(\d{1,7})[\"']")
 _CELL_BYTES = 32  # that the library takes for each cell of the rectangle around all cells
 _CHUNK, _OVERLAP = 4_000_000, 20  # bytes
 
@@ -28,7 +28,7 @@ def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Value
         :func:`~gen.importers.table.read_table`.
     """
     try:
-        from python_calamine import CalamineWorkbook
+        from python_calamine import CalamineWorkbook, SheetTypeEnum, SheetVisibleEnum
     except ImportError:
         raise UnusableError(
             "is an Excel file, which needs python-calamine; install it with pip install raceway[excel]"
@@ -36,7 +36,9 @@ def read_sheet(path: Path, sheet: str | None, column: int | str | None) -> Value
     with guarded(path, "spreadsheet"):
         active = _check_size(path)
         with CalamineWorkbook.from_path(str(path)) as book:
-            name, notes = _chosen(book.sheets_metadata, active, sheet)
+            shown = SheetVisibleEnum.Visible, SheetTypeEnum.WorkSheet
+            visible = [one.name for one in book.sheets_metadata if (one.visible, one.typ) == shown]
+            name, notes = _chosen(book.sheet_names, visible, active, sheet)
             rows = book.get_sheet_by_name(name).to_python(skip_empty_area=False)
         found = read_table(_lines(rows), column, _place, POINT)
         return found._replace(notes=(*notes, *found.notes))
@@ -67,10 +69,8 @@ def _number(letters: bytes) -> int:
     return number
 
 
-def _chosen(sheets: list[Any], active: int, wanted: str | None) -> tuple[str, tuple[str, ...]]:
+def _chosen(names: list[str], visible: list[str], active: int, wanted: str | None) -> tuple[str, tuple[str, ...]]:
     """Name of the sheet to be read, and a sentence if it was chosen of several."""
-    names = [sheet.name for sheet in sheets]
-    visible = [sheet.name for sheet in sheets if sheet.visible.name == "Visible" and sheet.typ.name == "WorkSheet"]
     if wanted is not None and wanted in names:
         return wanted, ()
     if wanted is not None or not visible:

@@ -125,21 +125,23 @@ def _load(
     while (some := [*islice(lines, _ROWS)]) and (blocks := _blocks(some, places, width)):
         loaded.append(blocks)
     rest = chain(some, lines)
-    after: list[Line] = []  # the rows
+    end, notes = None, []
     for line in rest:
-        blocks = None if after else _blocks([line], places, width)
+        blocks = _blocks([line], places, width) if end is None else None
         if blocks:
             loaded.append(blocks)
             continue
-        after.append(line)
-        where, reason = _flaw(after, places, width, place)
+        end = end or line
+        notes += [" ".join(line.fields)] if any(line.fields) else []
+        where, reason = _flaw(line, end, places, width, place)
+        if not reason and len(notes) > _MOST_NOTES:
+            where, reason = end, f"has more than {_MOST_NOTES} lines of text from {place(end.number, 0)} on"
         if reason:
             lost = sum(is_row(one.fields) for one in chain([line], rest))
             text = " ".join(where.fields)
             message = f"{reason} ({text!r:.60}), where {lost} rows would be lost; correct the file, or cut it there"
             raise UnusableError(message)
-    notes = [" ".join(line.fields) for line in after if any(line.fields)]
-    told = [f"its last {len(notes)} lines of text are left out, the first is {notes[0]!r:.60}"] if notes else []
+    told = [f"text after the numbers is left out: {notes[0]!r:.60}, lines: {len(notes)}"] if notes else []
     return [*map(list, zip(*loaded, strict=True))], tuple(told)
 
 
@@ -155,22 +157,16 @@ def _blocks(lines: Sequence[Line], places: Sequence[int], width: int) -> list[st
 
 
 def _flaw(
-    after: Sequence[Line], places: Sequence[int], width: int, place: Callable[[int, int], str]
+    line: Line, end: Line, places: Sequence[int], width: int, place: Callable[[int, int], str]
 ) -> tuple[Line, str]:
-    """Reason why the last line after the rows is no note, and the line to be named; empty if it is one, or has nothing in it."""
-    first, line = after[0], after[-1]
-    begins = next(filter(None, line.fields), "")
-    if is_row(line.fields) and first is not line:
-        what = "text" if any(first.fields) else "an empty line"
-        return first, f"has {what} among its rows in {place(first.number, 0)}"
+    """Reason why a line after the ``end`` of the rows is no note, and the line to be named; no reason if it is one, or empty."""
+    first = next(filter(None, line.fields), "")
+    if is_row(line.fields) and end is not line:
+        what = "text" if any(end.fields) else "an empty line"
+        return end, f"has {what} among its rows in {place(end.number, 0)}"
     if is_row(line.fields) and len(line.fields) > width:
         return line, f"has more than {width} fields in {place(line.number, 0)}"
-    if is_row(line.fields):
-        fields = dict(enumerate(line.fields))
-        gap = next(n for n in places if not is_number(fields.get(n, "")))
-        return line, f"has no number in {place(line.number, gap)}"
-    if is_value(begins) or _NO_VALUE.fullmatch(begins):
-        return line, f"has no number in {place(line.number, 0)}"
-    if sum(any(one.fields) for one in after) > _MOST_NOTES:
-        return first, f"has more than {_MOST_NOTES} lines of text after its rows, from {place(first.number, 0)} on"
+    if is_row(line.fields) or is_value(first) or _NO_VALUE.fullmatch(first):
+        missing = (n for n in places if n >= len(line.fields) or not is_number(line.fields[n]))
+        return line, f"has no number in {place(line.number, next(missing, 0))}"
     return line, ""

@@ -18,7 +18,7 @@ _LONGEST_LINE = 50_000_000  # letters
 _ONE_COLUMN = "\x1f"
 _MARKS = ("\t", ";", ",", " ")
 _WHOLE = re.compile(r"[-+]?\d+")
-_DECIMALS = re.compile(r"-0|[-+]?0\d+")  # no whole number is written so
+_DECIMALS = re.compile(r"-0|[-+]?0\d.*")  # no whole number is written so
 
 
 def read_text(path: Path, column: int | str | None = None, delimiter: str | None = None) -> Values:
@@ -114,11 +114,11 @@ def _check(mark: str, split: Sequence[list[str]], rows: Sequence[list[str]], *, 
     ``alone`` tells whether each row is one number, too.
     """
     numbers = [field for fields in rows for field in fields if is_number(field)]
-    whole = all(map(_WHOLE.fullmatch, numbers))
-    if not alone and not (mark == "," and whole):
+    if not alone and (mark != "," or any("." in number for number in numbers)):
         return
+    whole = all(map(_WHOLE.fullmatch, numbers)) and not any(map(_DECIMALS.fullmatch, numbers))
     named = any(len(fields) == len(rows[0]) and not any(map(is_number, fields)) for fields in split)
-    if mark == "," and whole and not any(map(_DECIMALS.fullmatch, numbers)) and (named or len(rows[0]) % 2):
+    if mark == "," and whole and (named or len(rows[0]) % 2):
         return
     what, other = ("decimal commas", "; if they are decimal") if mark == "," else ("blanks between thousands", "a tab if not")
     message = f"has {what}, or columns parted by them; give the mark between columns, {other},"
