@@ -163,7 +163,7 @@ def as_columns(values: NDArray[Any]) -> NDArray[Any]:
         If the values are not real numbers, or not a table of which one axis is plainly that of time.
     """
     shorter, longer = (1, values.size) if values.ndim == 1 else sorted(values.shape) if values.ndim == 2 else (0, 0)
-    plain = shorter == 1 or shorter <= _MOST_COLUMNS and longer >= LEAST_LENGTH * shorter
+    plain = shorter == 1 or (0 < shorter <= _MOST_COLUMNS and longer >= LEAST_LENGTH * shorter)
     if values.dtype.kind not in "iuf" or values.size == 0 or not plain:
         message = f"holds {values.dtype} of shape {values.shape}, not one or a few long columns of real numbers"
         raise UnusableError(message)
@@ -195,14 +195,14 @@ def _resolution(values: FloatArray) -> float:
 
 
 def _rate_of(times: FloatArray) -> float | None:
-    """Sample rate [Hz] of times [s], with as few digits as their rounding allows; None if they are too coarse.
+    """Sample rate [Hz] of even times [s], with as few digits as their rounding allows; None if they are too coarse.
 
     >>> _rate_of(np.round(np.arange(1000) / 12800, 6)), _rate_of(np.arange(1000) / 97656.25)
     (12800.0, 97656.25)
     """
-    span = float(times[-1] - times[0])
+    span, steps = float(times[-1] - times[0]), np.diff(times)
     rate, doubt = (times.size - 1) / span, max(_resolution(times) / span, 1e-9)
-    if doubt > _COARSE:
+    if doubt > _COARSE and np.ptp(steps) > _COARSE * steps[0]:
         return None
     shorter = (float(f"{rate:.{digits}g}") for digits in range(2, 12))
     return next((one for one in shorter if math.isclose(one, rate, rel_tol=doubt)), rate)

@@ -25,7 +25,7 @@ _SPECTRUM = re.compile(r"(?:fr[eé][qc]|order|ordnung)", re.IGNORECASE)
 _COMMON = re.compile(r"(?:y_unit_label|units?)\b[\s:=]*(.+)", re.IGNORECASE)
 _HERTZ = r"([kK]?[hH][zZ]|MHz|[kKM]?S/s|[kKM]?Sa/s|[kKM]?SPS)"
 _RATE = re.compile(
-    rf"(?:(?i:sampl(?:e|ing)[ _-]rate|sampling[ _-]frequency)|[fF]s)\s*(?:[\[(]\s*{_HERTZ}\s*[\])])?[\s:=]*([\d.,eE+-]+)\s*{_HERTZ}?"
+    rf"(?:(?i:sampl(?:e|ing)[ _-]rate|sampling[ _-]frequency)|[fF]s)\s*(?:[\[(]\s*{_HERTZ}\s*[\])])?[\s:=;,]*([\d.,eE+-]+)\s*{_HERTZ}?[\s;,]*"
 )
 _STEP = re.compile(r"Delta_X((?: [\d.,eE+-]+)+)")
 
@@ -162,7 +162,8 @@ def _common_unit(lines: Sequence[list[str]], names: tuple[str, ...]) -> str:
 
 def _says_unit(text: str) -> bool:
     """Whether a field names a unit of acceleration or voltage in any way."""
-    return any(map(known_unit, re.split(r"[\s\[\]():=,;]+|(?<![ms])/", text)))
+    words = re.split(r"[\s\[\]():=,;]+|(?<![ms])/", text)
+    return any(known_unit(word) or word.casefold() in ("volt", "volts", "counts") for word in words)
 
 
 def _rates(fields: Sequence[str], lines: Sequence[Sequence[str]]) -> Iterator[float]:

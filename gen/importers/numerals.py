@@ -21,10 +21,10 @@ class Form(NamedTuple):
     @property
     def pattern(self) -> str:
         """Regular expression of a number; 1.2D-01 is one of Fortran."""
-        mark, point = re.escape(self.thousands), re.escape(self.point)
+        mark, point, exponent = re.escape(self.thousands), re.escape(self.point), r"(?:[eEdD][-+]?\d+)?"
         if not mark:
-            return rf"[-+]?(?:\d+(?:{point}\d*)?|{point}\d+)(?:[eEdD][-+]?\d+)?"
-        return rf"[-+]?(?:[1-9]\d{{0,2}}(?:{mark}\d{{3}})+|\d{{1,3}})(?:{point}\d+)?"
+            return rf"[-+]?(?:\d+(?:{point}\d*)?|{point}\d+){exponent}"
+        return rf"[-+]?(?:[1-9]\d{{0,2}}(?:{mark}\d{{3}})+(?:{point}\d+)?|\d{{1,3}}(?:{point}\d+)?{exponent})"
 
 
 POINT = Form("", ".")

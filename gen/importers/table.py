@@ -27,7 +27,11 @@ _STAMP = re.compile(
     rf"(?=.*(?:\d[-/:]\d|\d\.\d+\.\d|{_MONTH}))(?:[-\d/.:, +tz]|{_MONTH}|[ap]m|(?:mon|tue|wed|thu|fri|sat|sun)[a-z]*)+|'[-+\d.,]+",
     re.ASCII | re.IGNORECASE,
 )  # or a number that a sheet holds as text
-_NO_VALUE = re.compile(r"[-+]?(?:nan|inf\w*|n/?a|null|none|ov\w*|under\w*|err\w*|bad|true|false|-+|#\S+)", re.IGNORECASE)
+_NO_VALUE = re.compile(
+    r"[-+]?(?:nan|inf(?:inity)?|n/?a|null|none|true|false|bad|ov(?:l|r|f|er(?:flow|load|range)?)|err(?:or)?|-{1,3})|#(?:n/?a|nv|.*[!?])",
+    re.IGNORECASE,
+)
+_DIGIT = re.compile(r"[-+.,]?\d")
 
 
 class Line(NamedTuple):
@@ -54,6 +58,17 @@ def is_row(fields: Iterable[str]) -> bool:
     """
     filled = [*filter(None, fields)]
     return bool(filled) and is_value(filled[0]) and any(map(is_number, filled))
+
+
+def is_flawed_row(fields: Iterable[str]) -> bool:
+    """Whether a line that is no row may be one with a value that is missing or marked.
+
+    >>> is_flawed_row(["10:00:01", "OVL"]), is_flawed_row(["0.5*"]), is_flawed_row(["RMS", "OVL"])
+    (True, True, False)
+    """
+    filled = [*filter(None, fields)]
+    values = all(is_value(field) or _NO_VALUE.fullmatch(field) for field in filled)
+    return bool(filled) and (values or _DIGIT.match(filled[0]) is not None or _NO_VALUE.fullmatch(filled[0]) is not None)
 
 
 def read_table(
@@ -92,8 +107,9 @@ def read_table(
     width = max(len(rows[0]), len(header.names))
     columns = [[fields[n] if n < len(fields) else "" for fields in rows] for n in range(width)]
     numeric = [n for n in range(width) if any(map(is_number, columns[n]))]
-    if above and all(n < len(above[-1].fields) and is_number(above[-1].fields[n]) for n in numeric):
-        message = f"has text before numbers in {place(above[-1].number, 0)}, where the rows begin; delete the text or the line"
+    last = above[-1].fields if above else []
+    if last and (is_flawed_row(last) or all(n < len(last) and is_number(last[n]) for n in numeric)):
+        message = f"has text among numbers in {place(above[-1].number, 0)}, where the rows begin; correct that line, or delete it"
         raise UnusableError(message)
     even = [n for n in numeric if _is_even(columns[n])]
     places = columns_to_load(header, column, numeric, even)
@@ -160,13 +176,12 @@ def _flaw(
     line: Line, end: Line, places: Sequence[int], width: int, place: Callable[[int, int], str]
 ) -> tuple[Line, str]:
     """Reason why a line after the ``end`` of the rows is no note, and the line to be named; no reason if it is one, or empty."""
-    first = next(filter(None, line.fields), "")
     if is_row(line.fields) and end is not line:
         what = "text" if any(end.fields) else "an empty line"
         return end, f"has {what} among its rows in {place(end.number, 0)}"
     if is_row(line.fields) and len(line.fields) > width:
         return line, f"has more than {width} fields in {place(line.number, 0)}"
-    if is_row(line.fields) or is_value(first) or _NO_VALUE.fullmatch(first):
+    if is_row(line.fields) or is_flawed_row(line.fields):
         missing = (n for n in places if n >= len(line.fields) or not is_number(line.fields[n]))
         return line, f"has no number in {place(line.number, next(missing, 0))}"
     return line, ""

@@ -98,8 +98,8 @@ def _mark(lines: Sequence[str]) -> str:
         raise UnusableError(message, "delimiter")
     best = [mark for mark in _MARKS if len(rows[mark]) == most]
     parting = [mark for mark in best if any(sum(map(bool, fields)) > 1 for fields in rows[mark])]
-    if not parting:
-        return best[0] if len(best) < len(_MARKS) else _ONE_COLUMN
+    if not parting:  # but there may be empty fields
+        return next((mark for mark in best if any(len(fields) > 1 for fields in rows[mark])), _ONE_COLUMN)
     _check(parting[0], split[parting[0]], rows[parting[0]], alone=len(parting) < len(best))
     return parting[0]
 
@@ -114,7 +114,7 @@ def _check(mark: str, split: Sequence[list[str]], rows: Sequence[list[str]], *, 
     ``alone`` tells whether each row is one number, too.
     """
     numbers = [field for fields in rows for field in fields if is_number(field)]
-    if not alone and (mark != "," or any("." in number for number in numbers)):
+    if not alone and (mark != "," or any("." in number or "," in number for number in numbers)):
         return
     whole = all(map(_WHOLE.fullmatch, numbers)) and not any(map(_DECIMALS.fullmatch, numbers))
     named = any(len(fields) == len(rows[0]) and not any(map(is_number, fields)) for fields in split)

@@ -14,9 +14,16 @@ from raceway.console.options import Decorator, names
 if TYPE_CHECKING:
     from features.diagnosis import Recorded
 
-UNITS = ("g", "m/s2", "V", "mV")
+UNITS = ("g", "mg", "m/s2", "mm/s2", "V", "mV")
+MARKS = {"comma": ",", "semicolon": ";", "tab": "\t", "blank": " "}
 SLOWEST, FASTEST = 0.001, 1e7  # rpm
-OPTIONS = {"column": "--channel", "variable": "--channel", "rate": "--rate", "unit": "--unit"}
+OPTIONS = {
+    "column": "--channel",
+    "variable": "--channel",
+    "rate": "--rate",
+    "unit": "--unit",
+    "delimiter": "--delimiter",
+}
 
 
 class Reading(NamedTuple):
@@ -27,6 +34,7 @@ class Reading(NamedTuple):
     unit: Any
     sensitivity: float | None
     rate: float | None
+    delimiter: str | None
 
 
 def _speeds(_context: click.Context, _option: click.Parameter, text: str | None) -> tuple[float, float] | None:
@@ -63,12 +71,13 @@ _rate: Decorator = click.option(
     type=click.FloatRange(1, 1e8),
     callback=_a_number,
     metavar="HZ",
-    help="Sample rate, unless the file states it: in its header or by a column of times.",
+    help="Sample rate, unless the file states it in one of the forms of docs/importing.md.",
 )
 _unit: Decorator = click.option(
     "--unit",
     type=click.Choice(UNITS),
-    help="Unit of the values; by default that in the header, or else m/s2; a WAV file has none. V and mV need --sensitivity.",
+    help="Unit of the values; by default that in the header. If there is none, m/s2 is assumed, with a warning. V and mV need "
+    "--sensitivity.",
 )
 _sensitivity: Decorator = click.option(
     "--sensitivity",
@@ -88,7 +97,13 @@ _channels: Decorator = click.option(
 _variable: Decorator = click.option(
     "--variable",
     metavar="NAME",
-    help="Variable of a MATLAB file whose columns --channel counts, or sheet of an Excel file, by default the first.",
+    help="Variable of a MATLAB file whose columns --channel counts, or sheet of an Excel file, by default the visible one "
+    "that is active, or else the first.",
+)
+_delimiter: Decorator = click.option(
+    "--delimiter",
+    type=click.Choice([*MARKS]),
+    help="Mark between the columns of a text, if it is not plain; commas are decimal ones unless it is comma.",
 )
 
 
@@ -96,10 +111,12 @@ def reading_options(command: Any) -> Any:
     """Add the options that say how a recording is read; the command gets them as ``reading``."""
 
     @wraps(command)
-    def reads(*given: Any, rate: Any, unit: Any, sensitivity: Any, channels: Any, variable: Any, **others: Any) -> Any:
-        return command(*given, reading=Reading(channels or (), variable, unit, sensitivity, rate), **others)
+    def reads(*given: Any, delimiter: Any, channels: Any, **others: Any) -> Any:
+        values = {name: others.pop(name) for name in ("variable", "unit", "sensitivity", "rate")}
+        reading = Reading(channels=channels or (), delimiter=MARKS.get(delimiter or ""), **values)
+        return command(*given, reading=reading, **others)
 
-    return _rate(_unit(_sensitivity(_channels(_variable(reads)))))
+    return _rate(_unit(_sensitivity(_channels(_variable(_delimiter(reads))))))
 
 
 def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
@@ -158,7 +175,7 @@ def read_recording(path: Path, reading: Reading) -> tuple["Recorded", str, tuple
         number = int(channel) if channel is not None and channel.isdecimal() else channel
         named = path.suffix.lower() == ".mat" and isinstance(number, str)
         place = {"variable": number, "column": None} if named else {"variable": reading.variable, "column": number}
-        how = place | {"unit": reading.unit, "sensitivity": reading.sensitivity, "rate": reading.rate}
+        how = place | {name: getattr(reading, name) for name in ("unit", "sensitivity", "rate", "delimiter")}
         signal = read_signal(path, **how, options=OPTIONS)  # type: ignore[arg-type]
         if signal.fs is None:
             raise CorpusError(f"{path}: does not state its sample rate; give it with --rate HZ.")

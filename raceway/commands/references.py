@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from raceway.commands.feature_tables import table_of
+from raceway.commands.recordings import MARKS
 from raceway.console.options import A_PATH, Analysis, Decorator, Team
 from raceway.console.progress import notice
 
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
     from features.recording_speeds import Speed
 
 
-_OPTIONS = {key: f"--reference-{key}" for key in ("column", "variable", "rate")}
+_OPTIONS = {key: f"--reference-{key}" for key in ("column", "variable", "rate", "delimiter")}
 
 
 def _number_or_name(_context: click.Context, _option: click.Parameter, text: str | None) -> int | str | None:
@@ -58,6 +59,9 @@ def reference_options(command: Any) -> Any:
             help="Column of the recording by name or number from 0; channel of a WAV file.",
         ),
         click.option("--reference-variable", metavar="NAME", help="Variable of the recording, if it is a MATLAB file."),
+        click.option(
+            "--reference-delimiter", type=click.Choice([*MARKS]), help="Mark between columns of the recording, if it is a text."
+        ),
     ]
     for option in reversed(options):
         command = option(command)
@@ -76,6 +80,7 @@ def reference_table(
     reference_rate: float | None,
     reference_column: int | str | None,
     reference_variable: str | None,
+    reference_delimiter: str | None,
 ) -> "xr.Dataset":
     """Feature table of a reference of the corpus whose own feature table is ``table``; the speed of a recording is believed."""
     from features.baselines.reference_choice import check_durations, recording_reference
@@ -83,7 +88,8 @@ def reference_table(
     from gen.support.units import rpm_to_hertz
 
     if path.is_file():
-        signal = read_shape(path, Place(reference_variable, reference_column), reference_rate, _OPTIONS)
+        place = Place(reference_variable, reference_column, MARKS.get(reference_delimiter or ""))
+        signal = read_shape(path, place, reference_rate, _OPTIONS)
         for note in signal.warnings:
             notice(f"warning: {note}")
         fs = float(table["sample_rate"].max()) if signal.fs is None else signal.fs
