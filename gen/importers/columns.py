@@ -15,6 +15,7 @@ SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
 _SAME_RATE = 0.01  # relative
 _COARSE = 1e-3  # of the rate, relative
 _JITTER = 0.05  # of a step
+_FEW = 0.01  # of the steps
 _MOST_NAMED = 12
 _MOST_COLUMNS, LEAST_LENGTH = 64, 8  # of a table without names, whose longer axis is time
 
@@ -165,7 +166,7 @@ def as_columns(values: NDArray[Any]) -> NDArray[Any]:
     shorter, longer = (1, values.size) if values.ndim == 1 else sorted(values.shape) if values.ndim == 2 else (0, 0)
     plain = shorter == 1 or (0 < shorter <= _MOST_COLUMNS and longer >= LEAST_LENGTH * shorter)
     if values.dtype.kind not in "iuf" or values.size == 0 or not plain:
-        message = f"holds {values.dtype} of shape {values.shape}, not one or a few long columns of real numbers"
+        message = f"holds {values.dtype} of shape {values.shape}, not one column of real numbers, or a few long ones"
         raise UnusableError(message)
     columns = np.atleast_2d(values)
     return columns.T if columns.shape[0] > columns.shape[1] else columns
@@ -177,7 +178,12 @@ def is_even(values: FloatArray) -> bool:
     >>> is_even(np.round(np.arange(1000) / 12800, 4)), is_even(np.array([0.0, 0.1, 0.3, 0.4, 0.5]))
     (True, False)
     """
-    if values.size < 3 or not values[-1] > values[0] or not np.all(np.diff(values) >= 0):  # NaN fails the comparison
+    steps = np.diff(values)
+    if values.size < 3 or not values[-1] > values[0] or not np.all(steps >= 0):  # NaN fails the comparison
+        return False
+    usual = float(np.median(steps))
+    odd = np.count_nonzero(np.abs(steps - usual) > 0.1 * usual) if usual else 0
+    if 0 < odd < max(_FEW * steps.size, 3):  # a gap; where times are rounded, more steps are longer
         return False
     line = np.linspace(values[0], values[-1], values.size)
     return float(np.abs(values - line).max()) <= max(_resolution(values), _JITTER * (line[1] - line[0]))
@@ -201,8 +207,10 @@ def _rate_of(times: FloatArray) -> float | None:
     (12800.0, 97656.25)
     """
     span, steps = float(times[-1] - times[0]), np.diff(times)
-    rate, doubt = (times.size - 1) / span, max(_resolution(times) / span, 1e-9)
-    if doubt > _COARSE and np.ptp(steps) > _COARSE * steps[0]:
+    rate, doubt = (times.size - 1) / span, _resolution(times) / span
+    if np.ptp(steps) <= 1e-6 * steps[0]:
+        doubt = 1e-9
+    elif doubt > _COARSE:
         return None
     shorter = (float(f"{rate:.{digits}g}") for digits in range(2, 12))
     return next((one for one in shorter if math.isclose(one, rate, rel_tol=doubt)), rate)

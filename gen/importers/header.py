@@ -116,7 +116,7 @@ def unit_said(name: str) -> str:
     ('counts', 'accel_g', '')
     """
     bracketed = _IN_BRACKETS.search(name)
-    if bracketed:
+    if bracketed and bracketed[2] not in ("X", "Y"):  # Origin numbers its columns A(X), B(Y)
         return (bracketed[1] or bracketed[2] or "").strip() or name
     if _is_unit(name):
         return name

@@ -111,9 +111,13 @@ def read_table(
     if last and (is_flawed_row(last) or all(n < len(last) and is_number(last[n]) for n in numeric)):
         message = f"has text among numbers in {place(above[-1].number, 0)}, where the rows begin; correct that line, or delete it"
         raise UnusableError(message)
+    if any(not columns[n][0] and all(columns[n][1:]) for n in numeric):
+        message = f"has a gap in {place(start[first].number, 0)}, where the rows begin; delete that line if it has no samples, or fill it"
+        raise UnusableError(message)
     even = [n for n in numeric if _is_even(columns[n])]
     places = columns_to_load(header, column, numeric, even)
-    blocks, notes = _load(chain(start[first:], lines), places, width, place)
+    least = max(max(places) + 1, *(len(fields) for fields in rows[1:2]))  # of fields; a gap between blanks would move the later ones
+    blocks, notes = _load(chain(start[first:], lines), places, range(least, width + 1), place)
     loaded = dict(zip(places, _numbers(blocks, forms), strict=True))
     return signal_of(header, column, loaded)._replace(notes=notes)
 
@@ -134,22 +138,22 @@ def _numbers(columns: Sequence[Sequence[str]], forms: Sequence[Form] | None) -> 
 
 
 def _load(
-    lines: Iterator[Line], places: Sequence[int], width: int, place: Callable[[int, int], str]
+    lines: Iterator[Line], places: Sequence[int], counts: range, place: Callable[[int, int], str]
 ) -> tuple[list[list[str]], tuple[str, ...]]:
     """Blocks of numbers of each column to be loaded, and a sentence on notes that are left out."""
     loaded: list[list[str]] = []
-    while (some := [*islice(lines, _ROWS)]) and (blocks := _blocks(some, places, width)):
+    while (some := [*islice(lines, _ROWS)]) and (blocks := _blocks(some, places, counts)):
         loaded.append(blocks)
     rest = chain(some, lines)
     end, notes = None, []
     for line in rest:
-        blocks = _blocks([line], places, width) if end is None else None
+        blocks = _blocks([line], places, counts) if end is None else None
         if blocks:
             loaded.append(blocks)
             continue
         end = end or line
         notes += [" ".join(line.fields)] if any(line.fields) else []
-        where, reason = _flaw(line, end, places, width, place)
+        where, reason = _flaw(line, end, places, counts, place)
         if not reason and len(notes) > _MOST_NOTES:
             where, reason = end, f"has more than {_MOST_NOTES} lines of text from {place(end.number, 0)} on"
         if reason:
@@ -161,10 +165,9 @@ def _load(
     return [*map(list, zip(*loaded, strict=True))], tuple(told)
 
 
-def _blocks(lines: Sequence[Line], places: Sequence[int], width: int) -> list[str] | None:
-    """Numbers of each column in lines; None if not all of them are rows with numbers in these columns."""
-    counts = [len(line.fields) for line in lines]
-    if max(counts) > width or min(counts) <= max(places):
+def _blocks(lines: Sequence[Line], places: Sequence[int], counts: range) -> list[str] | None:
+    """Numbers of each column in lines; None if not all of them are rows of as many fields with numbers in these columns."""
+    if not {len(line.fields) for line in lines} <= {*counts}:
         return None
     if 0 not in places and not all(is_row(line.fields) for line in lines):
         return None
@@ -173,14 +176,14 @@ def _blocks(lines: Sequence[Line], places: Sequence[int], width: int) -> list[st
 
 
 def _flaw(
-    line: Line, end: Line, places: Sequence[int], width: int, place: Callable[[int, int], str]
+    line: Line, end: Line, places: Sequence[int], counts: range, place: Callable[[int, int], str]
 ) -> tuple[Line, str]:
     """Reason why a line after the ``end`` of the rows is no note, and the line to be named; no reason if it is one, or empty."""
     if is_row(line.fields) and end is not line:
         what = "text" if any(end.fields) else "an empty line"
         return end, f"has {what} among its rows in {place(end.number, 0)}"
-    if is_row(line.fields) and len(line.fields) > width:
-        return line, f"has more than {width} fields in {place(line.number, 0)}"
+    if is_row(line.fields) and len(line.fields) not in counts:
+        return line, f"has not as many fields as the rows before in {place(line.number, 0)}"
     if is_row(line.fields) or is_flawed_row(line.fields):
         missing = (n for n in places if n >= len(line.fields) or not is_number(line.fields[n]))
         return line, f"has no number in {place(line.number, next(missing, 0))}"

@@ -17,6 +17,7 @@ _BEGINNING = 2_000_000  # bytes that tell the encoding
 _LONGEST_LINE = 50_000_000  # letters
 _ONE_COLUMN = "\x1f"
 _MARKS = ("\t", ";", ",", " ")
+_BLANKS = re.compile(r"[ \t]+")
 _WHOLE = re.compile(r"[-+]?\d+")
 _DECIMALS = re.compile(r"-0|[-+]?0\d.*")  # no whole number is written so
 
@@ -61,7 +62,7 @@ def _lines(text: IO[str]) -> Iterator[str]:
 
 def _split(lines: Iterable[str], mark: str) -> Iterator[Line]:
     """Fields of lines; a field in quotes can hold marks, and in a header line breaks."""
-    reader = csv.reader((" ".join(line.split()) for line in lines) if mark == " " else lines, delimiter=mark)
+    reader = csv.reader((_BLANKS.sub(" ", line.strip()) for line in lines) if mark == " " else lines, delimiter=mark)
     number = 1
     for fields in reader:
         plain = [field.strip() for field in fields]

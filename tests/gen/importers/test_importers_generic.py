@@ -65,7 +65,7 @@ WRITERS = {
     "numpy": ("a.npy", lambda path: np.save(path, SIGNAL), "rig: 1"),
     "comma_and_header": (
         "a.csv",
-        lambda path: np.savetxt(path, np.c_[0 * SIGNAL, SIGNAL], delimiter=",", header="t,ax", comments=""),
+        lambda path: np.savetxt(path, np.c_[0 * SIGNAL, SIGNAL], delimiter=",", header="ay,ax", comments=""),
         "column: ax",
     ),
     "semicolon_and_title": (

@@ -186,7 +186,7 @@ def test_files_that_differ_are_not_joined(tmp_path):
 UNUSABLE = {
     "missing.npy": (None, "no file beside mapping.yaml matches"),
     "empty.csv": (lambda path: path.write_bytes(b""), "is empty"),
-    "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no line of numbers among its first 2"),
+    "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no row of numbers among its first 2"),
     "gap.csv": (
         lambda path: path.write_text("1\nx\n2\n"),
         "has text or a gap among its numbers, in line 2 ('x'); correct",

@@ -40,7 +40,7 @@ def test_the_only_signal_of_a_file_is_read_without_being_named(tmp_path, name):
     found = read_signal(tmp_path / name)
     np.testing.assert_array_equal(found.values, X)
     assert found.fs == (12_000 if name.endswith(".wav") else None)
-    assert found.warnings == ()
+    assert found.warnings == (f"{name}: it states no unit, and m/s2 is assumed.",)
 
 
 def wav(path, samples, rate=8000, *, extensible=False):
@@ -98,9 +98,9 @@ def test_a_given_rate_is_used_and_a_different_one_in_the_file_is_told(tmp_path):
     wavfile.write(tmp_path / "a.wav", 12_000, X)
     np.save(tmp_path / "a.npy", X)
     assert read_signal(tmp_path / "a.npy", rate=5000.0).fs == 5000
-    found = read_signal(tmp_path / "a.wav", rate=5000.0)
+    found = read_signal(tmp_path / "a.wav", rate=5000.0, unit="g")
     assert found.fs == 5000
-    assert found.warnings == ("a.wav: states a sample rate of 12000 Hz; the given 5000 Hz are used.",)
+    assert found.warnings == ("a.wav: is at 12000 Hz by its header; the given 5000 Hz are used.",)
 
 
 DOUBTFUL = {
@@ -116,13 +116,13 @@ DOUBTFUL = {
 @pytest.mark.parametrize(("values", "doubt"), DOUBTFUL.values(), ids=DOUBTFUL)
 def test_values_that_no_accelerometer_gives_are_doubted(tmp_path, values, doubt):
     np.save(tmp_path / "a.npy", values)
-    (told,) = read_signal(tmp_path / "a.npy").warnings
+    (told,) = read_signal(tmp_path / "a.npy", unit="m/s2").warnings
     assert doubt in told
 
 
 def test_whole_numbers_of_a_small_range_are_not_doubted(tmp_path):
     np.save(tmp_path / "a.npy", np.arange(500) % 90 - 45.0)
-    assert read_signal(tmp_path / "a.npy").warnings == ()
+    assert read_signal(tmp_path / "a.npy", unit="m/s2").warnings == ()
 
 
 def cut_wav(path):
@@ -166,25 +166,26 @@ REFUSED = {
         "a.mat", FILES["only_variable.mat"], {"variable": "y*"}, "holds rpm, x, and no variable y*; name one with variable.",
     ),
     "decimal_commas": (
-        "a.csv", lambda path: path.write_text("t,x\n0,0,0,5\n0,1,-0,25\n"), {"column": 1}, "and commas separate its columns too; save",
+        "a.csv", lambda path: path.write_text("t,x\n0,0,0,5\n0,1,-0,25\n"), {"column": 1}, "has decimal commas, or columns parted by them; give the mark",
     ),
-    "one_column": ("a.csv", lambda path: path.write_text("x\n0,512\n-1,037\n0,200\n"), {"column": 0}, "has numbers with decimal"),
+    "one_column": ("a.csv", lambda path: path.write_text("x\n0,512\n-1,037\n0,200\n"), {"column": 0}, "has decimal commas, or columns parted by them; give the mark"),
     "voltage": ("a.npy", FILES["values.npy"], {"unit": "V"}, "the unit is V and the sensitivity of the sensor is missing;"),
     "no_voltage": ("a.npy", FILES["values.npy"], {"sensitivity": 100.0}, "a sensitivity is given and the unit is m/s2, not V or mV;"),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "latin-1"])
-@pytest.mark.parametrize("header", ["", "Zeit;Beschl. m/s²\n"])
+@pytest.mark.parametrize("header", ["", "Zeit;Beschl. [m/s²]\n"])
 def test_a_text_is_read_in_the_encodings_that_spreadsheets_write(tmp_path, encoding, header):
     (tmp_path / "a.csv").write_text(header + "".join(f"{i};{x!r}\n" for i, x in enumerate(X.tolist())), encoding)
-    column = "Beschl. m/s²" if header else 1
+    column = "Beschl. [m/s²]" if header else 1
     np.testing.assert_array_equal(read_signal(tmp_path / "a.csv", column=column).values, X)
 
 
-def test_whole_numbers_between_commas_are_columns(tmp_path):
+def test_whole_numbers_between_commas_are_columns_if_it_is_said(tmp_path):
     (tmp_path / "a.csv").write_text("512,37\n-10,200\n0,0\n")
-    np.testing.assert_array_equal(read_signal(tmp_path / "a.csv", column=1).values, [37, 200, 0])
+    found = read_signal(tmp_path / "a.csv", column=1, delimiter=",")
+    np.testing.assert_array_equal(found.values, [37, 200, 0])
 
 
 @pytest.mark.parametrize(("name", "write", "keys", "sentence"), REFUSED.values(), ids=REFUSED)
