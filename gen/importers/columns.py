@@ -86,9 +86,7 @@ class Values(NamedTuple):
         return "m/s2", ["it states no unit, and m/s2 is assumed"] if self.absolute else []
 
 
-def columns_to_load(
-    header: Header, column: int | str | None, numeric: Sequence[int], even: Sequence[int]
-) -> list[int]:
+def columns_to_load(header: Header, column: int | str | None, numeric: Sequence[int], even: Sequence[int]) -> list[int]:
     """Columns that may hold the signal or times.
 
     ``numeric`` columns hold numbers, which in ``even`` ones rise evenly at first, as times and counters do.

@@ -11,7 +11,7 @@ from gen.importers.files import FloatArray
 from gen.support.units import STANDARD_GRAVITY
 
 Unit = Literal["g", "mg", "m/s2", "mm/s2", "V", "mV"]
-UNITS: dict[str, Unit] = {unit: unit for unit in get_args(Unit)} | {"ms-2": "m/s2", "m/s/s": "m/s2"}
+UNITS: dict[str, Unit] = {**{unit: unit for unit in get_args(Unit)}, "ms-2": "m/s2", "m/s/s": "m/s2"}
 """Units as headers write them, without blanks, ``^`` and ``*``."""
 VOLTAGES = ("V", "mV")
 QUIETEST, LOUDEST = 1e-3, 1e4  # m s-2, rms: noise of good accelerometers, and far above any bearing

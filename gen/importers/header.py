@@ -175,7 +175,9 @@ def _rates(fields: Sequence[str], lines: Sequence[Sequence[str]]) -> Iterator[fl
         value, unit = number_in(number), before or after
         if value is not None and unit and (before or after) == (after or before):
             yield value * {"k": 1e3, "K": 1e3, "M": 1e6}.get(unit[0], 1.0)
-    elif step and lines[0][0].startswith("LabVIEW Measurement") and ["X_Dimension", "Time"] in [one[:2] for one in lines]:
+    elif (
+        step and lines[0][0].startswith("LabVIEW Measurement") and ["X_Dimension", "Time"] in [one[:2] for one in lines]
+    ):
         for value in map(number_in, step[1].split()):
             if value:
                 yield 1 / value

@@ -68,7 +68,9 @@ def is_flawed_row(fields: Iterable[str]) -> bool:
     """
     filled = [*filter(None, fields)]
     values = all(is_value(field) or _NO_VALUE.fullmatch(field) for field in filled)
-    return bool(filled) and (values or _DIGIT.match(filled[0]) is not None or _NO_VALUE.fullmatch(filled[0]) is not None)
+    return bool(filled) and (
+        values or _DIGIT.match(filled[0]) is not None or _NO_VALUE.fullmatch(filled[0]) is not None
+    )
 
 
 def read_table(
@@ -116,7 +118,9 @@ def read_table(
         raise UnusableError(message)
     even = [n for n in numeric if _is_even(columns[n])]
     places = columns_to_load(header, column, numeric, even)
-    least = max(max(places) + 1, *(len(fields) for fields in rows[1:2]))  # of fields; a gap between blanks would move the later ones
+    least = max(
+        max(places) + 1, *(len(fields) for fields in rows[1:2])
+    )  # of fields; a gap between blanks would move the later ones
     blocks, notes = _load(chain(start[first:], lines), places, range(least, width + 1), place)
     loaded = dict(zip(places, _numbers(blocks, forms), strict=True))
     return signal_of(header, column, loaded)._replace(notes=notes)

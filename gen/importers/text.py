@@ -18,8 +18,6 @@ _LONGEST_LINE = 50_000_000  # letters
 _ONE_COLUMN = "\x1f"
 _MARKS = ("\t", ";", ",", " ")
 _BLANKS = re.compile(r"[ \t]+")
-_WHOLE = re.compile(r"[-+]?\d+")
-_DECIMALS = re.compile(r"-0|[-+]?0\d.*")  # no whole number is written so
 
 
 def read_text(path: Path, column: int | str | None = None, delimiter: str | None = None) -> Values:
@@ -56,7 +54,9 @@ def _lines(text: IO[str]) -> Iterator[str]:
     """Lines of a text, none of which is longer than a row can be."""
     while line := text.readline(_LONGEST_LINE):
         if len(line) == _LONGEST_LINE or "\0" in line:
-            raise UnusableError("is no text with columns: it holds zero bytes, or a line without an end; export it again")
+            raise UnusableError(
+                "is no text with columns: it holds zero bytes, or a line without an end; export it again"
+            )
         yield line
 
 
@@ -91,8 +91,7 @@ def _mark(lines: Sequence[str]) -> str:
     UnusableError
         If there is no such line, or if commas may part the columns or be decimal ones.
     """
-    split = {mark: [line.fields for line in _split(lines, mark)] for mark in _MARKS}
-    rows = {mark: [fields for fields in found if _is_plain_row(fields)] for mark, found in split.items()}
+    rows = {mark: [line.fields for line in _split(lines, mark) if _is_plain_row(line.fields)] for mark in _MARKS}
     most = max(map(len, rows.values()))
     if not most:
         message = f"has no row of numbers among its first {len(lines)} lines; export numbers, or give the mark between columns"
@@ -101,26 +100,12 @@ def _mark(lines: Sequence[str]) -> str:
     parting = [mark for mark in best if any(sum(map(bool, fields)) > 1 for fields in rows[mark])]
     if not parting:  # but there may be empty fields
         return next((mark for mark in best if any(len(fields) > 1 for fields in rows[mark])), _ONE_COLUMN)
-    _check(parting[0], split[parting[0]], rows[parting[0]], alone=len(parting) < len(best))
+    whole = not any(set(field) & {".", ","} for fields in rows[parting[0]] for field in fields if is_number(field))
+    if len(parting) < len(best) or (parting[0] == "," and whole):  # 0,5 may be one number or two
+        message = "has commas or blanks between digits, which may stand between columns or in numbers; give the mark between columns"
+        raise UnusableError(message, "delimiter")
     return parting[0]
 
 
 def _is_plain_row(fields: Sequence[str]) -> bool:
     return any(map(is_number, fields)) and all(not field or is_value(field) for field in fields)
-
-
-def _check(mark: str, split: Sequence[list[str]], rows: Sequence[list[str]], *, alone: bool) -> None:
-    """Refuse commas that may be decimal ones, between whole numbers, and blanks that may stand between thousands.
-
-    ``alone`` tells whether each row is one number, too.
-    """
-    numbers = [field for fields in rows for field in fields if is_number(field)]
-    if not alone and (mark != "," or any("." in number or "," in number for number in numbers)):
-        return
-    whole = all(map(_WHOLE.fullmatch, numbers)) and not any(map(_DECIMALS.fullmatch, numbers))
-    named = any(len(fields) == len(rows[0]) and not any(map(is_number, fields)) for fields in split)
-    if mark == "," and whole and (named or len(rows[0]) % 2):
-        return
-    what, other = ("decimal commas", "; if they are decimal") if mark == "," else ("blanks between thousands", "a tab if not")
-    message = f"has {what}, or columns parted by them; give the mark between columns, {other},"
-    raise UnusableError(message, "delimiter")

@@ -60,7 +60,9 @@ def reference_options(command: Any) -> Any:
         ),
         click.option("--reference-variable", metavar="NAME", help="Variable of the recording, if it is a MATLAB file."),
         click.option(
-            "--reference-delimiter", type=click.Choice([*MARKS]), help="Mark between columns of the recording, if it is a text."
+            "--reference-delimiter",
+            type=click.Choice([*MARKS]),
+            help="Mark between columns of the recording, if it is a text.",
         ),
     ]
     for option in reversed(options):

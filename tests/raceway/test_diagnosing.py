@@ -84,7 +84,7 @@ def write_csv(path, signal):
         path,
         np.stack([time, signal / 9.80665], axis=1),
         delimiter=",",
-        header="time,drive_end",
+        header="time [s],drive_end",
         comments="",
         fmt="%.7g",
     )
@@ -274,7 +274,7 @@ def test_channels_of_a_matlab_file_are_its_variables_or_the_columns_of_one(model
         (lambda x: x[: round(0.05 * FS)], "the recording lasts 0.05 s"),
         (lambda x: 0 * x, "the signal is constant"),
         (lambda x: 0 * x + 3.7, "the signal is constant"),
-        (lambda x: np.arange(x.size) / FS, "only rise or only fall, as in a column of times"),
+        (lambda x: -np.arange(x.size) / FS, "only rise or only fall, as in a column of times"),
         (lambda x: 1e-30 * x, "is no vibration"),
         (lambda x: 1e30 * x, "is no vibration"),
     ],
@@ -337,7 +337,7 @@ def test_the_verdict_does_not_depend_on_the_unit(model, recordings, tmp_path):
         (("two.csv", "--rate", FS), "has 2 columns (0 a, 1 b) and none is chosen; choose one with --channel."),
         (
             ("r.csv", "--rate", 2 * FS),
-            "is at 12000 Hz by its times in column 0 time, and 24000 Hz are given; correct what is given with --rate.",
+            "is at 12000 Hz by its times in column 0 time [s], and 24000 Hz are given; correct what is given with --rate.",
         ),
         (
             ("two.csv", "--channel", "c", "--rate", FS),
@@ -360,7 +360,7 @@ def test_the_verdict_does_not_depend_on_the_unit(model, recordings, tmp_path):
         (("r.wav", "--channel", "0,5"), "column"),
         (("r.wav", "--model", "no.skops"), "no.skops"),
         (("r.wav", "-o", "report.pdf"), ".html"),
-        (("nan.npy", "--rate", FS), "1 of 600 samples are not finite"),
+        (("nan.npy", "--rate", FS), "has 1 samples of 600 that are not finite numbers"),
     ],
 )
 def test_an_error_is_one_sentence_and_exit_code_2(options, sentence, model, recordings, tmp_path, monkeypatch):
@@ -394,7 +394,7 @@ def test_a_folder_of_recordings_becomes_a_table_and_pages(model, recordings, tmp
     assert header.split() == ["recording", "verdict", "probability", "rpm", "strongest", "lines", "warnings"]
     assert [row.split()[:2] for row in rows] == [["inner.csv", "inner"], ["outer.csv", "outer"], ["note.txt", "not"]]
     assert "BPFI" in rows[0]
-    assert "note.txt: has no line of numbers among its first 1." in result.stdout
+    assert "note.txt: has no row of numbers among its first 1 lines" in result.stdout
     assert sorted(page.name for page in pages.iterdir()) == ["inner.csv.html", "outer.csv.html"]
     listed = told(*options)
     assert [Path(one["recording"]).name for one in listed] == ["inner.csv", "new.wav", "outer.csv", "note.txt"]
@@ -407,7 +407,7 @@ def test_a_folder_of_recordings_becomes_a_table_and_pages(model, recordings, tmp
     ("files", "options", "sentence"),
     [
         ((), (), "has no recording in it (.mat, .npy,"),
-        (("a.txt",), (), "no recording can be used; the first of 1: campaign/a.txt: has no line of numbers"),
+        (("a.txt",), (), "no recording can be used; the first of 1: campaign/a.txt: has no row of numbers"),
         (("a.txt",), ("-o", "mine"), "page.html: was not made by raceway"),
         (("a.txt",), ("-o", "mine/page.html"), "is a file; give a folder"),
     ],

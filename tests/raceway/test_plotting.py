@@ -35,7 +35,7 @@ def test_a_record_is_drawn_over_another_one_of_the_corpus(run, tiny_corpus, tmp_
     ],
 )
 def test_what_a_picture_of_a_recording_lacks_is_told_in_one_sentence(run, recording, tmp_path, given, sentence):
-    result = run("plot", recording, *given, "-o", tmp_path / "x.png")
+    result = run("plot", recording, "--unit", "g", *given, "-o", tmp_path / "x.png")
     assert result.exit_code == 2
     assert sentence in result.stderr
     assert len(result.stderr.splitlines()) == 1

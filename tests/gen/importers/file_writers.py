@@ -30,8 +30,10 @@ def lines(*columns: Sequence[object], mark: str = ";", comma: bool = False, end:
 
 def text(*columns: Sequence[object], header: str = "", tail: str = "", encoding: str = "utf-8", **form: object):
     """Writer of a text: a header, rows, and lines after them."""
-    return header + lines(*columns, **form) + tail if encoding == "utf-8" else (
-        (header + lines(*columns, **form) + tail).encode(encoding)
+    return (
+        header + lines(*columns, **form) + tail
+        if encoding == "utf-8"
+        else ((header + lines(*columns, **form) + tail).encode(encoding))
     )
 
 
@@ -55,7 +57,9 @@ def _cell(value: object) -> str:
     return f'<c t="inlineStr"><is><t>{escape(str(value))}</t></is></c>'
 
 
-def workbook(sheets: Mapping[str, Sequence[Sequence[object]] | str], *, hidden: Sequence[str] = (), active: int | None = None):
+def workbook(
+    sheets: Mapping[str, Sequence[Sequence[object]] | str], *, hidden: Sequence[str] = (), active: int | None = None
+):
     """Writer of the least Excel file that spreadsheets open: rows of cells, or XML in their place."""
 
     def write(path: Path) -> None:
@@ -79,8 +83,12 @@ def workbook(sheets: Mapping[str, Sequence[Sequence[object]] | str], *, hidden: 
             + "</Relationships>",
         }  # fmt: skip
         for n, (_, rows) in numbered:
-            content = rows if isinstance(rows, str) else "".join(f"<row>{''.join(map(_cell, row))}</row>" for row in rows)
-            parts[f"xl/worksheets/sheet{n}.xml"] = f'<worksheet xmlns="{_MAIN}"><sheetData>{content}</sheetData></worksheet>'
+            content = (
+                rows if isinstance(rows, str) else "".join(f"<row>{''.join(map(_cell, row))}</row>" for row in rows)
+            )
+            parts[f"xl/worksheets/sheet{n}.xml"] = (
+                f'<worksheet xmlns="{_MAIN}"><sheetData>{content}</sheetData></worksheet>'
+            )
         with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
             for part, content in parts.items():
                 archive.writestr(part, f'<?xml version="1.0" encoding="UTF-8"?>{content}')

@@ -189,13 +189,13 @@ UNUSABLE = {
     "words.csv": (lambda path: path.write_text("no\nnumbers\n"), "has no row of numbers among its first 2"),
     "gap.csv": (
         lambda path: path.write_text("1\nx\n2\n"),
-        "has text or a gap among its numbers, in line 2 ('x'); correct",
+        "has text among its rows in line 2 ('x'), where 1 rows would be lost; correct",
     ),
     "nan.csv": (
         lambda path: path.write_text("1\nnan\n" * 2000),
-        "has values that are not finite numbers, 2000 of 4000, the first in line 2;",
+        "has no number in line 2 ('nan'), where 1999 rows would be lost;",
     ),
-    "two.csv": (lambda path: path.write_text("1,2\n" * 2000), "has 2 columns (0, 1) and none is chosen"),
+    "two.csv": (lambda path: path.write_text("1.5,2.5\n" * 2000), "has 2 columns (0, 1) and none is chosen"),
     "objects.npy": (
         lambda path: np.save(path, np.array([{}]), allow_pickle=True),
         "is truncated, damaged or not a NumPy file",

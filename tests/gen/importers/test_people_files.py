@@ -15,8 +15,19 @@ from tests.gen.importers.file_writers import FS, X, excel
 from tests.gen.importers.people_files import ONE, OTHER_VALUES, PLAIN, REFUSED, RIGHT, THREE
 
 FACTORS = {"g": 9.80665, "mg": 9.80665e-3, "m/s2": 1.0, "mm/s2": 1e-3, "V": 1.0, None: 1.0}
-OPTIONS = {"column": "--channel", "variable": "--channel", "rate": "--rate", "unit": "--unit", "delimiter": "--delimiter"}
-OF_UNITS = ("its unit is taken as", "the given unit", "states no unit, and m/s2 is assumed", "its level is not absolute")
+OPTIONS = {
+    "column": "--channel",
+    "variable": "--channel",
+    "rate": "--rate",
+    "unit": "--unit",
+    "delimiter": "--delimiter",
+}
+OF_UNITS = (
+    "its unit is taken as",
+    "the given unit",
+    "states no unit, and m/s2 is assumed",
+    "its level is not absolute",
+)
 
 
 def write(path, content):
@@ -37,7 +48,9 @@ def test_a_file_is_read_as_it_was_written_and_its_unit_is_told(tmp_path, name):
     assert found.fs == fs
     assert found.unit == (unit or "m/s2")
     told = [note for note in found.warnings if any(words in note for words in OF_UNITS)]
-    assert len(told) == (0 if name in ("origin_names.txt", "stereo.wav") else 1)  # the unit is given, and the file states none
+    assert len(told) == (
+        0 if name in ("origin_names.txt", "stereo.wav") else 1
+    )  # the unit is given, and the file states none
     assert unit or any(words in told[0] for words in OF_UNITS[2:])
 
 
