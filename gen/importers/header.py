@@ -23,10 +23,9 @@ _CHANNEL = re.compile(r"[a-z]+_?\d+", re.IGNORECASE)  # cDAQ1Mod1/ai0
 _TIMES = re.compile(r"(?i:(?:x_value|time(?:stamp)?|zeit|temps|tiempo|tempo)(?![a-z]))|t\b")
 _SPECTRUM = re.compile(r"(?:fr[eé][qc]|order|ordnung)", re.IGNORECASE)
 _COMMON = re.compile(r"(?:y_unit_label|units?)\b[\s:=]*(.+)", re.IGNORECASE)
+_RATE_WORDS = r"(?:(?i:sampl(?:e|ing)[ _-]rate|sampling[ _-]frequency)|[fF]s)"
 _HERTZ = r"([kK]?[hH][zZ]|MHz|[kKM]?S/s|[kKM]?Sa/s|[kKM]?SPS)"
-_RATE = re.compile(
-    rf"(?:(?i:sampl(?:e|ing)[ _-]rate|sampling[ _-]frequency)|[fF]s)\s*(?:[\[(]\s*{_HERTZ}\s*[\])])?[\s:=;,]*([\d.,eE+-]+)\s*{_HERTZ}?[\s;,]*"
-)
+_RATE = re.compile(rf"{_RATE_WORDS}\s*(?:[\[(]\s*{_HERTZ}\s*[\])])?[\s:=;,]*([\d.,eE+-]+)\s*{_HERTZ}?[\s;,]*")
 _STEP = re.compile(r"Delta_X((?: [\d.,eE+-]+)+)")
 
 

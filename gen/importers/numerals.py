@@ -58,9 +58,9 @@ def block_of(texts: Iterable[str]) -> str | None:
 
 
 def readings(blocks: Sequence[str]) -> list[Form]:
-    """One form for each way to read all numbers of some blocks: one, none, or several that differ.
+    r"""One form for each way to read all numbers of some blocks: one, none, or several that differ.
 
-    >>> readings(["999,5\\n1.000,0\\n"]), readings(["0.512\\n1.024\\n"]), len(readings(["-1.234\\n567\\n"])), readings(["0,5\\n0.7\\n"])
+    >>> readings(["999,5\n1.000,0\n"]), readings(["0.512\n1.024\n"]), len(readings(["-1.234\n567\n"])), readings(["0,5\n0.7\n"])
     ([Form(thousands='.', point=',')], [Form(thousands='', point='.')], 2, [])
     """
     used = {mark for mark in _THOUSANDS if any(mark in block for block in blocks)}

@@ -142,7 +142,8 @@ def read_values(path: Path, place: Place) -> Values:
     found = _read(path, place)
     wrong = np.flatnonzero(~np.isfinite(found.values))
     if wrong.size:
-        message = f"has {wrong.size} samples of {found.values.size} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
+        count = f"{wrong.size} samples of {found.values.size}"
+        message = f"has {count} that are not finite numbers, the first is number {wrong[0] + 1}; export it again"
         raise UnusableError(message)
     return found
 

@@ -166,9 +166,11 @@ REFUSED = {
         "a.mat", FILES["only_variable.mat"], {"variable": "y*"}, "holds rpm, x, and no variable y*; name one with variable.",
     ),
     "decimal_commas": (
-        "a.csv", lambda path: path.write_text("t,x\n0,0,0,5\n0,1,-0,25\n"), {"column": 1}, "which may stand between columns or in numbers; give",
+        "a.csv", lambda path: path.write_text("t,x\n0,0,0,5\n0,1,-0,25\n"), {"column": 1},
+        "which may stand between columns or in numbers; give",
     ),
-    "one_column": ("a.csv", lambda path: path.write_text("x\n0,512\n-1,037\n0,200\n"), {"column": 0}, "which may stand between columns or in numbers; give"),
+    "one_column": ("a.csv", lambda path: path.write_text("x\n0,512\n-1,037\n0,200\n"), {"column": 0},
+        "which may stand between columns or in numbers; give"),
     "voltage": ("a.npy", FILES["values.npy"], {"unit": "V"}, "the unit is V and the sensitivity of the sensor is missing;"),
     "no_voltage": ("a.npy", FILES["values.npy"], {"sensitivity": 100.0}, "a sensitivity is given and the unit is m/s2, not V or mV;"),
 }  # fmt: skip
