@@ -18,10 +18,12 @@ bearing_text   a bearing on the command line
 signals        one recording of the user, in m/s^2
 conversion     from the unit of a file to m/s^2
 matlab         one variable of a MATLAB file
-text           tables in text
+text           tables in text: encoding, mark between columns, fields
 sheets         tables in Excel files
-columns        choice of a column, and the sample rate that times tell
+table          header, rows and notes of a table, whatever file it is in
 header         names, units and sample rate in the header of a table
+numerals       forms of numbers, and the one that suits a column
+columns        choice of a column, and the sample rate that times tell
 files          NumPy and WAV files; errors of libraries as sentences
 recordings     recordings, their checks, their division into records
 assemble       recordings written as a corpus
