@@ -188,14 +188,16 @@ def is_even(values: FloatArray) -> bool:
 
 
 def _resolution(values: FloatArray) -> float:
-    """Place of the last decimal of the last values; 0 if they are not decimals.
+    """Place of the last decimal of the last values, or of the bits of a floating-point number.
 
-    >>> _resolution(np.array([0.1, 0.23, 0.35])), _resolution(np.arange(9.0) / 7)
-    (0.01, 0.0)
+    >>> _resolution(np.array([0.1, 0.23, 0.35])), _resolution(np.arange(9.0) / 7) < 1e-14
+    (0.01, True)
     """
-    last = np.abs(values[-max(values.size // 10, 2) :])
+    last = values[-max(values.size // 10, 2) :] - values[0]
+    bits = 4 * float(np.spacing(np.abs(values).max()))
     units = (10.0**-place for place in range(-2, 12) if 10.0**-place <= last.max())
-    return next((unit for unit in units if np.all(np.abs(last / unit - np.round(last / unit)) < 1e-3)), 0.0)
+    close = (unit for unit in units if np.all(np.abs(last - unit * np.round(last / unit)) < max(1e-3 * unit, bits)))
+    return next(close, bits)
 
 
 def _rate_of(times: FloatArray) -> float | None:

@@ -13,7 +13,8 @@ from gen.importers.numerals import is_number, number_in
 
 SECONDS = {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "μs": 1e-6, "min": 60.0, "h": 3600.0}
 _OTHERS = re.compile(
-    r"counts?|lsb|adc|raw|db|gal|ips|volts?|[mc]?m/s|in/s|[uμ]m|mm|mils?|rpm|k?hz|°c|k?pa|bar|k?n|%", re.IGNORECASE
+    r"velocity|displacement|temperature|speed|tacho|counts?|lsb|adc|raw|db|gal|ips|volts?|[mc]?m/s|in/s|[uμ]m|mm|mils?|rpm|k?hz|°c|k?pa|bar|k?n|%",
+    re.IGNORECASE,
 )  # as last word of a name
 _LONGEST_UNIT = 12
 _UNIT_ROWS = 3  # last lines in which a row of units is searched: names, units, comments

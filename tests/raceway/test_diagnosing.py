@@ -432,6 +432,23 @@ def test_a_speed_below_one_turn_a_second_may_be_in_hertz(rpm, meant, model, reco
     assert f"--rpm {rpm} is less than one turn a second; if it is Hz, give --rpm {meant}." in found["warnings"]
 
 
+def test_an_assumed_unit_is_told_in_text_in_json_and_on_the_page(model, recordings, tmp_path):
+    path, page = write_csv(tmp_path / "r.csv", recordings["inner"][0]), tmp_path / "r.html"
+    options = (path, "--bearing", "6205", "--rpm", 1750, "--model", model)
+    assumed = "r.csv: it states no unit, and m/s2 is assumed."
+    assert assumed in told(*options)["warnings"]
+    assert f"warning: {assumed.removeprefix('r.csv: ')}" in call(*options, "-o", page).stderr
+    assert assumed in page.read_text(encoding="utf-8")
+
+
+def test_the_mark_between_columns_settles_what_commas_mean(model, recordings, tmp_path):
+    signal, rpm = recordings["inner"]
+    (tmp_path / "r.csv").write_text("".join(f"{x:.5f}\n" for x in signal).replace(".", ","), encoding="utf-8")
+    options = (tmp_path / "r.csv", "--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model)
+    assert "give the mark between columns with --delimiter." in call(*options).stderr
+    assert told(*options, "--delimiter", "semicolon")["verdict"] == "inner"
+
+
 def test_a_missing_rate_is_told_before_anything_is_loaded(tmp_path):
     np.savetxt(tmp_path / "r.csv", np.zeros(600))
     done = subprocess.run(

@@ -136,6 +136,7 @@ RIGHT = {  # file, content or writer, what is given, what is found beside X: sam
     "excel_days.csv": (text(46000.5 + T / 86400, X, form=".14g", header="Time;x [g]\n"), AT, FS, "g"),
     "coarse_times.csv": (text(np.round(T, 3), X, header="t [s];x [g]\n"), {}, None, "g"),
     "coarse_times_of_a_long_one.csv": (text(np.round(np.arange(6400) / FS, 4), np.tile(X, 10), header="t [s];x [g]\n"), {}, FS, "g"),
+    "epoch.csv": (text([f"{1764000000 + t:.6f}" for t in T], X, header="t [s];x [g]\n"), {}, FS, "g"),
     "clock.csv": (text(stamped("10:{:02d}:{:02d}.{:06d}"), X, header="Time;x [g]\n"), AT, FS, "g"),
     "dates.csv": (text(stamped("2026-01-05 10:{:02d}:{:02d},{:03d}"), X, header="Time;x [g]\n"), AT, FS, "g"),
     "written_dates.csv": (text(['"Nov 24, 2026"'] * N, Y, X, mark=",", header='Date,FE [g],DE [g]\n'), {"column": "DE", **AT}, FS, "g"),
@@ -306,7 +307,7 @@ REFUSED = {  # file, content or writer, what is given, part of the sentence
     "velocity.csv": (text(T, X, header="t [s];v [mm/s]\n"), {},
         "states 1 v [mm/s] in its header, which is no unit that is read; give the unit"),
     **{f"unit_{n}.csv": (text(T, X, header=f"t [s];{name}\n"), {}, UNIT) for n, name in enumerate(
-        ["x [counts]", "x (dB)", "x [A]", "x [Gal]", "x [in/s]", "x/in/s", "x [G]", "x [g rms]", "s (µm)", "x []", "accel_g",
+        ["x [counts]", "x (dB)", "x [A]", "x [Gal]", "x [in/s]", "x/in/s", "x [G]", "x [g rms]", "s (µm)", "x []", "accel_g", "Velocity",
         "Beschl. m/s²",
          "raw counts", "x (filtered)", "Acc V", "S/mV/g", "x [m/s]", "Spannung [Volt]"])},
     "unit_row.csv": (text(T, X, header="t;x\ns;counts\n"), {}, UNIT),
