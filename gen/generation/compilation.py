@@ -79,7 +79,7 @@ def needed_shapes(recipe: Recipe) -> list[Shape]:
 
 
 def _sample(recipe: Recipe) -> Iterator[Scenario]:
-    yield from draw_scenarios(recipe, 0, min(SAMPLE, recipe.n_records))
+    yield from draw_scenarios(recipe, 0, SAMPLE)
     for number in range(SAMPLE, recipe.n_records, -(-recipe.n_records // SAMPLE)):
         yield from draw_scenarios(recipe, number, number + 1)
 

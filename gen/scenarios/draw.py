@@ -40,7 +40,7 @@ from gen.support.units import decibel_to_ratio, percent_to_share
 def draw_scenarios(
     recipe: Recipe, first: int = 0, stop: int | None = None, *, fault_tries: Mapping[int, int] | None = None
 ) -> list[Scenario]:
-    """Draw the scenarios of the records ``first`` to ``stop`` (exclusive) of a corpus.
+    """Draw the scenarios of the records ``first`` to ``stop`` (exclusive) of a corpus, at most up to its last.
 
     The scenario of a record does not depend on the range. ``fault_tries`` gives, by the number of a specimen, how many faults are drawn
     and left before the one that it has; 0 for specimens that are not in it.
@@ -48,12 +48,13 @@ def draw_scenarios(
     Raises
     ------
     RecipeError
-        If the recipe does not have all these records, a drawn bearing cannot exist, or a drawn spall does not fit it.
+        If the recipe has none of these records, a drawn bearing cannot exist, or a drawn spall does not fit it.
     """
-    numbers = range(first, recipe.n_records if stop is None else stop)
-    if not 0 <= numbers.start < numbers.stop <= recipe.n_records:
+    numbers = range(first, recipe.n_records if stop is None else min(stop, recipe.n_records))
+    if first < 0 or not numbers:
         raise RecipeError(
-            f"{recipe.name}: has no records {first} to {numbers.stop} (exclusive); it has {recipe.n_records}, numbered from 0."
+            f"{recipe.name}: has no records {first} to {numbers.stop if stop is None else stop} (exclusive); it has "
+            f"{recipe.n_records}, numbered from 0."
         )
     tries = fault_tries or {}
     first_specimen, last_specimen = recipe.specimen_of(numbers[0]), recipe.specimen_of(numbers[-1])
