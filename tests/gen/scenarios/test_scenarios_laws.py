@@ -74,7 +74,7 @@ def test_any_range_of_records_is_a_piece_of_the_whole(recipe_with, sampling):
     recipe = recipe_with({"corpus.sampling": sampling})
     whole = draw_scenarios(recipe)
     assert len(whole) == recipe.n_records
-    for first, stop in ((0, 1), (5, 6), (7, 12), (23, 24), (20, 100), (24, 30)):
+    for first, stop in ((0, 1), (5, 6), (7, 12), (23, 24), (20, 100)):
         assert draw_scenarios(recipe, first, stop) == whole[first:stop]
 
 
