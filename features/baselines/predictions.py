@@ -2,8 +2,8 @@
 
 ``probabilities of each channel -> calibrated -> combined by record and by recording -> answers``
 
-A record far from its healthy reference in colour is less probably healthy, and is never answered so: many faults change the colour of a
-machine and show no line.
+A record far from its healthy reference in colour is never answered healthy: many faults change the colour of a machine and show no
+line. Its probabilities stay, because states of the machine change the colour too, and tell of no fault.
 """
 
 from dataclasses import dataclass, replace
@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from features.baselines.calibration import Calibration, calibrate, combine
-from features.baselines.colour import Colour, in_colour
+from features.baselines.colour import Colour
 from features.faults import HEALTHY
 from features.signal.rows import FloatArray, IntArray
 from gen.corpus import FAULTS
@@ -98,8 +98,7 @@ def predictions(
 
     def coloured(pooled: FloatArray, numbers: IntArray) -> Predictions:
         distance = np.zeros(len(pooled)) if colour is None else colour.distances(numbers)
-        in_it = pooled if colour is None else in_colour(pooled, np.array(classes) == HEALTHY, distance)
-        return Predictions(classes, in_it, calibration.threshold, np.arange(len(pooled)), distance)
+        return Predictions(classes, pooled, calibration.threshold, np.arange(len(pooled)), distance)
 
     return replace(coloured(records, every), recording=recording, by_recording=coloured(whole, recording))
 

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from features.baselines.calibration import UNCALIBRATED
-from features.baselines.colour import COUNTED, DECIBELS, SCATTER, Colour, distance, in_colour, scatter_of
+from features.baselines.colour import COUNTED, DECIBELS, SCATTER, Colour, distance, scatter_of
 from features.baselines.predictions import UNSURE, predictions
 
 CLASSES = ("healthy", "inner", "outer")
@@ -36,22 +36,18 @@ def test_the_scatter_is_that_of_the_references_if_it_is_larger_than_usual():
     assert scatter_of(np.stack([TILT, TILT, 30 * TILT])) == pytest.approx(29 * distance(TILT))
 
 
-@given(st.floats(0, 20), st.floats(0, 20))
-def test_a_stranger_colour_is_less_probably_healthy_and_tells_no_class_of_fault(one, other):
-    given_one, given_other = (
-        in_colour(SURE * [1, 1, 2], np.array([1, 0, 0], bool), np.array([d])) for d in (one, other)
+@given(st.floats(0, 20))
+def test_a_strange_colour_moves_no_probability(d):
+    found = predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(d * SCATTER))
+    np.testing.assert_array_equal(
+        found.probabilities, predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED).probabilities
     )
-    assert np.sign(np.round(given_one - given_other, 12))[0, 0] in (0, np.sign(other - one))
-    np.testing.assert_allclose(given_one[:, 2] / given_one[:, 1], 2)
 
 
 def test_healthy_is_answered_near_the_reference_alone():
     for decibels, answer in ((0.0, "healthy"), (0.9 * SCATTER, "healthy"), (1.1 * SCATTER, UNSURE)):
         found = predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(decibels))
         assert found.answers == (answer,)
-    assert predictions(SURE, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(4 * SCATTER)).predicted != (
-        "healthy",
-    )
     fault = SURE[:, ::-1]
     assert predictions(fault, CLASSES, np.array([0]), UNCALIBRATED, colour=coloured(4 * SCATTER)).answers == ("outer",)
 
