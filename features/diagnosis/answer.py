@@ -347,7 +347,7 @@ def _conclude(judged: list[Judged], found: Found, given: Given, strange: float |
     if why:
         sentence = f"Unsure ({candidates(first.probabilities)}): {why}; {told}."
     else:
-        sentence = answer_in_words(verdict, first.probabilities[verdict], first.lines) + f"; {told}."
+        sentence = answer_in_words(verdict, first.probabilities, first.lines) + f"; {told}."
         advice = (WATCH,) if verdict == HEALTHY and first.lines else ()
     return Diagnosis(
         verdict=verdict,

@@ -8,6 +8,8 @@ A class is answered if the classifier is sure of it and the lines do not tell an
 - "Healthy" falls to plain lines of a part: a fundamental and a harmonic, or three harmonics, one of them 15 dB above the
   floor. From a probability of .85 on they must be 25 dB above it, since healthy bearings have faint lines of all parts. It
   also falls to a strange colour, if there is a healthy recording to compare with.
+- Where the classifier says healthy, the strongest family is answered in its place if its fundamental and three further
+  harmonics stand out, one of them 20 dB above the floor: lines as plain as these are an answer of their own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -19,6 +21,7 @@ from features.faults import CLASSES, HEALTHY, SHAFT, SIDES
 
 PLAIN = 15.0  # dB, level of lines that contradict a class
 OBVIOUS = 25.0  # dB, the same for a class of which the classifier is sure
+ANSWER = 20.0  # dB, level of a family of lines that is answered although the classifier says healthy
 SURE = 0.85  # probability
 
 
@@ -31,6 +34,8 @@ def judge(
     """
     likely = max(probabilities, key=lambda name: probabilities[name])
     families = by_family(lines)
+    if likely == HEALTHY and families and _answers(next(iter(families.values()))):
+        return next(iter(families)), ""
     if likely == HEALTHY and distance > 1:
         return UNSURE, (
             f"healthy is the likeliest, but the spectral colour differs {distance:.1f} times as much from that of the healthy recording "
@@ -70,6 +75,13 @@ def _foreign_sidebands(lines: Sequence[Line]) -> str:
 def _plain(lines: Sequence[Line], level: float) -> bool:
     harmonics = {line.harmonic for line in lines if not line.side}
     return len(harmonics) >= (2 if 1 in harmonics else 3) and max(line.level for line in lines) >= level
+
+
+def _answers(lines: Sequence[Line]) -> bool:
+    """Whether the lines of a family are plain enough to be an answer without the classifier."""
+    harmonics = {line.harmonic for line in lines if not line.side}
+    plain = 1 in harmonics and len(harmonics) >= 4 and max(line.level for line in lines if not line.side) >= ANSWER
+    return plain and not _foreign_sidebands(lines)
 
 
 def _doubt(families: Mapping[str, Sequence[Line]], threshold: float) -> str:

@@ -67,9 +67,13 @@ def candidates(probabilities: Mapping[str, float], number: int = 2) -> str:
     return ", ".join(f"{name} {probabilities[name]:.2f}" for name in ranked)
 
 
-def answer_in_words(verdict: str, probability: float, lines: Sequence[Line]) -> str:
+def answer_in_words(verdict: str, probabilities: Mapping[str, float], lines: Sequence[Line]) -> str:
     """Such as "Inner race fault (probability 0.94): BPFI at 5.40 orders stands 18 dB above the floor"."""
-    return f"{CLASSES[verdict].words} (probability {probability_in_words(probability)}): {reasons(verdict, lines)}"
+    likely = max(probabilities, key=lambda name: probabilities[name])
+    told = f"probability {probability_in_words(probabilities[likely])}"
+    if likely == verdict:
+        return f"{CLASSES[verdict].words} ({told}): {reasons(verdict, lines)}"
+    return f"{CLASSES[verdict].words}: {reasons(verdict, lines)}, although the classifier alone says {likely} ({told})"
 
 
 def pair_in_words(pair: Pair, given: Given, others: int) -> str:

@@ -8,7 +8,8 @@ from features.diagnosis import Given, Pair, Recorded
 from features.diagnosis.answer import LONGEST, Judged, _conclude, _usable
 from features.diagnosis.evidence import Line
 from features.diagnosis.search import Found
-from features.diagnosis.verdict import OBVIOUS, PLAIN, SURE, judge
+from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
+from features.diagnosis.wording import answer_in_words
 from features.indicators import Orders
 from features.recording_table import windows_of
 from gen.corpus import FAULTS
@@ -64,6 +65,29 @@ def test_a_fault_needs_lines_of_its_own_and_balls_none_of_another_part(name, lin
 )
 def test_healthy_falls_to_plain_lines_and_if_it_is_sure_to_obvious_ones(likely, lines, expected):
     assert judge(probabilities("healthy", likely), 0.5, lines)[0] == expected
+
+
+COMB = [line("outer", harmonic, level=ANSWER + 1 if harmonic == 2 else 12.0) for harmonic in (1, 2, 3, 5)]
+
+
+@pytest.mark.parametrize("likely", [0.4, 0.97])
+@pytest.mark.parametrize("distance", [0.0, 3.0])
+def test_lines_that_plain_are_answered_although_the_classifier_says_healthy(likely, distance):
+    assert judge(probabilities("healthy", likely), 0.5, COMB, distance) == ("outer", "")
+    assert judge(probabilities("inner", 0.97), 0.5, COMB)[0] == UNSURE
+    for missing in range(4):
+        fewer = [one for number, one in enumerate(COMB) if number != missing]
+        assert judge(probabilities("healthy", likely), 0.5, fewer, distance)[0] in ("healthy", UNSURE)
+    of_ball = [one._replace(fault="ball") for one in COMB]
+    assert judge(probabilities("healthy", likely), 0.5, of_ball)[0] == "ball"
+    foreign = [*of_ball, line("ball", level=PLAIN + 5, side="shaft")]
+    assert judge(probabilities("healthy", likely), 0.5, foreign)[0] in ("healthy", UNSURE)
+
+
+def test_an_answer_of_the_lines_names_what_the_classifier_says():
+    told = answer_in_words("outer", probabilities("healthy", 0.76), COMB)
+    assert told.startswith("Outer race fault: ")
+    assert told.endswith("although the classifier alone says healthy (probability 0.76)")
 
 
 def test_below_the_threshold_the_reason_names_the_strongest_lines():
