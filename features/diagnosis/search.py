@@ -42,6 +42,7 @@ TURNS = 4.0  # of the shaft in a window at least
 WIDER = (0.5, 1.7)  # range of the speeds that are searched over those that are given
 STRONG_COMB = 3.0  # standard deviations of a comb that has to be explained
 SHAFT_BEHIND = CLEAR_MARGIN  # standard deviations by which the shaft may fit another speed better
+SHAFT_TIE = 0.5  # standard deviations by which two speeds fit the shaft alike
 MOST_PAIRS = 4  # that are told apart
 SAME_ORDERS = 0.01  # relative; bearings with orders as near as this are one
 STRANGE_ORDERS = (1.5, 10.0)  # in which a comb that belongs to no part is searched
@@ -169,8 +170,9 @@ class _Grid(NamedTuple):
 def find_pairs(spectra: LevelSpectra, given: Given) -> Found:
     """Pairs that explain the lines of a recording.
 
-    With one bearing and one speed, that pair is the answer unless the lines clearly tell another speed within 8 %. Otherwise
-    all pairs are named that come within 1.5 standard deviations of the best, up to four.
+    With one bearing and one speed, that pair is the answer unless the lines clearly tell another speed within 8 %: in its
+    place if the shaft tells so too, and else beside it. Otherwise all pairs are named that come within 1.5 standard
+    deviations of the best, up to four.
     """
     grid = _grid(spectra, given)
     (low, high), rates, evidence = given.rates, grid.rates, grid.evidence
@@ -178,7 +180,7 @@ def find_pairs(spectra: LevelSpectra, given: Given) -> Found:
     error = np.log(rates / low) if low == high else np.zeros(len(rates))
     pairs = grid.best(np.where(within, evidence - PENALTY * (error / LABEL_TOLERANCE) ** 2, -np.inf))
     if given.known:
-        pairs = [_corrected(grid, pairs[0], clear=len(pairs) == 1)]
+        pairs = _corrected(grid, pairs[0], clear=len(pairs) == 1)
     names = list(grid.alike)
     own = max(evidence[names.index(pair.bearing), grid.near(pair.rate)].max() for pair in pairs)
     strong = np.where(grid.combs.max(axis=1) > STRONG_COMB, evidence, -np.inf)
@@ -186,8 +188,12 @@ def find_pairs(spectra: LevelSpectra, given: Given) -> Found:
     return Found(tuple(pairs), tuple(elsewhere))
 
 
-def _corrected(grid: _Grid, best: Pair, *, clear: bool) -> Pair:
-    """The best pair if it is the clear one, or the best of all speeds and not only near the label; else that of the label."""
+def _corrected(grid: _Grid, best: Pair, *, clear: bool) -> list[Pair]:
+    """The pair of the label, unless the best one is clear, or the best of all speeds and not only near the label.
+
+    Combs of a wrong bearing are found at wrong speeds too. So the best pair stands alone only if its speed fits the
+    harmonics of the shaft as well as the label does.
+    """
     label, shaft, (evidence,) = grid.given.rates[0], grid.shaft, grid.evidence
     place = int(np.abs(grid.rates - best.rate).argmin())
     clear &= bool(shaft.max() - shaft[place] < SHAFT_BEHIND)
@@ -195,7 +201,11 @@ def _corrected(grid: _Grid, best: Pair, *, clear: bool) -> Pair:
         grid.near(best.rate)[evidence.argmax()] and evidence.max() > evidence[grid.near(label)].max() + CLEAR_MARGIN
     )
     agrees = abs(best.rate - label) <= DISAGREEMENT * best.uncertainty
-    return best if (clear or highest) and not agrees else best._replace(rate=label)
+    at_label = best._replace(rate=label)
+    if agrees or not (clear or highest):
+        return [at_label]
+    fits = shaft[place] > shaft[grid.near(label) & ~grid.near(best.rate)].max(initial=-np.inf) - SHAFT_TIE
+    return [best] if fits else [at_label, best]
 
 
 def _grid(spectra: LevelSpectra, given: Given) -> _Grid:

@@ -61,6 +61,14 @@ def test_a_speed_a_few_per_cent_off_is_corrected_and_explains_the_lines():
     assert answer.elsewhere == ()
 
 
+@pytest.mark.parametrize("error", [-0.055, -0.04])
+def test_a_comb_of_a_wrong_bearing_does_not_move_a_speed_that_the_shaft_confirms(error):
+    """Its order is that of another bearing, so that it fits BPFO at another speed."""
+    answer = found(recording(ORDER["bpfo"] * (1 + error), 5, shaft=1.0), Given({"nine": NINE}, (RATE, RATE)))
+    assert answer.pairs[0].rate == RATE
+    assert answer.pairs[1].rate == pytest.approx(RATE * (1 + error), rel=0.01)
+
+
 @pytest.mark.parametrize("shaft", [0.0, 0.5])
 def test_noise_and_shafts_alone_leave_the_label_and_nothing_to_explain(shaft):
     for seed in range(20):
