@@ -12,7 +12,7 @@ import xarray as xr
 
 from features.band import DEFAULT_BAND, Band
 from features.baselines.records import FloatArray, feature_rows, record_digests, title_of
-from features.baselines.references import by_rig, healthy_records
+from features.baselines.references import SAME_SPEED, by_rig, healthy_records
 from features.indicators import Orders
 from features.recording_speeds import recording_numbers
 from features.recording_table import recording_table
@@ -20,7 +20,6 @@ from gen.corpus import UNKNOWN_CODE, corpus_name, open_corpus
 from gen.support.errors import CorpusError
 
 FILE = "recording_file"  # attribute of the table of a reference recording
-SAME_SPEED = 0.02  # relative: speeds within it are one speed, as in the search for lines
 SAME_BEARING = 0.02  # relative: orders within it are those of one bearing
 OTHER_BEARING = "No bearing of the reference has the fault orders of a tested one: check that it is of the same rig."
 
@@ -38,8 +37,10 @@ class Compared(NamedTuple):
         count = self.reference.sizes["record"]
         whose = "the healthy records of their rig" if by_rig(self.table, self.reference) else "all healthy records"
         left = f"; {self.left_out:,} tested records that belong to it are left out" if self.left_out else ""
+        apart = _apart_in_speed(self.table, self.reference)
+        speed = f", those nearest in speed, which are up to {100 * apart:.0f} % away" if apart > SAME_SPEED else ""
         other = "" if _share_a_bearing(self.table, self.reference) else f" {OTHER_BEARING}"
-        return f"Records are compared with {whose} in the reference, which has {count:,}{left}.{other}"
+        return f"Records are compared with {whose} in the reference, which has {count:,}{speed}{left}.{other}"
 
 
 def choose_reference(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> Compared:
@@ -74,6 +75,14 @@ def choose_reference(table: xr.Dataset, reference: xr.Dataset, features: Sequenc
         )
         raise CorpusError(message)
     return Compared(table.isel(record=tested), healthy, int((~tested).sum()))
+
+
+def _apart_in_speed(table: xr.Dataset, reference: xr.Dataset) -> float:
+    """Largest relative distance of a tested speed from the nearest one of the reference; 0 if a table has no speeds."""
+    if "shaft_rate" not in table or "shaft_rate" not in reference:
+        return 0.0
+    tested, its = (np.unique(one["shaft_rate"].values) for one in (table, reference))
+    return float(np.max(np.min(np.abs(its / tested[:, None] - 1), axis=1)))
 
 
 def _share_a_bearing(table: xr.Dataset, reference: xr.Dataset) -> bool:

@@ -31,6 +31,7 @@ from gen.support.errors import CorpusError
 
 HEALTHY_CODE = FAULTS.index(HEALTHY)
 RELATIVE = "relative"  # group of the features of a relative table
+SAME_SPEED = 0.02  # relative: speeds within it are one speed, as in the search for lines
 NEAREST = 3  # recordings, nearest in speed, that a virtual reference is chosen from
 
 
@@ -80,7 +81,7 @@ def relative_table(table: xr.Dataset, features: Sequence[str], references: Float
 
 
 def relative_to(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str]) -> xr.Dataset:
-    """`relative_table` of records whose reference is the mean of the healthy records of a reference table.
+    """`relative_table` of records whose reference is the mean of the healthy records of a reference table that are nearest in speed.
 
     If the reference has healthy records of each rig of the table, a record is compared with those of its rig, else with all of them.
 
@@ -89,7 +90,8 @@ def relative_to(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str
     CorpusError
         If a table lacks a feature, the reference has no healthy record, or their sample rates cannot be compared.
     """
-    healthy, number, members = _healthy_of(table, reference)
+    healthy, *sets = _healthy_of(table, reference)
+    number, members = _nearest_in_speed(table, healthy, *sets)
     values = feature_rows(healthy, (*features, *ENERGIES)).to_numpy()
     return relative_table(table, features, np.stack([mean_row(values[rows]) for rows in members])[number])
 
@@ -105,8 +107,9 @@ def colour_of(table: xr.Dataset, reference: xr.Dataset) -> Colour:
     healthy, number, members = _healthy_of(table, reference)
     energies, recording = feature_rows(healthy, COUNTED).to_numpy(), recording_numbers(healthy)
     of_recordings = [group_means(energies[rows], recording[rows]) for rows in members]
-    references = np.stack([mean_row(energies[rows]) for rows in members])
-    changes = feature_rows(table, COUNTED).to_numpy() - references[number]
+    near, nearest = _nearest_in_speed(table, healthy, number, members)
+    references = np.stack([mean_row(energies[rows]) for rows in nearest])
+    changes = feature_rows(table, COUNTED).to_numpy() - references[near]
     return Colour(changes[None], np.array([scatter_of(one) for one in of_recordings])[None, number])
 
 
@@ -118,6 +121,22 @@ def _healthy_of(table: xr.Dataset, reference: xr.Dataset) -> tuple[xr.Dataset, I
         return healthy, np.zeros(table.sizes["record"], np.intp), [np.ones(healthy.sizes["record"], np.bool_)]
     rigs, number = np.unique(table["rig"].values, return_inverse=True)
     return healthy, number, [healthy["rig"].values == rig for rig in rigs]
+
+
+def _nearest_in_speed(
+    table: xr.Dataset, healthy: xr.Dataset, number: IntArray, members: list[NDArray[np.bool_]]
+) -> tuple[IntArray, list[NDArray[np.bool_]]]:
+    """The sets of `_healthy_of` cut down to the records nearest in speed to each tested one, within `SAME_SPEED`."""
+    if "shaft_rate" not in table or "shaft_rate" not in healthy:
+        return number, members
+    keys = np.stack([number, np.log(table["shaft_rate"].values)])
+    pairs, number = np.unique(keys, axis=1, return_inverse=True)
+    speed = np.log(healthy["shaft_rate"].values)
+    nearest = list[NDArray[np.bool_]]()
+    for rig, tested in pairs.T:
+        apart = np.where(members[int(rig)], np.abs(speed - tested), np.inf)
+        nearest.append(members[int(rig)] & ~(apart > apart.min() + SAME_SPEED))
+    return number.reshape(-1), nearest
 
 
 def healthy_records(reference: xr.Dataset) -> xr.Dataset:

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from features import feature_table
 from features.baselines import Model, predict
 from features.baselines.reference_choice import OTHER_BEARING, check_durations, choose_reference, recording_reference
-from features.baselines.references import ENERGIES, NEAREST, relative_names, relative_to, virtual_references
+from features.baselines.references import ENERGIES, NEAREST, SAME_SPEED, relative_names, relative_to, virtual_references
 from features.faults import EVIDENCE
 from features.indicators import Orders
 from features.recording_speeds import recording_numbers
@@ -21,6 +21,7 @@ from gen.support.errors import CorpusError
 from raceway.cli import cli
 
 LINES = (*EVIDENCE, "raw_kurtosis")
+RATES = {"tested": 25.0, "far": 30.0}
 ORDERS = Orders(ftf=0.4, bpfo=3.58, bpfi=5.42, bsf=2.36)
 
 
@@ -129,6 +130,7 @@ def test_healthy_records_without_features_are_no_reference(table):
 
 
 def test_records_are_compared_with_their_own_rig_if_the_reference_has_all_rigs(table):
+    table = table.assign(shaft_rate=("record", np.full(table.sizes["record"], 25.0)))
     healthy = table["fault"].values == 0
     lines = table["features"].values[:, : len(LINES)]
     rows = slice(len(LINES), 2 * len(LINES))
@@ -139,6 +141,27 @@ def test_records_are_compared_with_their_own_rig_if_the_reference_has_all_rigs(t
     some = table.isel(record=table["rig"].values > 0)
     of_all = relative_to(table, some, LINES)["features"].values[:, rows]
     np.testing.assert_allclose(of_all, lines - lines[healthy & (table["rig"].values > 0)].mean(axis=0))
+
+
+def test_records_are_compared_with_the_healthy_ones_nearest_in_speed(table):
+    lines = table["features"].values[:, : len(LINES)]
+    found = relative_to(table, table, LINES)["features"].values[:, len(LINES) : 2 * len(LINES)]
+    speed, rig = np.log(table["shaft_rate"].values), table["rig"].values
+    for row in range(table.sizes["record"]):
+        known = np.flatnonzero((table["fault"].values == 0) & (rig == rig[row]))
+        apart = np.abs(speed[known] - speed[row])
+        near = known[apart <= apart.min() + SAME_SPEED]
+        np.testing.assert_allclose(found[row], lines[row] - lines[near].mean(axis=0))
+
+
+def test_the_distance_in_speed_from_the_reference_is_told(table):
+    at = {
+        name: table.assign(shaft_rate=("record", np.full(table.sizes["record"], rate))) for name, rate in RATES.items()
+    }
+    assert "nearest in speed" not in choose_reference(at["tested"], at["tested"], LINES).sentence
+    moved = at["far"].isel(record=slice(None, None, 2))
+    moved["features"].values[:] += 1.0
+    assert "those nearest in speed, which are up to 20 % away" in choose_reference(at["tested"], moved, LINES).sentence
 
 
 def test_faulty_records_of_a_reference_are_not_used(table, model):
