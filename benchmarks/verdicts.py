@@ -3,7 +3,8 @@
 ``python -m benchmarks.verdicts REAL`` with REAL a folder that holds ``cwru``, ``mfpt`` and ``uestc`` as their providers publish them; the
 model is the reference model. "Wrong" is the share of recordings with another fault than the true one, or any on a healthy machine, and
 "called healthy" that of faulty ones among all. The second table shows, at the right speed and bearing, how often the lines agree with the
-class that the classifier is sure of.
+class that the classifier is sure of. ``--missed`` prints instead how many faulty recordings are called healthy by their length, which is
+`MISSED` of `features.diagnosis.wording`.
 """
 
 import argparse
@@ -33,6 +34,7 @@ SEARCHED = (0.6, 1.4)  # range of speeds over the label
 WITHOUT_FAULT = ("noise", "tones", "shaft", "modulated", "gears")
 ANSWERS = ("right", UNSURE, "wrong", "called healthy")
 
+LENGTHS = (0.5, 2.0, 10.0)  # s, of the recordings of `missed`
 FS, SECONDS = 12_000.0, 3.0  # of the signals without a fault
 SEEDS = 20
 
@@ -114,12 +116,36 @@ def diagnosed(corpus: Path, model: Model) -> Iterator[tuple[str, str, Diagnosis]
             )
 
 
+def missed(real: Path, model: Model) -> Iterator[str]:
+    """Rows of faulty recordings called healthy: by length [s], without a reference and with each healthy recording of the set in turn."""
+    called: dict[tuple[float, bool], list[bool]] = {}
+    with tempfile.TemporaryDirectory() as name:
+        for corpus in real_corpora(real, Path(name)).values():
+            each = list(recordings(corpus))
+            for seconds in LENGTHS:
+                cut = [Recorded({"": one.x.ravel()[: round(seconds * one.fs)]}, one.fs) for one in each]
+                healthy = [x for x, one in zip(cut, each, strict=True) if one.fault == HEALTHY]
+                for x, one in zip(cut, each, strict=True):
+                    given = Given({"own": Orders(*map(np.asarray, one.orders))}, (one.label, one.label))
+                    for references in [(), *((reference,) for reference in healthy)] if one.fault != HEALTHY else []:
+                        verdict = diagnose_recording(x, given, model, healthy=references).verdict
+                        called.setdefault((seconds, bool(references)), []).append(verdict == HEALTHY)
+    for seconds in LENGTHS:
+        shares = [f"{sum(called[seconds, one])} of {len(called[seconds, one])}" for one in (False, True)]
+        yield f"| {seconds:g} | {' | '.join(shares)} |"
+
+
 def main() -> None:
-    """Print both tables."""
+    """Print both tables, or that of the faults that are missed."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("real", type=Path)
+    parser.add_argument("--missed", action="store_true", help="faulty recordings called healthy, by their length")
     options = parser.parse_args()
     model, _ = load_reference_model()
+    if options.missed:
+        print("| seconds | called healthy, no reference | with one healthy recording |\n|---:|---:|---:|")
+        print(*missed(options.real, model), sep="\n")
+        return
     together: dict[str, Counter[str]] = {}
     agreed: Counter[tuple[str, str]] = Counter()
     print(f"| set | given | diagnoses | {' | '.join(f'{name}, %' for name in ANSWERS)} |")

@@ -27,6 +27,7 @@ from features.diagnosis.wording import (
     answer_in_words,
     candidates,
     different_classes,
+    missed_faults,
     pair_in_words,
     speed_warning,
     unexplained,
@@ -106,6 +107,8 @@ class Diagnosis(Shown):
         Reasons to read the diagnosis with care, one sentence each.
     windows
         Number of windows that the classifier used.
+    missed
+        Share of faulty recordings of about this length, on three machines, that were called healthy; NaN unless the verdict is healthy.
     levels
         Of each channel of the recording, then of the healthy ones.
     spectrum
@@ -126,6 +129,7 @@ class Diagnosis(Shown):
     explanations: tuple[Pair, ...] = ()
     elsewhere: tuple[Pair, ...] = ()
     windows: int = 0
+    missed: float = np.nan
     levels: tuple[Levels, ...] = ()
     spectrum: BandSpectrum | None = field(default=None, compare=False)
 
@@ -181,8 +185,12 @@ def diagnose_recording(
     judged = [_judge(used, pair, model, references) for pair in found.pairs]
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
     diagnosis = _conclude(judged, found, given, strange)
-    advice = diagnosis.advice + (_advice(used, bool(healthy)) if diagnosis.verdict == UNSURE else ())
+    advice = diagnosis.advice + (_advice(used, bool(healthy)) if diagnosis.verdict in (UNSURE, HEALTHY) else ())
     diagnosis = replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings))
+    if diagnosis.verdict == HEALTHY:
+        missed, of = missed_faults(_duration(used), compared=bool(healthy))
+        told = f"{missed} of {of} faulty recordings of about this length from three machines were called healthy"
+        diagnosis = replace(diagnosis, missed=missed / of, sentence=f"{diagnosis.sentence[:-1]}; {told}.")
     return _with_levels(diagnosis, shown)
 
 
@@ -207,7 +215,7 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
     kept = {name: signals[name] for name, quality in checked.items() if not quality.useless}
     if not kept:
         return recording, next(iter(checked.values()))
-    duration = max(map(len, recording.signals.values())) / recording.fs
+    duration = _duration(recording)
     warnings = [f"Only the first {LONGEST:g} s of {duration:,.0f} s are used."] if duration > LONGEST else []
     warnings += [f"Channel {name} is left out, since {checked[name].useless}." for name in checked.keys() - kept.keys()]
     several = len(signals) > 1
@@ -322,8 +330,13 @@ def _rows(recording: Recorded, channel: str, pair: Pair, model: "Model | PlainMo
     return values[:, [names.index(name) for name in model.features]]
 
 
+def _duration(recording: Recorded) -> float:
+    """Length of a recording [s]."""
+    return max(map(len, recording.signals.values())) / recording.fs
+
+
 def _advice(recording: Recorded, compared: bool) -> tuple[str, ...]:
-    duration = max(map(len, recording.signals.values())) / recording.fs
+    duration = _duration(recording)
     longer = f"Record longer: {ENOUGH:g} s instead of {duration:.2g} s."
     reference = "Give a recording of the machine with a healthy bearing (--healthy)."
     return tuple(([longer] if duration < ENOUGH else []) + ([] if compared else [reference]))

@@ -1,5 +1,6 @@
 """Sentences of a diagnosis. Pure."""
 
+import math
 from collections.abc import Mapping, Sequence
 
 from features.diagnosis.evidence import LEAST_LEVEL, Line
@@ -8,6 +9,9 @@ from features.faults import CLASSES, HEALTHY, SIDES
 from features.signal.speed import DISAGREEMENT
 
 AT_END = 0.002  # distance of a speed from the end of the search, relative
+MISSED = ((0.5, (15, 86), (0, 288)), (2.0, (12, 86), (0, 288)), (10.0, (10, 86), (0, 288)))
+"""Length of recordings [s], and how many faulty ones of how many were called healthy, without and with a healthy recording of the
+machine: of CWRU, MFPT and UESTC, by ``python -m benchmarks.verdicts REAL --missed``."""
 PARTS = tuple(row.part for row in CLASSES.values() if row.part)
 
 
@@ -74,6 +78,12 @@ def answer_in_words(verdict: str, probabilities: Mapping[str, float], lines: Seq
     if likely == verdict:
         return f"{CLASSES[verdict].words} ({told}): {reasons(verdict, lines)}"
     return f"{CLASSES[verdict].words}: {reasons(verdict, lines)}, although the classifier alone says {likely} ({told})"
+
+
+def missed_faults(seconds: float, *, compared: bool) -> tuple[int, int]:
+    """Number of faulty recordings of about this length that were called healthy, and of all."""
+    row = min(MISSED, key=lambda row: abs(math.log(row[0] / seconds)))
+    return row[2] if compared else row[1]
 
 
 def pair_in_words(pair: Pair, given: Given, others: int) -> str:

@@ -54,6 +54,7 @@ def diagnosis_facts(
         "warnings": (*notes, *diagnosis.warnings),
         "given_rpm": [60 * rate for rate in diagnosis.given.rates],
         "threshold": diagnosis.threshold,
+        "missed_share": None if math.isnan(diagnosis.missed) else diagnosis.missed,
         "false_alarm": FALSE_ALARM,
         "band": None if diagnosis.spectrum is None else [round(edge, 1) for edge in diagnosis.spectrum.band],
         "channels": list(recorded.signals),

@@ -9,7 +9,7 @@ from features.diagnosis.answer import LONGEST, Judged, _conclude, _usable
 from features.diagnosis.evidence import Line
 from features.diagnosis.search import Found
 from features.diagnosis.verdict import ANSWER, OBVIOUS, PLAIN, SURE, judge
-from features.diagnosis.wording import answer_in_words
+from features.diagnosis.wording import MISSED, answer_in_words, missed_faults
 from features.indicators import Orders
 from features.recording_table import windows_of
 from gen.corpus import FAULTS
@@ -88,6 +88,14 @@ def test_an_answer_of_the_lines_names_what_the_classifier_says():
     told = answer_in_words("outer", probabilities("healthy", 0.76), COMB)
     assert told.startswith("Outer race fault: ")
     assert told.endswith("although the classifier alone says healthy (probability 0.76)")
+
+
+def test_missed_faults_are_told_for_the_nearest_length():
+    for seconds, alone, compared in MISSED:
+        for near in (0.9 * seconds, 1.1 * seconds):
+            assert (missed_faults(near, compared=False), missed_faults(near, compared=True)) == (alone, compared)
+    assert missed_faults(1e-3, compared=False) == MISSED[0][1]
+    assert missed_faults(1e3, compared=False) == MISSED[-1][1]
 
 
 def test_below_the_threshold_the_reason_names_the_strongest_lines():
