@@ -17,7 +17,7 @@ from raceway.commands.recordings import (
     set_aside,
 )
 from raceway.console import show
-from raceway.console.options import A_PATH, checked_file, checked_pages, json_option
+from raceway.console.options import A_PATH, checked_file, checked_pages, json_option, model_option
 from raceway.console.progress import notice, notice_compilation
 
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
     metavar="FILE",
     help="Recording of the same machine with a healthy bearing, read in the same way; give the option again for further ones.",
 )
-@click.option("--model", type=A_PATH, metavar="MODEL", help="Model file; by default the reference model of this user.")
+@model_option
 @click.option(
     "-o",
     "--output",
@@ -93,7 +93,7 @@ def diagnose(
     --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band), levels and explanations
     (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.
 
-    Without --model the reference model is used; the first call trains it, in some ten seconds.
+    The first call trains the reference model, in some ten seconds.
     docs/diagnose.md tells how to record and how to read the page.
     """
     known = _bearings(bearings, speeds)

@@ -10,7 +10,6 @@ from raceway.commands.feature_tables import notice_of_unknown, table_of
 from raceway.commands.references import reference_options, reference_table
 from raceway.console import show
 from raceway.console.options import (
-    A_PATH,
     USUAL_ANALYSIS,
     Analysis,
     Team,
@@ -21,6 +20,7 @@ from raceway.console.options import (
     corpus_path,
     file_option,
     json_option,
+    model_option,
     speed_option,
     worker_options,
 )
@@ -138,7 +138,7 @@ def train(
 
 @click.command()
 @corpus_argument
-@click.option("--model", type=A_PATH, required=True, metavar="MODEL", help="Model file written by raceway train.")
+@model_option
 @channels_option
 @reference_options
 @speed_option
@@ -146,7 +146,7 @@ def train(
 @json_option
 def evaluate(
     corpus: Path,
-    model: Path,
+    model: Path | None,
     channel: tuple[str, ...] | None,
     reference: Path | None,
     speed: "Speed",
@@ -166,24 +166,28 @@ def evaluate(
     (.csv, .npy, .mat, .wav, ...) of the bearing of DIR. Records of the reference are left out of the scores. A "healthy" is answered only
     if the spectral colour is near that of the reference.
 
+      raceway evaluate cwru                           with the reference model of raceway diagnose
       raceway evaluate cwru --model model.skops
       raceway evaluate pump --model model.skops --channel x,y,z
       raceway evaluate pump --model model.skops --reference pump
       raceway evaluate pump --model model.skops --reference new.csv --reference-rate 12000 --reference-rpm 1480
     """
     from features.baselines import Model, count_unknown, unlabelled_answers
+    from gen import open_corpus
+    from raceway.studies.reference_model import load_reference_model
 
     given = [name for name, value in reading.items() if value is not None]
     if reference is None and given:
         raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
-    loaded = Model.load(model)
+    open_corpus(corpus).close()  # a wrong path is told before a model is trained
+    loaded, source = load_reference_model() if model is None else (Model.load(model), model)
     team = Team(workers, scheduler)
     analysis = Analysis(channel, loaded.band)
     table = table_of(corpus, speed, team, analysis)
     healthy = None if reference is None else reference_table(reference, corpus, table, speed, team, analysis, **reading)
     answers = unlabelled_answers(table, loaded, healthy)
     if count_unknown(table) == table.sizes["record"]:
-        _show_answers_alone(corpus, model, loaded.name, answers, as_json=as_json)
+        _show_answers_alone(corpus, source, loaded.name, answers, as_json=as_json)
         return
     scores = loaded.score(table, reference=healthy)
     warn_of_severities(scores)
@@ -192,7 +196,7 @@ def evaluate(
             f"warning: the model was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
         )
     if as_json:
-        facts = {"corpus": corpus, "model": model, "estimator": loaded.name, **show.plain(scores)}
+        facts = {"corpus": corpus, "model": source, "estimator": loaded.name, **show.plain(scores)}
         show.as_json(facts | {"unknown": show.plain(answers)})
         return
     show.text(f"{loaded.name} trained on {loaded.corpus}, tested on {corpus}:", "")

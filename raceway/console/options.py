@@ -11,6 +11,14 @@ Decorator = Callable[[Any], Any]
 
 FEW_RECORDS = 2000  # their features take about as long as processes take to start; threads start at once
 A_PATH = click.Path(path_type=Path)
+REFERENCE_MODEL = "reference"
+
+
+class _ModelFile(click.Path):
+    """A model file, or None for the reference model; ``./reference`` is a file."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        return None if value == REFERENCE_MODEL else super().convert(value, param, ctx)
 
 
 def corpus_path(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
@@ -27,6 +35,15 @@ def complete_recipes(_context: click.Context, _parameter: click.Parameter, begun
 
 
 json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
+model_option: Decorator = click.option(
+    "--model",
+    type=_ModelFile(path_type=Path),
+    default=REFERENCE_MODEL,
+    show_default=True,
+    metavar="MODEL",
+    help="Model file of raceway train, or reference: the reference model, which is trained at its first use. A file of this name is "
+    "./reference.",
+)
 recipe_argument: Decorator = click.argument("recipe", shell_complete=complete_recipes)
 corpus_argument: Decorator = click.argument("corpus", metavar="DIR", type=A_PATH, callback=corpus_path)
 record_option: Decorator = click.option(

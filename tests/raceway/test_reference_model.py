@@ -144,6 +144,20 @@ def test_train_on_a_recipe_keeps_the_model_or_writes_it(tiny_recipe, tmp_path):
     assert Model.load(tmp_path / "model.skops").records == Model.load(facts["model"]).records == facts["records"]
 
 
+def test_evaluate_takes_the_reference_model_by_name_and_by_default(tiny_corpus, trainings, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "reference").write_text("no model", encoding="utf-8")
+    assert call("evaluate", "nowhere").exit_code == 2
+    assert trainings == []  # a wrong path is told first
+    default, named = (call("evaluate", tiny_corpus, "--json", *more) for more in ((), ("--model", "reference")))
+    assert (default.exit_code, named.exit_code, len(trainings)) == (0, 0, 1)
+    path = reference_model.kept_path(shipped_recipes()["domain_randomised"])
+    assert json.loads(default.stdout) == json.loads(named.stdout)
+    assert json.loads(named.stdout)["model"] == str(path)
+    file = call("evaluate", tiny_corpus, "--model", "./reference")
+    assert (file.exit_code, "reference: not a readable model" in file.stderr) == (2, True)
+
+
 def test_train_on_a_folder_needs_a_place_for_the_model(tiny_corpus, trainings):
     result = call("train", tiny_corpus)
     assert result.exit_code == 2
