@@ -143,8 +143,14 @@ def _is_marked(path: Path) -> bool:
     return any(mark in ends for mark in _MARKS)
 
 
+def _is_list(path: Path) -> bool:
+    with path.open("rb") as file:
+        return file.readline().startswith(b"recording,verdict,likeliest,probability,")
+
+
 KINDS: Mapping[str, Callable[[Path], bool]] = {
     "feature table": _is_table,
+    "list of diagnoses": _is_list,
     "model": _is_model,
     "page": _is_marked,
     "picture": _is_marked,

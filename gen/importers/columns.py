@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.importers.conversion import Unit
-from gen.importers.files import FloatArray, UnusableError
+from gen.importers.files import ContradictionError, FloatArray, UnusableError
 from gen.importers.header import SECONDS, Header, key_of, known_unit
 
 SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
@@ -52,7 +52,7 @@ class Values(NamedTuple):
                 return given, []
             if self.playback is None and any(SLOWEST <= rate <= FASTEST for rate, _ in stated):
                 message = f"is at {told}, and {given:g} Hz are given; correct what is given"
-                raise UnusableError(message, key)
+                raise ContradictionError(message, "rate", key)
             return given, [f"is at {told}; the given {given:g} Hz are used"]
         if not stated:
             return None, []
@@ -77,7 +77,7 @@ class Values(NamedTuple):
             raise UnusableError(message, "unit")
         if given is not None and known not in (None, given):
             message = f"states {self.named} in its header, and the unit {given} is given; correct what is given"
-            raise UnusableError(message, "unit")
+            raise ContradictionError(message, "unit", "unit")
         if given is not None:
             said = self.unit and known is None
             return given, [f"states {self.named} in its header; the given unit {given} is used"] if said else []

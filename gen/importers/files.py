@@ -39,6 +39,14 @@ class UnusableError(Exception):
         return self.told({})
 
 
+class ContradictionError(UnusableError):
+    """A file that states another value than the one that is given as ``option``: rate, unit or sensitivity."""
+
+    def __init__(self, reason: str, option: str, key: str = "") -> None:
+        super().__init__(reason, key)
+        self.option = option
+
+
 def read_numpy(path: Path) -> NDArray[Any]:
     """Array in a NumPy ``.npy`` file; pickled objects are refused.
 

@@ -64,7 +64,7 @@ class Header(NamedTuple):
         """Numbers of the columns that a number or a name means; the unit of a name can be left out."""
         if isinstance(column, int):
             return [column]
-        plain = [_IN_BRACKETS.sub("", name.partition("/")[0] if "/" in name else name).strip() for name in self.names]
+        plain = [_IN_BRACKETS.sub("", name).partition("/")[0].strip() for name in self.names]
         exact = [n for n, name in enumerate(self.names) if name == column]
         return exact or [n for n, name in enumerate(plain) if name == column]
 

@@ -9,8 +9,16 @@ from typing import NamedTuple
 import numpy as np
 
 from gen.importers.columns import Values, table_signal
-from gen.importers.conversion import Scale, Unit, accelerations, doubts, unit_problem, volts_per_acceleration
-from gen.importers.files import FloatArray, UnusableError, read_numpy, read_wav, reason_of
+from gen.importers.conversion import (
+    Scale,
+    Unit,
+    accelerations,
+    doubts,
+    unit_problem,
+    volts_per_acceleration,
+)
+from gen.importers.files import ContradictionError, FloatArray, UnusableError, read_numpy, read_wav, reason_of
+from gen.importers.header import known_unit
 from gen.importers.matlab import read_matlab
 from gen.importers.sheets import read_sheet
 from gen.importers.text import read_text
@@ -21,6 +29,14 @@ SHEETS = (".xlsx",)
 STATING_RATES = (".wav", *TEXT, *SHEETS)
 SUFFIXES = (".mat", ".npy", *STATING_RATES)
 _AS_HERE: Mapping[str, str] = MappingProxyType({})
+
+
+class StatedOtherwiseError(CorpusError):
+    """A file that states another value than the one that is given as ``option``: rate, unit or sensitivity."""
+
+    def __init__(self, message: str, option: str) -> None:
+        super().__init__(message)
+        self.option = option
 
 
 class Place(NamedTuple):
@@ -88,14 +104,15 @@ def read_signal(
     Raises
     ------
     CorpusError
-        If the file cannot be read or holds no such signal, unit and sensitivity do not belong together, or unit or rate contradict the
-        file.
+        If the file cannot be read or holds no such signal, or unit and sensitivity do not belong together.
+    StatedOtherwiseError
+        If the file states another rate, unit or kind of unit than the given rate, unit or sensitivity.
     """
     with _as_sentences(path, options):
         content = read_values(path, Place(variable, column, delimiter))
         fs, notes = content.rate(rate, "rate")
         used, of_unit = content.stated_unit(unit)
-        scale = _scale(used, sensitivity)
+        scale = _scale(used, sensitivity, stated=unit is None and known_unit(content.unit) is not None)
         signal = accelerations(content.values, scale)
         notes = [*content.notes, *notes, *of_unit, *doubts(content.values, signal, scale, absolute=content.absolute)]
     return Signal(signal, fs, tuple(f"{path.name}: {note}." for note in notes), used)
@@ -114,6 +131,9 @@ def _as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
     """Turn the reason why a file cannot be used into a sentence."""
     try:
         yield
+    except ContradictionError as reason:
+        message = f"{path}: {reason.told(options)}."
+        raise StatedOtherwiseError(message, reason.option) from None
     except UnusableError as reason:
         message = f"{path}: {reason.told(options)}."
         raise CorpusError(message) from None
@@ -122,8 +142,10 @@ def _as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
         raise CorpusError(message) from None
 
 
-def _scale(unit: Unit, sensitivity: float | None) -> Scale:
+def _scale(unit: Unit, sensitivity: float | None, *, stated: bool) -> Scale:
     problem = unit_problem(unit, sensitivity)
+    if problem is not None and stated and sensitivity is not None:
+        raise ContradictionError(problem, "sensitivity")
     if problem is not None:
         raise UnusableError(problem)
     return Scale(unit, volts_per_acceleration(sensitivity, None))

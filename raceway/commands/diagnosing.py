@@ -6,9 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from raceway.commands.diagnosis_output import assumptions, diagnosis_facts, show_table
+from raceway.commands.diagnosis_output import assumptions, diagnosis_facts
+from raceway.commands.diagnosis_tables import INDEX, LIST, LIST_KIND, rows_of, show_table, write_index
 from raceway.commands.recordings import (
     Reading,
+    read_as_stated,
     read_recording,
     reading_options,
     readings_of,
@@ -29,9 +31,15 @@ ONE_TURN = 60.0  # rpm; lower speeds may be meant in Hz
 
 def _checked_output(context: click.Context, option: click.Parameter, path: Path | None) -> Path | None:
     """Page of a recording, or folder for the pages of a folder of them."""
-    if path is None or context.params["recording"].is_dir():
-        return path and checked_pages(context, option, path)
-    return checked_file(path, (".html",), "page")
+    recording: Path = context.params["recording"]
+    if path is not None and recording.is_dir():
+        if path.resolve() == recording.resolve():
+            raise click.BadParameter(f"{path} is the folder of the recordings; give another one for the pages")
+        from gen.corpus import check_result  # not at the top: help needs nothing of gen
+
+        check_result(checked_pages(context, option, path) / LIST, LIST_KIND)
+        return path
+    return path and checked_file(path, (".html",), "page")
 
 
 @click.command()
@@ -60,7 +68,7 @@ def _checked_output(context: click.Context, option: click.Parameter, path: Path 
     type=A_PATH,
     metavar="REPORT",
     callback=_checked_output,
-    help="Page with pictures: .html; of a FOLDER a folder of such pages.",
+    help="Page with pictures: .html; of a FOLDER a folder of such pages, with index.html and diagnoses.csv.",
 )
 @json_option
 def diagnose(
@@ -77,7 +85,8 @@ def diagnose(
 
     RECORDING is a .csv, .txt, .tsv, .dat, .xlsx, .npy, .mat or .wav file of at least 0.05 s, better 10 s, at 10 kHz or more. The answer
     is one sentence: what is wrong, how sure that is, and which lines of the signal tell it; or "unsure", with the reason and what would
-    help. For a FOLDER it is a table with a row for each recording.
+    help. For a FOLDER it is a table with a row for each recording; a file that states another rate or unit than the options is read as
+    it states.
 
       raceway diagnose pump.csv --bearing 6205 --rpm 1772 --rate 12000 --unit g -o pump.html
       raceway diagnose fan.wav --bearing 6205 --rpm 1400-1600
@@ -104,7 +113,7 @@ def diagnose(
     first = next(readings, None)  # before the model, so that whatever is missing is told at once
     if first is None:
         raise click.UsageError(f"no recording can be used; the first of {len(paths)}: {next(iter(unusable.values()))}")
-    compared = [read_recording(path, reading) for path in healthy]
+    compared = [(read_as_stated if several else read_recording)(path, reading) for path in healthy]
     references = [one for one, *_ in compared]
     doubts = _doubts(speeds) + tuple(note for *_, found in compared for note in found)
     for sentence in doubts:
@@ -113,31 +122,33 @@ def diagnose(
     loaded, source = _model(model, compares=bool(healthy))
     from features.diagnosis import diagnose_recording
 
-    diagnoses, found = {}, []
-    for path, recorded, of_values, of_file in chain((first,), readings):
+    found = []
+    for path, recorded, used, of_file in chain((first,), readings):
         with set_aside(path, unusable if several else None), notice_compilation():
-            diagnoses[path] = diagnosis = diagnose_recording(recorded, given, loaded, healthy=references)
-        if path not in diagnoses:
+            diagnosis = diagnose_recording(recorded, given, loaded, healthy=references)
+        if path in unusable:
             continue
         notes = tuple(dict.fromkeys(of_file + doubts))
         for sentence in of_file + diagnosis.warnings:
             notice(f"warning: {f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
         page = output and (output / f"{path.name}.html" if several else output)
         if page is not None:
-            facts = assumptions(recorded, known, diagnosis, reading._replace(unit=of_values), healthy, source, notes)
+            facts = assumptions(recorded, known, diagnosis, used, healthy, source, notes)
             _write_page(diagnosis, recorded, references, page, path.name, facts)
         found.append(diagnosis_facts(diagnosis, recorded, path, source, page, notes))
+    rows = rows_of(found, unusable)
+    if several and output is not None:
+        write_index(rows, recording.resolve().name, output)
     if as_json:
         errors = [{"recording": path, "error": sentence} for path, sentence in unusable.items()]
         show.as_json([*found, *errors] if several else found[0])
         return
     if several:
-        show_table(diagnoses, unusable)
+        show_table(rows)
     else:
-        diagnosis = diagnoses[recording]
-        show.text(diagnosis.sentence, *(f"- {sentence}" for sentence in diagnosis.advice))
+        show.text(found[0]["sentence"], *(f"- {sentence}" for sentence in found[0]["advice"]))
     if output is not None:
-        show.text("", f"{output}: pictures, evidence and what was assumed.")
+        show.text("", f"{output / INDEX if several else output}: pictures, evidence and what was assumed.")
 
 
 def _write_page(

@@ -1,37 +1,14 @@
-"""Output of diagnoses: facts for programs and for the page, and the table of a folder of recordings."""
+"""Facts of a diagnosis for programs and for its page."""
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from raceway.commands.recordings import Reading
-from raceway.console import show
 
 if TYPE_CHECKING:
     from features.diagnosis import Diagnosis, Pair, Recorded
     from gen.physics.bearing import Bearing
-
-SHOWN_LINES = 2
-
-
-def show_table(diagnoses: Mapping[Path, "Diagnosis"], unusable: Mapping[Path, str]) -> None:
-    """Print a row for each recording, and a sentence for each file that cannot be used."""
-    header = ("recording", "verdict", "probability", "rpm", "strongest lines", "warnings")
-    rows = [(path.name, *_row(diagnosis)) for path, diagnosis in diagnoses.items()]
-    show.table(header, [*rows, *((path.name, "not used", "", "", "", "") for path in unusable)])
-    if unusable:
-        show.text("", *unusable.values())
-
-
-def _row(diagnosis: "Diagnosis") -> tuple[object, ...]:
-    lines = ", ".join(f"{line.name} {line.level:.0f} dB" for line in diagnosis.evidence[:SHOWN_LINES])
-    likeliest = max(diagnosis.probabilities, key=lambda fault: diagnosis.probabilities[fault])
-    probability = f"{diagnosis.probabilities[likeliest]:.2f}"
-    if likeliest != diagnosis.verdict:
-        probability = f"{likeliest} {probability}"
-    rpm = f"{60 * diagnosis.shaft_rate:,.0f}"
-    return diagnosis.verdict, probability, rpm, lines, len(diagnosis.warnings) or ""
 
 
 def diagnosis_facts(

@@ -141,12 +141,13 @@ def recordings_in(folder: Path, without: Iterable[Path]) -> list[Path]:
 
 def readings_of(
     paths: Sequence[Path], reading: Reading, unusable: dict[Path, str] | None
-) -> "Iterator[tuple[Path, Recorded, str, tuple[str, ...]]]":
-    """Recordings that can be read, one after the other."""
+) -> "Iterator[tuple[Path, Recorded, Reading, tuple[str, ...]]]":
+    """Recordings that can be read, one after the other; those of a folder as they state."""
+    read = read_recording if unusable is None else read_as_stated
     for path in paths:
         found = None
         with set_aside(path, unusable):
-            found = read_recording(path, reading)
+            found = read(path, reading)
         if found is not None:
             yield path, *found
 
@@ -164,8 +165,26 @@ def set_aside(path: Path, unusable: dict[Path, str] | None) -> Iterator[None]:
         unusable[path] = str(error)
 
 
-def read_recording(path: Path, reading: Reading) -> tuple["Recorded", str, tuple[str, ...]]:
-    """Channels of a file, their unit, and sentences on what was assumed; the diagnosis itself warns of an implausible rms."""
+def read_as_stated(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
+    """Read one of several recordings: as `read_recording`, without the options that the file contradicts."""
+    from gen.importers.signals import StatedOtherwiseError
+
+    try:
+        return read_recording(path, reading)
+    except StatedOtherwiseError as error:
+        option = error.option
+    recorded, used, notes = read_as_stated(path, reading._replace(**{option: None}))
+    value = getattr(reading, option)
+    told = value if isinstance(value, str) else f"{value:g}"
+    note = f"{path.name}: it states otherwise than --{option} {told}, and is read as it states."
+    return recorded, used, (*notes, note)
+
+
+def read_recording(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
+    """Channels of a file, how they were read, with the unit, and sentences on what was assumed.
+
+    The diagnosis itself warns of an implausible rms.
+    """
     from gen.importers.signals import read_signal
     from gen.support.errors import CorpusError
 
@@ -190,4 +209,4 @@ def read_recording(path: Path, reading: Reading) -> tuple["Recorded", str, tuple
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
     unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
     units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
-    return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), units, tuple(notes)
+    return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), reading._replace(unit=units), tuple(notes)

@@ -1,0 +1,112 @@
+"""Diagnoses of a folder as a table: on the terminal, as the index of the pages, and as a CSV file."""
+
+import csv
+import io
+import os
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+from urllib.parse import quote
+
+from raceway.console import show
+
+INDEX, LIST = "index.html", "diagnoses.csv"
+LIST_KIND = "list of diagnoses"
+NOT_USED = "not used"
+SHOWN_LINES = 2
+
+
+class Row(NamedTuple):
+    """One recording: of a file that cannot be used only the name and a sentence. The fields are the columns of the CSV file."""
+
+    recording: str
+    verdict: str
+    likeliest: str = ""
+    probability: float | None = None  # of the likeliest class
+    rpm: float | None = None
+    strongest_lines: str = ""
+    warnings: int | None = None
+    page: str = ""
+    sentence: str = ""
+
+    @property
+    def chance(self) -> str:
+        """Probability with two digits, and its class if it is not the verdict."""
+        if self.probability is None:
+            return ""
+        return f"{'' if self.likeliest == self.verdict else f'{self.likeliest} '}{self.probability:.2f}"
+
+    @property
+    def link(self) -> str:
+        """Relative address of the page."""
+        return quote(os.fsencode(self.page))
+
+
+def rows_of(found: Sequence[Mapping[str, Any]], unusable: Mapping[Path, str]) -> list[Row]:
+    """Rows of the facts of each diagnosis, then of the files that cannot be used."""
+    return [*map(_row, found), *(Row(path.name, NOT_USED, sentence=told) for path, told in unusable.items())]
+
+
+def _row(facts: Mapping[str, Any]) -> Row:
+    likeliest = max(facts["probabilities"], key=facts["probabilities"].get)
+    return Row(
+        recording=facts["recording"].name,
+        verdict=facts["verdict"],
+        likeliest=likeliest,
+        probability=round(facts["probabilities"][likeliest], 4),
+        rpm=round(facts["shaft_rpm"], 1),
+        strongest_lines=", ".join(
+            f"{line['line']} {line['level_db']:.0f} dB" for line in facts["evidence"][:SHOWN_LINES]
+        ),
+        warnings=len(facts["warnings"]),
+        page="" if facts["report"] is None else facts["report"].name,
+        sentence=facts["sentence"],
+    )
+
+
+def show_table(rows: Sequence[Row]) -> None:
+    """Print a line for each recording, and a sentence for each file that cannot be used."""
+    header = ("recording", "verdict", "probability", "rpm", "strongest lines", "warnings")
+    rpm = ["" if row.rpm is None else f"{row.rpm:,.0f}" for row in rows]
+    lines = zip(rows, rpm, strict=True)
+    show.table(
+        header, [(r.recording, r.verdict, r.chance, speed, r.strongest_lines, r.warnings or "") for r, speed in lines]
+    )
+    if errors := [row.sentence for row in rows if row.verdict == NOT_USED]:
+        show.text("", *errors)
+
+
+def write_index(rows: Sequence[Row], name: str, pages: Path) -> None:
+    """Write the index page and the CSV file of a folder of recordings beside the pages.
+
+    Raises
+    ------
+    CorpusError
+        If one of the two exists and was not made by Raceway, or the disk refuses it.
+    """
+    from features.faults import CLASSES
+    from features.report.templates import template
+    from gen.corpus import check_result, make_result_folder, write_text_durably
+
+    page = template("diagnoses.html.jinja").render(
+        name=name,
+        rows=rows,
+        counts=Counter(row.verdict for row in rows),
+        colours={fault: row.colour for fault, row in CLASSES.items()},
+        list=LIST,
+    )
+    make_result_folder(pages)
+    for file, kind, text in ((INDEX, "page", page), (LIST, LIST_KIND, _csv_text(rows))):
+        check_result(pages / file, kind)
+        write_text_durably(text, pages / file)
+
+
+def _csv_text(rows: Sequence[Row]) -> str:
+    from gen.exporting.tables import cell_text
+
+    stream = io.StringIO()
+    table = csv.writer(stream, lineterminator="\n")
+    table.writerow(Row._fields)
+    table.writerows([cell_text(value) if isinstance(value, str) else value for value in row] for row in rows)
+    return stream.getvalue()
