@@ -6,10 +6,10 @@ from unicodedata import category
 
 
 class _Visible(dict[int, int | None]):
-    """Translation of characters, looked up once: control and format characters are left out, line breaks and tabs stay."""
+    """Translation of characters, looked up once: control and format characters and surrogates are left out, line breaks and tabs stay."""
 
     def __missing__(self, code: int) -> int | None:
-        hidden = category(chr(code)) in ("Cc", "Cf") and chr(code) not in "\n\t"
+        hidden = category(chr(code)) in ("Cc", "Cf", "Cs") and chr(code) not in "\n\t"
         self[code] = None if hidden else code
         return self[code]
 

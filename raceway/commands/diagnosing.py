@@ -1,5 +1,6 @@
 """Command that diagnoses a recording of the user, or each of a folder."""
 
+import os
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -131,7 +132,7 @@ def diagnose(
         notes = tuple(dict.fromkeys(of_file + doubts))
         for sentence in of_file + diagnosis.warnings:
             notice(f"warning: {f'{path.name}: ' if several else ''}{sentence.removeprefix(f'{path.name}: ')}")
-        page = output and (output / f"{path.name}.html" if several else output)
+        page = output and (output / f"{_readable(path)}.html" if several else output)
         if page is not None:
             facts = assumptions(recorded, known, diagnosis, used, healthy, source, notes)
             _write_page(diagnosis, recorded, references, page, path.name, facts)
@@ -149,6 +150,11 @@ def diagnose(
         show.text(found[0]["sentence"], *(f"- {sentence}" for sentence in found[0]["advice"]))
     if output is not None:
         show.text("", f"{output / INDEX if several else output}: pictures, evidence and what was assumed.")
+
+
+def _readable(path: Path) -> str:
+    """Name of a file, with signs in place of bytes that are no text, which not every disk takes."""
+    return os.fsencode(path.name).decode(errors="backslashreplace")
 
 
 def _write_page(

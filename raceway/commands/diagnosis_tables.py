@@ -45,7 +45,7 @@ class Row(NamedTuple):
 
 def rows_of(found: Sequence[Mapping[str, Any]], unusable: Mapping[Path, str]) -> list[Row]:
     """Rows of the facts of each diagnosis, then of the files that cannot be used."""
-    return [*map(_row, found), *(Row(path.name, NOT_USED, sentence=told) for path, told in unusable.items())]
+    return [*map(_row, found), *(_unused(path, told) for path, told in unusable.items())]
 
 
 def _row(facts: Mapping[str, Any]) -> Row:
@@ -63,6 +63,11 @@ def _row(facts: Mapping[str, Any]) -> Row:
         page="" if facts["report"] is None else facts["report"].name,
         sentence=facts["sentence"],
     )
+
+
+def _unused(path: Path, told: str) -> Row:
+    """Row of a file that cannot be used; a page that is passed on need not tell where the file was."""
+    return Row(path.name, NOT_USED, sentence=path.name + told.removeprefix(str(path)))
 
 
 def show_table(rows: Sequence[Row]) -> None:

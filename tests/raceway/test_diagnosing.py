@@ -3,6 +3,7 @@
 import csv
 import html
 import json
+import os
 import re
 import subprocess
 import sys
@@ -443,7 +444,22 @@ def test_a_folder_gets_an_index_page_and_a_csv_file_with_the_same_rows(model, re
     (link,) = re.findall(r'href="([^"]*)"', page)
     assert urljoin("file:///pages/index.html", link) == f"file:///pages/{link}"  # the colon makes no scheme
     assert unquote(link) == "=a: <i>&#100%.wav.html"
+    assert note["sentence"].startswith("note.txt: has no row of numbers")
     assert note["sentence"] in html.unescape(page)
+    assert str(tmp_path) not in page
+
+
+def test_a_file_name_that_is_no_text_gets_a_page_too(model, recordings, tmp_path):
+    folder, pages = tmp_path / "campaign", tmp_path / "pages"
+    folder.mkdir()
+    try:
+        write_wav(folder / os.fsdecode(b"a\xff.wav"), recordings["outer"][0])
+    except OSError:
+        pytest.skip("this disk takes names in UTF-8 alone")
+    done = call(folder, "--bearing", "6205", "--rpm", "1700-1800", "--model", model, "-o", pages)
+    assert done.exit_code == 0, done.output
+    assert {page.name for page in pages.iterdir()} == {r"a\xff.wav.html", "index.html", "diagnoses.csv"}
+    assert 'href="a%5Cxff.wav.html">a.wav</a>' in (pages / "index.html").read_text(encoding="utf-8")
 
 
 def test_a_file_of_a_folder_that_states_another_rate_or_unit_is_read_as_it_states(model, recordings, tmp_path):
