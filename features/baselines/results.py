@@ -122,6 +122,8 @@ class Results(Shown):
     importance
         Permutation importance of each quantity for the leading classifier on the first track, the highest first: the loss
         of balanced accuracy when the values of its features are exchanged among tested records. Empty for waveforms.
+    models
+        Scores of models that were trained before, on all records of the corpus and then of each of the others, by name.
     """
 
     corpus: Content
@@ -140,6 +142,7 @@ class Results(Shown):
     left_out: dict[str, str] = field(default_factory=dict)
     curve: tuple[CurvePoint, ...] = ()
     importance: dict[str, float] = field(default_factory=dict)
+    models: dict[str, tuple[Scores, ...]] = field(default_factory=dict)
 
     def _heading(self) -> str:
         return f"Results on {self.corpus.title}: {self.corpus.records:,} records, balanced accuracy over {self.folds} folds by {self.track}"
@@ -297,7 +300,7 @@ def _kept(known: Results | None, found: Results) -> dict[str, dict[str, Baseline
 def setup(results: Results) -> Results:
     """Results without scores: the corpora, and all that the rows of one file have in common."""
     further = {track: replace(one, baselines={}) for track, one in results.further.items()}
-    return replace(results, leading="", baselines={}, further=further, curve=(), importance={})
+    return replace(results, leading="", baselines={}, further=further, curve=(), importance={}, models={})
 
 
 def _untrained_first(baselines: dict[str, Baseline]) -> dict[str, Baseline]:

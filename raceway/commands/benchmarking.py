@@ -1,16 +1,19 @@
 """The command that measures the scores of all baselines on a corpus."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
 from raceway.commands.feature_tables import notice_of_unknown, table_of
-from raceway.commands.models import ESTIMATORS, warn_of_severities
+from raceway.commands.models import ESTIMATORS, warn_of_seen, warn_of_severities
 from raceway.console import show
 from raceway.console.options import (
+    A_MODEL,
     A_PATH,
+    REFERENCE_MODEL,
     Analysis,
     Team,
     analysis_options,
@@ -26,7 +29,7 @@ from raceway.console.progress import progress
 if TYPE_CHECKING:
     import xarray as xr
 
-    from features.baselines import Baseline, Results
+    from features.baselines import Baseline, Model, Results, Scores
     from features.baselines.own import Maker
     from features.recording_speeds import Speed
     from features.waveforms import Waveforms
@@ -77,6 +80,15 @@ def _corpus_paths(context: click.Context, option: click.Parameter, paths: tuple[
     help="Classifier to score: a baseline, all of them (all), or MODULE:NAME of your own. Repeatable.",
 )
 @click.option(
+    "--model",
+    "models",
+    type=A_MODEL,
+    multiple=True,
+    metavar="MODEL",
+    help="Also score a trained model on DIR and each DIR2: a file of raceway train, or reference, the model of raceway diagnose. "
+    "Repeatable.",
+)
+@click.option(
     "--waveforms", is_flag=True, help="Give your own classifiers the signals, shape (record, time), and no features."
 )
 @click.option(
@@ -102,6 +114,7 @@ def benchmark(
     tests: tuple[Path, ...],
     tracks: tuple[Any, ...],
     estimators: tuple[str, ...],
+    models: tuple[Path | None, ...],
     waveforms: bool,
     per_turn: int | None,
     learning_curve: bool,
@@ -128,6 +141,7 @@ def benchmark(
 
       raceway benchmark corpus -o report
       raceway benchmark corpus --test cwru --test mfpt -o report --track rig
+      raceway benchmark corpus --test cwru -o report --model reference
       raceway benchmark corpus -o report --track all --learning-curve
       raceway benchmark corpus -o report --estimator mine:make --estimator ensemble
       raceway benchmark corpus --test cwru -o report --waveforms --estimator cnn:EnvelopeNetwork
@@ -143,9 +157,11 @@ def benchmark(
     from gen.corpus import result_folder
 
     team = Team(workers, scheduler)
+    loaded = _load(models)
     with result_folder(output):
         table = table_of(corpus, "off", team, Analysis(channel, band))
         others = [table_of(test, speed, team, Analysis(None, band)) for test in tests]
+        scored = _score_models(loaded, [table, *others], seed)
         signals = _waveforms(corpus, channel, list(zip(tests, others, strict=True)), per_turn) if waveforms else []
         options = {
             "tracks": "all" if "all" in tracks else tracks,
@@ -159,6 +175,7 @@ def benchmark(
             results = run(
                 table, others, **options, known=known, folds=folds, seed=seed, workers=trainers, progress=report
             )
+        results = replace(results, models=scored)
         for path, content in zip((corpus, *tests), (results.corpus, *results.tests), strict=True):
             notice_of_unknown(path, content.unknown)
         warn_of_severities(results, *next(iter(results.baselines.values())).tests)
@@ -168,6 +185,9 @@ def benchmark(
         return
     show.text(f"Balanced accuracy on {results.corpus.title}, {results.folds} folds by {results.track}:", "")
     _show_baselines(results.baselines, [test.name for test in tests])
+    if results.models:
+        show.text("")
+        _show_models(results.models, [test.name for test in tests])
     for track, of_track in results.further.items():
         show.text(
             "", f"By {track}, {of_track.folds} folds, {of_track.tested:,} of {of_track.records:,} records tested:", ""
@@ -201,6 +221,31 @@ def _makers(names: tuple[str, ...]) -> "dict[str, str | Maker] | None":
 
     spelled = dict.fromkeys(baseline for name in names for baseline in (ESTIMATORS if name == "all" else (name,)))
     return {name: load_maker(name) if ":" in name else name for name in spelled} or None
+
+
+def _load(models: Sequence[Path | None]) -> "dict[str, Model]":
+    """Trained models by the name that the user gave."""
+    from features.baselines import Model
+    from raceway.studies.reference_model import reference_model
+
+    paths = dict.fromkeys(models)
+    return {str(path or REFERENCE_MODEL): reference_model() if path is None else Model.load(path) for path in paths}
+
+
+def _score_models(
+    models: "Mapping[str, Model]", tables: "Sequence[xr.Dataset]", seed: int
+) -> "dict[str, tuple[Scores, ...]]":
+    """Scores of trained models on each corpus, by name."""
+    scored = {name: tuple(model.score(table, seed=seed) for table in tables) for name, model in models.items()}
+    for name, of_model in scored.items():
+        for scores in of_model:
+            warn_of_seen(name, scores)
+    return scored
+
+
+def _show_models(models: "Mapping[str, tuple[Scores, ...]]", tests: list[str]) -> None:
+    rows = ((name, *(f"{scores.balanced_accuracy:.3f}" for scores in of_model)) for name, of_model in models.items())
+    show.table(("trained model", "all records", *tests), rows)
 
 
 def _show_curve(results: "Results") -> None:

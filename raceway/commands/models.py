@@ -191,10 +191,7 @@ def evaluate(
         return
     scores = loaded.score(table, reference=healthy)
     warn_of_severities(scores)
-    if scores.seen:
-        notice(
-            f"warning: the model was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
-        )
+    warn_of_seen("the model", scores)
     if as_json:
         facts = {"corpus": corpus, "model": source, "estimator": loaded.name, **show.plain(scores)}
         show.as_json(facts | {"unknown": show.plain(answers)})
@@ -238,6 +235,14 @@ def calibration_text(calibration: "Calibration") -> str:
         f"Calibrated on {calibration.by}s outside the training: answers {100 * calibration.coverage:.0f} % of their records, those with "
         f"a largest probability of at least {calibration.threshold:.2f}, and is unsure of the others."
     )
+
+
+def warn_of_seen(model: str, scores: "Scores") -> None:
+    """Warn of tested records that the model was trained on."""
+    if scores.seen:
+        notice(
+            f"warning: {model} was trained on {scores.seen:,} of these {scores.records:,} records; this is no fair test."
+        )
 
 
 def warn_of_severities(*tested: "Scores | Results | None") -> None:

@@ -14,11 +14,14 @@ A_PATH = click.Path(path_type=Path)
 REFERENCE_MODEL = "reference"
 
 
-class _ModelFile(click.Path):
+class _Model(click.Path):
     """A model file, or None for the reference model; ``./reference`` is a file."""
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         return None if value == REFERENCE_MODEL else super().convert(value, param, ctx)
+
+
+A_MODEL = _Model(path_type=Path)
 
 
 def corpus_path(_context: click.Context | None, _parameter: click.Parameter | None, path: Path | None) -> Path | None:
@@ -37,7 +40,7 @@ def complete_recipes(_context: click.Context, _parameter: click.Parameter, begun
 json_option: Decorator = click.option("--json", "as_json", is_flag=True, help="Print one JSON object.")
 model_option: Decorator = click.option(
     "--model",
-    type=_ModelFile(path_type=Path),
+    type=A_MODEL,
     default=REFERENCE_MODEL,
     show_default=True,
     metavar="MODEL",

@@ -158,6 +158,29 @@ def test_evaluate_takes_the_reference_model_by_name_and_by_default(tiny_corpus, 
     assert (file.exit_code, "reference: not a readable model" in file.stderr) == (2, True)
 
 
+def test_benchmark_scores_trained_models_as_evaluate_does(tiny_corpus, trainings, tmp_path):
+    path, _ = reference_model.keep_model("quickstart", "logistic_regression")
+    models = ("--model", "reference", "--model", path)
+    line = ("benchmark", tiny_corpus, "-o", tmp_path / "report", "--folds", 2, "--estimator", "majority")
+    done = call(*line, *models, "--json")
+    assert done.exit_code == 0, done.output
+    assert len(trainings) == 2
+    found = json.loads(done.stdout)["models"]
+    assert found.keys() == {"reference", str(path)}
+    for name, (scores,) in found.items():
+        alone = json.loads(call("evaluate", tiny_corpus, "--model", name, "--json").stdout)
+        assert scores == {key: alone[key] for key in scores}
+        assert f"warning: {name} was trained on 36 of these 48 records; this is no fair test." in done.stderr
+    page = (tmp_path / "report" / "report.html").read_text(encoding="utf-8")
+    assert '<tr><th scope="row">reference</th><td>' in page
+    assert "reference was trained on 36 of 48 records" in page
+    text = call(*line, *models).stdout  # with the rows of the earlier call
+    assert f"\nreference  {' ' * (len(str(path)) - len('reference'))}" in text
+    assert json.loads(call(*line, "--json").stdout)["models"] == {}
+    lost = call(*line, "--model", "nowhere.skops")
+    assert (lost.exit_code, "nowhere.skops: no such file" in lost.stderr) == (2, True)
+
+
 def test_train_on_a_folder_needs_a_place_for_the_model(tiny_corpus, trainings):
     result = call("train", tiny_corpus)
     assert result.exit_code == 2
