@@ -12,7 +12,8 @@ feature_tables   features of all records
 models           a model trained, and scored on another corpus
 references       healthy records that the tested ones are compared with
 diagnosing       a diagnosis of a recording, or of each in a folder
-diagnosis_output facts and table of diagnoses
+diagnosis_output facts of a diagnosis for programs and for its page
+diagnosis_tables diagnoses of a folder: table, index page and CSV file
 recordings       options and files of recordings of the user
 benchmarking     scores of all baselines
 comparing        synthetic records against real ones
