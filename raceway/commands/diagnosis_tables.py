@@ -17,7 +17,7 @@ NOT_USED = "not used"
 SHOWN_LINES = 2
 
 
-class Row(NamedTuple):
+class DiagnosisRow(NamedTuple):
     """One recording: of a file that cannot be used only the name and a sentence. The fields are the columns of the CSV file."""
 
     recording: str
@@ -43,14 +43,14 @@ class Row(NamedTuple):
         return quote(os.fsencode(self.page))
 
 
-def rows_of(found: Sequence[Mapping[str, Any]], unusable: Mapping[Path, str]) -> list[Row]:
+def rows_of(found: Sequence[Mapping[str, Any]], unusable: Mapping[Path, str]) -> list[DiagnosisRow]:
     """Rows of the facts of each diagnosis, then of the files that cannot be used."""
     return [*map(_row, found), *(_unused(path, told) for path, told in unusable.items())]
 
 
-def _row(facts: Mapping[str, Any]) -> Row:
+def _row(facts: Mapping[str, Any]) -> DiagnosisRow:
     likeliest = max(facts["probabilities"], key=facts["probabilities"].get)
-    return Row(
+    return DiagnosisRow(
         recording=facts["recording"].name,
         verdict=facts["verdict"],
         likeliest=likeliest,
@@ -65,12 +65,12 @@ def _row(facts: Mapping[str, Any]) -> Row:
     )
 
 
-def _unused(path: Path, told: str) -> Row:
+def _unused(path: Path, told: str) -> DiagnosisRow:
     """Row of a file that cannot be used; a page that is passed on need not tell where the file was."""
-    return Row(path.name, NOT_USED, sentence=path.name + told.removeprefix(str(path)))
+    return DiagnosisRow(path.name, NOT_USED, sentence=path.name + told.removeprefix(str(path)))
 
 
-def show_table(rows: Sequence[Row]) -> None:
+def show_table(rows: Sequence[DiagnosisRow]) -> None:
     """Print a line for each recording, and a sentence for each file that cannot be used."""
     header = ("recording", "verdict", "probability", "rpm", "strongest lines", "warnings")
     rpm = ["" if row.rpm is None else f"{row.rpm:,.0f}" for row in rows]
@@ -82,7 +82,7 @@ def show_table(rows: Sequence[Row]) -> None:
         show.text("", *errors)
 
 
-def write_index(rows: Sequence[Row], name: str, pages: Path) -> None:
+def write_index(rows: Sequence[DiagnosisRow], name: str, pages: Path) -> None:
     """Write the index page and the CSV file of a folder of recordings beside the pages.
 
     Raises
@@ -107,11 +107,11 @@ def write_index(rows: Sequence[Row], name: str, pages: Path) -> None:
         write_text_durably(text, pages / file)
 
 
-def _csv_text(rows: Sequence[Row]) -> str:
+def _csv_text(rows: Sequence[DiagnosisRow]) -> str:
     from gen.exporting.tables import cell_text
 
     stream = io.StringIO()
     table = csv.writer(stream, lineterminator="\n")
-    table.writerow(Row._fields)
+    table.writerow(DiagnosisRow._fields)
     table.writerows([cell_text(value) if isinstance(value, str) else value for value in row] for row in rows)
     return stream.getvalue()

@@ -179,7 +179,8 @@ def evaluate(
     given = [name for name, value in reading.items() if value is not None]
     if reference is None and given:
         raise click.UsageError(f"--{given[0].replace('_', '-')} is for --reference")
-    open_corpus(corpus).close()  # a wrong path is told before a model is trained
+    if model is None:
+        open_corpus(corpus).close()  # a wrong path is told before the model is trained
     loaded, source = load_reference_model() if model is None else (Model.load(model), model)
     team = Team(workers, scheduler)
     analysis = Analysis(channel, loaded.band)
