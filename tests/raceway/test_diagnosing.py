@@ -424,8 +424,7 @@ def test_a_folder_gets_an_index_page_and_a_csv_file_with_the_same_rows(model, re
     write_wav(folder / "=a: <i>&#100%.wav", recordings["outer"][0])
     (folder / "note.txt").write_text("nothing measured", encoding="utf-8")
     options = (folder, "--bearing", "6205", "--rpm", "1700-1800", "--model", model, "-o", pages)
-    for _ in range(2):  # the second call replaces the files of the first
-        found = told(*options)[0]
+    _, found = (told(*options)[0] for _ in range(2))  # the second call replaces the files of the first
     with (pages / "diagnoses.csv").open(encoding="utf-8", newline="") as file:
         outer, note = csv.DictReader(file)
     assert outer["recording"] == "'=a: <i>&#100%.wav"  # no formula
