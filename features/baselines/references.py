@@ -90,8 +90,8 @@ def relative_to(table: xr.Dataset, reference: xr.Dataset, features: Sequence[str
     CorpusError
         If a table lacks a feature, the reference has no healthy record, or their sample rates cannot be compared.
     """
-    healthy, *sets = _healthy_of(table, reference)
-    number, members = _nearest_in_speed(table, healthy, *sets)
+    healthy, number, members = _healthy_of(table, reference)
+    number, members = _nearest_in_speed(table, healthy, number, members)
     values = feature_rows(healthy, (*features, *ENERGIES)).to_numpy()
     return relative_table(table, features, np.stack([mean_row(values[rows]) for rows in members])[number])
 
