@@ -46,7 +46,8 @@ def test_every_imported_package_is_declared():
     stated = [Requirement(line) for line in all_requirements()]
     declared = {canonicalize_name(name) for one in stated for name in (one.name, *one.extras)}
     named = set().union(*(imports(path) for name in IMPORTED for path in (ROOT / name).rglob("*.py")))
-    owners = {name: {canonicalize_name(owner) for owner in packages_distributions()[name]} for name in named}
+    installed = packages_distributions()
+    owners = {name: {canonicalize_name(owner) for owner in installed[name]} for name in named}
     assert {name for name, of in owners.items() if not of & declared} == set()
 
 
