@@ -78,11 +78,11 @@ def choose_reference(table: xr.Dataset, reference: xr.Dataset, features: Sequenc
 
 
 def _apart_in_speed(table: xr.Dataset, reference: xr.Dataset) -> float:
-    """Largest relative distance of a tested speed from the nearest one of the reference; 0 if a table has no speeds."""
+    """Largest relative distance of a tested speed from the nearest one of the reference; 0 if a table has no known speeds."""
     if "shaft_rate" not in table or "shaft_rate" not in reference:
         return 0.0
-    tested, its = (np.unique(one["shaft_rate"].values) for one in (table, reference))
-    return float(np.max(np.min(np.abs(its / tested[:, None] - 1), axis=1)))
+    tested, its = (np.unique(one["shaft_rate"].values[one["shaft_rate"].values > 0]) for one in (table, reference))
+    return float(np.abs(its / tested[:, None] - 1).min(axis=1).max()) if tested.size and its.size else 0.0
 
 
 def _share_a_bearing(table: xr.Dataset, reference: xr.Dataset) -> bool:

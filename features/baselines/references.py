@@ -129,13 +129,16 @@ def _nearest_in_speed(
     """The sets of `_healthy_of` cut down to the records nearest in speed to each tested one, within `SAME_SPEED`."""
     if "shaft_rate" not in table or "shaft_rate" not in healthy:
         return number, members
-    keys = np.stack([number, np.log(table["shaft_rate"].values)])
-    pairs, number = np.unique(keys, axis=1, return_inverse=True)
-    speed = np.log(healthy["shaft_rate"].values)
+    with np.errstate(
+        divide="ignore", invalid="ignore"
+    ):  # a speed that is not known is 0 or NaN, and as far from all others
+        tested_speed, speed = (np.log(one["shaft_rate"].values) for one in (table, healthy))
+    pairs, number = np.unique(np.stack([number, tested_speed]), axis=1, return_inverse=True)
     nearest = list[NDArray[np.bool_]]()
     for rig, tested in pairs.T:
-        apart = np.where(members[int(rig)], np.abs(speed - tested), np.inf)
-        nearest.append(members[int(rig)] & ~(apart > apart.min() + SAME_SPEED))
+        apart = np.abs(speed - tested) if np.isfinite(tested) else np.zeros(len(speed))
+        closest = np.nanmin(apart[members[int(rig)]], initial=np.inf)
+        nearest.append(members[int(rig)] & ~(apart > closest + SAME_SPEED))
     return number.reshape(-1), nearest
 
 

@@ -154,6 +154,19 @@ def test_records_are_compared_with_the_healthy_ones_nearest_in_speed(table):
         np.testing.assert_allclose(found[row], lines[row] - lines[near].mean(axis=0))
 
 
+@pytest.mark.parametrize("unknown", [0.0, np.nan])
+def test_a_record_of_unknown_speed_is_compared_with_all_healthy_records_of_its_rig(table, unknown):
+    speeds = table["shaft_rate"].values.copy()
+    speeds[9] = unknown
+    some = table.assign(shaft_rate=("record", speeds))
+    row = relative_to(some, table, LINES)["features"].values[9, len(LINES) : 2 * len(LINES)]
+    known = (table["fault"].values == 0) & (table["rig"].values == table["rig"].values[9])
+    lines = table["features"].values[:, : len(LINES)]
+    np.testing.assert_allclose(row, lines[9] - lines[known].mean(axis=0))
+    none = table.assign(shaft_rate=("record", np.full(len(speeds), unknown)))
+    assert "nearest in speed" not in choose_reference(none, table.isel(record=slice(0, 40)), LINES).sentence
+
+
 def test_the_distance_in_speed_from_the_reference_is_told(table):
     at = {
         name: table.assign(shaft_rate=("record", np.full(table.sizes["record"], rate))) for name, rate in RATES.items()

@@ -11,17 +11,11 @@ import scipy.io
 
 from gen.importers import import_generic, read_signal
 from gen.support.errors import CorpusError
+from raceway.commands.recordings import OPTIONS
 from tests.gen.importers.file_writers import FS, X, excel
 from tests.gen.importers.people_files import ONE, OTHER_VALUES, PLAIN, REFUSED, RIGHT, THREE
 
 FACTORS = {"g": 9.80665, "mg": 9.80665e-3, "m/s2": 1.0, "mm/s2": 1e-3, "V": 1.0, None: 1.0}
-OPTIONS = {
-    "column": "--channel",
-    "variable": "--channel",
-    "rate": "--rate",
-    "unit": "--unit",
-    "delimiter": "--delimiter",
-}
 OF_UNITS = (
     "its unit is taken as",
     "the given unit",
