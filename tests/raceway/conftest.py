@@ -9,10 +9,16 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from click.testing import CliRunner, Result
 
+from features import feature_table
+from features.baselines import Model
+from gen import open_corpus
+from gen.corpus import FAULTS
 from raceway.cli import cli
+from tests.diagnoses import corpus
 
 _START = """
 import os, signal, sys
@@ -72,3 +78,23 @@ def start(tmp_path: Path) -> Callable[..., subprocess.Popen[str]]:
         if process.poll() is None:
             os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
+
+
+@pytest.fixture(scope="session")
+def model(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Model file for recordings of `tests.diagnoses`."""
+    folder = tmp_path_factory.mktemp("training")
+    table = feature_table(corpus(folder, seed=5, rigs=6, records=2, duration=0.5))
+    Model("logistic_regression").fit(table).save(folder / "model.skops")
+    return folder / "model.skops"
+
+
+@pytest.fixture(scope="session")
+def recordings(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[np.ndarray, float]]:
+    """Signal [m s-2] and speed [rpm] of one recording of each class."""
+    found = {}
+    with open_corpus(corpus(tmp_path_factory.mktemp("tested"), seed=11, rigs=1, records=1, duration=3.0)) as opened:
+        for number, code in enumerate(opened["fault"].values):
+            signal = opened["acceleration"][number, 0].values.astype(float)
+            found[FAULTS[code]] = signal, 60 * float(opened["shaft_rate"][number])
+    return found

@@ -1,105 +1,21 @@
 """``raceway diagnose``: a sentence, a JSON object and a page for good recordings, one sentence for all others."""
 
-import csv
-import html
-import json
-import os
 import re
 import subprocess
 import sys
 from pathlib import Path
-from urllib.parse import unquote, urljoin
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
-from scipy.io import savemat, wavfile
+from scipy.io import savemat
 from scipy.stats import kurtosis
 
 import features
-from features import feature_table
-from features.baselines import Model
 from features.signal import velocity_rms
-from gen import generate, open_corpus
-from gen.corpus import FAULTS
 from gen.importers.bearing_text import bearing_orders
-from raceway.cli import cli
+from tests.diagnoses import FS, call, told, write_csv, write_wav
 
-FS = 12_000
-RECIPE = """\
-# Recordings to diagnose, for tests; they share the kernel of the tiny recipe.
-name: recordings
-title: Recordings
-seed: {seed}
-corpus: {{rigs: {rigs}, specimens_per_rig: 4, records_per_specimen: {records}}}
-storage: {{records_per_part: 48}}
-recording: {{sample_rate_hz: 12000, duration_s: {duration}, settle_s: 0.05, converter: {{kind: float32}}}}
-bearing: {{kind: catalogue, designations: ["6205"]}}
-specimen: {{waviness_nm: 20}}
-operation: {{shaft_rpm: 'uniform(1700, 1800)'}}
-background: {{slope: 'uniform(0, 1)'}}
-faults:
-  - {{kind: healthy}}
-  - {{kind: inner, width_mm: 'uniform(0.5, 1)'}}
-  - {{kind: outer, width_mm: 'uniform(0.5, 1)'}}
-  - {{kind: ball, width_mm: 'uniform(0.5, 1)'}}
-"""
 LINE_ORDERS = {"inner": 5.4152, "outer": 3.5848, "ball": 4.7135}
-
-
-def corpus(folder, **values):
-    recipe = folder / "recipe.yaml"
-    recipe.write_text(RECIPE.format(**values), encoding="utf-8")
-    return generate(recipe, folder / "corpus").path
-
-
-@pytest.fixture(scope="module")
-def model(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("training")
-    table = feature_table(corpus(folder, seed=5, rigs=6, records=2, duration=0.5))
-    Model("logistic_regression").fit(table).save(folder / "model.skops")
-    return folder / "model.skops"
-
-
-@pytest.fixture(scope="module")
-def recordings(tmp_path_factory):
-    """Signal [m s-2] and speed [rpm] of one recording of each class."""
-    found = {}
-    with open_corpus(corpus(tmp_path_factory.mktemp("tested"), seed=11, rigs=1, records=1, duration=3.0)) as opened:
-        for number, code in enumerate(opened["fault"].values):
-            signal = opened["acceleration"][number, 0].values.astype(float)
-            found[FAULTS[code]] = signal, 60 * float(opened["shaft_rate"][number])
-    return found
-
-
-def call(*arguments):
-    return CliRunner().invoke(cli, ["diagnose", *map(str, arguments)], prog_name="raceway")
-
-
-def told(*arguments):
-    result = call(*arguments, "--json")
-    assert result.exit_code == 0, result.output
-    return json.loads(result.stdout)
-
-
-def write_csv(path, signal):
-    time = np.arange(signal.size) / FS
-    np.savetxt(
-        path,
-        np.stack([time, signal / 9.80665], axis=1),
-        delimiter=",",
-        header="time [s],drive_end",
-        comments="",
-        fmt="%.7g",
-    )
-    return path
-
-
-def write_wav(path, *channels):
-    wavfile.write(
-        path, FS, np.stack(channels, axis=1).astype(np.float32) if len(channels) > 1 else channels[0].astype(np.float32)
-    )
-    return path
 
 
 @pytest.mark.parametrize("fault", ["healthy", "inner", "outer", "ball"])
@@ -263,8 +179,8 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
 
 
 @pytest.mark.parametrize("command", [("diagnose", "r.wav", "--rpm", "1500"), ("evaluate", "corpus", "--model", "m")])
-def test_an_empty_channel_name_is_refused(command):
-    result = CliRunner().invoke(cli, [*command, "--channel", "x,"], prog_name="raceway")
+def test_an_empty_channel_name_is_refused(command, run):
+    result = run(*command, "--channel", "x,")
     assert (result.exit_code, "'x,' has an empty name" in result.output) == (2, True)
 
 
@@ -387,125 +303,6 @@ def test_an_error_is_one_sentence_and_exit_code_2(options, sentence, model, reco
     assert sentence in result.stderr
     assert len(result.stderr.strip().splitlines()) == 1
     assert result.stdout == ""
-
-
-def test_a_folder_of_recordings_becomes_a_table_and_pages(model, recordings, tmp_path):
-    folder, pages = tmp_path / "campaign", tmp_path / "pages"
-    folder.mkdir()
-    for fault in ("inner", "outer"):
-        write_csv(folder / f"{fault}.csv", recordings[fault][0])
-    write_wav(folder / "new.wav", recordings["healthy"][0])
-    (folder / "note.txt").write_text("nothing measured", encoding="utf-8")
-    (folder / "list.doc").write_text("no recording", encoding="utf-8")
-    options = (folder, "--bearing", "6205", "--rpm", "1700-1800", "--model", model)
-    result = call(*options, "--healthy", folder / "new.wav", "-o", pages)
-    assert result.exit_code == 0, result.output
-    header, *rows = result.stdout.partition("\n\n")[0].splitlines()
-    assert header.split() == ["recording", "verdict", "probability", "rpm", "strongest", "lines", "warnings"]
-    assert [row.split()[:2] for row in rows] == [["inner.csv", "inner"], ["outer.csv", "outer"], ["note.txt", "not"]]
-    assert "BPFI" in rows[0]
-    assert "note.txt: has no row of numbers among its first 1 lines" in result.stdout
-    assert sorted(page.name for page in pages.iterdir()) == [
-        "diagnoses.csv",
-        "index.html",
-        "inner.csv.html",
-        "outer.csv.html",
-    ]
-    listed = told(*options)
-    assert [Path(one["recording"]).name for one in listed] == ["inner.csv", "new.wav", "outer.csv", "note.txt"]
-    assert [one.get("verdict") for one in listed] == ["inner", "healthy", "outer", None]
-    alone = told(folder / "inner.csv", *options[1:])
-    assert {**listed[0]} == alone
-
-
-def test_a_folder_gets_an_index_page_and_a_csv_file_with_the_same_rows(model, recordings, tmp_path):
-    folder, pages = tmp_path / "<b>campaign", tmp_path / "pages"
-    folder.mkdir()
-    write_wav(folder / "=a: <i>&#100%.wav", recordings["outer"][0])
-    (folder / "note.txt").write_text("nothing measured", encoding="utf-8")
-    options = (folder, "--bearing", "6205", "--rpm", "1700-1800", "--model", model, "-o", pages)
-    _, found = (told(*options)[0] for _ in range(2))  # the second call replaces the files of the first
-    with (pages / "diagnoses.csv").open(encoding="utf-8", newline="") as file:
-        outer, note = csv.DictReader(file)
-    assert outer["recording"] == "'=a: <i>&#100%.wav"  # no formula
-    assert (outer["verdict"], outer["likeliest"], outer["page"]) == ("outer", "outer", "'=a: <i>&#100%.wav.html")
-    assert float(outer["probability"]) == pytest.approx(found["probabilities"]["outer"], abs=1e-4)
-    assert float(outer["rpm"]) == pytest.approx(found["shaft_rpm"], abs=0.1)
-    assert outer["strongest_lines"].startswith(
-        f"{found['evidence'][0]['line']} {found['evidence'][0]['level_db']:.0f} dB"
-    )
-    assert (int(outer["warnings"]), outer["sentence"]) == (len(found["warnings"]), found["sentence"])
-    assert (note["recording"], note["verdict"], note["probability"]) == ("note.txt", "not used", "")
-    page = (pages / "index.html").read_text(encoding="utf-8")
-    assert "Diagnoses of &lt;b&gt;campaign" in page
-    assert "2 recordings: 1 outer, 1 not used." in page
-    assert ">=a: &lt;i&gt;&amp;#100%.wav</a>" in page
-    (link,) = re.findall(r'href="([^"]*)"', page)
-    assert urljoin("file:///pages/index.html", link) == f"file:///pages/{link}"  # the colon makes no scheme
-    assert unquote(link) == "=a: <i>&#100%.wav.html"
-    assert note["sentence"].startswith("note.txt: has no row of numbers")
-    assert note["sentence"] in html.unescape(page)
-    assert str(tmp_path) not in page
-
-
-def test_a_file_name_that_is_no_text_gets_a_page_too(model, recordings, tmp_path):
-    folder, pages = tmp_path / "campaign", tmp_path / "pages"
-    folder.mkdir()
-    try:
-        write_wav(folder / os.fsdecode(b"a\xff.wav"), recordings["outer"][0])
-    except OSError:
-        pytest.skip("this disk takes names in UTF-8 alone")
-    done = call(folder, "--bearing", "6205", "--rpm", "1700-1800", "--model", model, "-o", pages)
-    assert done.exit_code == 0, done.output
-    assert {page.name for page in pages.iterdir()} == {r"a\xff.wav.html", "index.html", "diagnoses.csv"}
-    assert 'href="a%5Cxff.wav.html">a.wav</a>' in (pages / "index.html").read_text(encoding="utf-8")
-
-
-def test_a_file_of_a_folder_that_states_another_rate_or_unit_is_read_as_it_states(model, recordings, tmp_path):
-    signal, rpm = recordings["outer"]
-    folder = tmp_path / "campaign"
-    folder.mkdir()
-    np.savetxt(folder / "plain.csv", signal / 9.80665, header="drive_end", comments="")
-    text = write_csv(folder / "times.csv", signal).read_text(encoding="utf-8")
-    (folder / "unit.csv").write_text(text.replace("drive_end", "drive_end [m/s2]"), encoding="utf-8")
-    how = ("--channel", "drive_end", "--rate", 25_600, "--bearing", "6205", "--rpm", rpm, "--model", model)
-    plain, times, other = told(folder, "--unit", "V", "--sensitivity", 1000, *how)
-    assert [one["sample_rate_hz"] for one in (plain, times, other)] == [25_600, FS, FS]
-    assert times["verdict"] == other["verdict"] == "outer"
-    assert "times.csv: it states otherwise than --rate 25600, and is read as it states." in times["warnings"]
-    for option in ("--rate 25600", "--unit V", "--sensitivity 1000"):
-        assert f"unit.csv: it states otherwise than {option}, and is read as it states." in other["warnings"]
-    assert [one["levels"][0]["rms"] for one in (times, other)] == pytest.approx(
-        [signal.std(), signal.std() / 9.80665], rel=1e-3
-    )
-    assert plain["warnings"] == [one for one in plain["warnings"] if "states otherwise" not in one]
-    alone = call(folder / "unit.csv", "--unit", "V", "--sensitivity", 1000, *how)
-    assert (alone.exit_code, "correct what is given" in alone.stderr) == (2, True)
-
-
-@pytest.mark.parametrize(
-    ("files", "options", "sentence"),
-    [
-        ((), (), "has no recording in it (.mat, .npy,"),
-        (("a.txt",), (), "no recording can be used; the first of 1: campaign/a.txt: has no row of numbers"),
-        (("a.txt",), ("-o", "mine"), "page.html: was not made by raceway"),
-        (("a.txt",), ("-o", "mine/page.html"), "is a file; give a folder"),
-        (("a.txt",), ("-o", "list"), "diagnoses.csv: exists and is no list of diagnoses of raceway"),
-        (("a.txt",), ("-o", "./campaign"), "campaign is the folder of the recordings; give another one for the pages"),
-    ],
-)
-def test_a_folder_that_cannot_be_used_is_one_sentence(files, options, sentence, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    for name in ("campaign", "mine", "list"):
-        Path(name).mkdir()
-    Path("list/diagnoses.csv").write_text("date,verdict", encoding="utf-8")
-    Path("mine/page.html").write_text("mine", encoding="utf-8")
-    for name in files:
-        Path("campaign", name).write_text("nothing", encoding="utf-8")
-    result = call("campaign", "--rpm", 1750, "--model", "none.skops", *options)
-    assert (result.exit_code, result.stdout) == (2, "")
-    assert sentence in result.stderr
-    assert len(result.stderr.strip().splitlines()) == 1
 
 
 @pytest.mark.parametrize(("rpm", "meant"), [("29.5", "1770"), ("28-30", "1680-1800")])
