@@ -4,8 +4,7 @@
 
 Healthy recordings of one machine at about the same speed differ in colour by 1 to 3 dB, and faults change it by 3 to 15 dB, also those that
 show no line (``python -m benchmarks.colour REAL``). A bent shaft, imbalance and another speed change it as much. So a record in a
-strange colour is not answered healthy, and its probabilities stay: when they moved from healthy to the faults, one healthy recording of
-a rig as the reference accused 6 of 100 other healthy recordings of it.
+strange colour is not answered healthy, and its probabilities stay.
 Bands below 200 Hz do not count: the lines of the shaft lie there, and balance and speed change them in healthy machines too.
 """
 

@@ -87,7 +87,7 @@ def _assert_equal(result: Any, expected: Any, *, single: bool = False) -> None:
     for found, wanted in zip(_arrays(result), _arrays(expected), strict=True):
         if single and wanted.dtype.kind == "f":
             largest = np.abs(wanted).max(initial=0.0, where=np.isfinite(wanted))
-            np.testing.assert_allclose(found, wanted, rtol=2e-3, atol=2e-4 * largest)
+            np.testing.assert_allclose(found, wanted, rtol=1e-4, atol=1e-5 * largest)
         else:
             np.testing.assert_array_equal(found, wanted)
 
