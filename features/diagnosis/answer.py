@@ -27,6 +27,7 @@ from features.diagnosis.wording import (
     answer_in_words,
     candidates,
     different_classes,
+    listed,
     missed_faults,
     pair_in_words,
     speed_warning,
@@ -179,14 +180,17 @@ def diagnose_recording(
     shown = (recording.used, *(each.used for each in healthy))
     if quality.useless:
         return _with_levels(_useless(given, model, quality), shown)
-    references = [_reference(one, used, given) for one in healthy]
+    references = [_reference(one, recording, used, given) for one in healthy]
     spectra = mean_spectra(list(used.signals.values()), used.fs, given)
     found = find_pairs(spectra, given)
     judged = [_judge(used, pair, model, references) for pair in found.pairs]
     strange = strange_comb(spectra, judged[0].pair, judged[0].lines)
     diagnosis = _conclude(judged, found, given, strange)
     advice = diagnosis.advice + (_advice(used, bool(healthy)) if diagnosis.verdict in (UNSURE, HEALTHY) else ())
-    diagnosis = replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings))
+    sentence = diagnosis.sentence
+    if len(used.signals) > 1:
+        sentence = f"{sentence[:-1]}; channels {listed([*used.signals], 'and')}, as axes of one housing."
+    diagnosis = replace(diagnosis, advice=advice, warnings=(*quality.warnings, *diagnosis.warnings), sentence=sentence)
     if diagnosis.verdict == HEALTHY:
         missed, of = missed_faults(_duration(used), compared=bool(healthy))
         told = f"{missed} of {of} faulty recordings of about this length from three machines were called healthy"
@@ -224,8 +228,16 @@ def _usable(recording: Recorded, given: Given) -> tuple[Recorded, Quality]:
     return recording._replace(signals=kept), Quality("", "", tuple(warnings))
 
 
-def _reference(healthy: Recorded, used: Recorded, given: Given) -> Recorded:
-    """What is used of a healthy recording, which must tell something in the channels that are used."""
+def _reference(healthy: Recorded, recording: Recorded, used: Recorded, given: Given) -> Recorded:
+    """What is used of a healthy recording, which must have the channels of the recording, and tell something in those that are used."""
+    if not set(recording.signals) <= set(healthy.signals):
+        their, own = (
+            listed([name or "one without a name" for name in one.signals], "and") for one in (healthy, recording)
+        )
+        raise CorpusError(
+            f"{healthy.name}: has other channels ({their}) than the recording ({own}), and cannot be used as the healthy recording; "
+            "choose channels that both have (--channel)."
+        )
     reference, quality = _usable(healthy, given)
     if quality.useless or not set(used.signals) <= set(reference.signals):
         why = quality.useless or " ".join(quality.warnings)

@@ -24,7 +24,7 @@ def family_in_words(lines: Sequence[Line]) -> str:
     more = "" if not further else " and 1 further harmonic" if further == 1 else f" and {further} further harmonics"
     verb = "stand up to" if further else "stands"
     sides = [part for side, part in SIDES.items() if any(line.side == side for line in lines)]
-    beside = f" with sidebands at the rate of the {_listed(sides, 'and')}" if sides else ""
+    beside = f" with sidebands at the rate of the {listed(sides, 'and')}" if sides else ""
     return f"{first.name} at {first.order:.2f} orders{more} {verb} {level:.0f} dB above the floor{beside}"
 
 
@@ -44,7 +44,7 @@ def reasons(verdict: str, lines: Sequence[Line]) -> str:
     if verdict == HEALTHY:
         if others:
             return f"although {others}"
-        return f"no line of {_listed(PARTS, 'or')} stands {LEAST_LEVEL:g} dB above the floor"
+        return f"no line of {listed(PARTS, 'or')} stands {LEAST_LEVEL:g} dB above the floor"
     if own:
         return family_in_words(own) + (f"; also {others}" if others else "")
     name = CLASSES[verdict].lines[0].label if CLASSES[verdict].evidence else "fault"
@@ -124,7 +124,7 @@ def speed_warning(pair: Pair, given: Given) -> tuple[str, ...]:
 def different_classes(judged: Sequence[tuple[Pair, str]]) -> str:
     """Clause on pairs that cannot be told apart and give different classes."""
     each = [f"{_place(pair)} ({verdict})" for pair, verdict in judged]
-    return f"the lines cannot tell apart {_listed(each, 'and')}"
+    return f"the lines cannot tell apart {listed(each, 'and')}"
 
 
 def unexplained(pair: Pair, elsewhere: Sequence[Pair], strange: float | None) -> str:
@@ -135,7 +135,7 @@ def unexplained(pair: Pair, elsewhere: Sequence[Pair], strange: float | None) ->
             "bearing or the speed may be another, or the lines come from another part of the machine"
         )
     each = [f"{_place(one)} ({one.lines.upper()})" for one in elsewhere]
-    return f"{_place(pair)} does not explain the strongest lines, but {_listed(each, 'or')} would"
+    return f"{_place(pair)} does not explain the strongest lines, but {listed(each, 'or')} would"
 
 
 def _place(pair: Pair) -> str:
@@ -146,5 +146,6 @@ def _bearing(pair: Pair) -> str:
     return f"{pair.bearing} or alike" if pair.alike else pair.bearing
 
 
-def _listed(words: Sequence[str], last: str) -> str:
+def listed(words: Sequence[str], last: str) -> str:
+    """Words such as "x, y and z"."""
     return f"{', '.join(words[:-1])} {last} {words[-1]}" if len(words) > 1 else words[0]

@@ -23,6 +23,7 @@ sheets         tables in Excel files
 table          header, rows and notes of a table, whatever file it is in
 header         names, units and sample rate in the header of a table
 numerals       forms of numbers, and the one that suits a column
+axes           columns that hold the axes of one sensor
 columns        choice of a column, and the sample rate that times tell
 files          NumPy and WAV files; errors of libraries as sentences
 recordings     recordings, their checks, their division into records

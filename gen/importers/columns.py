@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from gen.importers.axes import axes_of
 from gen.importers.conversion import Unit
-from gen.importers.files import ContradictionError, FloatArray, UnusableError
+from gen.importers.files import ContradictionError, FloatArray, NoneChosenError, UnusableError
 from gen.importers.header import SECONDS, Header, key_of, known_unit
 
 SLOWEST, FASTEST = 500.0, 1e6  # Hz; a rate beyond them is rather another number
@@ -97,8 +98,9 @@ def columns_to_load(header: Header, column: int | str | None, numeric: Sequence[
         If there is no such column, or several and none is chosen.
     """
     if column is None:
-        if sum(n not in even and not header.is_of_time(n) for n in numeric) > 1:
-            raise _none_chosen(header, numeric)
+        signals = [n for n in numeric if n not in even and not header.is_of_time(n)]
+        if len(signals) > 1:
+            raise _none_chosen(header, numeric, signals)
         return [*numeric]
     places = header.places(column)
     if len(places) > 1:
@@ -121,7 +123,7 @@ def signal_of(header: Header, column: int | str | None, loaded: Mapping[int, Flo
     times = [n for n, values in loaded.items() if is_even(values) or header.is_of_time(n)]
     signals = [n for n in loaded if n not in times] if column is None else [*loaded][:1]
     if len(signals) > 1:
-        raise _none_chosen(header, [*loaded])
+        raise _none_chosen(header, [*loaded], signals)
     if not signals or signals[0] in times:
         message = f"has times or a counter in column {_listed(header, signals or times)}, and no signal; choose another"
         raise UnusableError(message, "column")
@@ -140,10 +142,9 @@ def signal_of(header: Header, column: int | str | None, loaded: Mapping[int, Flo
     return Values(loaded[signals[0]], tuple(rates), unit=own or header.unit, named=named)
 
 
-def _none_chosen(header: Header, columns: Sequence[int]) -> UnusableError:
-    return UnusableError(
-        f"has {len(columns)} columns ({_listed(header, columns)}) and none is chosen; choose one", "column"
-    )
+def _none_chosen(header: Header, columns: Sequence[int], signals: Sequence[int]) -> NoneChosenError:
+    message = f"has {len(columns)} columns ({_listed(header, columns)}) and none is chosen; choose one"
+    return NoneChosenError(message, "column", tuple(map(header.key, axes_of(header, signals))))
 
 
 def table_signal(table: NDArray[Any], column: int | str | None) -> Values:

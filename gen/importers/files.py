@@ -39,6 +39,14 @@ class UnusableError(Exception):
         return self.told({})
 
 
+class NoneChosenError(UnusableError):
+    """A file with several signals of which none is chosen; ``axes`` are those of one sensor as the key takes them, if it has such."""
+
+    def __init__(self, reason: str, key: str, axes: tuple[str, ...]) -> None:
+        super().__init__(reason, key)
+        self.axes = axes
+
+
 class ContradictionError(UnusableError):
     """A file that states another value than the one that is given as ``option``: rate, unit or sensitivity."""
 

@@ -64,9 +64,17 @@ class Header(NamedTuple):
         """Numbers of the columns that a number or a name means; the unit of a name can be left out."""
         if isinstance(column, int):
             return [column]
-        plain = [_IN_BRACKETS.sub("", name).partition("/")[0].strip() for name in self.names]
         exact = [n for n, name in enumerate(self.names) if name == column]
-        return exact or [n for n, name in enumerate(plain) if name == column]
+        return exact or [n for n, name in enumerate(map(_without_unit, self.names)) if name == column]
+
+    def key(self, column: int) -> str:
+        """Shortest text that means a column and no other: its name without or with the unit, or its number."""
+        names = (_without_unit(self.names[column]), self.names[column]) if self.names else ()
+        return next((name for name in names if name and self.places(name) == [column]), f"{column}")
+
+
+def _without_unit(name: str) -> str:
+    return _IN_BRACKETS.sub("", name).partition("/")[0].strip()
 
 
 def header_of(rows: Sequence[Sequence[str]], least: int, most: int) -> Header:

@@ -6,7 +6,7 @@ in the file.
 
 import math
 import struct
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from fnmatch import fnmatchcase
 from itertools import islice
 from pathlib import Path
@@ -17,8 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from gen.corpus.hdf5 import LIBRARY_LOCK, ForeignStorageError, own_dataset
+from gen.importers.axes import axes_of
 from gen.importers.columns import as_columns
-from gen.importers.files import UnusableError, guarded
+from gen.importers.files import NoneChosenError, UnusableError, guarded
+from gen.importers.header import Header, unit_said
 
 _FEWEST = 100  # values of a signal; speeds and rates have one
 _REAL = "biuf"  # kinds of NumPy types
@@ -168,7 +170,16 @@ def _only(held: Mapping[str, int], pattern: str | None) -> str:
         message = f"holds {listing([*held])}, and no {wanted}; name one"
     else:
         message = f"holds {listing(names)}, more than one {wanted}; name one"
+        raise NoneChosenError(message, "variable", _axes(held, names) if pattern is None else ())
     raise UnusableError(message, "variable")
+
+
+def _axes(held: Mapping[str, int], names: Sequence[str]) -> tuple[str, ...]:
+    """Variables of one length that are the axes of one sensor."""
+    if len({held[name] for name in names}) > 1:
+        return ()
+    header = Header(tuple(names), tuple(map(unit_said, names)))
+    return tuple(names[n] for n in axes_of(header, [n for n in range(len(names)) if not header.is_of_time(n)]))
 
 
 def listing(names: list[str]) -> str:

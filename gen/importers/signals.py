@@ -17,7 +17,7 @@ from gen.importers.conversion import (
     unit_problem,
     volts_per_acceleration,
 )
-from gen.importers.files import ContradictionError, FloatArray, UnusableError, read_numpy, read_wav, reason_of
+from gen.importers.files import ContradictionError, FloatArray, NoneChosenError, UnusableError, read_numpy, read_wav, reason_of
 from gen.importers.header import known_unit
 from gen.importers.matlab import read_matlab
 from gen.importers.sheets import read_sheet
@@ -37,6 +37,14 @@ class StatedOtherwiseError(CorpusError):
     def __init__(self, message: str, option: str) -> None:
         super().__init__(message)
         self.option = option
+
+
+class SeveralSignalsError(CorpusError):
+    """A file with several signals of which none is chosen; ``axes`` are the columns or variables that are axes of one sensor, if any."""
+
+    def __init__(self, message: str, axes: tuple[str, ...]) -> None:
+        super().__init__(message)
+        self.axes = axes
 
 
 class Place(NamedTuple):
@@ -105,6 +113,8 @@ def read_signal(
     ------
     CorpusError
         If the file cannot be read or holds no such signal, or unit and sensitivity do not belong together.
+    SeveralSignalsError
+        If the file has several signals and none is chosen.
     StatedOtherwiseError
         If the file states another rate, unit or kind of unit than the given rate, unit or sensitivity.
     """
@@ -131,11 +141,13 @@ def _as_sentences(path: Path, options: Mapping[str, str]) -> Iterator[None]:
     """Turn the reason why a file cannot be used into a sentence."""
     try:
         yield
-    except ContradictionError as reason:
-        message = f"{path}: {reason.told(options)}."
-        raise StatedOtherwiseError(message, reason.option) from None
     except UnusableError as reason:
         message = f"{path}: {reason.told(options)}."
+        match reason:
+            case ContradictionError():
+                raise StatedOtherwiseError(message, reason.option) from None
+            case NoneChosenError():
+                raise SeveralSignalsError(message, reason.axes) from None
         raise CorpusError(message) from None
     except (OSError, MemoryError) as error:
         message = f"{path}: {reason_of(error)}."

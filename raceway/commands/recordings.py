@@ -92,7 +92,8 @@ _channels: Decorator = click.option(
     callback=names,
     metavar="A,B,C",
     help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
-    "of one housing.",
+    "of one housing. By default all columns of acceleration, if they are the axes of one sensor by their names, such as x, y, z, or "
+    "three without names.",
 )
 _variable: Decorator = click.option(
     "--variable",
@@ -183,8 +184,24 @@ def read_as_stated(path: Path, reading: Reading) -> tuple["Recorded", Reading, t
 def read_recording(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
     """Channels of a file, how they were read, with the unit, and sentences on what was assumed.
 
-    The diagnosis itself warns of an implausible rms.
+    Without a choice the axes of one sensor are all read. The diagnosis itself warns of an implausible rms.
     """
+    from gen.importers.signals import SeveralSignalsError
+
+    try:
+        return _read(path, reading)
+    except SeveralSignalsError as error:
+        if reading.channels or not error.axes:
+            raise
+        axes = error.axes
+    recorded, used, notes = _read(path, reading._replace(channels=axes))
+    if len(axes) > 1:
+        return recorded, used, notes
+    note = f"{path.name}: {axes[0]} is read, which alone may be acceleration."
+    return recorded._replace(signals={"": recorded.signals[axes[0]]}), used, (note, *notes)
+
+
+def _read(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
     from gen.importers.signals import read_signal
     from gen.support.errors import CorpusError
 
@@ -209,4 +226,4 @@ def read_recording(path: Path, reading: Reading) -> tuple["Recorded", Reading, t
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
     unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
     units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
-    return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), reading._replace(unit=units), tuple(notes)
+    return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), reading._replace(unit=units), tuple(dict.fromkeys(notes))

@@ -13,6 +13,7 @@ from scipy.stats import kurtosis
 import features
 from features.signal import velocity_rms
 from gen.importers.bearing_text import bearing_orders
+from gen.support.errors import CorpusError
 from tests.diagnoses import FS, call, told, write_csv, write_wav
 
 LINE_ORDERS = {"inner": 5.4152, "outer": 3.5848, "ball": 4.7135}
@@ -128,6 +129,43 @@ def test_several_channels_are_axes_of_one_housing(model, recordings, tmp_path):
     assert "(1)</td>" in page.read_text(encoding="utf-8")
 
 
+def write_axes(path, header, *signals):
+    np.savetxt(path, np.stack(signals, axis=1), delimiter=",", header=header, comments="", fmt="%.7g")
+    return path
+
+
+def test_all_axes_of_a_file_are_used_without_being_chosen_and_the_answer_says_so(model, recordings, tmp_path):
+    (signal, rpm), (healthy, _) = recordings["outer"], recordings["healthy"]
+    options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model)
+    header = "x [m/s2],speed [rpm],y [m/s2],z [m/s2]"
+    path = write_axes(tmp_path / "r.csv", header, healthy, np.full(signal.size, rpm), signal, signal)
+    found, chosen = told(path, *options, "-o", tmp_path / "page.html"), told(path, *options, "--channel", "x,y,z")
+    assert found["channels"] == [levels["channel"] for levels in found["levels"]] == ["x", "y", "z"]
+    assert found["sentence"].endswith("; channels x, y and z, as axes of one housing.")
+    assert found["sentence"] in (tmp_path / "page.html").read_text(encoding="utf-8")
+    assert found["probabilities"] == chosen["probabilities"]
+    assert told(path, *options, "--channel", "y")["channels"] == ["y"]
+
+
+def test_the_only_acceleration_of_a_file_is_read_and_told(model, recordings, tmp_path):
+    signal, rpm = recordings["outer"]
+    path = write_axes(tmp_path / "r.csv", "speed [rpm],case [m/s2]", np.full(signal.size, rpm), signal)
+    alone = write_axes(tmp_path / "h.csv", "case [m/s2]", signal)
+    options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model)
+    assert "r.csv: case is read, which alone may be acceleration." in told(path, *options, "--healthy", alone)["warnings"]
+
+
+def test_a_healthy_recording_has_the_channels_of_the_recording(model, recordings, tmp_path):
+    signal, rpm = recordings["outer"]
+    options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model, "--unit", "g")
+    three = write_axes(tmp_path / "r.csv", "x,y,z", signal, signal, signal)
+    two = write_axes(tmp_path / "h.csv", "x,y", signal, signal)
+    assert told(two, *options, "--healthy", three)["channels"] == ["x", "y"]
+    result = call(three, *options, "--healthy", two)
+    assert (result.exit_code, len(result.stderr.strip().splitlines())) == (2, 1)
+    assert "h.csv: has other channels (x and y) than the recording (x, y and z)" in result.stderr
+
+
 def test_a_healthy_verdict_needs_the_colour_of_a_healthy_recording(model, recordings, tmp_path):
     signal, rpm = recordings["healthy"]
     dull = np.convolve(signal, [0.25, 0.5, 0.25], mode="same")  # another background and the same lines
@@ -172,6 +210,9 @@ def test_an_array_gets_the_diagnosis_of_its_file(model, recordings, tmp_path):
         signal, FS, rpm=rpm, model=model, orders={"6205": known["orders"], "other": (0.4, 4, 6, 3)}
     )
     assert several.bearing == "6205"
+    assert axes.sentence.endswith("; channels 0 and 1, as axes of one housing.")
+    with pytest.raises(CorpusError, match=r"has other channels \(one without a name\) than the recording \(0 and 1\)"):
+        features.diagnose([signal, signal], FS, rpm=rpm, healthy=[signal], **known)
     with pytest.raises(ValueError, match=r"shape \(1, 1, 2\)"):
         features.diagnose([[[1.0, 2.0]]], FS, rpm=rpm, **known)
     with pytest.raises(ValueError, match="not positive numbers"):
