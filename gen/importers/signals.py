@@ -17,7 +17,15 @@ from gen.importers.conversion import (
     unit_problem,
     volts_per_acceleration,
 )
-from gen.importers.files import ContradictionError, FloatArray, NoneChosenError, UnusableError, read_numpy, read_wav, reason_of
+from gen.importers.files import (
+    ContradictionError,
+    FloatArray,
+    NoneChosenError,
+    UnusableError,
+    read_numpy,
+    read_wav,
+    reason_of,
+)
 from gen.importers.header import known_unit
 from gen.importers.matlab import read_matlab
 from gen.importers.sheets import read_sheet

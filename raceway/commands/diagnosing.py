@@ -93,12 +93,12 @@ def diagnose(
       raceway diagnose fan.wav --bearing 6205 --rpm 1400-1600
       raceway diagnose fan.wav --bearing 6203 --bearing 6205 --rpm 1480
       raceway diagnose motor.mat --channel X106_DE_time --bearing 6205 --rpm 1750 --rate 12000 --unit g
-      raceway diagnose volts.csv --channel x,y,z --unit V --sensitivity 100 --bearing 6308 --rpm 990 --rate 25600
+      raceway diagnose volts.csv --channel x,y --unit V --sensitivity 100 --bearing 6308 --rpm 990 --rate 25600
       raceway diagnose pump.csv --healthy new.csv --bearing 6205 --rpm 1772 --rate 12000 --json
       raceway diagnose spring_campaign --channel 1 --bearing 6205 --rpm 1480 -o pages
 
-    Give a speed, a bearing or both. The answer names the pair of bearing and speed that explains the lines, and is "unsure" if pairs
-    that cannot be told apart give different answers.
+    All axes of one sensor are used, such as x, y, z; --channel chooses. Give a speed, a bearing or both. The answer names the pair of
+    bearing and speed that explains the lines, and is "unsure" if pairs that cannot be told apart give different answers.
 
     --json prints verdict, probabilities, shaft_rpm, evidence (line, order, frequency_hz, level_db, harmonic, band), levels and explanations
     (bearing, alike, shaft_rpm, uncertainty_rpm, lines, as_given), and further facts.

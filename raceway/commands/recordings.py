@@ -92,8 +92,7 @@ _channels: Decorator = click.option(
     callback=names,
     metavar="A,B,C",
     help="Column of a table by name or number from 0, channel of a WAV file, or variable of a MATLAB file; several are the axes "
-    "of one housing. By default all columns of acceleration, if they are the axes of one sensor by their names, such as x, y, z, or "
-    "three without names.",
+    "of one housing. By default all axes of one sensor, as names or their absence tell: x, y, z, ch1, ch2, ch3, or three columns.",
 )
 _variable: Decorator = click.option(
     "--variable",
@@ -195,10 +194,11 @@ def read_recording(path: Path, reading: Reading) -> tuple["Recorded", Reading, t
             raise
         axes = error.axes
     recorded, used, notes = _read(path, reading._replace(channels=axes))
-    if len(axes) > 1:
+    name, *others = axes
+    if others:
         return recorded, used, notes
-    note = f"{path.name}: {axes[0]} is read, which alone may be acceleration."
-    return recorded._replace(signals={"": recorded.signals[axes[0]]}), used, (note, *notes)
+    note = f"{path.name}: {name} is read, which alone may be acceleration."
+    return recorded._replace(signals={"": recorded.signals[name]}), used, (note, *notes)
 
 
 def _read(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str, ...]]:
@@ -226,4 +226,8 @@ def _read(path: Path, reading: Reading) -> tuple["Recorded", Reading, tuple[str,
     cut = {name: signal.values[:shortest] for name, signal in signals.items()}
     unit = "unit of the file" if reading.unit is None and path.suffix.lower() == ".wav" else ACCELERATION
     units = " and ".join(dict.fromkeys(signal.unit for signal in signals.values()))
-    return Recorded(cut, next(iter(signals.values())).fs, str(path), unit), reading._replace(unit=units), tuple(dict.fromkeys(notes))
+    return (
+        Recorded(cut, next(iter(signals.values())).fs, str(path), unit),
+        reading._replace(unit=units),
+        tuple(dict.fromkeys(notes)),
+    )

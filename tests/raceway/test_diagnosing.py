@@ -152,7 +152,9 @@ def test_the_only_acceleration_of_a_file_is_read_and_told(model, recordings, tmp
     path = write_axes(tmp_path / "r.csv", "speed [rpm],case [m/s2]", np.full(signal.size, rpm), signal)
     alone = write_axes(tmp_path / "h.csv", "case [m/s2]", signal)
     options = ("--bearing", "6205", "--rpm", rpm, "--rate", FS, "--model", model)
-    assert "r.csv: case is read, which alone may be acceleration." in told(path, *options, "--healthy", alone)["warnings"]
+    assert (
+        "r.csv: case is read, which alone may be acceleration." in told(path, *options, "--healthy", alone)["warnings"]
+    )
 
 
 def test_a_healthy_recording_has_the_channels_of_the_recording(model, recordings, tmp_path):
